@@ -27,7 +27,7 @@ bless: adapter
 	RELIEVO_BLESS=1 $(CARGO) test --features cli --test golden
 
 lint: setup
-	$(CARGO) fmt --check
+	$(CARGO) fmt --all --check
 	$(CARGO) clippy --all-targets --features cli -- -D warnings
 	$(CARGO) clippy --all-targets -- -D warnings
 	$(CARGO) clippy --all-targets --features samples -- -D warnings

@@ -1,7 +1,8 @@
 #!/bin/bash
 # Makes sure that there is what the build needs besides cargo, with `adapter` that a Vulkan adapter works, and with
-# `browser` that there is the Chromium that the tests compile shaders in: installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no
-# network, where all is there.
+# `browser` that there is the Chromium that the tests compile shaders and draw a scene in, and a Rust that compiles for it:
+# installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no network, where
+# all is there.
 set -euo pipefail
 cargo=${CARGO:-cargo}
 
@@ -20,6 +21,12 @@ have_browser() {
         command -v "$name" >/dev/null && return 0
     done
     return 1
+}
+# The suite's own Rust with the target, or Debian's Rust for browsers (tests/web/wasm.rs chooses in the same way).
+have_wasm() {
+    [ -d "$(rustc --print sysroot 2>/dev/null)/lib/rustlib/wasm32-unknown-unknown" ] ||
+        { [ -f /usr/lib/rustlib/src/rust/library/std/Cargo.toml ] && [ -x /usr/bin/cargo ] && [ -x /usr/bin/rustc ] &&
+            compgen -c wasm-ld- >/dev/null; }
 }
 # A driver's file may be there without its library or its hardware: only opening a device tells.
 have_adapter() {
@@ -45,6 +52,10 @@ if [ "$(uname -s)" = Linux ]; then
     # FLIP, the image comparison of the tests, is C++.
     command -v c++ >/dev/null || missing+=(g++)
     [ "${1:-}" != browser ] || have_browser || missing+=(chromium)
+    [ "${1:-}" != browser ] || have_wasm || missing+=(rustc-web cargo-web rust-web-src lld-22)
+elif [ "${1:-}" = browser ] && ! have_wasm; then
+    echo "missing: Rust for browsers. Run: rustup target add wasm32-unknown-unknown" >&2
+    exit 1
 fi
 [ ${#missing[@]} = 0 ] || provide "${missing[@]}"
 

@@ -65,11 +65,30 @@ impl Staged {
     /// # Errors
     /// [`Error::Output`] if the file cannot be written.
     pub fn write_png(&mut self, name: impl Into<String>, image: &image::RgbaImage) -> Result<(), Error> {
+        self.encode(name, |bytes| image.write_to(bytes, image::ImageFormat::Png))
+    }
+
+    /// Stages a picture of 16-bit brightness as PNG.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if the file cannot be written.
+    pub fn write_gray_png(
+        &mut self,
+        name: impl Into<String>,
+        image: &image::ImageBuffer<image::Luma<u16>, Vec<u16>>,
+    ) -> Result<(), Error> {
+        self.encode(name, |bytes| image.write_to(bytes, image::ImageFormat::Png))
+    }
+
+    fn encode(
+        &mut self,
+        name: impl Into<String>,
+        encode: impl FnOnce(&mut std::io::Cursor<Vec<u8>>) -> image::ImageResult<()>,
+    ) -> Result<(), Error> {
         let path = self.path(name);
         // Encodes in memory first: the image crate drops the error of the last write.
         let mut bytes = std::io::Cursor::new(Vec::new());
-        let written = image.write_to(&mut bytes, image::ImageFormat::Png);
-        written.map_err(|error| Error::output(&path, error))?;
+        encode(&mut bytes).map_err(|error| Error::output(&path, error))?;
         write_bytes(&path, bytes.get_ref())
     }
 

@@ -1,5 +1,7 @@
 //! Counter-based random words: the CPU reference of `wgsl/hash.wgsl`.
 
+use sha2::{Digest, Sha256};
+
 /// Number of lanes that are drawn together, so that the compiler can vectorize the loops.
 pub const LANES: usize = 8;
 
@@ -26,6 +28,13 @@ pub fn threefry2x32(key: [u32; 2], x: [u32; LANES], y: [u32; LANES]) -> ([u32; L
         }
     }
     (first, second)
+}
+
+/// The key for which a text stands: the first eight bytes of its SHA-256, as two little-endian words.
+pub fn key_of(text: &str) -> [u32; 2] {
+    let digest = Sha256::digest(text.as_bytes());
+    let word = |at: usize| u32::from_le_bytes([digest[at], digest[at + 1], digest[at + 2], digest[at + 3]]);
+    [word(0), word(4)]
 }
 
 #[cfg(test)]

@@ -20,11 +20,13 @@
 //!
 //! [`lod`] decides which instances of a scene each view sees and with which level of detail, and lists them.
 //!
-//! `scene` is everything there is in a world (terrain, meshes, reliefs, characters), and views of it; it needs the
-//! feature `gpu`.
+//! `scene` is everything there is in a world (terrain, meshes, reliefs, characters), and views of it: what an engine
+//! embeds. Its documentation begins with the order of calls, and has a whole program. It needs the feature `gpu`.
 //!
 //! `gpu` opens a device or takes the caller's. It has typed buffers, prepared jobs, timing and errors. `render` has
 //! a camera, an off-screen target, and passes that draw in the caller's render pass. Both need the feature `gpu`.
+//!
+//! `scene_file` reads scenes from JSON, builds them and draws their frames; it needs the feature `gpu`.
 //!
 //! `samples` generates a creature with clips, and height maps with their colours. It needs the feature `samples`.
 //!
@@ -117,6 +119,8 @@ pub mod render;
 pub mod samples;
 #[cfg(feature = "gpu")]
 pub mod scene;
+#[cfg(feature = "gpu")]
+pub mod scene_file;
 mod shared;
 pub mod skinning;
 pub mod srgb;

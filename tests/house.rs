@@ -15,6 +15,7 @@ const FLOORS: &[&[&str]] = &[
     &["scene"],
     &["render"],
     &["samples"],
+    &["scene_file"],
     &["bench", "measure", "verify"],
 ];
 

@@ -18,6 +18,7 @@ use relievo::gpu::{Buffer, Gpu, shaders};
 use relievo::render::TerrainScene;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
 use relievo::samples::creature;
+use relievo::scene_file::SceneFile;
 use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
 use relievo::skinning::{Blend, Extent, add_levels, level_errors, poses_of};
 use relievo::skinning::{morph, morph_weights, palette, skin};
@@ -82,10 +83,10 @@ fn every_command_has_the_options_that_it_is_shown_with() {
     }
 }
 
-/// Options that stand alone, as in "`--scene` times …", are those of `relievo crowd` or of all commands.
+/// Options that stand alone, as in "`--scene` times …", are those of `relievo crowd`, of `relievo scene` or of all commands.
 #[test]
 fn options_that_are_named_exist() {
-    let help = relievo(&["crowd", "--help"]).stdout + &relievo(&["terrain", "--help"]).stdout;
+    let help: String = ["crowd", "scene", "terrain"].map(|name| relievo(&[name, "--help"]).stdout).concat();
     for option in quoted(README).into_iter().filter(|text| text.starts_with("--")) {
         for word in option.split_whitespace().filter(|word| word.starts_with("--")) {
             assert!(help.split_whitespace().any(|other| other == word), "{option}");
@@ -128,6 +129,17 @@ fn the_configuration_has_the_fields_and_defaults_of_the_table() {
 }
 
 #[test]
+fn the_scene_file_is_one() {
+    let blocks: Vec<_> =
+        README.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(!blocks.is_empty());
+    for text in blocks {
+        let scene = SceneFile::from_json(text).expect("valid");
+        assert_eq!(scene.files().len(), 2, "{text}");
+    }
+}
+
+#[test]
 fn links_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let links: Vec<_> = README.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
@@ -148,6 +160,21 @@ fn links_lead_somewhere() {
             .any(|folder| root.join(folder).join(path).exists());
         assert!(is_below, "{path}");
     }
+}
+
+/// A program in `examples/` that nobody finds helps nobody.
+#[test]
+fn every_example_is_named() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let mut programs = 0;
+    for path in std::fs::read_dir(folder).expect("examples").map(|entry| entry.expect("an entry").path()) {
+        if path.extension().is_some_and(|extension| extension == "rs") || path.join("main.rs").exists() {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            assert!(README.contains(&format!("](examples/{name}")), "{name}");
+            programs += 1;
+        }
+    }
+    assert!(programs > 1);
 }
 
 /// Compiles the README's example of embedding, with the variables that it leaves out.
@@ -196,14 +223,19 @@ fn characters(
 #[test]
 fn rust_is_compiled_as_it_stands_there() {
     let squeezed = |text: &str| text.split_whitespace().collect::<String>();
-    let compiled =
-        squeezed(include_str!("readme.rs")) + &squeezed(include_str!("../examples/engine/main.rs"));
+    let compiled = [
+        include_str!("readme.rs"),
+        include_str!("../examples/engine/main.rs"),
+        include_str!("web/scene/src/lib.rs"),
+        include_str!("web/scene/src/picture.rs"),
+    ];
+    let compiled: String = compiled.map(squeezed).concat();
     let lines = code("rust", "//");
     assert!(!lines.is_empty());
     for line in lines {
         assert!(
             compiled.contains(&squeezed(line)),
-            "neither tests/readme.rs nor examples/engine holds `{line}`"
+            "neither tests/readme.rs nor examples/engine nor tests/web/scene holds `{line}`"
         );
     }
 }

@@ -17,6 +17,7 @@ fn setup(arguments: &[&str], fakes: &[(&str, &str)], environment: &[(&str, &str)
     }
     for (name, script) in [("id", "echo 1000")].iter().chain(fakes) {
         let path = folder.path().join(name);
+        let _ = std::fs::remove_file(&path);
         std::fs::write(&path, format!("#!/bin/bash\n{script}\n")).expect("writable");
         std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).expect("writable");
     }
@@ -28,6 +29,15 @@ fn setup(arguments: &[&str], fakes: &[(&str, &str)], environment: &[(&str, &str)
         .envs(environment.iter().copied())
         .output()
         .expect("bash starts")
+}
+
+/// A `rustc` that knows browsers: its folder, which must be kept, and the script.
+fn browsers_rustc() -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let target = folder.path().join("lib/rustlib/wasm32-unknown-unknown");
+    std::fs::create_dir_all(target).expect("writable");
+    let script = format!("echo {}", folder.path().display());
+    (folder, script)
 }
 
 fn stderr(output: &Output) -> String {
@@ -47,7 +57,8 @@ fn what_is_missing_is_named_with_the_command_that_gets_it() {
 /// The suite alone needs it: neither `make demo` nor `make lint` does.
 #[test]
 fn a_browser_is_missing_for_the_tests_alone() {
-    let tools = [("cargo", ""), ("c++", "")];
+    let (_folder, rustc) = browsers_rustc();
+    let tools = [("cargo", ""), ("c++", ""), ("rustc", rustc.as_str())];
     let output = setup(&["browser"], &tools, &[]);
     assert_eq!(output.status.code(), Some(1));
     let text = stderr(&output);
@@ -58,14 +69,35 @@ fn a_browser_is_missing_for_the_tests_alone() {
     assert!(is_silent(&setup(&[], &tools, &[])));
     assert!(is_silent(&setup(&["browser"], &tools, &[("RELIEVO_CHROMIUM", "/opt/chrome")])));
     for name in ["chromium", "google-chrome"] {
-        assert!(is_silent(&setup(&["browser"], &[tools[0], tools[1], (name, "")], &[])), "{name}");
+        assert!(is_silent(&setup(&["browser"], &[tools[0], tools[1], tools[2], (name, "")], &[])), "{name}");
     }
+}
+
+/// Without `rustc` and a linker for WebAssembly on the search path, and with a `rustc` that lacks the target.
+#[test]
+fn rust_for_browsers_is_missing_for_the_tests_alone() {
+    let (folder, _) = browsers_rustc();
+    let other = format!("echo {}", folder.path().join("lib").display());
+    let tools = [("cargo", ""), ("c++", ""), ("chromium", ""), ("rustc", other.as_str())];
+    for tools in [&tools[..3], &tools[..]] {
+        let output = setup(&["browser"], tools, &[]);
+        assert_eq!(output.status.code(), Some(1));
+        let text = stderr(&output);
+        assert!(text.contains("sudo apt-get install rustc-web cargo-web rust-web-src lld-22"), "{text}");
+        assert_eq!(text.lines().count(), 1, "{text}");
+    }
+    assert!(setup(&[], &tools, &[]).status.success());
+    // Where Debian's packages do not exist, the remedy is rustup's.
+    let output = setup(&["browser"], &[tools[0], ("uname", "echo Darwin")], &[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("rustup target add wasm32-unknown-unknown"), "{}", stderr(&output));
 }
 
 /// Root gets it installed: from the lists that are there, or else from new ones.
 #[test]
 fn root_gets_the_browser_installed() {
-    let root = [("cargo", ""), ("c++", ""), ("id", "echo 0")];
+    let (_folder, rustc) = browsers_rustc();
+    let root = [("cargo", ""), ("c++", ""), ("id", "echo 0"), ("rustc", rustc.as_str())];
     let asked = tempfile::NamedTempFile::new().expect("a temporary file");
     let apt = |exit: &str| format!("echo \"$@\" >> {}; {exit}", asked.path().display());
     for (exit, expected) in [
@@ -82,7 +114,7 @@ fn root_gets_the_browser_installed() {
     ] {
         std::fs::write(asked.path(), "").expect("writable");
         let script = apt(exit);
-        let fakes = [root[0], root[1], root[2], ("apt-get", script.as_str())];
+        let fakes = [root[0], root[1], root[2], root[3], ("apt-get", script.as_str())];
         let marks = asked.path().to_str().expect("UTF-8");
         let output = setup(&["browser"], &fakes, &[("MARKS", marks)]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -16,7 +16,8 @@ fn decide_instance(instance: u32) -> u32 {
     clip_clocks[instance] = clip_clock;
     var so_far = Spread(0u, 0u);
     var left = 0u;
-    for (var word = 0u; word < gate_params.words; word++) {
+    // The second condition is always true; see `spread` in `compact`.
+    for (var word = 0u; word < gate_params.words && so_far.end <= gate_params.bones; word++) {
         let chosen = gate_word(instance, word, lod, clip_clock, &left);
         store_word(instance, word, chosen);
         so_far = spread_word(instance, word, chosen.bits, so_far);

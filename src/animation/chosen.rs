@@ -85,6 +85,7 @@ impl ChosenBones {
     ///
     /// # Errors
     /// Errors of the device, or [`GpuError::Hung`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.gathered.read_blocking(gpu).map(|all| self.used(all))
     }

@@ -69,6 +69,7 @@ impl ModelMatrices {
     ///
     /// # Errors
     /// Errors of the device, or [`GpuError::Hung`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.matrices.read_blocking(gpu)
     }

@@ -6,7 +6,7 @@ use super::sample::reference::sample;
 use crate::InputError;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::{Affine, Clip, Skeleton, Transform};
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 use {
     super::clip_set::ClipSet,
     super::crowd::{ClipBuffers, Crowd, unpacked},
@@ -38,7 +38,7 @@ impl Pose {
     ///
     /// # Errors
     /// [`InputError`] for a clip of another skeleton; [`crate::gpu::GpuError`] for errors of the device.
-    #[cfg(feature = "gpu")]
+    #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
     pub fn on_device(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> Result<Self, Error> {
         let crowd = posed(gpu, skeleton, clip, time)?;
         let locals = crowd.locals.read_blocking(gpu)?.iter().map(unpacked).collect();
@@ -63,7 +63,7 @@ impl Pose {
 }
 
 /// Samples and concatenates a crowd of one instance, at a time inside a clip.
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 pub(crate) fn posed(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> Result<Crowd, Error> {
     let set = ClipSet::new(&[clip])?;
     let clips = ClipBuffers::new(gpu, &set)?;

@@ -7,9 +7,10 @@ use crate::InputError;
 /// A directional light, in linear light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// The direction towards the light, of any length but 0.
+    /// The direction towards the light, in the world, of any length but 0.
     pub direction: Vec3,
-    /// Its colour, linear, at least 0: the factor of all that surfaces send back, of the ambient part too.
+    /// Its colour: red, green and blue in linear light, each at least 0. It is the factor of all that surfaces send back, of
+    /// the ambient part too. White of 1 shows a surface that faces the light in its own colour.
     pub color: Vec3,
     /// Light that surfaces facing away still receive, 0 to 1.
     pub ambient: f32,

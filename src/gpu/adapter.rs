@@ -66,6 +66,7 @@ impl std::fmt::Display for AdapterSummary {
 }
 
 /// Every adapter of this machine, the one that would be selected by default first.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn adapters() -> Vec<AdapterSummary> {
     let mut all: Vec<_> = (pollster::block_on(enumerate()).iter())
         .map(|adapter| AdapterSummary::of(&adapter.get_info()))

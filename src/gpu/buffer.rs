@@ -83,25 +83,27 @@ impl<T: bytemuck::Pod> Buffer<T> {
     ///
     /// The call never blocks: the future is woken when the device has answered. A browser's event loop notices
     /// that by itself. Elsewhere the program must poll the device, or the future never wakes: call
-    /// `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or [`Gpu::wait`] on a thread of its own.
+    /// `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or `Gpu::wait` on a thread of its own.
     ///
     /// # Errors
     /// Errors of the device.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
-        let bytes = Readback::start(gpu, &self.raw, self.content_bytes())?.answer().await?;
+        let answer = Readback::start(gpu, &self.raw, self.content_bytes())?.answer().await;
+        // An error of the copy says more than that nothing could be read.
+        gpu.check_async().await?;
+        let bytes = answer?;
         // The mapped bytes may be unaligned, so the elements are copied and not cast in place.
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// As [`Buffer::read`], but blocks until the device has finished. Do not use it in browsers, where the
+    /// As [`Buffer::read`], but blocks until the device has finished. It does not exist in browsers, where the
     /// answer never arrives while a program waits.
     ///
     /// # Errors
     /// Errors of the device, or [`GpuError::Hung`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
-        let readback = Readback::start(gpu, &self.raw, self.content_bytes())?;
-        gpu.wait()?;
-        Ok(bytemuck::pod_collect_to_vec(&pollster::block_on(readback.answer())?))
+        gpu.block_on(self.read(gpu))
     }
 
     fn content_bytes(&self) -> u64 {

@@ -31,7 +31,7 @@ impl Step {
     }
 }
 
-/// The number of invocations after which [`Job::run`] submits: some tenths of a second of work on a slow GPU.
+/// The number of invocations after which [`Job::run_async`] submits: some tenths of a second of work on a slow GPU.
 /// Operating systems abort work that takes seconds.
 const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
 
@@ -77,18 +77,29 @@ impl Job {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn run(&self, gpu: &Gpu) -> Result<(), GpuError> {
-        self.run_split(gpu, INVOCATIONS_A_SUBMISSION)
+        gpu.block_on(self.run_async(gpu))
     }
 
-    /// As [`Job::run`], in submissions of at most `most` invocations or of one step.
-    fn run_split(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
-        self.submissions(most).into_iter().try_for_each(|steps| {
-            gpu.run(self.label, |encoder| {
+    /// As `Job::run`, but completes once the device has finished; see [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// Errors of the device.
+    pub async fn run_async(&self, gpu: &Gpu) -> Result<(), GpuError> {
+        self.run_split(gpu, INVOCATIONS_A_SUBMISSION).await
+    }
+
+    /// As [`Job::run_async`], in submissions of at most `most` invocations or of one step.
+    async fn run_split(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
+        for steps in self.submissions(most) {
+            let record = |encoder: &mut wgpu::CommandEncoder| {
                 let mut pass = compute_pass(encoder, self.label);
                 steps.iter().for_each(|step| step.dispatch(&mut pass));
-            })
-        })
+            };
+            gpu.run_async(self.label, record).await?;
+        }
+        Ok(())
     }
 
     /// The steps of each submission of at most `most` invocations or of one step.
@@ -176,7 +187,7 @@ mod tests {
                 steps.iter().map(|step| 64 * step.workgroups.iter().product::<u32>()).sum::<u32>()
             };
             assert!(pieces.iter().all(|steps| steps.len() == 1 || u64::from(invocations(steps)) <= most));
-            job.run_split(&gpu, most).expect("run");
+            gpu.block_on(job.run_split(&gpu, most)).expect("run");
             (pieces.len(), windows.cropped(iterations).heights.read_blocking(&gpu).expect("read"))
         };
         let whole = run(INVOCATIONS_A_SUBMISSION);

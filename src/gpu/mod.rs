@@ -3,11 +3,17 @@
 //!
 //! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing in this
 //! module panics or aborts.
+//!
+//! What waits for the device has two forms. One blocks, and does not exist on `wasm32`, since a browser forbids to wait.
+//! The other is a future whose name ends in `_async` (of reading, [`Buffer::read`]), which polls nothing: a browser
+//! drives it, and natively the program polls the device meanwhile. Where the forms differ in more, their documentation
+//! says so.
 
 mod adapter;
 pub(crate) mod bind;
 pub(crate) mod bindings;
 mod buffer;
+mod errors;
 mod job;
 mod kernel;
 mod memory;
@@ -15,15 +21,18 @@ mod readback;
 mod readback_ring;
 pub mod shaders;
 mod shared;
+#[cfg(not(target_arch = "wasm32"))]
 mod timer;
 mod tuning;
 mod upload;
+mod wait;
 
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::sync::Arc;
 
 pub use crate::error::GpuError;
-pub use adapter::{AdapterSummary, Options, adapters};
+#[cfg(not(target_arch = "wasm32"))]
+pub use adapter::adapters;
+pub use adapter::{AdapterSummary, Options};
 pub use buffer::{Buffer, Uniform};
 pub(crate) use job::Step;
 pub use job::{IndirectJob, Job, compute_pass};
@@ -31,22 +40,14 @@ pub use kernel::{Group, Kernel};
 pub(crate) use kernel::{Layouts, layouts, module, pipeline_layout, rows_of_workgroups};
 pub use memory::Memory;
 pub use readback_ring::ReadbackRing;
+#[cfg(not(target_arch = "wasm32"))]
 pub use timer::{Measurement, TimedBy, Timer};
 pub(crate) use tuning::Tuning;
 pub use upload::{Staged, StagingRing, Upload};
 
+use errors::Errors;
 use shared::Shared;
 pub(crate) use shared::{Drawing, Program};
-
-/// The longest wait for the device before it counts as hung.
-const PATIENCE: Duration = Duration::from_secs(300);
-
-/// Errors that the handlers of an own device have received.
-#[derive(Debug, Default)]
-struct Heard {
-    lost: Option<String>,
-    error: Option<GpuError>,
-}
 
 /// A device and its queue, with the properties of the adapter that relievo uses. Clones share the device and
 /// the pipelines compiled on it.
@@ -56,7 +57,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     summary: AdapterSummary,
     tuning: Tuning,
-    heard: Arc<Mutex<Heard>>,
+    errors: Errors,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
     pub(crate) render_pipelines: Arc<Shared<Drawing, RenderPipeline>>,
@@ -72,14 +73,16 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
     /// refuses WebGPU's default limits.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn headless(options: &Options) -> Result<Self, GpuError> {
         pollster::block_on(Self::headless_async(options))
     }
 
-    /// As [`Gpu::headless`], for programs that must not block, for example in a browser.
+    /// As `Gpu::headless`, for programs that must not block, for example in a browser, where there is no other form.
     ///
     /// # Errors
-    /// As [`Gpu::headless`].
+    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
+    /// refuses WebGPU's default limits.
     pub async fn headless_async(options: &Options) -> Result<Self, GpuError> {
         let adapter = adapter::choose(options).await?;
         let info = adapter.get_info();
@@ -92,9 +95,9 @@ impl Gpu {
         };
         let (device, queue) = (adapter.request_device(&descriptor).await)
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
-        let heard = Arc::new(Mutex::new(Heard::default()));
-        listen(&device, &heard);
-        Ok(Self { heard, ..Self::new(device, queue, &info) })
+        let gpu = Self::new(device, queue, &info);
+        gpu.errors.listen(&gpu.device);
+        Ok(gpu)
     }
 
     /// Uses the device of an embedding program. The program's error handlers stay in place; relievo wraps its
@@ -106,8 +109,8 @@ impl Gpu {
 
     fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
         let (summary, tuning) = (AdapterSummary::of(info), Tuning::of(info));
-        let (heard, memory, kernels, render_pipelines) = Default::default();
-        Self { device, queue, summary, tuning, heard, memory, kernels, render_pipelines }
+        let (errors, memory, kernels, render_pipelines) = Default::default();
+        Self { device, queue, summary, tuning, errors, memory, kernels, render_pipelines }
     }
 
     /// The wgpu device.
@@ -145,69 +148,6 @@ impl Gpu {
     pub fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
-
-    /// Records with `record`, submits, and waits until the device has finished.
-    ///
-    /// # Errors
-    /// The errors of [`GpuError`] that the device reports.
-    pub fn run(&self, label: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<(), GpuError> {
-        self.scoped(|| {
-            let mut encoder = self.encoder(label);
-            record(&mut encoder);
-            self.queue.submit([encoder.finish()]);
-        })?;
-        self.wait()
-    }
-
-    /// Waits until everything submitted so far has run.
-    ///
-    /// # Errors
-    /// The loss of the device, an error that was reported in the meantime, or [`GpuError::Hung`].
-    pub fn wait(&self) -> Result<(), GpuError> {
-        let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
-        let polled = self.device.poll(poll);
-        self.check()?;
-        polled.map(|_| ()).map_err(|_| GpuError::Hung { seconds: PATIENCE.as_secs() })
-    }
-
-    /// Checks for errors that the device has reported outside a call that returned them.
-    ///
-    /// # Errors
-    /// The first of these errors.
-    pub fn check(&self) -> Result<(), GpuError> {
-        let mut heard = self.heard.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if let Some(reason) = &heard.lost {
-            return Err(GpuError::DeviceLost { reason: reason.clone() });
-        }
-        heard.error.take().map_or(Ok(()), Err)
-    }
-
-    /// Runs `work` and returns the errors that wgpu reports for it.
-    ///
-    /// # Errors
-    /// Out of memory, validation and internal errors caused by `work`.
-    pub fn scoped<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
-        self.check()?;
-        // A browser resolves error scopes only after the calling task has returned: there, errors reach the
-        // device's handler.
-        if cfg!(target_arch = "wasm32") {
-            return Ok(work());
-        }
-        let scopes =
-            [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation]
-                .map(|filter| self.device.push_error_scope(filter));
-        let done = work();
-        let mut first = None;
-        for scope in scopes.into_iter().rev() {
-            let error = pollster::block_on(scope.pop());
-            first = first.or(error);
-        }
-        let Some(error) = first else { return Ok(done) };
-        // A lost device rejects every call; polling tells why it was lost.
-        let _ = self.device.poll(wgpu::PollType::Poll);
-        self.check()?;
-        Err(GpuError::from(error))
-    }
 }
 
 /// WebGPU's default limits, with the adapter's own limits for the size and number of storage bindings: some
@@ -224,17 +164,4 @@ fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
         max_storage_buffers_per_shader_stage: default.max_storage_buffers_per_shader_stage.max(buffers),
         ..default
     }
-}
-
-fn listen(device: &wgpu::Device, heard: &Arc<Mutex<Heard>>) {
-    let on_error = heard.clone();
-    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-        let mut heard = on_error.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        heard.error.get_or_insert_with(|| GpuError::from(error));
-    }));
-    let on_loss = heard.clone();
-    device.set_device_lost_callback(move |reason, message| {
-        let mut heard = on_loss.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        heard.lost.get_or_insert(format!("{reason:?}: {message}"));
-    });
 }

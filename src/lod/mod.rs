@@ -2,9 +2,17 @@
 //! ([`list`]), and what gates and skinning make of the displacement that the views of a frame allow ([`assign`]).
 //! Meshes that are attached to bones are placed once these are posed ([`attach`]).
 //!
+//! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep instances and draws of their
+//! own: in a frame, record [`select`] and [`list`] for each view, the first of which says so
+//! ([`SelectView::is_first`](SelectView)), then [`assign`] for each character, then draw from the lists.
+//!
 //! Instances of all objects lie in one buffer of [`SceneInstance`], those of an object in whole blocks of [`BLOCK`]. A view
 //! ([`SelectView`]) sees them through its planes ([`planes`]), and has up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) that
 //! decide how far anything may be off: usually its own, for a shadow map those of the views that show the shadows.
+//!
+//! Positions of instances are a cell of [`CELL_SIZE`] world units an edge and an offset in world units. Planes and cameras
+//! are relative to the corner of the view's cell. Errors of levels are in the model's units, allowed displacements
+//! too, once an instance's largest scale has divided them.
 
 pub mod assign;
 pub mod attach;

@@ -10,7 +10,9 @@
 //! | [`pareto()`] | every gate at many settings: errors against the number of bones interpolated, and the gates' curves with each other | CPU |
 //!
 //! [`DisplacementMeter`] measures frames of the caller's own [`Scene`](crate::scene::Scene): how many pixels what a view
-//! draws is off, with the caller's camera, however it moves.
+//! draws is off, with the caller's camera, however it moves. [`ScenePlay`] draws the frames of a scene file, counts what is
+//! drawn, and compares each with the same frame at full detail: cost, displacement, and [`mean_flip`] of the pictures.
+//! [`CharacterDump`] writes where every bone was drawn, for anybody who wants to check that with a player of their own.
 //!
 //! # What stays the same
 //!
@@ -50,7 +52,10 @@ mod cpu;
 mod device;
 mod displacement;
 mod drawing;
+mod dump;
 mod errors;
+mod flip;
+mod frames;
 mod gates;
 mod levels;
 mod options;
@@ -67,7 +72,12 @@ mod vertices;
 
 pub use animation::{AnimationReport, AnimationRow, DrawnRow, animation, drawn};
 pub use displacement::{Displacement, DisplacementMeter};
+pub use dump::CharacterDump;
 pub use errors::{Errors, Jump};
+pub use flip::mean_flip;
+pub use frames::{
+    Compared, DrawnLevel, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay, Stages,
+};
 pub use gates::{GateMode, GateName};
 pub use levels::LevelReport;
 pub use options::{

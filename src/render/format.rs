@@ -6,10 +6,33 @@ use crate::InputError;
 ///
 /// The crate's shading writes the first colour attachment. Others may belong to the caller's own draws: what a
 /// renderer draws leaves them as they are.
+///
+/// # Examples
+///
+/// ```
+/// use relievo::render::{DepthFormat, TargetFormat};
+/// use wgpu::TextureFormat;
+///
+/// // A window with four samples, and depth of 1 near and 0 far. Clear it to 0.
+/// let window = TargetFormat::new(TextureFormat::Bgra8UnormSrgb).with_samples(4).reversed();
+///
+/// // An engine's pass with a second attachment of its own, and a stencil.
+/// let depth = DepthFormat { format: TextureFormat::Depth24PlusStencil8, reversed: false };
+/// let engine = TargetFormat::new(TextureFormat::Rgba16Float)
+///     .with_color(Some(TextureFormat::R32Uint.into()))
+///     .with_depth(Some(depth));
+///
+/// let shadow_map = TargetFormat::depth_only(TextureFormat::Depth32Float);
+/// for format in [window, engine, shadow_map] {
+///     format.validate()?;
+/// }
+/// # Ok::<(), relievo::InputError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with holes as in the pass. The first is written as it says, in linear light; its
-    /// format must hold floats.
+    /// Colour attachments, at most 8, with `None` where the pass has none. The first is written, with its blending and its
+    /// write mask. Shading writes values in linear light, which a format with `Srgb` in its name encodes; the format must
+    /// hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
     /// The depth attachment. Without one, what is drawn last covers the rest.
     pub depth: Option<DepthFormat>,
@@ -64,7 +87,8 @@ impl TargetFormat {
         Self { samples, ..self }
     }
 
-    /// Checks what the library needs of the attachments. What the device allows is checked when pipelines are compiled.
+    /// Checks what the library needs of the attachments. [`Renderer::new`](super::Renderer::new) checks what the device
+    /// allows.
     ///
     /// # Errors
     /// [`InputError`] that names the field: no attachment, more than 8 colours, a first colour of integers, a colour or
@@ -95,6 +119,65 @@ impl TargetFormat {
             return Err(InputError::new("format.samples", self.samples, "must be 1 or 4"));
         }
         Ok(())
+    }
+
+    /// Checks what a device allows of the attachments.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field: a format that needs a feature, one that cannot be rendered to, blended or have
+    /// so many samples, and colours with more bytes a sample than the device's limit.
+    pub(super) fn check_on(&self, device: &wgpu::Device) -> Result<(), InputError> {
+        let mut bytes = 0_u32;
+        for (at, color) in self.color.iter().enumerate() {
+            let Some(color) = color else { continue };
+            let has = self.check_attachment(&format!("format.color[{at}].format"), color.format, device)?;
+            // What is drawn blends into the first colour alone.
+            let blends = at == 0 && color.blend.is_some();
+            if blends && !has.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
+                let bound = format!("must be none for {:?}", color.format);
+                return Err(InputError::new("format.color[0].blend", "some", bound));
+            }
+            let (size, alignment) =
+                (color.format.target_pixel_byte_cost(), color.format.target_component_alignment());
+            bytes = bytes.next_multiple_of(alignment.unwrap_or(1)) + size.unwrap_or(0);
+        }
+        let most = device.limits().max_color_attachment_bytes_per_sample;
+        if bytes > most {
+            let bound = format!("must take at most {most}, the device's limit");
+            return Err(InputError::new("format.color", format!("{bytes} bytes a sample"), bound));
+        }
+        if let Some(depth) = self.depth {
+            self.check_attachment("format.depth.format", depth.format, device)?;
+        }
+        Ok(())
+    }
+
+    /// What a device can do with the format of an attachment.
+    fn check_attachment(
+        &self,
+        path: &str,
+        format: wgpu::TextureFormat,
+        device: &wgpu::Device,
+    ) -> Result<wgpu::TextureFormatFeatureFlags, InputError> {
+        let features = device.features();
+        if !features.contains(format.required_features()) {
+            let bound = "must need no feature that the device was opened without";
+            return Err(InputError::new(path, format!("{format:?}"), bound));
+        }
+        if features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
+            // What such a device allows is known when pipelines are compiled.
+            return Ok(wgpu::TextureFormatFeatureFlags::all());
+        }
+        let has = format.guaranteed_format_features(features);
+        if !has.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
+            let bound = "must be a format that the device can render to";
+            return Err(InputError::new(path, format!("{format:?}"), bound));
+        }
+        if !has.flags.sample_count_supported(self.samples) {
+            let bound = format!("must be a number of samples that {format:?} can have");
+            return Err(InputError::new("format.samples", self.samples, bound));
+        }
+        Ok(has.flags)
     }
 
     /// Whether there is a colour for the crate's shading.

@@ -28,7 +28,38 @@ pub enum Layer {
     Depth,
 }
 
-/// Draws scenes on targets of one format.
+/// Draws scenes on targets of one format. A shadow map, or a target of another format, has a renderer of its own.
+///
+/// # Examples
+///
+/// A prepass of depth, and colour behind it, in one pass with the program's own draws. The whole frame is in
+/// [`scene`](crate::scene#examples).
+///
+/// ```no_run
+/// use relievo::gpu::Gpu;
+/// use relievo::render::{Layer, Renderer, TargetFormat};
+/// use relievo::scene::{Scene, View};
+///
+/// # fn load(gpu: &Gpu, scene: &Scene) -> Result<Renderer, relievo::Error> {
+/// // Once, and `prepare` again whenever objects were added to the scene.
+/// let format = TargetFormat::new(wgpu::TextureFormat::Bgra8UnormSrgb).with_samples(4);
+/// let mut renderer = Renderer::new(gpu, &format)?;
+/// renderer.prepare(scene)?;
+/// # Ok(renderer)
+/// # }
+/// # fn frame(
+/// #     renderer: &Renderer,
+/// #     pass: &mut wgpu::RenderPass<'_>,
+/// #     (scene, view): (&Scene, &View),
+/// # ) -> Result<(), relievo::Error> {
+///
+/// // In a frame, after `Scene::record`.
+/// renderer.draw(pass, scene, view, Layer::Depth)?;
+/// renderer.draw(pass, scene, view, Layer::Color)?;
+/// // From here on, the program sets its own pipeline, bind groups and buffers again.
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -41,9 +72,11 @@ impl Renderer {
     /// A renderer for targets of this format. It compiles nothing yet.
     ///
     /// # Errors
-    /// [`InputError`] for a format that the library cannot draw into; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a format that the library cannot draw into or the device does not have, which names the field;
+    /// [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, format: &TargetFormat) -> Result<Self, Error> {
         format.validate()?;
+        format.check_on(gpu.device())?;
         let layouts = SceneLayouts::new(gpu)?;
         Ok(Self { gpu: gpu.clone(), format: format.clone(), layouts, pipelines: HashMap::new() })
     }
@@ -76,12 +109,14 @@ impl Renderer {
         Ok(())
     }
 
-    /// Compiles every pipeline that the objects of a scene need and that is not there yet. Call it again after objects
-    /// were added; drawing never compiles.
+    /// Compiles every pipeline that the objects of a scene need and that is not there yet: drawing never compiles. Call it
+    /// again after objects were added. Instances that are spawned, objects that grow, and cameras that change need no new
+    /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`InputError`] for a scene on another device; what the driver's compiler reports.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.check_device(scene)?;
         self.prepare_objects(scene.drawables())
     }
 
@@ -97,14 +132,24 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws a layer of a scene as a view saw it in the last [`Scene::record`]. It sets pipelines, the bind groups 0 to 2,
-    /// the first vertex buffer and the index buffer, and nothing else: viewport, scissor and stencil reference are the
-    /// caller's.
+    /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
-    /// [`InputError`] for a view of another scene, one that was not recorded since objects were added or grew, one with
-    /// the other direction of depth, a layer that the format has no attachment for, and objects that were added since
-    /// [`Renderer::prepare`].
+    /// As [`Renderer::prepare`].
+    pub async fn prepare_async(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare(scene)?;
+        Ok(self.gpu.check_async().await?)
+    }
+
+    /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
+    /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: viewport, scissor
+    /// and stencil reference are the caller's. The pass must have the attachments and the samples of the renderer's format,
+    /// which wgpu checks.
+    ///
+    /// # Errors
+    /// [`InputError`] for a scene on another device; a view of another scene; one that was not recorded since objects were
+    /// added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
+    /// of depth; a layer that the format has no attachment for; and objects that were added since [`Renderer::prepare`].
     pub fn draw<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -112,12 +157,18 @@ impl Renderer {
         view: &'a View,
         layer: Layer,
     ) -> Result<(), InputError> {
-        if scene.gpu().device() != self.gpu.device() {
-            let bound = "must be rebuilt on the scene's device: Renderer::rebuild";
-            return Err(InputError::new("renderer", "of another device", bound));
+        self.check_device(scene)?;
+        match scene.drawn(view)? {
+            Some((drawn, objects)) => self.draw_objects(pass, &drawn, objects.iter().copied(), layer),
+            None => Ok(()),
         }
-        let (drawn, objects) = scene.drawn(view)?;
-        self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
+    }
+
+    fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
+        match scene.gpu().device() == self.gpu.device() {
+            true => Ok(()),
+            false => Err(InputError::new("scene", "of another device", "must be of the renderer's device")),
+        }
     }
 
     fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {

@@ -73,6 +73,7 @@ impl Target {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn draw(
         &self,
         gpu: &Gpu,
@@ -118,6 +119,7 @@ impl Target {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
         let pixels = self.read_bytes(gpu, 4)?;
         image::RgbaImage::from_raw(self.color.width(), self.color.height(), pixels).ok_or_else(|| {
@@ -129,31 +131,43 @@ impl Target {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read_linear(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, GpuError> {
         let pixels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&self.read_bytes(gpu, 16)?);
         Ok(pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
     fn read_bytes(&self, gpu: &Gpu, texel: u32) -> Result<Vec<u8>, GpuError> {
-        let (width, height) = (self.color.width(), self.color.height());
-        let pitch = (texel * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = crate::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize)?;
-        gpu.run("readback", |encoder| {
-            encoder.copy_texture_to_buffer(
-                self.color.as_image_copy(),
-                wgpu::TexelCopyBufferInfo {
-                    buffer: buffer.raw(),
-                    layout: wgpu::TexelCopyBufferLayout {
-                        offset: 0,
-                        bytes_per_row: Some(pitch),
-                        rows_per_image: None,
-                    },
-                },
-                wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            );
-        })?;
-        let rows = buffer.read_blocking(gpu)?;
-        let row = (texel * width) as usize;
-        Ok(rows.chunks_exact(pitch as usize).flat_map(|padded| &padded[..row]).copied().collect())
+        read_texture(gpu, &self.color, wgpu::TextureAspect::All, texel)
     }
+}
+
+/// Reads an aspect of a texture of `texel` bytes a texel, row by row. Waits for the device.
+pub(super) fn read_texture(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    aspect: wgpu::TextureAspect,
+    texel: u32,
+) -> Result<Vec<u8>, GpuError> {
+    let (width, height) = (texture.width(), texture.height());
+    let pitch = (texel * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = crate::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize)?;
+    gpu.run("readback", |encoder| {
+        encoder.copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo { aspect, ..texture.as_image_copy() },
+            wgpu::TexelCopyBufferInfo {
+                buffer: buffer.raw(),
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(pitch),
+                    rows_per_image: None,
+                },
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+    })?;
+    let rows = buffer.read_blocking(gpu)?;
+    let row = (texel * width) as usize;
+    Ok(rows.chunks_exact(pitch as usize).flat_map(|padded| &padded[..row]).copied().collect())
 }

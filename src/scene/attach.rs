@@ -30,7 +30,7 @@ pub(super) struct Attachments {
     /// Where bones go: by character, clip, whether layers are above it, bone, and the bits of the sphere that they carry.
     paths: HashMap<(ObjectId, (u32, bool), usize, [u32; 4]), BonePath>,
     /// The lists of each character that carries a mesh, or has carried one.
-    lists: BTreeMap<(u32, u32), List>,
+    lists: BTreeMap<[u32; 2], List>,
     /// Counts the times at which a list was allocated: jobs that were prepared for another number are out of date.
     pub version: u64,
     /// The layout for which the lists were written; `None` if attachments have changed since.
@@ -165,7 +165,7 @@ impl Scene {
     /// Lets a character and what it carries be selected together, after either of them, its placement or its clip has changed.
     pub(super) fn carry(&mut self, character: InstanceId) -> Result<(), InputError> {
         let Some(meshes) = self.attachments.carried.get(&character).cloned() else { return Ok(()) };
-        let ObjectId { index, generation } = character.object;
+        let ObjectId { index, generation, .. } = character.object;
         let Some(object) = self.objects.get_mut([index, generation]) else { return Ok(()) };
         let Kind::Character(animated) = &object.kind else { return Ok(()) };
         let mut around = animated.sphere_of(character.index);
@@ -233,10 +233,9 @@ fn renamed(error: InputError, path: &str) -> InputError {
 }
 
 impl Attachments {
-    /// The lists of characters.
-    pub fn lists(&self) -> impl Iterator<Item = (ObjectId, &List)> {
-        let all = self.lists.iter();
-        all.map(|((index, generation), list)| (ObjectId { index: *index, generation: *generation }, list))
+    /// The lists of characters, each with the character's slot and generation.
+    pub fn lists(&self) -> impl Iterator<Item = ([u32; 2], &List)> {
+        self.lists.iter().map(|(object, list)| (*object, list))
     }
 
     /// Forgets all lists: their device is lost.
@@ -257,12 +256,12 @@ impl Attachments {
         if self.written == Some(layout.version) || self.lists.is_empty() && self.all.is_empty() {
             return Ok(());
         }
-        let mut of_object: BTreeMap<(u32, u32), Vec<Attachment>> =
+        let mut of_object: BTreeMap<[u32; 2], Vec<Attachment>> =
             self.lists.keys().map(|object| (*object, Vec::new())).collect();
         for (mesh, attached) in &self.all {
-            let ObjectId { index, generation } = attached.character.object;
+            let ObjectId { index, generation, .. } = attached.character.object;
             let Some(object) = objects.existing(*mesh) else { continue };
-            of_object.entry((index, generation)).or_default().push(Attachment {
+            of_object.entry([index, generation]).or_default().push(Attachment {
                 mesh: object.range.first + mesh.index,
                 character: attached.character.index,
                 bone: attached.bone as u32,
@@ -270,14 +269,14 @@ impl Attachments {
                 offset: affine(&attached.offset),
             });
         }
-        for ((index, generation), mut attachments) in of_object {
-            let Some(object) = objects.get([index, generation]) else {
-                self.lists.remove(&(index, generation));
+        for (key, mut attachments) in of_object {
+            let Some(object) = objects.get(key) else {
+                self.lists.remove(&key);
                 self.version += 1;
                 continue;
             };
             attachments.sort_by_key(|attachment| (attachment.character, attachment.mesh));
-            self.write(gpu, ((index, generation), object), &attachments, staged)?;
+            self.write(gpu, (key, object), &attachments, staged)?;
         }
         self.written = Some(layout.version);
         Ok(())
@@ -286,7 +285,7 @@ impl Attachments {
     fn write(
         &mut self,
         gpu: &Gpu,
-        (key, object): ((u32, u32), &Object),
+        (key, object): ([u32; 2], &Object),
         attachments: &[Attachment],
         staged: &mut Staged,
     ) -> Result<(), Error> {

@@ -1,6 +1,7 @@
 //! The camera of a view: the caller's own matrices.
 
-use glam::{Mat4, Vec3};
+use glam::camera::rh::proj::directx;
+use glam::{Mat4, Vec3, Vec4};
 
 use crate::InputError;
 
@@ -15,25 +16,56 @@ pub enum Depth {
 }
 
 /// A camera: perspective (with a finite or infinite far plane, off-axis or jittered) or parallel.
+///
+/// # Examples
+///
+/// [`Camera::looking_at`] is a shortcut. An engine has matrices of its own:
+///
+/// ```
+/// use glam::{Mat4, Quat, Vec3};
+/// use relievo::scene::{Camera, Depth};
+///
+/// // Two units above the ground, looking north-west (0.8 to the left of −Z), 0.1 downwards.
+/// let turn = Quat::from_rotation_y(0.8) * Quat::from_rotation_x(-0.1);
+/// let world_from_view = Mat4::from_rotation_translation(turn, Vec3::new(0.0, 2.0, 0.0));
+/// let camera = Camera {
+///     cell: [0; 3],
+///     view_from_world: world_from_view.inverse(),
+///     // Reversed depth: 1 at 0.1 units ahead, 0 at infinity. The renderer's format says so too.
+///     clip_from_view: glam::camera::rh::proj::directx::perspective_infinite_reverse(1.0, 16.0 / 9.0, 0.1),
+///     viewport: [1920, 1080],
+///     depth: Depth::Reversed,
+/// };
+/// assert!(camera.eye().distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-5);
+/// camera.validate()?;
+/// # Ok::<(), relievo::InputError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// The cell to whose corner the world of `view_from_world` is relative; see
-    /// [`Placement`](crate::scene::Placement). Near the origin of the world, (0, 0, 0) will do.
+    /// The cell to whose corner the world of `view_from_world` is relative: corner `cell` ·
+    /// [`Placement::CELL`](crate::scene::Placement::CELL) is its origin. Near the origin of the world, (0, 0, 0) will do;
+    /// kilometres away, the eye's own cell keeps the picture from trembling.
     pub cell: [i32; 3],
     /// The matrix from the world, relative to the cell's corner, to the camera's space: a rotation and a translation. It
-    /// may mirror.
+    /// may mirror, as for a reflection in water.
     pub view_from_world: Mat4,
-    /// The projection, to clip space with depth 0 to 1.
+    /// The projection, to clip space: +X to the right, +Y up, depth 0 to 1. It says which way the camera looks: along −Z if it
+    /// is made for right-handed spaces, as those of glam's `camera::rh::proj::directx` are, among them
+    /// `perspective_infinite_reverse` for [`Depth::Reversed`].
     pub clip_from_view: Mat4,
-    /// Width and height of the picture in pixels.
+    /// Width and height of the picture in physical pixels: those that [`Quality::pixels`](crate::scene::Quality::pixels)
+    /// counts, and those of the viewport that the caller sets in its pass, which may be a part of the target.
     pub viewport: [u32; 2],
-    /// The direction of depth, which must agree with that of the target.
+    /// The direction of depth, which must be that of the projection, and of the renderer's
+    /// [`TargetFormat`](crate::render::TargetFormat).
     pub depth: Depth,
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`, both relative to cell (0, 0, 0), with +Y up, a vertical field of view
-    /// in radians, a near plane at `near` and depth from 0 there to 1 at `far`.
+    /// A perspective camera at `eye` that looks at `target`, both relative to the corner of cell (0, 0, 0), with +Y up.
+    /// `field_of_view` is the vertical one, in radians, between 0 and π; `near_far` are the distances of the near and the far
+    /// plane in world units, where depth is 0 and 1, and the far one may be infinite; `viewport` is width and height in pixels.
+    /// Straight up and down, the top of the picture is north. [`View::set`](crate::scene::View::set) refuses what is no camera.
     pub fn looking_at(
         eye: Vec3,
         target: Vec3,
@@ -46,20 +78,42 @@ impl Camera {
         let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
         let aspect = viewport[0] as f32 / viewport[1].max(1) as f32;
         let [near, far] = near_far;
+        let clip_from_view = match far == f32::INFINITY {
+            true => directx::perspective_infinite(field_of_view, aspect, near),
+            false => directx::perspective(field_of_view, aspect, near, far),
+        };
         Self {
             cell: [0; 3],
             view_from_world: glam::camera::rh::view::look_at_mat4(eye, eye + forward, up),
-            clip_from_view: glam::camera::rh::proj::directx::perspective(field_of_view, aspect, near, far),
+            clip_from_view,
             viewport,
             depth: Depth::Forward,
         }
     }
 
+    /// The same camera with depth in the other direction.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let Self { clip_from_view, depth, .. } = self;
+        let mut rows = clip_from_view.transpose();
+        rows.z_axis = rows.w_axis - rows.z_axis;
+        let depth = match depth {
+            Depth::Forward => Depth::Reversed,
+            Depth::Reversed => Depth::Forward,
+        };
+        Self { clip_from_view: rows.transpose(), depth, ..self }
+    }
+
     /// Checks the matrices and the viewport.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, a matrix without inverse, and an empty viewport.
+    /// [`InputError`] for values that are not finite, a matrix without inverse, a `view_from_world` that is no affine one,
+    /// and an empty viewport.
     pub fn validate(&self) -> Result<(), InputError> {
+        if self.viewport.contains(&0) {
+            let value = format!("{:?}", self.viewport);
+            return Err(InputError::new("camera.viewport", value, "must be at least 1 by 1"));
+        }
         for (path, matrix) in
             [("camera.view_from_world", self.view_from_world), ("camera.clip_from_view", self.clip_from_view)]
         {
@@ -68,9 +122,9 @@ impl Camera {
                 return Err(InputError::new(path, matrix, "must be finite and have an inverse"));
             }
         }
-        if self.viewport.contains(&0) {
-            let value = format!("{:?}", self.viewport);
-            return Err(InputError::new("camera.viewport", value, "must be at least 1 by 1"));
+        if self.view_from_world.row(3) != Vec4::W {
+            let bound = "must have the last row (0, 0, 0, 1): the projection belongs into clip_from_view";
+            return Err(InputError::new("camera.view_from_world", self.view_from_world, bound));
         }
         Ok(())
     }
@@ -89,5 +143,43 @@ impl Camera {
     /// The position of the eye relative to the cell's corner.
     pub fn eye(&self) -> Vec3 {
         self.view_from_world.inverse().w_axis.truncate()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_infinite_camera_is_reversed_to_the_bit() {
+        let (eye, size) = (Vec3::new(1.0, 2.0, 3.0), [300, 200]);
+        let camera = Camera::looking_at(eye, Vec3::ZERO, 0.7, [0.1, f32::INFINITY], size);
+        let reversed = camera.reversed();
+        let expected = directx::perspective_infinite_reverse(0.7, 1.5, 0.1);
+        assert_eq!((reversed.clip_from_view, reversed.depth), (expected, Depth::Reversed));
+        assert_eq!(reversed.reversed(), camera);
+        let finite = Camera::looking_at(eye, Vec3::ZERO, 0.7, [0.5, 40.0], size).reversed();
+        let depth = |distance: f32| finite.clip_from_view.project_point3(Vec3::Z * -distance).z;
+        // The matrix holds 1.01…, rounded by less than 1e-7.
+        assert!(
+            (depth(0.5) - 1.0).abs() < 1e-6 && depth(40.0).abs() < 1e-6,
+            "{} {}",
+            depth(0.5),
+            depth(40.0)
+        );
+    }
+
+    #[test]
+    fn errors_name_what_the_caller_gave() {
+        let path = |camera: Camera| camera.validate().expect_err("refused").path;
+        let camera = |viewport| Camera::looking_at(Vec3::ONE, Vec3::ZERO, 0.7, [0.1, 9.0], viewport);
+        assert_eq!(path(camera([0, 0])), "camera.viewport");
+        let Camera { view_from_world, clip_from_view, .. } = camera([3, 2]);
+        let exchanged =
+            Camera { view_from_world: clip_from_view, clip_from_view: view_from_world, ..camera([3, 2]) };
+        assert_eq!(path(exchanged), "camera.view_from_world");
+        let collapsed = Camera { clip_from_view: Mat4::ZERO, ..camera([3, 2]) };
+        assert_eq!(path(collapsed), "camera.clip_from_view");
+        assert_eq!(camera([3, 2]).validate(), Ok(()));
     }
 }

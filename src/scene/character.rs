@@ -6,6 +6,8 @@ mod posed;
 mod runtime;
 
 use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RootMotion, RotationPath, Wrap};
+#[cfg(feature = "verify")]
+use crate::asset::Affine;
 use crate::asset::Model;
 use crate::asset::mesh::bone_radii;
 use crate::gpu::{Gpu, Staged, Uniform, Upload as _};
@@ -142,6 +144,8 @@ impl Character {
         self.changed.all(capacity);
         self.layers.iter_mut().for_each(|layer| layer.resize(capacity));
         self.driven.forget_device();
+        // As in a scene that was made anew, whose starts are rounded alike.
+        self.epoch = 0.0;
     }
 
     /// A sphere around an instance that plays the first clip.
@@ -195,6 +199,13 @@ impl Character {
             .clip(name)
             .map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
+    }
+
+    /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
+    #[cfg(feature = "verify")]
+    pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
+        let matrices = self.runtime.frame.model_matrices().read_blocking(gpu)?;
+        Ok((matrices, self.merged.model.skeleton.len()))
     }
 
     /// The skinned vertices of an instance, mesh by mesh.

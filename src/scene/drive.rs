@@ -5,7 +5,7 @@ use crate::InputError;
 use crate::animation::crowd::Local;
 use crate::gpu::Buffer;
 use crate::scene::Scene;
-use crate::scene::handles::{InstanceId, ObjectId, Slots, stale};
+use crate::scene::handles::{InstanceId, ObjectId, Slots, foreign, stale};
 use crate::scene::object::{Kind, Object};
 use crate::scene::view::View;
 
@@ -39,7 +39,10 @@ impl<'a> Poses<'a> {
     /// # Errors
     /// [`InputError`] for an object that is not of the scene, or no character.
     pub fn of(&self, character: ObjectId) -> Result<PoseBuffers<'a>, InputError> {
-        let ObjectId { index, generation } = character;
+        let ObjectId { scene, index, generation } = character;
+        if scene != self.objects.scene() {
+            return Err(foreign("character"));
+        }
         let object =
             self.objects.get([index, generation]).ok_or_else(|| stale("character", index, generation))?;
         match &object.kind {

@@ -62,7 +62,8 @@ impl Stage {
 }
 
 impl Scene {
-    /// Gives up all recordings whose encoders were dropped, and lets everything start afresh.
+    /// Gives up all recordings whose encoders were dropped without being submitted, and lets everything start afresh, as
+    /// [`Scene::refresh`] does. Without this, the device would miss what they should have told it.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -95,8 +96,17 @@ impl Scene {
     }
 
     /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
-    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones. Two recordings for one
-    /// submission are two frames.
+    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones.
+    ///
+    /// Pass every view that the frame draws, in one call: characters are posed and skinned once, as fine as the finest of
+    /// these views needs, and for what these views see. A frame may have other views than the one before. A view that it
+    /// leaves out must not be drawn in it: that view's lists are those of the frame in which it was last recorded, and the
+    /// vertices that they count on may be gone.
+    ///
+    /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
+    /// takes one of [`RECORDINGS`] places, which is free again when the device has executed it, and wgpu has noticed
+    /// that: in a submission, or in [`wgpu::Device::poll`]. Of an empty scene nothing is recorded, and nothing
+    /// drawn.
     ///
     /// # Errors
     /// [`InputError`] for no view, a view of another scene or without a camera, and if [`RECORDINGS`] frames have been
@@ -117,6 +127,10 @@ impl Scene {
         between: Option<Between<'_>>,
     ) -> Result<(), Error> {
         self.check(views)?;
+        if self.is_empty() {
+            self.uploaded = 0;
+            return Ok(());
+        }
         self.objects.iter_mut().for_each(|object| object.settle(self.now));
         self.fit(views)?;
         self.stage(views)?;
@@ -129,6 +143,8 @@ impl Scene {
         self.record_stages(encoder, views, between)?;
         self.count(encoder, views);
         self.frames += 1;
+        // Unless the time advances again, the next frame is as this one.
+        self.step = 0.0;
         Ok(())
     }
 
@@ -195,17 +211,24 @@ impl Scene {
         self.objects.iter().flat_map(|object| &object.drawables)
     }
 
-    /// What a renderer needs of a view and of all objects that are shown.
+    fn is_empty(&self) -> bool {
+        self.objects.iter().next().is_none()
+    }
+
+    /// What a renderer needs of a view and of all objects that are shown; `None` for a scene without objects.
     pub(crate) fn drawn<'a>(
         &'a self,
         view: &'a View,
-    ) -> Result<(DrawnView<'a>, Vec<DrawnObject<'a>>), InputError> {
+    ) -> Result<Option<(DrawnView<'a>, Vec<DrawnObject<'a>>)>, InputError> {
         view.check(self, "view")?;
-        let (Some(layout), Some(lists), Some(camera)) = (&self.layout, &view.lists, view.camera()) else {
+        if self.is_empty() {
+            return Ok(None);
+        }
+        let (Some(lists), Some(camera)) = (&view.lists, view.camera()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
-        if lists.version != layout.version {
-            let bound = "must be recorded again, since objects were added or grew";
+        if self.layout.as_ref().is_none_or(|layout| lists.version != layout.version) {
+            let bound = "must be recorded again, since objects were added, removed or grew, or the scene started afresh";
             return Err(InputError::new("view", "out of date", bound));
         }
         let drawn = DrawnView {
@@ -230,14 +253,18 @@ impl Scene {
                 }));
             }
         }
-        Ok((drawn, objects))
+        Ok(Some((drawn, objects)))
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
         if views.is_empty() {
             return Err(InputError::new("views", "none", "must be at least one"));
         }
-        views.iter().enumerate().try_for_each(|(at, view)| view.check(self, &format!("views[{at}]")))
+        views.iter().enumerate().try_for_each(|(at, view)| view.check(self, &format!("views[{at}]")))?;
+        if views.iter().any(|view| view.camera().is_none()) {
+            return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));
+        }
+        Ok(())
     }
 
     /// Allocates what objects and views need since something was added or grew.

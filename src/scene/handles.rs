@@ -1,11 +1,26 @@
 //! Handles of objects and instances, which never name anything but what they were made for.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use crate::InputError;
 use crate::scene::object::Object;
+
+/// Tells one scene of the program from all others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct SceneNumber(u64);
+
+impl SceneNumber {
+    /// A number that no other scene has.
+    fn next() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
 
 /// An object of a scene: terrain, a mesh or a character. Instances of it can be spawned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ObjectId {
+    pub(super) scene: SceneNumber,
     pub(super) index: u32,
     pub(super) generation: u32,
 }
@@ -31,19 +46,25 @@ impl InstanceId {
     }
 }
 
-/// Values in slots that are used again, each time with another generation.
+/// Values of one scene in slots that are used again, each time with another generation.
 #[derive(Debug)]
 pub(super) struct Slots<T> {
+    scene: SceneNumber,
     slots: Vec<(u32, Option<T>)>,
 }
 
 impl<T> Default for Slots<T> {
     fn default() -> Self {
-        Self { slots: Vec::new() }
+        Self { scene: SceneNumber::next(), slots: Vec::new() }
     }
 }
 
 impl<T> Slots<T> {
+    /// The scene whose values these are.
+    pub fn scene(&self) -> SceneNumber {
+        self.scene
+    }
+
     /// Adds a value to the first free slot; returns the slot and its generation.
     pub fn insert(&mut self, value: T) -> [u32; 2] {
         let free = self.slots.iter().position(|(_, value)| value.is_none());
@@ -98,21 +119,28 @@ impl<T> Slots<T> {
 impl Slots<Object> {
     /// The object of an instance, if the instance exists.
     pub fn existing(&self, instance: InstanceId) -> Option<&Object> {
-        let InstanceId { object: ObjectId { index, generation }, .. } = instance;
-        let object = self.get([index, generation])?;
+        let InstanceId { object: ObjectId { scene, index, generation }, .. } = instance;
+        let object = self.get([index, generation]).filter(|_| scene == self.scene)?;
         object.instances.contains([instance.index, instance.generation]).then_some(object)
     }
 
     /// All objects with their handles, slot by slot.
     pub fn each(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
-        self.numbered().map(|([index, generation], object)| (ObjectId { index, generation }, object))
+        let scene = self.scene;
+        self.numbered()
+            .map(move |([index, generation], object)| (ObjectId { scene, index, generation }, object))
     }
 }
 
-/// The error of a stale handle.
+/// The error of a handle whose object or instance was removed.
 pub(super) fn stale(path: &str, index: u32, generation: u32) -> InputError {
-    let value = format!("{index} (generation {generation})");
-    InputError::new(path, value, "must be of this scene, and not have been removed")
+    let value = format!("{index} (generation {generation}), which was removed");
+    InputError::new(path, value, "must be there")
+}
+
+/// The error of a handle that another scene gave.
+pub(super) fn foreign(path: &str) -> InputError {
+    InputError::new(path, "of another scene", "must be of this scene")
 }
 
 #[cfg(test)]

@@ -1,11 +1,14 @@
-//! A scene: terrain, meshes and characters on the device, seen through any number of views.
+//! A scene: terrain, meshes, reliefs and characters on the device, seen through any number of views.
 //!
-//! A [`Scene`] is everything there is; it knows no camera and no target. A [`View`] is a camera into it, with what it
-//! sees and how fine. [`render::Renderer`](crate::render) draws a scene through a view in the caller's render pass.
+//! A [`Scene`] is everything there is; it knows no camera and no target. A [`View`] is a camera into it, with what that
+//! camera sees and how fine. A [`Renderer`](crate::render::Renderer) draws a scene through a view in the caller's render
+//! pass.
 //!
-//! In a frame, the caller moves instances, advances the time, sets the cameras of the views, records the scene's work
-//! into an encoder of its own ([`Scene::record`]), and draws. Nothing is submitted, waited for or allocated in a frame,
-//! except where an object outgrows its capacity.
+#![doc = include_str!("overview.md")]
+//!
+//! In a browser, which forbids to wait and tells errors late, use the forms whose names end in `_async`, and
+//! [`Scene::health`] once a frame. The other forms do the same work, but their errors come with a later call;
+//! `Scene::add_terrain`, which waits, has the `_async` form alone.
 
 mod attach;
 mod camera;
@@ -19,6 +22,8 @@ mod layers;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
+#[cfg(feature = "verify")]
+mod measured;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
@@ -35,8 +40,6 @@ mod statistics;
 mod terrain;
 mod view;
 mod watch;
-
-use std::sync::Arc;
 
 pub use camera::{Camera, Depth};
 pub use drive::{PoseBuffers, Poses};
@@ -55,14 +58,14 @@ pub use view::View;
 pub use watch::{WatchedBone, WatchedBones};
 
 use crate::asset::Light;
-use crate::gpu::{Gpu, Staged, StagingRing};
+use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::attach::AttachPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::{Error, InputError};
 use attach::Attachments;
-use handles::{Slots, stale};
+use handles::Slots;
 use layout::Layout;
 use layouts::SceneLayouts;
 use object::{Kind, Object};
@@ -72,12 +75,39 @@ use watch::Watch;
 /// The number of recordings that may wait for their submission or execution.
 pub const RECORDINGS: usize = 4;
 
-/// Everything there is, on the device.
+/// Everything there is, on the device: objects, which are terrain, meshes, reliefs and characters, and instances of them.
+///
+/// # Examples
+///
+/// A crowd of 100 foxes, 20 of which walk backwards, and one of which leaves.
+///
+/// ```no_run
+/// use relievo::asset::Model;
+/// use relievo::scene::{Placement, Play, Scene};
+/// # let (device, queue): (wgpu::Device, wgpu::Queue) = unimplemented!();
+///
+/// let gpu = relievo::gpu::Gpu::from_wgpu(device, queue);
+/// let mut scene = Scene::new(&gpu)?;
+/// let mut model = Model::from_file("fox.glb".as_ref())?;
+/// relievo::skinning::add_levels(&mut model, &[0], 60)?; // levels of detail, for the first clip's poses
+/// let fox = scene.add_character(&model, 100)?;
+/// let mut foxes = Vec::new();
+/// for at in 0..100 {
+///     // In a row to the east, each facing 0.1 further to the left than the one before.
+///     let place = Placement::at_world([2.0 * f64::from(at), 0.0, 0.0]);
+///     let instance = scene.spawn(fox, place.turned(0.1 * at as f32).scaled(0.01))?; // a model in centimetres
+///     let rate = if at % 5 == 0 { -1.0 } else { 1.0 };
+///     scene.play(instance, &Play { rate, ..Play::new("Walk") })?;
+///     foxes.push(instance);
+/// }
+/// scene.set_tint(foxes[3], [1.0, 0.5, 0.5, 1.0])?;
+/// scene.despawn(foxes[4])?;
+/// assert!(scene.placement(foxes[4]).is_err()); // its handle is stale from now on
+/// # Ok::<(), relievo::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
-    /// Tells this scene's views from others'.
-    token: Arc<()>,
     /// Counts the devices that it has had.
     device: u32,
     objects: Slots<Object>,
@@ -131,7 +161,6 @@ impl Scene {
         let passes = Passes::new(gpu)?;
         Ok(Self {
             gpu: gpu.clone(),
-            token: Arc::default(),
             device: 0,
             objects: Slots::default(),
             shares: Shares::default(),
@@ -154,12 +183,31 @@ impl Scene {
         })
     }
 
+    /// As [`Scene::new`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub async fn new_async(gpu: &Gpu) -> Result<Self, Error> {
+        let scene = Self::new(gpu)?;
+        gpu.check_async().await?;
+        Ok(scene)
+    }
+
+    /// Errors that the device reported later than in the call that caused them, as [`Gpu::check`] tells them. Ask once a
+    /// frame in a browser.
+    ///
+    /// # Errors
+    /// As [`Gpu::check`].
+    pub fn health(&self) -> Result<(), GpuError> {
+        self.gpu.check()
+    }
+
     /// The device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Sets the light of everything, from the next frame on.
+    /// Sets the light of everything, from the next recording on. Its direction is one of the world, towards the light.
     ///
     /// # Errors
     /// [`InputError`] as [`Light::validate`].
@@ -169,7 +217,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets how the permitted displacement of characters is divided.
+    /// Sets how the permitted displacement of characters is divided, from the next recording on.
     ///
     /// # Errors
     /// [`InputError`] as [`Shares::validate`].
@@ -185,7 +233,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Advances the time of the scene by so many seconds; negative ones go back.
+    /// Advances the time of the scene by so many seconds; negative ones go back. Call it once a frame: what is sampled in a
+    /// frame depends on how far the time went.
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite.
@@ -203,10 +252,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn coarsening(&self, object: ObjectId) -> Result<f32, InputError> {
-        let ObjectId { index, generation } = object;
-        let entry =
-            self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))?;
-        Ok(entry.coarsening)
+        Ok(self.object_at(object)?.coarsening)
     }
 
     /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.
@@ -219,11 +265,11 @@ impl Scene {
         self.now
     }
 
-    /// A view into the scene.
+    /// A view into the scene. It needs a camera ([`View::set`]) before a frame is recorded.
     ///
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, (&self.token, self.device), quality)
+        View::new(&self.gpu, (self.objects.scene(), self.device), quality)
     }
 }

@@ -122,8 +122,12 @@ impl Object {
     }
 
     /// Terrain.
-    pub(super) fn terrain(gpu: &Gpu, layouts: &SceneLayouts, source: &TerrainSource) -> Result<Self, Error> {
-        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source)?;
+    pub(super) async fn terrain(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        source: &TerrainSource,
+    ) -> Result<Self, Error> {
+        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source).await?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
         Ok(Self::new(Kind::Terrain(terrain), (instances, sphere), (vec![0.0], 1.0), drawn))
     }
@@ -241,9 +245,9 @@ impl Object {
     }
 
     /// Everything on another device.
-    pub(super) fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
+    pub(super) async fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
         let drawables = match &self.kind {
-            Kind::Terrain(terrain) => terrain::generated(gpu, layouts, &terrain.source)?.2.0,
+            Kind::Terrain(terrain) => terrain::generated(gpu, layouts, &terrain.source).await?.2.0,
             Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, merged)?.0,
             Kind::Mesh(MeshOnHost::Relief(relief)) => relief::drawn(gpu, layouts, relief)?.1.0,
             Kind::Character(character) => {

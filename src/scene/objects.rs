@@ -3,7 +3,7 @@
 use crate::asset::Model;
 use crate::gpu::Upload as _;
 use crate::scene::Scene;
-use crate::scene::handles::{ObjectId, stale};
+use crate::scene::handles::{ObjectId, foreign, stale};
 use crate::scene::layers::CharacterOptions;
 use crate::scene::object::{Kind, Object};
 use crate::scene::relief::Relief;
@@ -12,48 +12,75 @@ use crate::terrain::mesh::GroundPoint;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Adds terrain: generates its patches, and shows them.
+    /// Adds terrain: generates its patches on the device, and shows them. It waits for their heights, which
+    /// [`Scene::ground`] reads.
+    ///
+    /// # Errors
+    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, and for more
+    /// patches than one binding holds; [`crate::gpu::GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
+        self.gpu.clone().block_on(self.add_terrain_async(source))
+    }
+
+    /// As `Scene::add_terrain`, but completes once the device has generated the patches and told its errors; see
+    /// [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
     ///
     /// # Errors
     /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
     /// [`crate::gpu::GpuError`].
-    pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
-        let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source)?;
-        Ok(self.add(object))
+    pub async fn add_terrain_async(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
+        let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source).await?;
+        self.add_checked(object).await
     }
 
-    /// The ground of a terrain that is drawn, at a position of the world in world units east and south of its origin: height
-    /// and normal of the triangle there. `None` where the terrain has no patch.
+    /// The ground of a terrain at a position of the world, `x` units east and `z` units south of its origin: height in
+    /// world units, and normal, of the triangle that is drawn there. `None` where the terrain has no patch. It is computed
+    /// on the CPU, from heights that the scene keeps there.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, or no terrain.
     pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
-        let ObjectId { index, generation } = terrain;
-        let object =
-            self.objects.get([index, generation]).ok_or_else(|| stale("terrain", index, generation))?;
-        match &object.kind {
+        match &self.object_at(terrain)?.kind {
             Kind::Terrain(terrain) => Ok(terrain.point_at(x, z)),
             _ => Err(InputError::new("terrain", "a mesh or a character", "must be terrain")),
         }
     }
 
     /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail
-    /// ([`add_levels`](crate::skinning::add_levels)) and materials. There is room for `capacity` instances; more than
-    /// that let it grow, which allocates.
+    /// ([`add_levels`](crate::skinning::add_levels); without them, every instance is drawn in full) and materials. There is
+    /// room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says what happens to more. A world unit is one unit of
+    /// the model times [`Placement::scale`](crate::scene::Placement::scale);
+    /// [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) tells about how large a model
+    /// is.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
+    /// [`crate::gpu::GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
         Ok(self.add(object))
     }
 
-    /// Adds a character: its bones are sampled from its clips, gated, and its meshes morphed and skinned, each only as
-    /// far as a view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). There is room for `capacity`
-    /// instances; more than that let it grow, which allocates and lets all of them start afresh.
+    /// As [`Scene::add_mesh`], but completes once the device has told its errors ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are
+    /// any, nothing is added.
     ///
     /// # Errors
-    /// [`InputError`] for a model without meshes or with invalid ones; [`crate::gpu::GpuError`].
+    /// As [`Scene::add_mesh`].
+    pub async fn add_mesh_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
+        let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
+        self.add_checked(object).await
+    }
+
+    /// Adds a character: its bones are sampled from its clips, gated, and its meshes morphed and skinned, each only as
+    /// far as a view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). There is room for at least `capacity`
+    /// instances, 1 to 2²⁰; [`Scene::spawn`] says what happens to more.
+    ///
+    /// Without [`add_levels`](crate::skinning::add_levels) before, there is no level of detail but the model itself.
+    ///
+    /// # Errors
+    /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
+    /// [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         self.add_character_with(model, capacity, &CharacterOptions::default())
     }
@@ -70,28 +97,64 @@ impl Scene {
         capacity: usize,
         options: &CharacterOptions<'_>,
     ) -> Result<ObjectId, Error> {
-        if model.clips.is_empty() {
-            return self.add_mesh(model, capacity);
-        }
-        let layouts = &self.layouts_of_groups;
-        let object = Object::character(&self.gpu, layouts, (model, options), capacity, self.shares)?;
+        let object = self.character(model, capacity, options)?;
         Ok(self.add(object))
     }
 
-    /// Adds a mesh that carries a relief. There is room for `capacity` instances; more than that let it grow, which
-    /// allocates.
+    /// As [`Scene::add_character`], but completes once the device has told its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are any, nothing is added.
     ///
     /// # Errors
-    /// [`InputError`] for maps, options or a mesh that do not fit each other; [`crate::gpu::GpuError`].
+    /// As [`Scene::add_character`].
+    pub async fn add_character_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
+        let object = self.character(model, capacity, &CharacterOptions::default())?;
+        self.add_checked(object).await
+    }
+
+    fn character(
+        &self,
+        model: &Model,
+        capacity: usize,
+        options: &CharacterOptions<'_>,
+    ) -> Result<Object, Error> {
+        let layouts = &self.layouts_of_groups;
+        match model.clips.is_empty() {
+            true => Object::mesh(&self.gpu, layouts, model, capacity),
+            false => Object::character(&self.gpu, layouts, (model, options), capacity, self.shares),
+        }
+    }
+
+    /// Adds a mesh that carries a relief. There is room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says
+    /// what happens to more.
+    ///
+    /// # Errors
+    /// [`InputError`] for a capacity out of range, and for maps, options or a mesh that do not fit each other;
+    /// [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
+        Ok(self.add(object))
+    }
+
+    /// As [`Scene::add_relief`], but completes once the device has told its errors ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are
+    /// any, nothing is added.
+    ///
+    /// # Errors
+    /// As [`Scene::add_relief`].
+    pub async fn add_relief_async(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
+        let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
+        self.add_checked(object).await
+    }
+
+    /// Adds an object, unless the device tells errors of it.
+    async fn add_checked(&mut self, object: Object) -> Result<ObjectId, Error> {
+        self.gpu.check_async().await?;
         Ok(self.add(object))
     }
 
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        ObjectId { index, generation }
+        ObjectId { scene: self.objects.scene(), index, generation }
     }
 
     /// Removes an object with all of its instances, and releases its memory.
@@ -99,16 +162,17 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn remove(&mut self, object: ObjectId) -> Result<(), InputError> {
-        let ObjectId { index, generation } = object;
         for instance in self.instances(object)? {
             self.let_go(instance)?;
         }
-        self.objects.remove([index, generation]).ok_or_else(|| stale("object", index, generation))?;
+        self.object_at(object)?;
+        self.objects.remove([object.index, object.generation]);
         self.layout = None;
         Ok(())
     }
 
-    /// Shows or hides all instances of an object. Hidden ones cost nothing, and go on playing.
+    /// Shows or hides all instances of an object, in all views, from the next recording on. Hidden ones are neither sampled,
+    /// skinned nor drawn; the time of their clips goes on.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene; [`crate::gpu::GpuError`].
@@ -125,7 +189,18 @@ impl Scene {
     }
 
     pub(super) fn object_mut(&mut self, object: ObjectId) -> Result<&mut Object, InputError> {
-        let ObjectId { index, generation } = object;
+        let ObjectId { scene, index, generation } = object;
+        if scene != self.objects.scene() {
+            return Err(foreign("object"));
+        }
         self.objects.get_mut([index, generation]).ok_or_else(|| stale("object", index, generation))
+    }
+
+    pub(super) fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
+        let ObjectId { scene, index, generation } = object;
+        if scene != self.objects.scene() {
+            return Err(foreign("object"));
+        }
+        self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))
     }
 }

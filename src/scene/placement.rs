@@ -7,17 +7,41 @@ use crate::animation::Wrap;
 use crate::animation::instance::check_seconds;
 use crate::shared::lod::instance::CELL_SIZE;
 
-/// Where an instance stands in the world. Its position is a cell, of [`Placement::CELL`] world units along each axis,
-/// and an offset, so that it stays precise at any distance from the origin.
+/// Where an instance stands in the world, how it is turned, and how large it is. A point of the model is scaled, then turned,
+/// then moved to the position. The world is right-handed: +X east, +Y up, +Z south.
+///
+/// The position is a cell, of [`Placement::CELL`] world units along each axis, and an offset, so that it stays precise at any
+/// distance from the origin.
+///
+/// # Examples
+///
+/// ```
+/// use glam::{Quat, Vec3};
+/// use relievo::scene::Placement;
+///
+/// // A million units east: half a unit counts still.
+/// let far = Placement::at_world([1e6 + 0.5, 0.0, 0.0]);
+/// assert_eq!((far.cell, far.at), ([3906, 0, 0], Vec3::new(64.5, 0.0, 0.0)));
+///
+/// // What faces south (+Z) faces east (+X) after a quarter turn. Here the model is half as large, too.
+/// let place = Placement::at([3.0, 0.0, 4.0]).turned(std::f32::consts::FRAC_PI_2).scaled(0.5);
+/// assert!((place.turn * Vec3::Z).distance(Vec3::X) < 1e-6);
+///
+/// // Any rotation will do, and a factor for each axis of the model. One that is negative mirrors.
+/// let tilted = Placement { turn: Quat::from_rotation_x(0.3), scale: Vec3::new(-1.0, 1.0, 2.0), ..place };
+/// tilted.checked()?;
+/// # Ok::<(), relievo::InputError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// The cell to whose corner `at` is relative.
     pub cell: [i32; 3],
     /// The position in world units, relative to the cell's corner. It may lie outside the cell.
     pub at: Vec3,
-    /// The rotation. It need not have length 1.
+    /// The rotation from the model's axes to the world's. It need not have length 1.
     pub turn: Quat,
-    /// Scale factors along the model's own axes, applied before the rotation. Negative ones mirror.
+    /// World units per unit of the model along each of the model's own axes, applied before the rotation. Negative factors
+    /// mirror.
     pub scale: Vec3,
 }
 
@@ -32,13 +56,13 @@ impl Placement {
     /// The edge of a cell in world units.
     pub const CELL: f32 = CELL_SIZE;
 
-    /// At a position of cell (0, 0, 0), neither turned nor scaled.
+    /// At a position in world units, relative to the corner of cell (0, 0, 0), neither turned nor scaled.
     pub fn at(at: impl Into<Vec3>) -> Self {
         Self { at: at.into(), ..Self::default() }
     }
 
-    /// At a position in world units from the origin of the world. Positions beyond 2³¹ cells are refused when the
-    /// placement is used.
+    /// At a position in world units from the origin of the world, neither turned nor scaled. Positions beyond 2³¹ cells are
+    /// refused when the placement is used.
     pub fn at_world(position: impl Into<DVec3>) -> Self {
         let position = position.into();
         let edge = f64::from(Self::CELL);
@@ -48,13 +72,14 @@ impl Placement {
         Self { cell, at: (position - corner).as_vec3(), ..Self::default() }
     }
 
-    /// The same placement, turned about the vertical axis by an angle in radians, counter-clockwise seen from above.
+    /// The same placement with another rotation: about the vertical axis by an angle in radians, counter-clockwise seen from
+    /// above, so that what faces +Z at 0 faces +X at π/2.
     #[must_use]
     pub fn turned(self, angle: f32) -> Self {
         Self { turn: Quat::from_rotation_y(angle), ..self }
     }
 
-    /// The same placement, scaled by one factor.
+    /// The same placement with another scale: one factor for all axes, in world units per unit of the model.
     #[must_use]
     pub fn scaled(self, scale: f32) -> Self {
         Self { scale: Vec3::splat(scale), ..self }
@@ -106,7 +131,8 @@ impl Placement {
 /// What a character plays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Play<'a> {
-    /// The name of the clip, or its index in the model, counted from 0.
+    /// The name of the clip, or its index in the model, counted from 0. A clip without a name in its file is called
+    /// `animation_` and its index.
     pub clip: &'a str,
     /// The time of the scene, in seconds, at which the clip begins. It may lie in the past: then the clip is under way.
     pub start: f64,
@@ -117,7 +143,8 @@ pub struct Play<'a> {
 }
 
 impl<'a> Play<'a> {
-    /// A clip that began at time 0 of the scene, and repeats.
+    /// A clip that began at time 0 of the scene, and repeats. For one that begins now, `start` is
+    /// [`Scene::time`](crate::scene::Scene::time).
     pub fn new(clip: &'a str) -> Self {
         Self { clip, start: 0.0, rate: 1.0, wrap: Wrap::Loop }
     }

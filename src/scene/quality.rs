@@ -5,11 +5,13 @@ use crate::InputError;
 /// How fine a view is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quality {
-    /// The largest number of pixels by which anything may be off in the view, at least 0; 0 shows everything in full
-    /// detail. It becomes a distance in the world that each instance is allowed, and [`Shares`] divide
-    /// that among levels of detail, bones and influences. Not bounded are shading,
-    /// textures, and shadow edges. Where the vertices of what is seen of a character exceed a binding of the device, its levels
-    /// are coarser than that: [`Scene::coarsening`](super::Scene::coarsening) says by how much.
+    /// The largest number of pixels of the camera's viewport by which any point of an instance may be drawn away from its
+    /// place, at least 0; 0 shows everything in full detail. It becomes a distance in the world that each instance is allowed,
+    /// and [`Shares`] divide that among levels of detail, bones and influences. Not bounded are shading, textures, and
+    /// shadow edges.
+    ///
+    /// Where the vertices of what is seen of a character exceed a binding of the device, its levels are coarser than that:
+    /// [`Scene::coarsening`](super::Scene::coarsening) says by how much.
     pub pixels: f32,
 }
 

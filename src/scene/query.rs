@@ -10,7 +10,8 @@ use crate::shared::lod::instance::SceneInstance;
 pub(crate) use drawn::DrawnInstance;
 
 impl Scene {
-    /// All instances of an object, in the order in which views list them. Those of terrain are its patches.
+    /// All instances of an object, in the order in which views list them. Those of terrain are its patches: they can be
+    /// hidden ([`Scene::set_visibility`]), but neither moved, removed nor tinted.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -44,11 +45,6 @@ impl Scene {
             Kind::Character(character) => character.clip_time(index, self.now).map(Some),
             Kind::Mesh(_) | Kind::Terrain(_) => Ok(None),
         }
-    }
-
-    pub(super) fn object_at(&self, object: ObjectId) -> Result<&Object, InputError> {
-        let ObjectId { index, generation } = object;
-        self.objects.get([index, generation]).ok_or_else(|| stale("object", index, generation))
     }
 
     /// The object of an instance that exists.
@@ -127,7 +123,7 @@ mod drawn {
         }
 
         fn lists_of<'a>(&self, view: &'a View) -> Result<&'a ViewLists, InputError> {
-            let lists = view.lists.as_ref().filter(|_| view.is_of(&self.token));
+            let lists = view.lists.as_ref().filter(|_| view.is_of(self.objects.scene()));
             let bound = "must be of this scene, and recorded";
             lists.ok_or_else(|| InputError::new("view", "not recorded", bound))
         }

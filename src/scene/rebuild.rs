@@ -20,13 +20,26 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        gpu.block_on(self.rebuild_async(gpu))
+    }
+
+    /// As `Scene::rebuild`, but completes once the device has generated terrain and told its errors; see
+    /// [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// As `Scene::rebuild`.
+    pub async fn rebuild_async(&mut self, gpu: &Gpu) -> Result<(), Error> {
         let layouts = SceneLayouts::new(gpu)?;
         let passes = Passes::new(gpu)?;
         let timer = if self.counted { StageTimer::new(gpu)? } else { None };
         let watch = self.watch.as_ref().map(|watch| watch.on(gpu)).transpose()?;
-        let objects = self.objects.iter().map(|object| object.on(gpu, &layouts));
-        let objects = objects.collect::<Result<Vec<OnDevice>, Error>>()?;
+        let mut objects: Vec<OnDevice> = Vec::new();
+        for object in self.objects.iter() {
+            objects.push(object.on(gpu, &layouts).await?);
+        }
+        gpu.check_async().await?;
         // From here on nothing fails.
         for (object, on_device) in self.objects.iter_mut().zip(objects) {
             object.adopt(on_device);

@@ -44,13 +44,15 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// A square wall with an edge of one world unit, centered at the origin and facing +Z, that shows the maps `tiles` times
-    /// along each edge. Otherwise as [`Relief::new`].
+    /// An upright square wall with an edge of one unit of the model, centered at the model's origin and facing +Z, that shows
+    /// the maps `tiles` times along each edge, their top edge upwards. Its back is not drawn, unless `double_sided` is set.
+    /// Otherwise as [`Relief::new`].
     pub fn wall(tiles: f32, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self::new(SurfaceMesh::square(tiles), heights, albedo)
     }
 
-    /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief.
+    /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief. Where
+    /// heights are largest, the relief touches the mesh; elsewhere it lies behind it.
     pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self {
             mesh,

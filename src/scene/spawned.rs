@@ -8,8 +8,12 @@ use crate::scene::placement::{Placement, Play};
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Spawns an instance. A character plays the first clip of its model, from time 0 of the scene on; see
-    /// [`Scene::play`]. If there is no room, the object grows to twice its capacity.
+    /// Spawns an instance. It shows from the next recording on. A character plays the first clip of its model, from time 0
+    /// of the scene on; see [`Scene::play`].
+    ///
+    /// If there is no room, the object grows to twice its capacity. This allocates memory, here and in the next recording,
+    /// and lets all instances of a character be sampled and skinned in full once. Handles stay valid, and no pipeline has to
+    /// be compiled; but views must be recorded again before they are drawn.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain, whose patches are its instances, and as
@@ -40,12 +44,12 @@ impl Scene {
         Ok(InstanceId { object, index, generation })
     }
 
-    /// Removes an instance.
+    /// Removes an instance. Its handle is stale from then on, also where another instance takes its place in memory.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more.
+    /// [`InputError`] for an instance that does not exist any more, and for a patch of terrain.
     pub fn despawn(&mut self, instance: InstanceId) -> Result<(), InputError> {
-        self.instance_mut(instance)?;
+        self.spawned_mut(instance)?;
         self.let_go(instance)?;
         let object = self.instance_mut(instance)?;
         if let Kind::Character(character) = &mut object.kind {
@@ -55,13 +59,15 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves an instance. One that is attached to a bone stays there, and takes the placement when it is detached.
+    /// Moves, turns and scales an instance: replaces its placement. One that is attached to a bone stays there, and takes the
+    /// placement when it is detached.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, and as [`Placement::checked`].
+    /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and as
+    /// [`Placement::checked`].
     pub fn move_to(&mut self, instance: InstanceId, placement: Placement) -> Result<(), InputError> {
         let placement = placement.checked()?;
-        self.instance_mut(instance)?;
+        self.spawned_mut(instance)?;
         if self.move_detached(instance, placement) {
             return Ok(());
         }
@@ -70,7 +76,7 @@ impl Scene {
         self.carry(instance)
     }
 
-    /// Lets a character play a clip.
+    /// Lets a character play a clip, at once and without a transition.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a clip that its model does
@@ -78,23 +84,24 @@ impl Scene {
     pub fn play(&mut self, instance: InstanceId, play: &Play<'_>) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
         let Kind::Character(character) = &mut object.kind else {
-            return Err(InputError::new("instance", "a mesh", "must be an instance of a character"));
+            return Err(InputError::new("instance", "no character", "must be an instance of a character"));
         };
         let sphere = character.play(instance.index, play)?;
         object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
         self.carry(instance)
     }
 
-    /// Sets the colour by which an instance's colours are multiplied: linear red, green, blue and alpha, each 0 to 1.
+    /// Sets the factor of an instance's colours: red, green, blue and alpha, each 0 to 1, in linear light; (1, 1, 1, 1) at
+    /// first. It is kept in steps of 1/255. Alpha counts only where the material is cut out or dithered.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, and for values out of range.
+    /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and for values out of range.
     pub fn set_tint(&mut self, instance: InstanceId, tint: [f32; 4]) -> Result<(), InputError> {
         if let Some(at) = tint.iter().position(|value| !(0.0..=1.0).contains(value)) {
             return Err(InputError::new(format!("tint[{at}]"), tint[at], "must be in 0..=1"));
         }
         let packed = u32::from_le_bytes(tint.map(|value| (value * 255.0 + 0.5) as u8));
-        self.instance_mut(instance)?.instances.change(instance.index, |instance| instance.tint = packed);
+        self.spawned_mut(instance)?.instances.change(instance.index, |instance| instance.tint = packed);
         Ok(())
     }
 
@@ -107,7 +114,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets the visibility mask of an instance, and whether it casts shadows. At first all bits are set, and it casts.
+    /// Sets the visibility mask of an instance, and whether it casts shadows. At first all bits are set, and it casts. A view
+    /// sees instances that share a bit with its own mask ([`View::set_mask`](crate::scene::View::set_mask)), and, if it is
+    /// for shadows, that cast them ([`View::set_casters_only`](crate::scene::View::set_casters_only)).
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -117,6 +126,18 @@ impl Scene {
             instances::set_visibility(instance, mask, casts);
         });
         Ok(())
+    }
+
+    /// As [`Self::instance_mut`], for what was spawned: patches of terrain stay where and what they are.
+    fn spawned_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
+        let object = self.instance_mut(instance)?;
+        match object.kind {
+            Kind::Terrain(_) => {
+                let bound = "must be an instance of a mesh or a character";
+                Err(InputError::new("instance", "a patch of terrain", bound))
+            }
+            Kind::Mesh(_) | Kind::Character(_) => Ok(object),
+        }
     }
 
     pub(super) fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {

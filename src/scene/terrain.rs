@@ -1,5 +1,7 @@
 //! Terrain in a scene: patches of one recipe, generated on the device, each an instance.
 
+use std::collections::HashSet;
+
 use glam::{DVec3, Vec3};
 
 use crate::gpu::{Buffer, Gpu, Uniform};
@@ -27,7 +29,8 @@ use crate::{Error, InputError};
 const MARGIN: u32 = 1;
 
 /// Terrain for [`Scene::add_terrain`](crate::scene::Scene::add_terrain): a recipe, the patches to show, and the textures of
-/// its zones. Position 0 of the world is the first sample of patch (0, 0).
+/// its zones. The origin of the world is the first sample of patch (0, 0), in the north-west; an edge of a patch is
+/// [`Config::terrain_scale`] · ([`Config::patch_size`] − 1) world units long, and a height unit is a world unit.
 #[derive(Debug, Clone)]
 pub struct TerrainSource {
     recipe: Recipe,
@@ -42,7 +45,7 @@ impl TerrainSource {
         Recipe::new(config).into()
     }
 
-    /// Shows these patches: columns to the east, rows to the south.
+    /// Shows these patches instead, each given once: its column, counted to the east, and its row, counted to the south.
     #[must_use]
     pub fn with_patches(self, patches: &[[i32; 2]]) -> Self {
         Self { patches: patches.to_vec(), ..self }
@@ -107,7 +110,7 @@ impl Terrain {
 }
 
 /// Generates terrain: what a scene keeps of it, its patches as instances, and how it is drawn.
-pub(super) fn generated(
+pub(super) async fn generated(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     source: &TerrainSource,
@@ -117,14 +120,20 @@ pub(super) fn generated(
     if patches.is_empty() {
         return Err(InputError::new("patches", "none", "must be at least one").into());
     }
-    let mut parts = Generator::new(gpu, recipe.clone())?.generate(gpu, patches, MARGIN, &mut |_| ())?;
+    let mut known = HashSet::new();
+    if let Some(at) = patches.iter().position(|patch| !known.insert(patch)) {
+        let path = format!("patches[{at}]");
+        return Err(InputError::new(path, format!("{:?}", patches[at]), "must not be given twice").into());
+    }
+    let generator = Generator::new(gpu, recipe.clone())?;
+    let mut parts = generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await?;
     if parts.len() > 1 {
         let bound =
             format!("must be at most {}, which one binding holds: add several terrains", parts[0].count);
         return Err(InputError::new("patches.len", patches.len(), bound).into());
     }
     let fields = parts.remove(0);
-    let heights = fields.read_blocking(gpu)?;
+    let heights = fields.read(gpu).await?;
     let mut ground = Ground::new(config)?;
     let mut instances = Instances::new(patches.len());
     for (patch, heights) in patches.iter().zip(&heights) {

@@ -105,7 +105,12 @@ impl MeshLevels {
     }
 }
 
-/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them.
+/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them. `clips` are the indices
+/// of the clips that will be played, none for a mesh that stands still, and `poses` is the number of poses of each of them
+/// that are examined: the largest of [`poses_of`] misses no motion, fewer are quicker.
+///
+/// The time grows with vertices × clips × poses: seconds for a character of a few thousand vertices, but minutes for one of
+/// tens of thousands or a clip of half a minute. The result is plain data ([`Mesh::levels`]) that a program may store.
 ///
 /// # Errors
 /// [`InputError`] as [`MeshLevels::new`].

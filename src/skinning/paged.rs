@@ -120,6 +120,7 @@ impl PagedSkin {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu, instance: usize) -> Result<Vec<Option<Vertex>>, Error> {
         if instance >= self.crowd.instances {
             let bound = format!("must be below {}", self.crowd.instances);

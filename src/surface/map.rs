@@ -72,8 +72,15 @@ impl HeightMap {
     /// # Errors
     /// [`Error::File`] when the file cannot be read, [`InputError`] for its size.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
-        let image = open(path)?;
-        Self::from_samples(path, image.width(), image.height(), image.into_luma16().into_raw())
+        Self::of_brightness(open(path)?).map_err(|source| Error::InputFile { path: path.to_owned(), source })
+    }
+
+    /// Takes the brightness of an image, black as 0 and white as 1, in its full bit depth.
+    ///
+    /// # Errors
+    /// [`InputError`] for its size.
+    pub fn of_brightness(image: image::DynamicImage) -> Result<Self, InputError> {
+        Self::of_samples(image.width(), image.height(), image.into_luma16().into_raw())
     }
 
     /// Reads the alpha channel of an image file as heights; also returns the image.
@@ -83,15 +90,27 @@ impl HeightMap {
     pub fn from_alpha(path: &Path) -> Result<(Self, image::DynamicImage), Error> {
         let image = open(path)?;
         if !image.color().has_alpha() {
-            return Err(Error::file(path, "has no alpha channel to take heights from"));
+            return Err(Error::file(path, NO_ALPHA));
         }
-        let alpha = image.to_rgba16().pixels().map(|pixel| pixel.0[3]).collect();
-        Ok((Self::from_samples(path, image.width(), image.height(), alpha)?, image))
+        let map =
+            Self::of_alpha(&image).map_err(|source| Error::InputFile { path: path.to_owned(), source })?;
+        Ok((map, image))
     }
 
-    fn from_samples(path: &Path, width: u32, height: u32, samples: Vec<u16>) -> Result<Self, Error> {
-        let heights = samples.into_iter().map(|sample| f32::from(sample) / 65_535.0).collect();
-        Self::new(width, height, heights).map_err(|source| Error::InputFile { path: path.to_owned(), source })
+    /// Takes the alpha channel of an image as heights, in its full bit depth.
+    ///
+    /// # Errors
+    /// [`InputError`] for an image without alpha, and for its size.
+    pub fn of_alpha(image: &image::DynamicImage) -> Result<Self, InputError> {
+        if !image.color().has_alpha() {
+            return Err(InputError::new("heights.image", format!("{:?}", image.color()), NO_ALPHA));
+        }
+        let alpha = image.to_rgba16().pixels().map(|pixel| pixel.0[3]).collect();
+        Self::of_samples(image.width(), image.height(), alpha)
+    }
+
+    fn of_samples(width: u32, height: u32, samples: Vec<u16>) -> Result<Self, InputError> {
+        Self::new(width, height, samples.into_iter().map(|sample| f32::from(sample) / 65_535.0).collect())
     }
 
     /// Texels per row.
@@ -134,19 +153,30 @@ impl HeightMap {
     }
 }
 
+const NO_ALPHA: &str = "has no alpha channel to take heights from";
+
 /// Reads an image file after checking its size: no edge may be longer than [`MAP_EDGE`].
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read.
 pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
-    let failed = |error: image::ImageError| Error::file(path, error);
-    let reader = image::ImageReader::open(path).and_then(image::ImageReader::with_guessed_format);
-    let mut reader = reader.map_err(|error| Error::file(path, error))?;
+    let file = std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
+    decode(std::io::BufReader::new(file)).map_err(|error| Error::file(path, error))
+}
+
+/// Decodes an image after checking its size: no edge may be longer than [`MAP_EDGE`].
+///
+/// # Errors
+/// What cannot be decoded, as `image` tells it.
+pub fn decode(
+    bytes: impl std::io::BufRead + std::io::Seek,
+) -> Result<image::DynamicImage, image::ImageError> {
+    let mut reader = image::ImageReader::new(bytes).with_guessed_format()?;
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAP_EDGE);
     limits.max_image_height = Some(MAP_EDGE);
     reader.limits(limits);
-    reader.decode().map_err(failed)
+    reader.decode()
 }
 
 #[cfg(test)]

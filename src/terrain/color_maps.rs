@@ -6,7 +6,7 @@ use super::blend::Shading;
 use super::blend::reference::blend;
 use super::config::Config;
 use super::texture::{Texture, map_zones};
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 use {
     super::blend::BlendPass,
     super::fields::Fields,
@@ -44,7 +44,7 @@ impl ColorMaps<'_> {
     ///
     /// # Errors
     /// The errors of [`BlendPass::prepare`].
-    #[cfg(feature = "gpu")]
+    #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
     pub fn on_device(&self, gpu: &Gpu, parts: &[Fields]) -> Result<Vec<Vec<u32>>, Error> {
         let pass = BlendPass::new(gpu)?;
         let zones = map_zones(&self.config.zones, self.textures);

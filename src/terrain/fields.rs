@@ -81,9 +81,18 @@ impl Fields {
     ///
     /// # Errors
     /// [`GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<Vec<i32>>, GpuError> {
+        gpu.block_on(self.read(gpu))
+    }
+
+    /// The heights of each field; see [`Buffer::read`].
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub async fn read(&self, gpu: &Gpu) -> Result<Vec<Vec<i32>>, GpuError> {
         let points = (self.width as usize).pow(2);
-        let all = self.heights.read_blocking(gpu)?;
+        let all = self.heights.read(gpu).await?;
         Ok(all.chunks_exact(points).take(self.count as usize).map(<[i32]>::to_vec).collect())
     }
 

@@ -62,12 +62,27 @@ impl Generator {
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn generate(
         &self,
         gpu: &Gpu,
         patches: &[[i32; 2]],
         margin: u32,
-        progress: &mut dyn FnMut(usize),
+        progress: &mut (dyn FnMut(usize) + Send),
+    ) -> Result<Vec<Fields>, Error> {
+        gpu.block_on(self.generate_async(gpu, patches, margin, progress))
+    }
+
+    /// As `Generator::generate`, but completes once the device has finished; see [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
+    pub async fn generate_async(
+        &self,
+        gpu: &Gpu,
+        patches: &[[i32; 2]],
+        margin: u32,
+        progress: &mut (dyn FnMut(usize) + Send),
     ) -> Result<Vec<Fields>, Error> {
         self.recipe.validate(patches, margin)?;
         let apron = self.recipe.apron(margin);
@@ -76,25 +91,25 @@ impl Generator {
         }
         if let Border::Blend(_) = self.recipe.config.border {
             // Patches of one part may read those of another, so all are generated at once.
-            let fields = self.by_themselves(gpu, patches, apron)?;
+            let fields = self.by_themselves(gpu, patches, apron).await?;
             progress(patches.len());
             return Ok(fields);
         }
         let mut parts = Vec::new();
         for part in patches.chunks(self.patches_per_part(gpu, margin)) {
             if self.recipe.config.border == Border::Wrap {
-                parts.extend(self.by_themselves(gpu, part, apron)?);
+                parts.extend(self.by_themselves(gpu, part, apron).await?);
             } else {
-                let windows = self.windows(gpu, part, apron)?;
+                let windows = self.windows(gpu, part, apron).await?;
                 let injected = self.recipe.injected(part, apron);
-                parts.push(self.finish(gpu, apron, &injected, windows)?);
+                parts.push(self.finish(gpu, apron, &injected, windows).await?);
             }
             progress(part.len());
         }
         Ok(parts)
     }
 
-    fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Fields, Error> {
+    async fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Fields, Error> {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         let count = patches.len() as u32;
         let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, count)?;
@@ -103,7 +118,7 @@ impl Generator {
         let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, apron })).sum();
         let job = self.height.prepare(gpu, config, [count, apron], capacity, &windows.heights, &scratch)?;
         job.set(gpu, patches, features)?;
-        gpu.run("terrain/height", |encoder| job.record(encoder))?;
+        gpu.run_async("terrain/height", |encoder| job.record(encoder)).await?;
         Ok(windows)
     }
 
@@ -123,9 +138,9 @@ impl Generator {
         features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()
     }
 
-    fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Vec<Fields>, Error> {
+    async fn by_themselves(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Vec<Fields>, Error> {
         let config = &self.recipe.config;
-        let alone = self.alone(gpu, patches)?;
+        let alone = self.alone(gpu, patches).await?;
         if apron == 0 {
             return Ok(alone);
         }
@@ -135,40 +150,50 @@ impl Generator {
         let injected = self.recipe.injected(patches, apron);
         // The last part takes the patches that remain.
         sizes.pop();
-        let windows = |around: &[Surround]| -> Result<Fields, Error> {
-            let windows = Fields::new(gpu, "terrain windows", width, around.len() as u32)?;
-            let job = self.pad.prepare(gpu, apron, around, &alone, &windows.heights)?;
-            gpu.run("terrain/pad", |encoder| job.record(encoder))?;
-            Ok(windows)
-        };
         let (mut parts, mut start) = (Vec::new(), 0);
         for size in sizes {
             let part = start..start + size;
-            parts.push(self.finish(gpu, apron, &injected[part.clone()], windows(&all[part])?)?);
+            let windows = self.padded(gpu, apron, &all[part.clone()], &alone).await?;
+            parts.push(self.finish(gpu, apron, &injected[part], windows).await?);
             start += size;
         }
-        let last = windows(&all[start..])?;
+        let last = self.padded(gpu, apron, &all[start..], &alone).await?;
         // Only the last windows read the patches: free them, because the stages that follow need the memory.
         drop(alone);
-        parts.push(self.finish(gpu, apron, &injected[start..], last)?);
+        parts.push(self.finish(gpu, apron, &injected[start..], last).await?);
         Ok(parts)
+    }
+
+    /// Windows around patches, filled from all of them.
+    async fn padded(
+        &self,
+        gpu: &Gpu,
+        apron: u32,
+        around: &[Surround],
+        alone: &[Fields],
+    ) -> Result<Fields, Error> {
+        let width = self.recipe.config.patch_size + 2 * apron;
+        let windows = Fields::new(gpu, "terrain windows", width, around.len() as u32)?;
+        let job = self.pad.prepare(gpu, apron, around, alone, &windows.heights)?;
+        gpu.run_async("terrain/pad", |encoder| job.record(encoder)).await?;
+        Ok(windows)
     }
 
     /// The patches without the samples around them, after the transitions of `blend`.
-    fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
+    async fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
         let config = &self.recipe.config;
         let mut parts = Vec::new();
         for part in patches.chunks(Fields::most(gpu, config.patch_size)) {
-            parts.push(self.wrapped(gpu, part)?);
+            parts.push(self.wrapped(gpu, part).await?);
         }
         if let Border::Blend(width) = config.border {
             let job = self.border.prepare(gpu, width, &neighbours(patches), &parts)?;
-            job.run(gpu)?;
+            job.run_async(gpu).await?;
         }
         Ok(parts)
     }
 
-    fn wrapped(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Fields, Error> {
+    async fn wrapped(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Fields, Error> {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         let count = patches.len() as u32;
         let fields = Fields::new(gpu, "terrain/wrap", config.patch_size, count)?;
@@ -177,12 +202,12 @@ impl Generator {
         let buffers = WrapBuffers { output: &fields.heights, scratch: &scratch };
         let job = self.wrap.prepare(gpu, config, count, features.len(), buffers)?;
         job.set(gpu, patches, features)?;
-        gpu.run("terrain/wrap", |encoder| job.record(encoder))?;
+        gpu.run_async("terrain/wrap", |encoder| job.record(encoder)).await?;
         Ok(fields)
     }
 
     /// Despikes and erodes windows, alternating between them and a second buffer.
-    fn finish(
+    async fn finish(
         &self,
         gpu: &Gpu,
         apron: u32,
@@ -200,14 +225,14 @@ impl Generator {
             let features = self.index(gpu, apron, injected)?;
             let buffers = DespikeBuffers { windows: &current, features: &features, cropped: &other };
             let job = self.despike.prepare(gpu, despike, buffers)?;
-            gpu.run("terrain/despike", |encoder| job.record(encoder))?;
+            gpu.run_async("terrain/despike", |encoder| job.record(encoder)).await?;
             (current, other) = (other, current.cropped(1));
         }
         if let Some(thermal) = thermal {
             let scale = self.recipe.config.terrain_scale;
             let buffers = ThermalBuffers { windows: &current, other: &other };
             let job = self.thermal.prepare(gpu, thermal, scale, buffers)?;
-            job.run(gpu)?;
+            job.run_async(gpu).await?;
             let width = current.cropped(thermal.iterations).width;
             let result = if thermal.iterations % 2 == 0 { current } else { other };
             current = Fields { width, ..result };

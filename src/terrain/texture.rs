@@ -69,9 +69,13 @@ impl Texture {
     /// # Errors
     /// [`Error::File`] when it cannot be read.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
-        let image = image::open(path).map_err(|error| Error::file(path, error))?;
+        Ok(Self::from_image(&image::open(path).map_err(|error| Error::file(path, error))?))
+    }
+
+    /// Resizes an image.
+    pub fn from_image(image: &image::DynamicImage) -> Self {
         let image = image.resize_exact(TEXTURE_SIZE, TEXTURE_SIZE, FilterType::Triangle);
-        Ok(Self::from_texels(image.into_rgba8().into_raw()))
+        Self::from_texels(image.into_rgba8().into_raw())
     }
 
     /// The textures of zones, in the zones' order.

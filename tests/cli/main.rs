@@ -16,6 +16,8 @@ mod rest;
 #[allow(dead_code, reason = "only the tests of the import write GLBs")]
 #[path = "../animation/scene.rs"]
 mod scene;
+mod scene_file;
+mod scene_mistakes;
 mod skin;
 mod terrain;
 

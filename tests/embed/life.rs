@@ -1,6 +1,6 @@
 //! Instances that come and go: handles, growth, and long lives.
 
-use relievo::scene::{Camera, Placement, Play, Quality, View};
+use relievo::scene::{Camera, InstanceId, Placement, Play, Quality, View};
 
 use crate::frame::{Frame, device};
 use crate::harness::Difference;
@@ -8,7 +8,7 @@ use crate::world::{SIZE, World, camera, model};
 
 /// Frames of a long life; `RELIEVO_FRAMES` asks for more.
 fn frames() -> u32 {
-    std::env::var("RELIEVO_FRAMES").ok().and_then(|frames| frames.parse().ok()).unwrap_or(200)
+    std::env::var("RELIEVO_FRAMES").ok().and_then(|frames| frames.parse().ok()).unwrap_or(1000)
 }
 
 /// A handle names its instance alone: when that is gone, it names nothing, although its place is used again.
@@ -68,28 +68,14 @@ fn objects_grow_in_flight() {
 #[test]
 fn a_long_life_leaves_no_trace() {
     let gpu = device();
-    let mut world = World::new(&gpu, 12);
+    let mut world = World::new(&gpu, 24);
     let frame = Frame::plain(&gpu, SIZE);
     let mut views = [world.view(1.0), world.view(4.0)];
-    let mut seed = 7_u32;
-    let mut draw = |range: u32| {
-        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (seed >> 16) % range
-    };
-    let mut shown: Vec<usize> = (0..12).collect();
-    let mut held = 0;
+    let mut shown: Vec<Option<usize>> = (0..24).map(|at| Some(at % 15)).collect();
+    shown.iter().zip(world.crowd.clone()).for_each(|(at, id)| put(&mut world, id, at.expect("there")));
+    let (mut draw, mut held) = (Draw(7), 0);
     for at in 0..frames() {
-        let index = draw(12) as usize;
-        world.scene.despawn(world.crowd[index]).expect("there");
-        shown[index] = draw(15) as usize;
-        world.crowd[index] = world.spawn(shown[index]);
-        let moved = draw(12) as usize;
-        shown[moved] = draw(15) as usize;
-        let placement = world.placement(shown[moved]);
-        world.scene.move_to(world.crowd[moved], placement).expect("there");
-        let play = Play { start: World::start(shown[moved]), ..Play::new("walk") };
-        world.scene.play(world.crowd[moved], &play).expect("the clip");
-        world.scene.advance(1.0 / 60.0).expect("finite");
+        change(&mut world, &mut shown, &mut draw, at);
         let eye = camera(SIZE);
         let turned = glam::Mat4::from_rotation_y(0.02 * at as f32);
         views[1].set(Camera { view_from_world: eye.view_from_world * turned, ..eye }).expect("a camera");
@@ -98,7 +84,7 @@ fn a_long_life_leaves_no_trace() {
         world.scene.record(&mut encoder, &mut [a, b]).expect("recorded");
         gpu.queue().submit([encoder.finish()]);
         gpu.wait().expect("done");
-        if at == 9 {
+        if at == frames() / 10 {
             held = gpu.memory().now();
         }
     }
@@ -111,16 +97,66 @@ fn a_long_life_leaves_no_trace() {
     let kept = full(&mut world, &mut views[0]);
     world.scene.refresh().expect("afresh");
     let refreshed = full(&mut world, &mut views[0]);
-    let mut fresh = World::empty(&gpu, 12);
-    fresh.scene.advance(world.scene.time() as f32).expect("finite");
-    for at in &shown {
-        fresh.spawn(*at);
+    let mut fresh = World::empty(&gpu, 24);
+    // The same time to the bit, in two summands.
+    let time = world.scene.time();
+    for seconds in [time as f32, (time - f64::from(time as f32)) as f32] {
+        fresh.scene.advance(seconds).expect("finite");
     }
+    assert!(fresh.scene.time() == time, "{time}");
+    shown.iter().flatten().for_each(|at| {
+        fresh.spawn(*at);
+    });
     let mut view = fresh.view(0.0);
     assert!(full(&mut fresh, &mut view) == refreshed, "another picture than a fresh scene");
     // Without a refresh all that differs is the order in which rounding errors came.
     let difference = Difference::of(&kept, &refreshed, 1);
     assert!(difference.outliers < 0.01, "{difference:?}");
+}
+
+/// Random numbers.
+struct Draw(u32);
+
+impl Draw {
+    fn below(&mut self, range: usize) -> usize {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 16) as usize % range
+    }
+}
+
+/// Changes a frame of a long life: an instance comes or goes, another moves, and now and then an object comes and goes.
+/// `shown` says where in the grid each instance stands.
+fn change(world: &mut World, shown: &mut [Option<usize>], draw: &mut Draw, at: u32) {
+    let index = draw.below(shown.len());
+    match shown[index].take() {
+        Some(_) => world.scene.despawn(world.crowd[index]).expect("there"),
+        None => {
+            let place = draw.below(15);
+            shown[index] = Some(place);
+            world.crowd[index] = world.spawn(place);
+        }
+    }
+    let moved = draw.below(shown.len());
+    if shown[moved].is_some() {
+        let place = draw.below(15);
+        shown[moved] = Some(place);
+        put(world, world.crowd[moved], place);
+    }
+    if at % 97 == 50 {
+        let object = world.scene.add_mesh(&model(), 3).expect("added");
+        world.scene.spawn(object, Placement::default()).expect("room");
+        world.scene.remove(object).expect("there");
+    }
+    // Every few seconds starts are counted from a later moment: more than two minutes pass in any case.
+    world.scene.advance(if at % 8 == 3 { 1.25 } else { 1.0 / 60.0 }).expect("finite");
+}
+
+/// Moves an instance to place `at` of the grid, and lets it play what is played there.
+fn put(world: &mut World, instance: InstanceId, at: usize) {
+    let placement = world.placement(at);
+    world.scene.move_to(instance, placement).expect("there");
+    let play = Play { start: World::start(at), ..Play::new("walk") };
+    world.scene.play(instance, &play).expect("the clip");
 }
 
 /// Memory for vertices follows what is seen, and the picture does not tell: an object with room for many instances, whose

@@ -5,11 +5,14 @@
 mod harness;
 
 mod bones;
+#[cfg(unix)]
+mod cost;
 mod counts;
 mod frame;
 mod host;
 mod layers;
 mod life;
+mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;

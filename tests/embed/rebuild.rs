@@ -93,7 +93,7 @@ fn a_lost_device_leaves_no_trace() {
     let mut encoder = second.encoder("an old renderer");
     frame.pass(&mut encoder, |pass| {
         let drawn = other.draw(pass, &disturbed.world.scene, &disturbed.view, Layer::Color);
-        assert_eq!(drawn.expect_err("an old renderer").path, "renderer");
+        assert_eq!(drawn.expect_err("an old renderer").path, "scene");
     });
     drop(encoder);
     other.rebuild(&second).expect("compiled");

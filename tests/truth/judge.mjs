@@ -32,7 +32,7 @@ function withoutImages(bytes) {
     return whole;
 }
 
-async function load(path) {
+export async function load(path) {
     const bytes = withoutImages(await readFile(path));
     const folder = `${pathToFileURL(dirname(path)).href}/`;
     const data = Uint8Array.from(bytes).buffer;

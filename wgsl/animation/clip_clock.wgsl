@@ -32,10 +32,14 @@ const BLENDED: u32 = 0x80000000u;
 // The factor of the hash of clips above the base.
 const CLIP_HASH_FACTOR: u32 = 31u;
 
-// A hash of the clips that play above the base; 0 if there are none.
-fn clips_above(instance: u32) -> u32 {
+// No instance plays this clip.
+const NO_CLIP: u32 = 0xffffffffu;
+
+// A hash of the clips that play above the base, which is clip `base`; 0 if there are none. (No instance has NO_CLIP, but
+// where uniforms alone decide loops and branches, lavapipe compiles the kernel anew in each submission.)
+fn clips_above(instance: u32, base: u32) -> u32 {
     var clips = 0u;
-    for (var layer = 0u; layer < clip_clock_params.layers; layer++) {
+    for (var layer = 0u; layer < select(clip_clock_params.layers, 0u, base == NO_CLIP); layer++) {
         let is_heard = layer_weights[layer * clip_clock_params.instances + instance] > 0.0;
         let clip = instances[(layer + 1u) * clip_clock_params.instances + instance].clip;
         clips = CLIP_HASH_FACTOR * clips + select(0u, clip + 1u, is_heard);
@@ -55,14 +59,11 @@ fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * clip_clock_params.elapsed);
     let timeline = timelines[clip.first_timeline];
     let found = keyframe_cursor(timeline, time);
-    var later = time;
-    var ahead = found;
-    if clip_clock_params.ahead != 0.0 {
-        let seconds = clip_clock_params.elapsed + clip_clock_params.ahead;
-        later = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * seconds);
-        ahead = keyframe_cursor(timeline, later);
-    }
-    let above = clips_above(index);
+    let seconds = clip_clock_params.elapsed + clip_clock_params.ahead;
+    let then = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * seconds);
+    let later = select(time, then, clip_clock_params.ahead != 0.0);
+    let ahead = keyframe_cursor(timeline, later);
+    let above = clips_above(index, instance.clip);
     let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
     let known = vec4<u32>(base, above, bitcast<u32>(time), bitcast<u32>(later));
     let last = history[index];

@@ -73,9 +73,11 @@ fn spread_word(instance: u32, word: u32, chosen: u32, so_far: Spread) -> Spread 
     return Spread(so_far.count + countOneBits(chosen), end);
 }
 
+// (No subtree ends beyond the last bone. Where uniforms alone decide a loop's end, lavapipe compiles the kernel anew in each
+// submission; hence the second conditions of loops here.)
 fn spread(instance: u32) {
     var so_far = Spread(0u, 0u);
-    for (var word = 0u; word < compact_params.words; word++) {
+    for (var word = 0u; word < compact_params.words && so_far.end <= compact_params.bones; word++) {
         so_far = spread_word(instance, word, bits[instance * compact_params.words + word], so_far);
     }
     counts[instance] = so_far.count;
@@ -117,7 +119,7 @@ fn scan(lane: u32, width: u32) {
     if lane == width - 1u {
         pair_dispatch[0] = vec4<u32>(dispatch_of(before.x), before.x);
         instance_dispatches[0] = vec4<u32>(dispatch_of(before.y), before.y);
-        for (var at = 1u; at <= compact_params.served; at++) {
+        for (var at = 1u; at <= compact_params.served && before.y <= compact_params.instances; at++) {
             let each = instance_dispatches[at].w;
             instance_dispatches[at] = vec4<u32>(dispatch_of(before.y * each), each);
         }
@@ -158,7 +160,8 @@ fn scatter(index: u32) {
 // Lists all pairs of one instance.
 fn list_instance(instance: u32) {
     var at = counts[instance];
-    for (var word = 0u; word < compact_params.words; word++) {
+    let end = compact_params.instances * compact_params.bones;
+    for (var word = 0u; word < compact_params.words && at <= end; word++) {
         at = list_word(instance, word, at);
     }
 }

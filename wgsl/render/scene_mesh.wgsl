@@ -6,6 +6,8 @@ import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
+// Whether the only material of a part has a texture.
+override TEXTURED: bool = false;
 
 // The cutoff of materials that ignore alpha.
 const CUTOFF_OPAQUE: f32 = -1.0;
@@ -61,6 +63,26 @@ struct BumpyVertex {
     @location(3) tangent: vec4<f32>,
 }
 
+// A vertex of an opaque part with one material and without a normal map.
+struct PlainVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    // The normal on the side of triangles that is in front, if both are seen, else outwards; w: the texture coordinate u.
+    @location(0) normal_and_u: vec4<f32>,
+    // The texture coordinate v, and the colour of the material and the instance, which all vertices of a triangle share.
+    @location(1) v_and_color: vec4<f32>,
+}
+
+@vertex
+fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> PlainVertex {
+    let placed = placed_vertex(instance, vertex);
+    let color = materials[0].color * unpack4x8unorm(placed.tint);
+    let is_behind = DOUBLE_SIDED && view.side * placed.side < 0.0;
+    return PlainVertex(
+        view.clip_from_world * vec4<f32>(placed.position, 1.0),
+        vec4<f32>(select(placed.normal, -placed.normal, is_behind), placed.uv.x),
+        vec4<f32>(placed.uv.y, color.rgb));
+}
+
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Vertex {
     return without_tangent(bumpy(vertex, instance));
@@ -91,6 +113,18 @@ fn colored(in: Vertex) -> vec4<f32> {
     let layer = in.surface.z + 0.5;
     let texel = textureSample(albedo, filtering, in.surface.xy, u32(max(layer, 0.0)));
     return select(texel, vec4<f32>(1.0), layer < 0.0) * in.color;
+}
+
+// Ignores alpha.
+@fragment
+fn opaque_plain(in: PlainVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    var color = in.v_and_color.yzw;
+    if TEXTURED {
+        color *= textureSample(albedo, filtering, vec2<f32>(in.normal_and_u.w, in.v_and_color.x), 0).rgb;
+    }
+    let normal = normalize(in.normal_and_u.xyz);
+    let facing = select(normal, -normal, DOUBLE_SIDED && !is_front);
+    return vec4<f32>(scene_lit(color, max(dot(facing, view.light.xyz), 0.0)), 1.0);
 }
 
 // What the light makes of a colour; `outwards` is the unit normal.

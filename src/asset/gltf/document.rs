@@ -13,6 +13,7 @@ use gltf_json::{Index, Root, buffer};
 use serde::Deserialize as _;
 use serde_json::Value;
 
+use super::Beside;
 use super::budget::Budget;
 use super::container::Container;
 use crate::InputError;
@@ -27,7 +28,7 @@ pub struct Document<'a> {
     /// What the document may allocate.
     pub budget: Budget,
     binary: Option<&'a [u8]>,
-    folder: Option<&'a Path>,
+    beside: Option<Beside<'a>>,
     buffers: Vec<OnceCell<Bytes<'a>>>,
     /// External files, each read once.
     files: RefCell<HashMap<PathBuf, Rc<Vec<u8>>>>,
@@ -62,11 +63,11 @@ const OF_MATERIALS: &str = "KHR_materials_";
 
 impl<'a> Document<'a> {
     /// Parses and validates a document. `is_bare` means that materials and images are not needed.
-    pub fn new(bytes: &'a [u8], folder: Option<&'a Path>, is_bare: bool) -> Result<Self, InputError> {
+    pub fn new(bytes: &'a [u8], beside: Option<Beside<'a>>, is_bare: bool) -> Result<Self, InputError> {
         let Container { json, binary } = Container::new(bytes)?;
         let mut value: Value = serde_json::from_slice(json).map_err(|error| {
             let place = format!("line {} column {}", error.line(), error.column());
-            InputError::new("JSON", place, error.to_string())
+            InputError::new("JSON", place, format!("must be glTF 2.0, as GLB or JSON ({error})"))
         })?;
         check_required(&value, is_bare)?;
         let is_draco = required_names(&value).any(|name| name == DRACO);
@@ -90,7 +91,7 @@ impl<'a> Document<'a> {
             normal_transforms,
             budget,
             binary,
-            folder,
+            beside,
             buffers,
             files: RefCell::default(),
         })
@@ -168,14 +169,14 @@ impl<'a> Document<'a> {
                 "must be a data: URI or a file in the document's folder or below".to_owned(),
             ));
         }
-        let Some(folder) = self.folder else {
+        let Some(read) = self.beside else {
             return Err(refused("lies in a file, and the document has no folder".to_owned()));
         };
         let name: PathBuf = relative.components().filter(|part| *part != Component::CurDir).collect();
         if let Some(known) = self.files.borrow().get(&name) {
             return Ok(Rc::clone(known));
         }
-        let bytes = std::fs::read(folder.join(&name)).map_err(|error| refused(error.to_string()))?;
+        let bytes = read(&name).map_err(|error| refused(error.to_string()))?;
         self.budget.add_bytes(bytes.len());
         Ok(Rc::clone(self.files.borrow_mut().entry(name).or_insert_with(|| Rc::new(bytes))))
     }

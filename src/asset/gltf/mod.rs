@@ -68,6 +68,9 @@ use crate::{Error, InputError};
 use document::Document;
 use materials::Materials;
 
+/// Reads a file by its path relative to the folder of another file.
+pub type Beside<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
+
 impl Model {
     /// Reads a `.gltf` or `.glb` file, and the buffers and images beside it.
     ///
@@ -90,7 +93,7 @@ impl Model {
     fn read(path: &Path, materials: Materials) -> Result<Self, Error> {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::import(&bytes, Some(folder), materials)
+        Self::import(&bytes, Some(&|name: &Path| std::fs::read(folder.join(name))), materials)
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
@@ -99,11 +102,27 @@ impl Model {
     /// # Errors
     /// [`InputError`] with the path in the file.
     pub fn from_gltf(bytes: &[u8], folder: Option<&Path>) -> Result<Self, InputError> {
-        Self::import(bytes, folder, Materials::default())
+        match folder {
+            Some(folder) => Self::from_gltf_beside(bytes, &|name| std::fs::read(folder.join(name))),
+            None => Self::import(bytes, None, Materials::default()),
+        }
     }
 
-    fn import(bytes: &[u8], folder: Option<&Path>, mut materials: Materials) -> Result<Self, InputError> {
-        let document = Document::new(bytes, folder, materials.is_unread)?;
+    /// Reads glTF from memory, and its external buffers and images through `beside`, which gets their paths relative to
+    /// the document's folder. It works without a file system.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path in the file.
+    pub fn from_gltf_beside(bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
+        Self::import(bytes, Some(beside), Materials::default())
+    }
+
+    fn import(
+        bytes: &[u8],
+        beside: Option<Beside<'_>>,
+        mut materials: Materials,
+    ) -> Result<Self, InputError> {
+        let document = Document::new(bytes, beside, materials.is_unread)?;
         let nodes = nodes::Nodes::new(&document)?;
         let clips = clips::clips(&document, &nodes)?;
         // Meshes that are compressed with Draco have no vertices that can be read.

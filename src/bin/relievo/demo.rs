@@ -2,6 +2,7 @@
 
 mod crowd;
 mod relief;
+mod scene;
 mod skin;
 mod terrain;
 
@@ -50,10 +51,14 @@ impl Demo {
             context,
             staged: Staged::new(&self.out)?,
             inputs: inputs.path(),
-            progress: bar((terrain::COUNT + relief::COUNT + skin::COUNT + crowd::COUNT) as u64, "drawing"),
+            progress: bar(
+                (scene::COUNT + terrain::COUNT + relief::COUNT + skin::COUNT + crowd::COUNT) as u64,
+                "drawing",
+            ),
             figures: String::new(),
             count: 0,
         };
+        scene::draw(&mut page, &self.size)?;
         terrain::draw(&mut page, &self.size)?;
         relief::draw(&mut page, &self.size)?;
         skin::draw(&mut page)?;

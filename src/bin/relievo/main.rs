@@ -12,6 +12,7 @@ mod pose;
 mod priorities;
 mod progress;
 mod relief;
+mod scene;
 mod shaders;
 mod skin;
 mod terrain;
@@ -42,6 +43,7 @@ struct Arguments {
 enum Command {
     /// Lists the adapters, the driver and limits of the chosen one, and every pass.
     Info,
+    Scene(Box<scene::Scene>),
     Terrain(Box<terrain::Terrain>),
     Relief(Box<relief::Relief>),
     Pose(pose::Pose),
@@ -88,6 +90,7 @@ fn main() -> ExitCode {
     let has_backend = arguments.command.has_backend();
     let outcome = match arguments.command {
         Command::Info => info::run(&context),
+        Command::Scene(command) => command.run(&context),
         Command::Terrain(command) => command.run(&context),
         Command::Relief(command) => command.run(&context),
         Command::Pose(command) => command.run(&context),

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::gpu::bindings::lod::list as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw};
-use crate::shared::lod::list::{ListParams, PLACED_BLOCKS, RUNS};
+use crate::shared::lod::list::{ListParams, PLACE, PLACED_BLOCKS, RUNS, SUM, WALK};
 
 /// What the lists are made from, and where they go.
 #[derive(Debug, Clone, Copy)]
@@ -15,8 +15,7 @@ pub struct ListBuffers<'a> {
     pub block_objects: &'a Buffer<u32>,
     /// One for each instance: 0 if it is not seen, else 1 + its list.
     pub decisions: &'a Buffer<u32>,
-    /// [`OBJECT_LISTS`] for each block: how many of its instances are in each list. Overwritten with how many are in the
-    /// blocks of the object before it.
+    /// [`OBJECT_LISTS`] for each block: how many of its instances are in each list. Overwritten.
     pub counts: &'a Buffer<u32>,
     /// Written: indices of instances, relative to the object's first one, at [`LodObject::list_begin`].
     pub lists: &'a Buffer<u32>,
@@ -24,11 +23,28 @@ pub struct ListBuffers<'a> {
     pub arguments: &'a Buffer<SceneDraw>,
 }
 
+/// How threads divide the instances that are written into lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Threads {
+    /// One thread for each instance. Those of a block find their order together, with barriers.
+    Instances,
+    /// One thread for each block, without barriers, which are slow on processors.
+    Blocks,
+}
+
+impl Threads {
+    /// The faster choice for this kind of adapter.
+    fn of(gpu: &Gpu) -> Self {
+        if gpu.tuning().wants_long_threads() { Self::Blocks } else { Self::Instances }
+    }
+}
+
 /// Lists instances.
 #[derive(Debug, Clone)]
 pub struct ListPass {
     sum: Kernel,
     place: Kernel,
+    threads: Threads,
 }
 
 impl ListPass {
@@ -37,8 +53,20 @@ impl ListPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |place| bindings::kernel(gpu, &bindings::Constants { place });
-        Ok(Self { sum: kernel(false)?, place: kernel(true)? })
+        Self::with_threads(gpu, Threads::of(gpu))
+    }
+
+    /// Compiles the pipelines for what takes instances together.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub(crate) fn with_threads(gpu: &Gpu, threads: Threads) -> Result<Self, GpuError> {
+        let kernel = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
+        let place = match threads {
+            Threads::Instances => PLACE,
+            Threads::Blocks => WALK,
+        };
+        Ok(Self { sum: kernel(SUM)?, place: kernel(place)?, threads })
     }
 
     /// Prepares the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
@@ -66,14 +94,18 @@ impl ListPass {
             lists: buffers.lists.slice(),
             arguments: buffers.arguments.slice(),
         };
-        let step = |kernel: &Kernel, groups: u32| {
+        let step = |kernel: &Kernel, threads: u32| {
             Ok(Step {
                 groups: vec![group.bind(gpu, kernel)?],
-                workgroups: kernel.spread(gpu, OBJECT_LISTS * RUNS * groups),
+                workgroups: kernel.spread(gpu, threads),
                 kernel: kernel.clone(),
             })
         };
-        let steps = [step(&self.sum, object_count), step(&self.place, blocks.div_ceil(PLACED_BLOCKS))];
+        let placing = match self.threads {
+            Threads::Instances => BLOCK * blocks.next_multiple_of(PLACED_BLOCKS),
+            Threads::Blocks => blocks,
+        };
+        let steps = [step(&self.sum, OBJECT_LISTS * RUNS * object_count), step(&self.place, placing)];
         let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "lod/list", steps)?)
     }

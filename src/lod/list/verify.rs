@@ -6,6 +6,7 @@ use crate::gpu::{Buffer, Gpu};
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
+use crate::lod::list::pass::Threads;
 use crate::lod::list::reference::{before_blocks, lists};
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::reference::counts;
@@ -22,15 +23,23 @@ const KINDS: [&str; 4] = ["none seen", "all in one list", "some in every list", 
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let pass = ListPass::new(cases.gpu)?;
+    for threads in [Threads::Instances, Threads::Blocks] {
+        with_threads(cases, threads)?;
+    }
+    Ok(())
+}
+
+fn with_threads(cases: &mut Cases<'_>, threads: Threads) -> Result<(), Error> {
+    let pass = ListPass::with_threads(cases.gpu, threads)?;
     for (case, sizes) in (0..).zip(SIZES) {
         let blocks = Blocks::new(case, sizes);
         for kind in KINDS {
             let decisions = random_decisions(case, kind, &blocks);
             let (ends, found) = run(cases.gpu, &pass, &blocks, &decisions)?;
-            let name = format!("{} blocks, {kind}", blocks.block_objects.len());
+            let name =
+                format!("{} blocks, {kind}, a thread for each of {threads:?}", blocks.block_objects.len());
             ends.into_iter().for_each(|(output, end)| cases.add(format!("{name}: the end of {output}"), end));
-            let expected = Written::expected(&blocks, &decisions);
+            let expected = Written::expected(&blocks, &decisions, threads);
             for (what, comparison) in found.compared(&expected) {
                 cases.add(format!("{name}: {what}"), comparison);
             }
@@ -108,8 +117,8 @@ fn run(gpu: &Gpu, pass: &ListPass, blocks: &Blocks, decisions: &[u32]) -> Result
 }
 
 impl Written {
-    /// What the reference writes.
-    fn expected(blocks: &Blocks, decisions: &[u32]) -> Self {
+    /// What the reference writes. Threads for blocks count on in the counts.
+    fn expected(blocks: &Blocks, decisions: &[u32], threads: Threads) -> Self {
         let mut written = Self {
             counts: counts(decisions),
             lists: vec![POISON; blocks.list_words()],
@@ -119,7 +128,10 @@ impl Written {
             let own = (OBJECT_LISTS * object.first / BLOCK) as usize..;
             let own = &mut written.counts[own][..(OBJECT_LISTS * object.instances / BLOCK) as usize];
             let before = before_blocks(own);
-            own.copy_from_slice(&before);
+            match threads {
+                Threads::Instances => own.copy_from_slice(&before),
+                Threads::Blocks => own.iter_mut().zip(before).for_each(|(own, before)| *own += before),
+            }
             for (list, members) in (0..).zip(lists(object, decisions)) {
                 written.lists[object.list_begin(list) as usize..][..members.len()].copy_from_slice(&members);
                 for part in 0..object.parts {
@@ -149,7 +161,7 @@ mod tests {
     fn a_list_in_another_order_and_a_foreign_word_are_seen() {
         let blocks = Blocks::new(3, &[3, 2]);
         let decisions = random_decisions(3, "some in every list", &blocks);
-        let right = Written::expected(&blocks, &decisions);
+        let right = Written::expected(&blocks, &decisions, Threads::Instances);
         let faults = |found: &Written| {
             let compared = found.compared(&right).into_iter();
             compared.filter(|(_, comparison)| !comparison.holds).map(|(what, _)| what).collect::<Vec<_>>()

@@ -131,7 +131,7 @@ impl DisplacementMeter {
 }
 
 impl Displacement {
-    fn none(pixels: f32) -> Self {
+    pub(super) fn none(pixels: f32) -> Self {
         Self {
             pixels,
             largest: 0.0,

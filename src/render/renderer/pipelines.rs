@@ -12,7 +12,12 @@ use crate::surface::{Green, ReliefOptions, Shadow};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     /// A mesh with materials.
-    Mesh { surface: SurfaceKind, normal_mapped: bool },
+    Mesh {
+        surface: SurfaceKind,
+        normal_mapped: bool,
+        /// Whether the only material of an opaque part without a normal map has a texture; `None` for other parts.
+        only_textured: Option<bool>,
+    },
     /// A mesh with relief.
     Relief { double_sided: bool, options: ReliefOptions },
     /// Patches of terrain, seen from both sides.
@@ -23,7 +28,13 @@ impl Kind {
     pub fn of(part: &MeshPart) -> Self {
         match &part.materials {
             MeshMaterials::Plain(materials) => {
-                Self::Mesh { surface: part.surface, normal_mapped: materials.normal_mapped }
+                let (surface, normal_mapped) = (part.surface, materials.normal_mapped);
+                let is_plain = !surface.cut_out && !normal_mapped;
+                Self::Mesh {
+                    surface,
+                    normal_mapped,
+                    only_textured: materials.only_textured.filter(|_| is_plain),
+                }
             }
             MeshMaterials::Relief(relief) => {
                 Self::Relief { double_sided: part.surface.double_sided, options: relief.options }
@@ -34,7 +45,7 @@ impl Kind {
     /// The same without what has no influence on depth.
     fn without_shading(self) -> Self {
         match self {
-            Self::Mesh { surface, .. } => Self::Mesh { surface, normal_mapped: false },
+            Self::Mesh { surface, .. } => Self::Mesh { surface, normal_mapped: false, only_textured: None },
             Self::Relief { double_sided, options } => {
                 let options = ReliefOptions { shadow: Shadow::None, normal_map: None, ..options };
                 Self::Relief { double_sided, options }
@@ -146,7 +157,13 @@ impl PipelineKey {
         // A pipeline without a fragment stage fits no pass with colours.
         let depth_opaque = (!format.color.is_empty()).then_some("depth_opaque");
         match (self.kind, self.layer) {
-            (Kind::Mesh { surface, normal_mapped }, layer) => Program {
+            (Kind::Mesh { surface, only_textured: Some(textured), .. }, Layer::Color) => Program {
+                shader: &shaders::RENDER_SCENE_MESH,
+                vertex: "vertex_plain",
+                fragment: Some("opaque_plain"),
+                constants: scene_mesh::Constants { double_sided: surface.double_sided, textured }.list(),
+            },
+            (Kind::Mesh { surface, normal_mapped, .. }, layer) => Program {
                 shader: &shaders::RENDER_SCENE_MESH,
                 vertex: if normal_mapped { "vertex_bumpy" } else { "vertex" },
                 fragment: match (layer, surface.cut_out, normal_mapped) {
@@ -157,7 +174,8 @@ impl PipelineKey {
                     (Layer::Depth, false, _) => depth_opaque,
                     (Layer::Depth, true, _) => Some("depth_cut_out"),
                 },
-                constants: scene_mesh::Constants { double_sided: surface.double_sided }.list(),
+                constants: scene_mesh::Constants { double_sided: surface.double_sided, textured: false }
+                    .list(),
             },
             (Kind::Relief { options, .. }, layer) => Program {
                 shader: &shaders::RENDER_SCENE_RELIEF,

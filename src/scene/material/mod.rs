@@ -23,6 +23,8 @@ pub(crate) struct PartMaterials {
     pub group: Group,
     /// Whether one of them has a normal map.
     pub normal_mapped: bool,
+    /// Whether the only one has a texture; `None` if there are several.
+    pub only_textured: Option<bool>,
 }
 
 impl PartMaterials {
@@ -58,7 +60,11 @@ impl PartMaterials {
             filtering: &sampler_of(gpu, sampling)?,
         };
         let normal_mapped = table.iter().any(|entry| entry.normal_layer != NO_LAYER);
-        Ok(Self { group: group.bind(gpu, &layouts.mesh)?, normal_mapped })
+        let only_textured = match &table[..] {
+            [only] => Some(only.layer != NO_LAYER),
+            _ => None,
+        };
+        Ok(Self { group: group.bind(gpu, &layouts.mesh)?, normal_mapped, only_textured })
     }
 }
 

@@ -5,7 +5,7 @@ use crate::Error;
 use crate::gpu::{Gpu, Job};
 use crate::lod::attach::{AttachBuffers, AttachPass};
 use crate::scene::attach::Attachments;
-use crate::scene::handles::{ObjectId, Slots};
+use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
 use crate::scene::object::{Kind, Object};
 
@@ -31,8 +31,8 @@ impl View {
             return Ok(());
         }
         let mut jobs = Vec::new();
-        for (ObjectId { index, generation }, list) in attachments.lists() {
-            let Some(object) = objects.get([index, generation]) else { continue };
+        for (key, list) in attachments.lists() {
+            let Some(object) = objects.get(key) else { continue };
             let Kind::Character(character) = &object.kind else { continue };
             let buffers = AttachBuffers {
                 params: &list.params,

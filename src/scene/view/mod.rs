@@ -5,8 +5,6 @@ mod counted;
 pub(crate) mod lists;
 mod uniforms;
 
-use std::sync::Arc;
-
 use glam::IVec3;
 
 use crate::asset::Light;
@@ -18,6 +16,7 @@ use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
 use crate::scene::Scene;
 use crate::scene::camera::Camera;
+use crate::scene::handles::{SceneNumber, foreign};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Quality;
@@ -28,9 +27,53 @@ use lists::ViewLists;
 use uniforms::{lod_camera, terrain_view};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
+///
+/// What is set of a view counts from the next [`Scene::record`](super::Scene::record) on. Set it before that, and not between
+/// recording and drawing.
+///
+/// # Examples
+///
+/// The eye's view, and a shadow map of the sun, which sees only what casts shadows, also outside the eye's picture, as fine as
+/// the eye needs it.
+///
+/// ```no_run
+/// use glam::Vec3;
+/// use relievo::render::{Layer, Renderer};
+/// use relievo::scene::{Camera, Depth, Quality, Scene};
+/// # fn frame(
+/// #     (mut scene, renderer, shadows): (Scene, Renderer, Renderer), // shadows: TargetFormat::depth_only
+/// #     mut encoder: wgpu::CommandEncoder,
+/// #     begin: impl Fn(&mut wgpu::CommandEncoder) -> wgpu::RenderPass<'static>,
+/// # ) -> Result<(), relievo::Error> {
+///
+/// let mut eye = scene.view(Quality { pixels: 0.5 })?;
+/// let mut sun = scene.view(Quality { pixels: 0.5 })?;
+/// sun.set_casters_only(true);
+///
+/// // A frame.
+/// let camera = Camera::looking_at(Vec3::new(0.0, 2.0, 10.0), Vec3::Y, 0.8, [0.1, 500.0], [1920, 1080]);
+/// eye.set(camera)?;
+/// sun.set(Camera {
+///     cell: camera.cell,
+///     view_from_world: glam::camera::rh::view::look_at_mat4(Vec3::new(-4.0, 8.0, 6.0), Vec3::ZERO, Vec3::Y),
+///     // 40 units to either side, and 100 ahead.
+///     clip_from_view: glam::camera::rh::proj::directx::orthographic(-40.0, 40.0, -40.0, 40.0, 0.0, 100.0),
+///     viewport: [2048, 2048],
+///     depth: Depth::Forward,
+/// })?;
+/// sun.set_lod_cameras(&[camera])?;
+/// scene.record(&mut encoder, &mut [&mut eye, &mut sun])?;
+/// # let mut shadow_pass = begin(&mut encoder);
+/// shadows.draw(&mut shadow_pass, &scene, &sun, Layer::Depth)?;
+/// # drop(shadow_pass);
+/// # let mut pass = begin(&mut encoder);
+/// renderer.draw(&mut pass, &scene, &eye, Layer::Color)?;
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct View {
-    scene: Arc<()>,
+    scene: SceneNumber,
     /// The number of the scene's device on which it was made.
     device: u32,
     quality: Quality,
@@ -45,12 +88,16 @@ pub struct View {
 }
 
 impl View {
-    pub(super) fn new(gpu: &Gpu, (scene, device): (&Arc<()>, u32), quality: Quality) -> Result<Self, Error> {
+    pub(super) fn new(
+        gpu: &Gpu,
+        (scene, device): (SceneNumber, u32),
+        quality: Quality,
+    ) -> Result<Self, Error> {
         quality.validate()?;
         let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
         let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
         Ok(Self {
-            scene: scene.clone(),
+            scene,
             device,
             quality,
             camera: None,
@@ -64,11 +111,11 @@ impl View {
         })
     }
 
-    /// Sets the camera of the next frame.
+    /// Sets the camera, which stays until another is set. Field of view, viewport and direction of depth may change too.
     ///
     /// # Errors
-    /// [`InputError`] as [`Camera::validate`], and for a projection that is neither perspective nor parallel; the camera
-    /// stays what it was.
+    /// [`InputError`] as [`Camera::validate`], and for a projection that is neither perspective nor parallel or whose near
+    /// plane is not ahead of the eye, where `depth` says; the camera stays what it was.
     pub fn set(&mut self, camera: Camera) -> Result<(), InputError> {
         camera.validate()?;
         lod_camera(&camera, camera.cell, self.quality.pixels)?;
@@ -76,7 +123,7 @@ impl View {
         Ok(())
     }
 
-    /// Sets the quality of the next frame.
+    /// Sets the quality, which stays until another is set.
     ///
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite.
@@ -86,13 +133,14 @@ impl View {
         Ok(())
     }
 
-    /// The quality of the next frame.
+    /// The quality.
     pub fn quality(&self) -> Quality {
         self.quality
     }
 
     /// Lets other cameras decide the levels of detail: the finest that any of them needs. A shadow view takes those of
-    /// the main views, so that shadows fit what casts them. Without any, the view's own camera decides.
+    /// the main views, so that shadows fit what casts them. They stay until others are set, so set them whenever those
+    /// views' cameras change. Without any, the view's own camera decides.
     ///
     /// # Errors
     /// [`InputError`] for more than four cameras, and as [`View::set`].
@@ -109,12 +157,13 @@ impl View {
         Ok(())
     }
 
-    /// Shows only instances whose visibility mask shares a bit with `mask`; all of them at first.
+    /// Shows only instances whose visibility mask ([`Scene::set_visibility`](super::Scene::set_visibility)) shares a bit with
+    /// `mask`; all of them at first.
     pub fn set_mask(&mut self, mask: u16) {
         self.mask = mask;
     }
 
-    /// Whether the view shows only instances that cast shadows.
+    /// Sets whether the view shows only instances that cast shadows; at first it shows all.
     pub fn set_casters_only(&mut self, casters: bool) {
         self.casters = casters;
     }
@@ -137,10 +186,10 @@ impl View {
     /// # Errors
     /// [`InputError`] for another scene; [`crate::gpu::GpuError`].
     pub fn rebuild(&mut self, scene: &Scene) -> Result<(), Error> {
-        if !self.is_of(&scene.token) {
+        if !self.is_of(scene.objects.scene()) {
             return Err(InputError::new("scene", "another", "must be the one that the view is of").into());
         }
-        let fresh = Self::new(&scene.gpu, (&scene.token, scene.device), self.quality)?;
+        let fresh = Self::new(&scene.gpu, (scene.objects.scene(), scene.device), self.quality)?;
         let Self { device, select, drawn, .. } = fresh;
         (self.device, self.select, self.drawn) = (device, select, drawn);
         (self.lists, self.counts) = (None, None);
@@ -149,8 +198,8 @@ impl View {
 
     /// Refuses a view that is not of a scene on its present device; `path` names the view.
     pub(super) fn check(&self, scene: &Scene, path: &str) -> Result<(), InputError> {
-        if !self.is_of(&scene.token) {
-            return Err(InputError::new(path, "of another scene", "must be of this scene"));
+        if !self.is_of(scene.objects.scene()) {
+            return Err(foreign(path));
         }
         if self.device != scene.device {
             let bound = "must be rebuilt after its scene: View::rebuild";
@@ -159,8 +208,8 @@ impl View {
         Ok(())
     }
 
-    pub(crate) fn is_of(&self, scene: &Arc<()>) -> bool {
-        Arc::ptr_eq(&self.scene, scene)
+    pub(in crate::scene) fn is_of(&self, scene: SceneNumber) -> bool {
+        self.scene == scene
     }
 
     /// Allocates what the view needs for a layout and so many terrains, unless it has it.

@@ -77,10 +77,31 @@ impl SelectView {
 /// A camera that decides levels of detail, relative to the corner of a cell.
 pub(super) fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result<LodCamera, InputError> {
     let is_reversed = camera.depth == Depth::Reversed;
-    let mut own =
-        LodCamera::new(camera.view_from_world, camera.clip_from_view, camera.viewport, is_reversed, pixels)?;
+    let own =
+        LodCamera::new(camera.view_from_world, camera.clip_from_view, camera.viewport, is_reversed, pixels);
+    // The caller's field has another name.
+    let mut own = own.map_err(|error| match error.path.as_str() {
+        "camera.view_from_cell" => InputError { path: "camera.view_from_world".to_owned(), ..error },
+        _ => error,
+    })?;
     let cells = |axis: usize| f64::from(camera.cell[axis]) - f64::from(cell[axis]);
     let offset = glam::DVec3::from([0, 1, 2].map(cells)) * f64::from(Placement::CELL);
     own.eye = (own.eye.as_dvec3() + offset).as_vec3();
     Ok(own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_that_show_no_world_are_refused_by_the_callers_field() {
+        let good = Camera::looking_at(Vec3::ZERO, Vec3::NEG_Z, 0.8, [0.1, 100.0], [64, 64]);
+        assert!(lod_camera(&good, [0; 3], 1.0).is_ok());
+        let refused = |camera: Camera| lod_camera(&camera, [0; 3], 1.0).expect_err("refused").path;
+        let projected = Camera { view_from_world: good.clip_from_view, ..good };
+        assert_eq!(refused(projected), "camera.view_from_world");
+        let reversed = Camera { depth: Depth::Reversed, ..good };
+        assert_eq!(refused(reversed), "camera.clip_from_view");
+    }
 }

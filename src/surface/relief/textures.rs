@@ -23,7 +23,7 @@ pub struct SurfaceTextures {
 
 impl SurfaceTextures {
     /// Uploads the heights and computes the acceleration map of `method` on the device. This is set-up work: it
-    /// waits for the device.
+    /// submits, and does not wait.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -64,7 +64,7 @@ fn accelerated(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> 
     if method == Method::Quadtree {
         let size = [layout.pitch, layout.rows];
         let plane = texture(gpu, "pyramid", size, 1, wgpu::TextureFormat::R32Float)?;
-        gpu.run("pyramid", |encoder| {
+        gpu.submit("pyramid", |encoder| {
             pyramid_job.record(encoder);
             copy(encoder, pyramids.nodes.raw(), &plane, 4 * layout.pitch);
         })?;
@@ -74,7 +74,7 @@ fn accelerated(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> 
     let cones = pass.output(gpu, &pyramids)?;
     let cone_job = pass.prepare(gpu, &batch, &pyramids, &cones)?;
     let plane = texture(gpu, "cones", layout.cells, 1, wgpu::TextureFormat::Rg32Float)?;
-    gpu.run("cones", |encoder| {
+    gpu.submit("cones", |encoder| {
         pyramid_job.record(encoder);
         cone_job.record(encoder);
         copy(encoder, cones.cones.raw(), &plane, 8 * cones.pitch);

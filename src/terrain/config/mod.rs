@@ -11,7 +11,6 @@ pub use zones::{BuiltIn, MAX_ZONES, Zone, ZoneTexture};
 use std::path::Path;
 
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 
 use crate::shared::terrain::fixed;
 #[cfg(feature = "gpu")]
@@ -258,12 +257,9 @@ impl Config {
         (self.scale_factor * libm::exp2(-self.roughness * f64::from(level)) * HEIGHT_ONE).round_ties_even()
     }
 
-    /// The key of the hash: the first eight bytes of the seed's SHA-256, as two little-endian words.
+    /// The key of the hash.
     pub(crate) fn key(&self) -> [u32; 2] {
-        let digest = Sha256::digest(self.seed.as_bytes());
-        let word =
-            |at: usize| u32::from_le_bytes([digest[at], digest[at + 1], digest[at + 2], digest[at + 3]]);
-        [word(0), word(4)]
+        crate::hash::key_of(&self.seed)
     }
 
     /// Corner heights in 1/65536 units.

@@ -20,8 +20,12 @@ fn kinds() -> Vec<Kind> {
     let flags = || [false, true].into_iter();
     let surfaces =
         flags().flat_map(|cut_out| flags().map(move |double_sided| SurfaceKind { cut_out, double_sided }));
-    let meshes =
-        surfaces.flat_map(|surface| flags().map(move |normal_mapped| Kind::Mesh { surface, normal_mapped }));
+    let meshes = surfaces.flat_map(|surface| {
+        let mesh = move |normal_mapped, only_textured| Kind::Mesh { surface, normal_mapped, only_textured };
+        let plain =
+            flags().filter(move |_| !surface.cut_out).map(move |textured| mesh(false, Some(textured)));
+        flags().map(move |normal_mapped| mesh(normal_mapped, None)).chain(plain)
+    });
     let reliefs = Method::ALL.into_iter().flat_map(|method| {
         [
             (Shadow::None, None, false),

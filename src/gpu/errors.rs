@@ -1,0 +1,219 @@
+//! Errors of the device: those of a call, by error scopes, and those that its handlers receive later.
+//!
+//! Natively the error of a scope is known as soon as the scope is popped. A browser tells it only after the calling task
+//! has returned: a call that allocates or compiles then succeeds, and its error is the next call's.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+#[cfg(any(test, target_arch = "wasm32"))]
+use std::task::{Context, Poll, Waker};
+
+use super::{Gpu, GpuError};
+
+/// Errors that the device has reported outside the calls that they are of.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Errors(Arc<Mutex<Heard>>);
+
+#[derive(Debug, Default)]
+struct Heard {
+    lost: Option<String>,
+    error: Option<GpuError>,
+    /// Numbers of scopes that were popped, and whose errors are known: scopes are answered in their order.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    answers: [u64; 2],
+    #[cfg(any(test, target_arch = "wasm32"))]
+    waiting: Vec<Waker>,
+}
+
+impl Errors {
+    fn lock(&self) -> MutexGuard<'_, Heard> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Receives what the device reports outside error scopes.
+    pub fn listen(&self, device: &wgpu::Device) {
+        let errors = self.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| errors.hear(error.into())));
+        let errors = self.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            errors.lock().lost.get_or_insert(format!("{reason:?}: {message}"));
+        });
+    }
+
+    /// Keeps the first error.
+    fn hear(&self, error: GpuError) {
+        self.lock().error.get_or_insert(error);
+    }
+
+    /// Gives the error away, unless the device is lost: then all that follows fails too.
+    fn check(&self) -> Result<(), GpuError> {
+        let mut heard = self.lock();
+        if let Some(reason) = &heard.lost {
+            return Err(GpuError::DeviceLost { reason: reason.clone() });
+        }
+        heard.error.take().map_or(Ok(()), Err)
+    }
+
+    /// Counts a scope whose error is not known yet.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    fn ask(&self) {
+        self.lock().answers[0] += 1;
+    }
+
+    /// Takes the answer to the first scope that has none.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    fn answer(&self, error: Option<GpuError>) {
+        if let Some(error) = error {
+            self.hear(error);
+        }
+        let mut heard = self.lock();
+        heard.answers[1] += 1;
+        let waiting = std::mem::take(&mut heard.waiting);
+        // Wakers may poll at once.
+        drop(heard);
+        waiting.into_iter().for_each(Waker::wake);
+    }
+
+    /// Completes once the errors of all scopes that were popped before the call are known.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    async fn answered(&self) {
+        let asked = self.lock().answers[0];
+        let poll = |context: &mut Context<'_>| {
+            let mut heard = self.lock();
+            if heard.answers[1] >= asked {
+                return Poll::Ready(());
+            }
+            heard.waiting.push(context.waker().clone());
+            Poll::Pending
+        };
+        std::future::poll_fn(poll).await;
+    }
+}
+
+impl Gpu {
+    /// Checks for errors that the device has reported outside a call that returned them. In a browser these are also
+    /// errors of calls that allocate or compile: it tells them late ([`Gpu::check_async`]).
+    ///
+    /// A device of an embedding program ([`Gpu::from_wgpu`]) reports its loss, and errors of the program's own calls, to
+    /// the program's handlers alone.
+    ///
+    /// # Errors
+    /// The first of these errors. The loss of the device is told by every call from then on, any other error once.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.errors.check()
+    }
+
+    /// As [`Gpu::check`], once the errors of all calls so far are known: in a browser some tasks of its event loop later,
+    /// elsewhere at once.
+    ///
+    /// # Errors
+    /// As [`Gpu::check`].
+    pub async fn check_async(&self) -> Result<(), GpuError> {
+        #[cfg(target_arch = "wasm32")]
+        self.errors.answered().await;
+        self.check()
+    }
+
+    /// Runs `work` and returns the errors that wgpu reports for it. A browser tells them later, to [`Gpu::check`].
+    ///
+    /// # Errors
+    /// Out of memory, validation and internal errors caused by `work`, and those of [`Gpu::check`].
+    pub fn scoped<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
+        self.check()?;
+        let scopes =
+            [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation]
+                .map(|filter| self.device.push_error_scope(filter));
+        let done = work();
+        self.pop(scopes)?;
+        Ok(done)
+    }
+
+    /// Pops nested scopes.
+    ///
+    /// # Errors
+    /// Their first error, from the innermost outwards.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn pop(&self, scopes: [wgpu::ErrorScopeGuard; 3]) -> Result<(), GpuError> {
+        let mut first = None;
+        for scope in scopes.into_iter().rev() {
+            let error = pollster::block_on(scope.pop());
+            first = first.or(error);
+        }
+        let Some(error) = first else { return Ok(()) };
+        // A lost device rejects every call; polling tells why it was lost.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.check()?;
+        Err(GpuError::from(error))
+    }
+
+    /// Pops nested scopes, and lets the browser tell their errors when it knows them.
+    #[cfg(target_arch = "wasm32")]
+    fn pop(&self, scopes: [wgpu::ErrorScopeGuard; 3]) -> Result<(), GpuError> {
+        // Popping takes effect at once, its answer comes later.
+        let answers: Vec<_> = scopes.into_iter().rev().map(wgpu::ErrorScopeGuard::pop).collect();
+        let errors = self.errors.clone();
+        errors.ask();
+        wasm_bindgen_futures::spawn_local(async move {
+            let mut first = None;
+            for answer in answers {
+                let error = answer.await;
+                first = first.or(error);
+            }
+            errors.answer(first.map(GpuError::from));
+        });
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::pin::pin;
+
+    fn internal(reason: &str) -> GpuError {
+        GpuError::Internal { reason: reason.to_owned() }
+    }
+
+    /// As in a browser: answers come later, in the order of the scopes.
+    #[test]
+    fn late_answers_complete_those_who_asked_before() {
+        let errors = Errors::default();
+        let mut context = Context::from_waker(Waker::noop());
+        assert!(pin!(errors.answered()).poll(&mut context).is_ready(), "there is nothing to wait for");
+        errors.ask();
+        errors.ask();
+        let mut first = pin!(errors.answered());
+        assert!(first.as_mut().poll(&mut context).is_pending());
+        errors.ask();
+        let mut second = pin!(errors.answered());
+        errors.answer(None);
+        assert!(first.as_mut().poll(&mut context).is_pending(), "one of two is known");
+        errors.answer(Some(internal("of the second")));
+        assert!(first.as_mut().poll(&mut context).is_ready());
+        assert!(second.as_mut().poll(&mut context).is_pending(), "its own scope is not known");
+        errors.answer(Some(internal("of the third")));
+        assert!(second.as_mut().poll(&mut context).is_ready());
+        let error = errors.check().expect_err("two scopes failed").to_string();
+        assert!(error.contains("of the second"), "{error}");
+        assert!(errors.check().is_ok(), "an error is told once");
+    }
+
+    #[test]
+    fn an_answer_wakes_all_who_wait() {
+        #[derive(Default)]
+        struct Bell(std::sync::atomic::AtomicUsize);
+        impl std::task::Wake for Bell {
+            fn wake(self: Arc<Self>) {
+                self.0.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+            }
+        }
+        let (errors, bell) = (Errors::default(), Arc::new(Bell::default()));
+        errors.ask();
+        let waker = Waker::from(bell.clone());
+        let mut waiting = [Box::pin(errors.answered()), Box::pin(errors.answered())];
+        for future in &mut waiting {
+            assert!(future.as_mut().poll(&mut Context::from_waker(&waker)).is_pending());
+        }
+        errors.answer(None);
+        assert_eq!(bell.0.load(std::sync::atomic::Ordering::SeqCst), 2);
+    }
+}

@@ -1,0 +1,137 @@
+//! Submissions, and two ways to wait for them: blocking, or as a future.
+
+use futures_channel::oneshot::channel;
+
+use super::{Gpu, GpuError};
+
+/// The longest wait for the device before it counts as hung.
+#[cfg(not(target_arch = "wasm32"))]
+const PATIENCE: std::time::Duration = std::time::Duration::from_secs(300);
+
+impl Gpu {
+    /// Records with `record` and submits.
+    ///
+    /// # Errors
+    /// The errors of [`GpuError`] that the device reports.
+    pub fn submit(
+        &self,
+        label: &str,
+        record: impl FnOnce(&mut wgpu::CommandEncoder),
+    ) -> Result<(), GpuError> {
+        self.scoped(|| {
+            let mut encoder = self.encoder(label);
+            record(&mut encoder);
+            self.queue.submit([encoder.finish()]);
+        })
+    }
+
+    /// Records with `record`, submits, and waits until the device has finished.
+    ///
+    /// # Errors
+    /// The errors of [`GpuError`] that the device reports.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn run(&self, label: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<(), GpuError> {
+        self.submit(label, record)?;
+        self.wait()
+    }
+
+    /// Records with `record`, submits, and completes once the device has finished; see [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// The errors of [`GpuError`] that the device reports.
+    pub async fn run_async(
+        &self,
+        label: &str,
+        record: impl FnOnce(&mut wgpu::CommandEncoder),
+    ) -> Result<(), GpuError> {
+        self.submit(label, record)?;
+        self.wait_async().await
+    }
+
+    /// Waits until everything submitted so far has run.
+    ///
+    /// # Errors
+    /// The loss of the device, an error that was reported in the meantime, or [`GpuError::Hung`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        let polled = self.device.poll(poll);
+        self.check()?;
+        polled.map(|_| ()).map_err(|_| GpuError::Hung { seconds: PATIENCE.as_secs() })
+    }
+
+    /// Completes once everything submitted so far has run, and the errors of all calls so far are known.
+    ///
+    /// It never blocks. A browser's event loop drives it. Elsewhere the program must poll the device, or the future never
+    /// wakes: call `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or `Gpu::wait` on a thread of its own.
+    ///
+    /// # Errors
+    /// The loss of the device, or an error that was reported in the meantime.
+    pub async fn wait_async(&self) -> Result<(), GpuError> {
+        let (sender, receiver) = channel();
+        self.queue.on_submitted_work_done(move || {
+            // The receiver no longer exists if the caller gave up waiting.
+            let _ = sender.send(());
+        });
+        let answer = receiver.await;
+        self.check_async().await?;
+        answer.map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
+    }
+
+    /// Blocks until `work` is done, which awaits the device alone.
+    ///
+    /// # Errors
+    /// Those of `work`, and of [`Gpu::wait`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn block_on<T, E: From<GpuError>>(
+        &self,
+        work: impl Future<Output = Result<T, E>>,
+    ) -> Result<T, E> {
+        let mut work = std::pin::pin!(work);
+        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+        loop {
+            if let std::task::Poll::Ready(done) = work.as_mut().poll(&mut context) {
+                return done;
+            }
+            // Once the device has finished, it has called back, and the work can go on.
+            self.wait()?;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{Buffer, Options};
+
+    fn gpu() -> Gpu {
+        Gpu::headless(&Options::default()).expect("the suite needs an adapter")
+    }
+
+    /// Several waits, one after the other, as in generating terrain.
+    #[test]
+    fn blocking_drives_work_that_waits_repeatedly() {
+        let gpu = gpu();
+        let [from, to] = [[7_u32, 9], [0, 0]].map(|data| Buffer::from_slice(&gpu, "data", &data));
+        let (from, to) = (from.expect("uploaded"), to.expect("uploaded"));
+        let work = async {
+            for at in [0, 4] {
+                let copy = |encoder: &mut wgpu::CommandEncoder| {
+                    encoder.copy_buffer_to_buffer(from.raw(), at, to.raw(), at, 4);
+                };
+                gpu.run_async("copy", copy).await?;
+            }
+            to.read(&gpu).await
+        };
+        assert_eq!(gpu.block_on(work).expect("copied"), [7, 9]);
+    }
+
+    #[test]
+    fn waiting_for_a_lost_device_ends() {
+        let gpu = gpu();
+        gpu.device().destroy();
+        let error = gpu.block_on(gpu.run_async("lost", |_| ())).expect_err("it is lost").to_string();
+        assert!(error.contains("lost"), "{error}");
+        assert!(gpu.block_on(gpu.wait_async()).is_err());
+    }
+}

@@ -1,0 +1,144 @@
+//! An off-screen target of any [`TargetFormat`], and what was drawn into it, for programs without a window.
+
+use image::RgbaImage;
+
+use super::format::TargetFormat;
+use super::target::{COLOR_FORMAT, DEPTH_FORMAT, read_texture};
+use crate::gpu::{Gpu, GpuError};
+use crate::{Error, InputError};
+
+/// Colour and depth of a picture, with 1 or 4 samples a pixel.
+#[derive(Debug, Clone)]
+pub struct Offscreen {
+    format: TargetFormat,
+    size: [u32; 2],
+    color: Option<wgpu::Texture>,
+    /// Where samples are resolved to.
+    resolved: Option<wgpu::Texture>,
+    depth: wgpu::Texture,
+}
+
+impl Offscreen {
+    /// A target of `size` pixels: sRGB colour if `has_color`, and `Depth32Float`.
+    ///
+    /// # Errors
+    /// [`InputError`] for another number of samples than 1 and 4, and for a size of 0 or beyond what the device allows;
+    /// [`GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        size: [u32; 2],
+        has_color: bool,
+        samples: u32,
+        is_reversed: bool,
+    ) -> Result<Self, Error> {
+        let format = match has_color {
+            true => TargetFormat::new(COLOR_FORMAT),
+            false => TargetFormat::depth_only(DEPTH_FORMAT),
+        };
+        let format = format.with_samples(samples);
+        let format = if is_reversed { format.reversed() } else { format };
+        format.validate()?;
+        let most = gpu.device().limits().max_texture_dimension_2d;
+        if size.iter().any(|edge| !(1..=most).contains(edge)) {
+            let value = format!("{}x{}", size[0], size[1]);
+            return Err(InputError::new("size", value, format!("must be 1 to {most} pixels each way")).into());
+        }
+        let texture = |format, samples: u32| texture(gpu, size, format, samples);
+        let (color, resolved, depth) = gpu.scoped(|| {
+            let color = has_color.then(|| texture(COLOR_FORMAT, samples));
+            let resolved = (has_color && samples > 1).then(|| texture(COLOR_FORMAT, 1));
+            (color, resolved, texture(DEPTH_FORMAT, samples))
+        })?;
+        Ok(Self { format, size, color, resolved, depth })
+    }
+
+    /// The format, for a [`Renderer`](super::Renderer).
+    pub fn format(&self) -> &TargetFormat {
+        &self.format
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Records a pass that clears colour to `background` (linear) and depth to the farthest, and then draws.
+    ///
+    /// # Errors
+    /// Those of `draw`.
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        background: [f32; 3],
+        draw: impl FnOnce(&mut wgpu::RenderPass<'_>) -> Result<(), InputError>,
+    ) -> Result<(), InputError> {
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let (color, resolved) = (self.color.as_ref().map(view), self.resolved.as_ref().map(view));
+        let [r, g, b] = background.map(f64::from);
+        let attachment = color.as_ref().map(|view| wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: resolved.as_ref(),
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                store: wgpu::StoreOp::Store,
+            },
+        });
+        let attachments = if attachment.is_some() { &[attachment][..] } else { &[] };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("off screen"),
+            color_attachments: attachments,
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &view(&self.depth),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(if self.format.is_reversed() { 0.0 } else { 1.0 }),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        draw(&mut pass)
+    }
+
+    /// Reads the colours: sRGB, row by row. Waits for the device.
+    ///
+    /// # Errors
+    /// [`InputError`] for a target without colour; [`GpuError`].
+    pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
+        let Some(color) = self.resolved.as_ref().or(self.color.as_ref()) else {
+            return Err(InputError::new("format.color", "none", "must be there to be read").into());
+        };
+        let pixels = read_texture(gpu, color, wgpu::TextureAspect::All, 4)?;
+        let reason = "the image that was read back has the wrong size".to_owned();
+        let image = RgbaImage::from_raw(self.size[0], self.size[1], pixels);
+        image.ok_or_else(|| GpuError::Internal { reason }.into())
+    }
+
+    /// Reads the depths, 0 to 1, row by row. Waits for the device.
+    ///
+    /// # Errors
+    /// [`InputError`] for more than one sample a pixel; [`GpuError`].
+    pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
+        if self.format.samples > 1 {
+            let bound = "must be 1 where depth is read";
+            return Err(InputError::new("format.samples", self.format.samples, bound).into());
+        }
+        let bytes = read_texture(gpu, &self.depth, wgpu::TextureAspect::DepthOnly, 4)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+}
+
+fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+    gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("off screen"),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: if samples == 1 { usage | wgpu::TextureUsages::COPY_SRC } else { usage },
+        view_formats: &[],
+    })
+}

@@ -1,0 +1,85 @@
+//! Models and maps that need no file, by the names that scene files give them after `builtin:`.
+
+use image::RgbaImage;
+
+use crate::InputError;
+use crate::asset::Model;
+use crate::surface::HeightMap;
+
+#[cfg(feature = "samples")]
+pub(super) use there::{CHARACTERS, MAPS, MODELS, map, model};
+
+#[cfg(not(feature = "samples"))]
+pub(super) use nothing::{CHARACTERS, MAPS, MODELS, map, model};
+
+#[cfg(feature = "samples")]
+mod there {
+    use super::*;
+    use crate::asset::Material;
+    use crate::asset::material::Alpha;
+    use crate::samples::{BuiltInMap, creature, rock, wall};
+
+    /// Models that a mesh may be.
+    pub const MODELS: [&str; 3] = ["creature", "rock", "wall"];
+
+    /// Models that a character may be.
+    pub const CHARACTERS: [&str; 1] = ["creature"];
+
+    /// Height maps, with colours.
+    pub const MAPS: [&str; 4] = ["bricks", "cobbles", "text", "posts"];
+
+    /// The colour of the creature, in linear light.
+    const CLAY: [f32; 4] = [0.6, 0.3, 0.16, 1.0];
+
+    /// Texels along an edge of a map.
+    const TEXELS: u32 = 512;
+
+    /// The model of this name.
+    pub fn model(name: &str) -> Result<Model, InputError> {
+        match name {
+            "creature" => creature().map(of_clay),
+            "rock" => rock(),
+            _ => wall(),
+        }
+    }
+
+    /// The model with a colour: it has no material of its own.
+    fn of_clay(mut model: Model) -> Model {
+        let material = Material {
+            name: "clay".to_owned(),
+            color: CLAY,
+            texture: None,
+            normal: None,
+            normal_scale: 1.0,
+            alpha: Alpha::Opaque,
+        };
+        for mesh in &mut model.meshes {
+            mesh.material = Some(model.materials.len());
+        }
+        model.materials.push(material);
+        model
+    }
+
+    /// Heights and colours of the map of this name.
+    pub fn map(name: &str) -> Result<(HeightMap, RgbaImage), InputError> {
+        let map: BuiltInMap = name.parse()?;
+        Ok((map.height_map(TEXELS)?, map.albedo(TEXELS)?))
+    }
+}
+
+#[cfg(not(feature = "samples"))]
+mod nothing {
+    use super::*;
+
+    pub const MODELS: [&str; 0] = [];
+    pub const CHARACTERS: [&str; 0] = [];
+    pub const MAPS: [&str; 0] = [];
+
+    pub fn model(name: &str) -> Result<Model, InputError> {
+        Err(InputError::new("file", name, "must be a file"))
+    }
+
+    pub fn map(name: &str) -> Result<(HeightMap, RgbaImage), InputError> {
+        Err(InputError::new("relief", name, "must be a file"))
+    }
+}

@@ -1,0 +1,270 @@
+//! Reads the files that a scene names, and prepares what they hold: levels of detail, reliefs, textures.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use image::{DynamicImage, Rgba, RgbaImage};
+
+use super::builtin;
+use super::entries::{EntryKind, ObjectEntry, PlayEntry, ReliefEntry, Source};
+use super::spec::SceneFile;
+use crate::asset::{Mesh, Model};
+use crate::scene::Relief;
+use crate::skinning::{add_levels, at_rest, poses_of};
+use crate::surface::{Green, HeightMap, Material, ReliefOptions, SurfaceMesh, SurfaceVertex};
+use crate::terrain::config::ZoneTexture;
+use crate::terrain::texture::Texture;
+use crate::{Error, InputError, srgb};
+
+/// A scene file with all files that it names, ready to become a [`World`](super::World), any number of times.
+#[derive(Debug, Clone)]
+pub struct LoadedScene {
+    pub(super) file: SceneFile,
+    /// The model of each object.
+    pub(super) objects: Vec<Loaded>,
+    /// The textures of the terrain's zones.
+    pub(super) textures: Vec<Texture>,
+}
+
+/// The model of an object.
+#[derive(Debug, Clone)]
+pub(super) enum Loaded {
+    /// With levels of detail.
+    Model(Arc<Model>),
+    Relief(Box<Relief>),
+}
+
+impl LoadedScene {
+    /// What the file says.
+    pub fn file(&self) -> &SceneFile {
+        &self.file
+    }
+
+    /// Reads a scene file and the files that it names.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file cannot be read; [`Error::InputFile`] with the path of a mistake inside the file.
+    pub fn from_path(path: &Path) -> Result<Self, Error> {
+        let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let read = |name: &Path| std::fs::read(folder.join(name));
+        let loaded = SceneFile::from_json(&text).and_then(|file| file.load(&read));
+        loaded.map_err(|source| Error::InputFile { path: path.to_owned(), source })
+    }
+}
+
+impl SceneFile {
+    /// Reads the files that the scene names through `read`, which gets their paths relative to the scene file, and computes
+    /// levels of detail of all meshes and of characters in the clips that they play.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for one
+    /// that does not suit its use, and for a clip that a model does not have.
+    pub fn load(&self, read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> Result<LoadedScene, InputError> {
+        let mut files = Files { read, models: HashMap::new(), levelled: HashMap::new() };
+        let zones = self.terrain.iter().flat_map(|terrain| &terrain.config.zones).enumerate();
+        let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
+            ZoneTexture::BuiltIn(kind) => Ok(Texture::built_in(kind)),
+            ZoneTexture::File(path) => {
+                let at = format!("terrain.config.zones[{index}].texture");
+                Ok(Texture::from_image(&files.decoded(&at, &path)?))
+            }
+        };
+        let textures = zones.map(texture).collect::<Result<_, InputError>>()?;
+        let objects = self.objects.iter().map(|entry| files.object(entry)).collect::<Result<_, _>>()?;
+        Ok(LoadedScene { file: self.clone(), objects, textures })
+    }
+}
+
+/// What was read so far, each model once.
+struct Files<'a> {
+    read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
+    models: HashMap<Source, Arc<Model>>,
+    /// With levels of detail for these clips; at rest without any.
+    levelled: HashMap<(Source, Vec<usize>), Arc<Model>>,
+}
+
+impl Files<'_> {
+    fn object(&mut self, entry: &ObjectEntry) -> Result<Loaded, InputError> {
+        let path = format!("{}.file", entry.path);
+        let model = self.model(&path, &entry.source)?;
+        if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
+            let bound = "must have a mesh with triangles (those compressed with Draco are not read)";
+            return Err(InputError::new(path, &entry.source, bound));
+        }
+        let within = |error: InputError| within(&path, &entry.source, &error);
+        match &entry.kind {
+            EntryKind::Relief(relief) => {
+                let rest = at_rest(&model).map_err(within)?;
+                Ok(Loaded::Relief(Box::new(self.relief(entry, relief, &rest)?)))
+            }
+            EntryKind::Mesh => self.levelled(&entry.source, &[], &model).map(Loaded::Model).map_err(within),
+            EntryKind::Character(play) => {
+                if model.clips.is_empty() {
+                    let bound = "must have clips: list a model without among meshes";
+                    return Err(InputError::new(path, &entry.source, bound));
+                }
+                let clips = played(entry, play, &model)?;
+                self.levelled(&entry.source, &clips, &model).map(Loaded::Model).map_err(within)
+            }
+        }
+    }
+
+    fn model(&mut self, path: &str, source: &Source) -> Result<Arc<Model>, InputError> {
+        if let Some(known) = self.models.get(source) {
+            return Ok(known.clone());
+        }
+        let model = match source {
+            Source::BuiltIn(name) => builtin::model(name),
+            Source::File(file) => {
+                let bytes = self.bytes(path, file)?;
+                let folder = file.parent().unwrap_or(Path::new(""));
+                Model::from_gltf_beside(&bytes, &|name| (self.read)(&folder.join(name)))
+            }
+        };
+        let model = Arc::new(model.map_err(|error| within(path, source, &error))?);
+        self.models.insert(source.clone(), model.clone());
+        Ok(model)
+    }
+
+    fn bytes(&self, path: &str, file: &Path) -> Result<Vec<u8>, InputError> {
+        (self.read)(file)
+            .map_err(|error| InputError::new(path, file.display(), format!("cannot be read: {error}")))
+    }
+
+    /// A model with levels of detail for some of its clips; without any, at rest.
+    fn levelled(
+        &mut self,
+        source: &Source,
+        clips: &[usize],
+        model: &Model,
+    ) -> Result<Arc<Model>, InputError> {
+        let key = (source.clone(), clips.to_vec());
+        if let Some(known) = self.levelled.get(&key) {
+            return Ok(known.clone());
+        }
+        let mut own = if clips.is_empty() { at_rest(model)? } else { model.clone() };
+        let poses = clips.iter().map(|clip| poses_of(&model.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
+        add_levels(&mut own, clips, poses.into_iter().max().unwrap_or(1))?;
+        let own = Arc::new(own);
+        self.levelled.insert(key, own.clone());
+        Ok(own)
+    }
+
+    fn relief(&self, entry: &ObjectEntry, relief: &ReliefEntry, rest: &Model) -> Result<Relief, InputError> {
+        let at = |field: &str| format!("{}.material.{field}", entry.path);
+        let mesh = surface_mesh(rest, relief.tiles);
+        let has_area = mesh.vertices.iter().any(|vertex| vertex.uv != mesh.vertices[0].uv);
+        if !has_area {
+            let bound = "must have texture coordinates, which a relief follows";
+            return Err(InputError::new(format!("{}.file", entry.path), &entry.source, bound));
+        }
+        let (heights, own) = self.heights(&at("relief"), relief)?;
+        let albedo = match &relief.albedo {
+            Some(source) => self.colors(&at("albedo"), source)?,
+            None => own.unwrap_or_else(|| base_color(rest)),
+        };
+        let normals = relief.normals.as_ref().map(|source| self.colors(&at("normal"), source)).transpose()?;
+        let made = Relief::new(mesh, heights, albedo);
+        let normal_map = normals.is_some().then_some(Green::Up);
+        let options =
+            ReliefOptions { method: relief.method, shadow: relief.shadow, normal_map, ..made.options };
+        let material = Material { scale: relief.scale, ..made.material };
+        let double_sided = rest.meshes.iter().any(|mesh| mesh.double_sided);
+        Ok(Relief { normals, options, material, double_sided, ..made })
+    }
+
+    /// The heights of a relief, and the colours that belong to them.
+    fn heights(
+        &self,
+        path: &str,
+        relief: &ReliefEntry,
+    ) -> Result<(HeightMap, Option<RgbaImage>), InputError> {
+        let within = |error: InputError| within(path, &relief.heights, &error);
+        match &relief.heights {
+            Source::BuiltIn(name) => {
+                builtin::map(name).map(|(heights, colors)| (heights, Some(colors))).map_err(within)
+            }
+            Source::File(file) => {
+                let image = self.decoded(path, file)?;
+                if relief.is_alpha {
+                    let heights = HeightMap::of_alpha(&image).map_err(within)?;
+                    let mut colors = image.into_rgba8();
+                    colors.pixels_mut().for_each(|texel| texel.0[3] = u8::MAX);
+                    return Ok((heights, Some(colors)));
+                }
+                Ok((HeightMap::of_brightness(image).map_err(within)?, None))
+            }
+        }
+    }
+
+    fn colors(&self, path: &str, source: &Source) -> Result<RgbaImage, InputError> {
+        match source {
+            Source::BuiltIn(name) => builtin::map(name).map(|(_, colors)| colors),
+            Source::File(file) => Ok(self.decoded(path, file)?.into_rgba8()),
+        }
+    }
+
+    fn decoded(&self, path: &str, file: &PathBuf) -> Result<DynamicImage, InputError> {
+        let bytes = self.bytes(path, file)?;
+        crate::surface::map::decode(Cursor::new(bytes)).map_err(|error| {
+            InputError::new(path, file.display(), format!("must be a whole PNG or JPEG: {error}"))
+        })
+    }
+}
+
+/// A mistake in a file, as a mistake of the name in the scene file.
+fn within(path: &str, source: &Source, error: &InputError) -> InputError {
+    InputError::new(path, source, error.to_string())
+}
+
+/// The clips that a character and its instances play, in ascending order, each once.
+fn played(entry: &ObjectEntry, all: &PlayEntry, model: &Model) -> Result<Vec<usize>, InputError> {
+    let index = |path: String, play: &PlayEntry| {
+        let name = play.clip.as_deref().unwrap_or("0");
+        let clip = model.clip(name).map_err(|error| InputError { path, ..error })?;
+        Ok(model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
+    };
+    let mut clips = vec![index(format!("{}.clip", entry.path), all)?];
+    for (at, instance) in entry.instances.iter().enumerate() {
+        if let Some(play) = &instance.play {
+            clips.push(index(format!("{}.instances[{at}].clip", entry.path), play)?);
+        }
+    }
+    clips.sort_unstable();
+    clips.dedup();
+    Ok(clips)
+}
+
+/// All meshes of a model at rest as one, whose texture coordinates are multiplied by `tiles`.
+fn surface_mesh(rest: &Model, tiles: f32) -> SurfaceMesh {
+    let mut all = SurfaceMesh { vertices: Vec::new(), indices: Vec::new() };
+    for mesh in &rest.meshes {
+        let first = all.vertices.len() as u32;
+        all.indices.extend(mesh.indices.iter().map(|vertex| first + vertex));
+        all.vertices.extend((0..mesh.vertices()).map(|at| surface_vertex(mesh, at, tiles)));
+    }
+    all
+}
+
+fn surface_vertex(mesh: &Mesh, at: usize, tiles: f32) -> SurfaceVertex {
+    SurfaceVertex {
+        position: mesh.positions[at],
+        normal: mesh.normals[at],
+        tangent: mesh.tangents[at],
+        uv: mesh.uv[at].map(|coordinate| tiles * coordinate),
+    }
+}
+
+/// The image or the colour of the first material of a model; white without any.
+fn base_color(model: &Model) -> RgbaImage {
+    let material = model.meshes.iter().find_map(|mesh| model.material(mesh).ok().flatten());
+    let color = material.map_or([1.0; 4], |material| material.color);
+    let image = material.and_then(|material| model.images.get(material.texture?.image));
+    image.cloned().unwrap_or_else(|| {
+        let [red, green, blue] = [0, 1, 2].map(|channel: usize| srgb::byte(color[channel]));
+        RgbaImage::from_pixel(1, 1, Rgba([red, green, blue, u8::MAX]))
+    })
+}

@@ -1,0 +1,222 @@
+//! Reads a scene file: terrain, light, camera, quality, and the lists of objects.
+
+use glam::DVec3;
+
+use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
+use super::entries::{ObjectEntry, Spot, TerrainEntry};
+use super::json::{At, Fields, Json};
+use super::limits::COORDINATE;
+use super::parse_object::{character, mesh};
+use super::spec::SceneFile;
+use crate::InputError;
+use crate::asset::Light;
+use crate::scene::Quality;
+use crate::terrain::config::Config;
+use crate::terrain::recipe::Recipe;
+
+/// The most entries of `meshes` and of `characters`.
+const MAX_OBJECTS: usize = 256;
+
+/// The most patches, and the most heights of all patches together.
+const MAX_PATCHES: usize = 4096;
+const MAX_HEIGHTS: u64 = 1 << 26;
+
+/// The most moments of a camera's path.
+const MAX_KEYS: usize = 4096;
+
+/// The latest moment of a camera's path, in seconds.
+const MAX_TIME: f64 = 1e6;
+
+/// The camera sees this far from the eye on, if a file does not say.
+const NEAR: f64 = 0.1;
+
+/// The field of view, if a file does not say.
+const FIELD_OF_VIEW: f64 = 0.8;
+
+/// The sky, in linear light, if a file does not say.
+const BACKGROUND: [f32; 3] = [0.36, 0.55, 0.80];
+
+const FIELDS: [&str; 7] = ["terrain", "meshes", "characters", "light", "camera", "quality", "background"];
+
+impl SceneFile {
+    /// Reads a scene; the files that it names are not read yet ([`SceneFile::load`]).
+    ///
+    /// # Errors
+    /// [`InputError`] with the path of the mistake (`characters[1].scatter.count`): text that is no JSON, fields that are
+    /// not known, missing or given twice, values of other types and out of bounds.
+    pub fn from_json(text: &str) -> Result<Self, InputError> {
+        let json = Json::parse(text)?;
+        let root = json.at();
+        let fields = root.fields(&FIELDS)?;
+        let objects = |name: &str, read: fn(&At<'_>) -> Result<ObjectEntry, InputError>| {
+            let all = fields.maybe(name, |list| list.list(0, MAX_OBJECTS))?.unwrap_or_default();
+            all.iter().map(read).collect::<Result<Vec<_>, InputError>>()
+        };
+        let scene = Self {
+            terrain: fields.maybe("terrain", |at| terrain(&at))?,
+            objects: [objects("meshes", mesh)?, objects("characters", character)?].concat(),
+            light: fields.maybe("light", |at| light(&at))?.unwrap_or_default(),
+            camera: camera(&fields.need("camera", "where the scene is seen from")?)?,
+            quality: fields.maybe("quality", |at| quality(&at))?.unwrap_or_default(),
+            background: fields.maybe("background", |at| color(&at, 1.0))?.unwrap_or(BACKGROUND),
+        };
+        if scene.terrain.is_none() && scene.objects.is_empty() {
+            let bound = "must have terrain, meshes or characters";
+            return Err(InputError::new("scene", "empty", bound));
+        }
+        scene.check_grounds()?;
+        Ok(scene)
+    }
+
+    /// What stands on the ground needs some.
+    fn check_grounds(&self) -> Result<(), InputError> {
+        if self.terrain.is_some() {
+            return Ok(());
+        }
+        for entry in &self.objects {
+            for (index, instance) in entry.instances.iter().enumerate() {
+                if let Spot::On { x, z, .. } = instance.spot {
+                    let path = format!("{}.instances[{index}].on", entry.path);
+                    let bound = "must not be given where there is no terrain: give at";
+                    return Err(InputError::new(path, format!("[{x}, {z}]"), bound));
+                }
+            }
+            if entry.scatter.as_ref().is_some_and(|scatter| scatter.area.is_none()) {
+                let bound = "must be given where there is no terrain: the corners [[x, z], [x, z]]";
+                return Err(InputError::new(format!("{}.scatter.area", entry.path), "missing", bound));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
+    let fields = at.fields(&["config", "patches"])?;
+    let config = fields.need("config", "the configuration of `relievo terrain`")?;
+    if !config.value().is_object() {
+        return Err(config.error("must be an object"));
+    }
+    let parsed = Config::from_json(&config.value().to_string());
+    let parsed = parsed.map_err(|error| below(&config.path, "config", error))?;
+    let patches = match fields.get("patches") {
+        Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
+        None => vec![[0, 0]],
+    };
+    let path = format!("{}.patches", at.path);
+    let recipe = Recipe::new(parsed.clone());
+    for (index, patch) in patches.iter().enumerate() {
+        let own = || format!("{path}[{index}]");
+        if patches[..index].contains(patch) {
+            return Err(InputError::new(own(), format!("{patch:?}"), "is listed before"));
+        }
+        recipe.validate(&[*patch], 1).map_err(|error| InputError { path: own(), ..error })?;
+    }
+    let heights = patches.len() as u64 * u64::from(parsed.patch_size).pow(2);
+    if heights > MAX_HEIGHTS {
+        let bound = format!("must have at most {MAX_HEIGHTS} heights together, and would have {heights}");
+        return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
+    }
+    Ok(TerrainEntry { config: parsed, patches })
+}
+
+fn patch(at: &At<'_>) -> Result<[i32; 2], InputError> {
+    let range = [i32::MIN, i32::MAX].map(i64::from);
+    let entries = at.list(2, 2).map_err(|_| at.error("must be two whole numbers: column and row"))?;
+    let mut patch = [0; 2];
+    for (axis, entry) in patch.iter_mut().zip(entries) {
+        // The range is that of the type.
+        *axis = entry.whole(range[0], range[1])? as i32;
+    }
+    Ok(patch)
+}
+
+/// An error below a path; `whole` is the path that stands for the whole.
+pub(super) fn below(path: &str, whole: &str, error: InputError) -> InputError {
+    let inner = if error.path == whole { path.to_owned() } else { format!("{path}.{}", error.path) };
+    InputError { path: inner, ..error }
+}
+
+fn light(at: &At<'_>) -> Result<Light, InputError> {
+    let fields = at.fields(&["direction", "color", "ambient", "shadow"])?;
+    let mut light = Light::default();
+    if let Some(direction) = fields.get("direction") {
+        light.direction = direction.numbers::<3>(-1e6, 1e6)?.map(|axis| axis as f32).into();
+        if light.direction.try_normalize().is_none() {
+            return Err(direction.error("must not be 0: it points towards the light"));
+        }
+    }
+    if let Some(rgb) = fields.maybe("color", |at| color(&at, 1000.0))? {
+        light.color = rgb.into();
+    }
+    if let Some(ambient) = fields.maybe("ambient", |at| at.number(0.0, 1.0))? {
+        light.ambient = ambient as f32;
+    }
+    match fields.get("shadow") {
+        Some(shadow) if shadow.flag()? => Err(shadow.error("must be false: the sun casts no shadows yet")),
+        _ => Ok(light),
+    }
+}
+
+/// Linear red, green and blue.
+fn color(at: &At<'_>, most: f64) -> Result<[f32; 3], InputError> {
+    Ok(at.numbers::<3>(0.0, most)?.map(|channel| channel as f32))
+}
+
+fn quality(at: &At<'_>) -> Result<Quality, InputError> {
+    let pixels = at.fields(&["pixels"])?.maybe("pixels", |at| at.number(0.0, 1e4))?;
+    Ok(pixels.map_or_else(Quality::default, |pixels| Quality { pixels: pixels as f32 }))
+}
+
+fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
+    let fields = at.fields(&["fov", "near", "far", "path", "at", "look"])?;
+    let near = fields.maybe("near", |at| at.number(1e-4, 1e4))?.unwrap_or(NEAR);
+    let far = fields.maybe("far", |at| {
+        let far = at.number(0.0, COORDINATE)?;
+        // The depths of both are f32.
+        if far < 1.001 * near {
+            return Err(at.error(format!("must be beyond near = {near}, by a thousandth at least")));
+        }
+        Ok(far)
+    })?;
+    let field_of_view = fields.maybe("fov", field_of_view)?.unwrap_or(FIELD_OF_VIEW);
+    let Some(path) = fields.get("path") else {
+        let key = CameraKey { time: 0.0, ..key(&fields, field_of_view)? };
+        return Ok(CameraPath { keys: vec![key], near, far });
+    };
+    if let Some(other) = ["at", "look"].into_iter().find_map(|name| fields.get(name)) {
+        return Err(other.error("must not be given beside path, whose moments have it"));
+    }
+    let mut keys: Vec<CameraKey> = Vec::new();
+    for entry in path.list(1, MAX_KEYS)? {
+        let moment = entry.fields(&["time", "at", "look", "fov"])?;
+        let time = moment.need("time", "seconds")?;
+        let seconds = time.number(0.0, MAX_TIME)?;
+        if let Some(before) = keys.last().filter(|before| seconds < before.time + 1e-3) {
+            let bound = format!("must be later than {} by a millisecond at least", before.time);
+            return Err(time.error(bound));
+        }
+        let field_of_view = moment.maybe("fov", self::field_of_view)?.unwrap_or(field_of_view);
+        keys.push(CameraKey { time: seconds, ..key(&moment, field_of_view)? });
+    }
+    Ok(CameraPath { keys, near, far })
+}
+
+fn field_of_view(at: At<'_>) -> Result<f64, InputError> {
+    let [least, most] = FIELDS_OF_VIEW;
+    at.number(least, most)
+}
+
+/// Where the eye is and looks.
+fn key(fields: &Fields<'_>, field_of_view: f64) -> Result<CameraKey, InputError> {
+    let place = |name: &str, what: &str| {
+        let at = fields.need(name, what)?;
+        Ok::<_, InputError>((DVec3::from(at.numbers::<3>(-COORDINATE, COORDINATE)?), at))
+    };
+    let (at, _) = place("at", "where the eye is: [x, y, z]")?;
+    let (look, entry) = place("look", "where it looks: [x, y, z]")?;
+    // As near as this, rounding would decide the direction.
+    if at.distance(look) < 1e-6 * (1.0 + at.abs().max_element()) {
+        return Err(entry.error("must lie apart from at, which is where the eye is"));
+    }
+    Ok(CameraKey { time: 0.0, at, look, field_of_view })
+}

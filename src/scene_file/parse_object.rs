@@ -1,0 +1,227 @@
+//! Reads the entries of `meshes` and `characters`.
+
+use std::path::Path;
+
+use glam::{DVec3, Quat, Vec3};
+
+use super::builtin;
+use super::entries::{
+    BUILT_IN, EntryKind, InstanceEntry, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
+};
+use super::json::{At, Fields};
+use super::limits::{COORDINATE, scale};
+use crate::InputError;
+use crate::animation::Wrap;
+use crate::surface::Shadow;
+use crate::surface::relief::{MAX_SCALE, Method};
+
+/// The most instances of a mesh, and of a character, whose bones take memory.
+const MAX_MESHES: usize = 1 << 20;
+const MAX_CHARACTERS: usize = 1 << 16;
+
+/// The largest number of seconds, and of clip seconds per second.
+const MAX_SECONDS: f64 = 1e6;
+const MAX_RATE: f64 = 100.0;
+
+const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clamp)];
+const SHADOWS: [(&str, Shadow); 3] = [("none", Shadow::None), ("hard", Shadow::Hard), ("soft", Shadow::Soft)];
+
+/// An entry of `meshes`.
+pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
+    let fields = at.fields(&["file", "material", "instances", "scatter"])?;
+    let source = model(&fields, &builtin::MODELS)?;
+    let kind = fields.maybe("material", |at| relief(&at))?.map_or(EntryKind::Mesh, EntryKind::Relief);
+    placed(at, &fields, (source, kind), MAX_MESHES)
+}
+
+/// An entry of `characters`.
+pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
+    let fields = at.fields(&["file", "clip", "rate", "start", "wrap", "instances", "scatter"])?;
+    let source = model(&fields, &builtin::CHARACTERS)?;
+    let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
+    let kind = EntryKind::Character(play(&fields, &all)?);
+    placed(at, &fields, (source, kind), MAX_CHARACTERS)
+}
+
+fn placed(
+    at: &At<'_>,
+    fields: &Fields<'_>,
+    (source, kind): (Source, EntryKind),
+    most: usize,
+) -> Result<ObjectEntry, InputError> {
+    let play = match &kind {
+        EntryKind::Character(play) => Some(play),
+        EntryKind::Mesh | EntryKind::Relief(_) => None,
+    };
+    let instances = fields.maybe("instances", |list| {
+        list.list(1, most)?.iter().map(|at| instance(at, play)).collect::<Result<Vec<_>, _>>()
+    })?;
+    let scatter = fields.maybe("scatter", |at| scatter(&at, most))?;
+    if instances.is_none() && scatter.is_none() {
+        return Err(fields.missing("instances", "or scatter, to say where it stands"));
+    }
+    let instances = instances.unwrap_or_default();
+    Ok(ObjectEntry { path: at.path.clone(), source, kind, instances, scatter })
+}
+
+/// The model's `file`.
+fn model(fields: &Fields<'_>, built_in: &[&str]) -> Result<Source, InputError> {
+    let at = fields.need("file", "a .glb or .gltf file, or a built-in model")?;
+    let found = source(&at, built_in)?;
+    let Source::File(path) = &found else { return Ok(found) };
+    match extension(path).as_str() {
+        "glb" | "gltf" => Ok(found),
+        "obj" => Err(at.error("is a Wavefront OBJ, which is not read yet: convert it to glTF")),
+        _ => Err(at.error("must be a .glb or .gltf file")),
+    }
+}
+
+/// An image file, or a built-in map.
+fn image(at: At<'_>) -> Result<Source, InputError> {
+    let found = source(&at, &builtin::MAPS)?;
+    match &found {
+        Source::File(path) if !["png", "jpg", "jpeg"].contains(&extension(path).as_str()) => {
+            Err(at.error("must be a .png or .jpg file"))
+        }
+        _ => Ok(found),
+    }
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+fn source(at: &At<'_>, built_in: &[&str]) -> Result<Source, InputError> {
+    let text = at.text()?;
+    let Some(name) = text.strip_prefix(BUILT_IN) else { return Ok(Source::File(text.into())) };
+    if built_in.contains(&name) {
+        return Ok(Source::BuiltIn(name.to_owned()));
+    }
+    Err(at.error(match built_in.is_empty() {
+        true => "must be a file: this build has nothing built in (feature `samples`)".to_owned(),
+        false => {
+            let all: Vec<_> = built_in.iter().map(|name| format!("{BUILT_IN}{name}")).collect();
+            format!("must be a file or one of {}", all.join(", "))
+        }
+    }))
+}
+
+fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
+    let known = ["relief", "channel", "albedo", "normal", "scale", "tiles", "method", "shadow"];
+    let fields = at.fields(&known)?;
+    let heights = image(fields.need("relief", "the image of its heights")?)?;
+    let is_alpha =
+        fields.maybe("channel", |at| at.one_of([("brightness", false), ("alpha", true)]))?.unwrap_or(false);
+    let method = fields.maybe("method", |at| {
+        let all = Method::ALL.map(|method| (method.name(), method));
+        at.one_of(all)
+    })?;
+    Ok(ReliefEntry {
+        heights,
+        is_alpha,
+        albedo: fields.maybe("albedo", image)?,
+        normals: fields.maybe("normal", image)?,
+        scale: fields.maybe("scale", |at| at.number(0.0, MAX_SCALE.into()))?.unwrap_or(0.1) as f32,
+        tiles: fields.maybe("tiles", |at| at.number(1e-3, 1e3))?.unwrap_or(1.0) as f32,
+        method: method.unwrap_or(Method::Quadtree),
+        shadow: fields.maybe("shadow", |at| at.one_of(SHADOWS))?.unwrap_or_default(),
+    })
+}
+
+/// What a character plays, where `fields` do not say, as `otherwise`.
+fn play(fields: &Fields<'_>, otherwise: &PlayEntry) -> Result<PlayEntry, InputError> {
+    let clip = fields.maybe("clip", |at| match at.value().is_number() {
+        true => Ok(at.whole(0, i64::from(u32::MAX))?.to_string()),
+        false => Ok(at.text()?.to_owned()),
+    })?;
+    let rate = fields.maybe("rate", |at| at.number(-MAX_RATE, MAX_RATE))?;
+    let start = fields.maybe("start", |at| at.number(-MAX_SECONDS, MAX_SECONDS))?;
+    Ok(PlayEntry {
+        clip: clip.or_else(|| otherwise.clip.clone()),
+        rate: rate.map_or(otherwise.rate, |rate| rate as f32),
+        start: start.unwrap_or(otherwise.start),
+        wrap: fields.maybe("wrap", |at| at.one_of(WRAPS))?.unwrap_or(otherwise.wrap),
+    })
+}
+
+fn instance(at: &At<'_>, of_character: Option<&PlayEntry>) -> Result<InstanceEntry, InputError> {
+    const PLACE: [&str; 5] = ["at", "on", "lift", "turn", "scale"];
+    const PLAY: [&str; 4] = ["clip", "rate", "start", "wrap"];
+    let fields = match of_character {
+        Some(_) => at.fields(&[&PLACE[..], &PLAY[..]].concat())?,
+        None => at.fields(&PLACE)?,
+    };
+    let lift = fields.maybe("lift", lift)?;
+    let spot = match (fields.get("at"), fields.get("on")) {
+        (Some(_), Some(on)) => return Err(on.error("must not be given beside at")),
+        (Some(at), None) => Spot::At(DVec3::from(at.numbers::<3>(-COORDINATE, COORDINATE)?)),
+        (None, Some(on)) => {
+            let [x, z] = on.numbers::<2>(-COORDINATE, COORDINATE)?;
+            Spot::On { x, z, lift: lift.unwrap_or(0.0) }
+        }
+        (None, None) => return Err(fields.missing("at", "[x, y, z], or on: [x, z] on the ground")),
+    };
+    if let (Spot::At(_), Some(lift)) = (spot, fields.get("lift")) {
+        return Err(lift.error("must not be given beside at, which has a height"));
+    }
+    Ok(InstanceEntry {
+        spot,
+        turn: fields.maybe("turn", turn)?.unwrap_or(Quat::IDENTITY),
+        scale: fields.maybe("scale", |at| scale(&at))?.unwrap_or(Vec3::ONE),
+        play: of_character.map(|otherwise| play(&fields, otherwise)).transpose()?,
+    })
+}
+
+/// Model units above the ground.
+fn lift(at: At<'_>) -> Result<f64, InputError> {
+    at.number(-1e6, 1e6)
+}
+
+/// An angle about the vertical axis, or a quaternion.
+fn turn(at: At<'_>) -> Result<Quat, InputError> {
+    if at.value().is_number() {
+        return Ok(upright(at.number(-1e6, 1e6)?));
+    }
+    let numbers = at.numbers::<4>(-1e6, 1e6);
+    let numbers = numbers.map_err(|error| InputError {
+        bound: "must be an angle in radians, or a quaternion of four numbers: x, y, z, w".to_owned(),
+        ..error
+    })?;
+    let quaternion = Quat::from_array(numbers.map(|number| number as f32));
+    match quaternion.length() > 1e-3 {
+        true => Ok(quaternion.normalize()),
+        false => Err(at.error("must not be 0")),
+    }
+}
+
+/// The rotation about the vertical axis by an angle, the same bits on every machine.
+pub(super) fn upright(angle: f64) -> Quat {
+    Quat::from_xyzw(0.0, libm::sin(0.5 * angle) as f32, 0.0, libm::cos(0.5 * angle) as f32)
+}
+
+fn scatter(at: &At<'_>, most: usize) -> Result<Scatter, InputError> {
+    let fields = at.fields(&["count", "seed", "area", "scale", "lift"])?;
+    let count = fields.need("count", "how many")?.whole(1, most as i64)? as u32;
+    let seed = fields.need("seed", "any text: the same text gives the same places")?.text()?.to_owned();
+    let area = fields.maybe("area", |at| {
+        let corners = at.list(2, 2).map_err(|_| at.error("must be two corners: [[x, z], [x, z]]"))?;
+        let [a, b] = [0, 1].map(|corner: usize| corners[corner].numbers::<2>(-COORDINATE, COORDINATE));
+        let (low, high) = (a?, b?);
+        match low[0] < high[0] && low[1] < high[1] {
+            true => Ok([low, high]),
+            false => Err(at.error("must have the corner with the smaller x and z first")),
+        }
+    })?;
+    let range = fields.maybe("scale", |at| match at.value().is_number() {
+        true => Ok([at.number(1e-6, 1e6)?; 2]),
+        false => {
+            let range = at.numbers::<2>(1e-6, 1e6)?;
+            if range[0] > range[1] {
+                return Err(at.error("must have the smaller scale first"));
+            }
+            Ok(range)
+        }
+    })?;
+    let scale = range.unwrap_or([1.0; 2]).map(|scale| scale as f32);
+    Ok(Scatter { count, seed, area, scale, lift: fields.maybe("lift", lift)?.unwrap_or(0.0) })
+}

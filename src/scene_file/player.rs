@@ -1,0 +1,209 @@
+//! Draws the frames of a scene off screen, one after the other.
+
+use std::time::Instant;
+
+use image::RgbaImage;
+
+use super::camera::columns;
+use super::world::World;
+use crate::gpu::Gpu;
+use crate::render::{Layer, Offscreen, Renderer};
+use crate::scene::{Camera, Depth, Quality, View};
+use crate::{Error, InputError};
+
+/// How frames are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rendering {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Samples a pixel: 1 or 4.
+    pub samples: u32,
+    /// The direction of depth.
+    pub depth: Depth,
+    /// What is drawn. [`Layer::Depth`] needs one sample.
+    pub layer: Layer,
+    /// Whether two views of one submission draw the left half and the right half of the picture.
+    pub is_split: bool,
+    /// How fine.
+    pub quality: Quality,
+}
+
+impl Default for Rendering {
+    /// 960 × 600 pixels of colour with 4 samples, by one view, at most a pixel off.
+    fn default() -> Self {
+        Self {
+            size: [960, 600],
+            samples: 4,
+            depth: Depth::Forward,
+            layer: Layer::Color,
+            is_split: false,
+            quality: Quality::default(),
+        }
+    }
+}
+
+impl Rendering {
+    /// Checks what does not depend on a device.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        self.quality.validate()?;
+        if ![1, 4].contains(&self.samples) {
+            return Err(InputError::new("samples", self.samples, "must be 1 or 4"));
+        }
+        if self.layer == Layer::Depth && self.samples > 1 {
+            return Err(InputError::new("samples", self.samples, "must be 1 for the layer depth"));
+        }
+        if self.size.contains(&0) || self.is_split && self.size[0] < 2 {
+            let value = format!("{}x{}", self.size[0], self.size[1]);
+            return Err(InputError::new("size", value, "must be at least 1x1, and 2x1 for a split picture"));
+        }
+        Ok(())
+    }
+}
+
+/// What a frame cost, by the host's clock.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct FrameTimes {
+    /// Milliseconds from the recording of the scene's compute work until the device has done it.
+    pub compute: f64,
+    /// Milliseconds from the recording of the draws until the device has done them.
+    pub draw: f64,
+}
+
+/// Draws frames of a world.
+#[derive(Debug)]
+pub struct Player {
+    gpu: Gpu,
+    world: World,
+    rendering: Rendering,
+    target: Offscreen,
+    renderer: Renderer,
+    views: Vec<View>,
+}
+
+impl Player {
+    /// Prepares all that frames need; nothing is compiled or allocated afterwards, except where something grows.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Rendering::validate`], and for a size beyond the device's limit; [`crate::gpu::GpuError`].
+    pub fn new(world: World, rendering: Rendering) -> Result<Self, Error> {
+        rendering.validate()?;
+        let gpu = world.scene.gpu().clone();
+        let Rendering { size, samples, depth, layer, is_split, quality } = rendering;
+        let target = Offscreen::new(&gpu, size, layer != Layer::Depth, samples, depth == Depth::Reversed)?;
+        let mut renderer = Renderer::new(&gpu, target.format())?;
+        renderer.prepare(&world.scene)?;
+        let views = (0..1 + usize::from(is_split)).map(|_| world.scene.view(quality));
+        let views = views.collect::<Result<_, _>>()?;
+        Ok(Self { gpu, world, rendering, target, renderer, views })
+    }
+
+    /// The world.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The world, to be changed between frames.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// The world, and the views of the frame, to ask for their statistics.
+    pub fn parts_mut(&mut self) -> (&mut World, &mut [View]) {
+        (&mut self.world, &mut self.views)
+    }
+
+    /// The views of the frame, from left to right.
+    pub fn views(&self) -> &[View] {
+        &self.views
+    }
+
+    /// How frames are drawn.
+    pub fn rendering(&self) -> &Rendering {
+        &self.rendering
+    }
+
+    /// The camera of the whole picture at the time of the scene.
+    pub fn camera(&self) -> Camera {
+        let Rendering { size, depth, .. } = self.rendering;
+        self.world.camera.camera(self.world.scene.time(), size, depth)
+    }
+
+    /// Draws the frame that is `seconds` after the one before, the first one that long after time 0. Waits for the device.
+    ///
+    /// # Errors
+    /// [`InputError`] for seconds that are not finite; [`crate::gpu::GpuError`].
+    pub fn frame(&mut self, seconds: f32) -> Result<FrameTimes, Error> {
+        self.world.scene.advance(seconds)?;
+        let camera = self.camera();
+        let halves = self.halves();
+        for (view, [from, to]) in self.views.iter_mut().zip(&halves) {
+            view.set(if halves.len() == 1 { camera } else { columns(&camera, *from, *to) })?;
+        }
+        let start = Instant::now();
+        let mut encoder = self.gpu.encoder("scene");
+        let mut views: Vec<&mut View> = self.views.iter_mut().collect();
+        self.world.scene.record(&mut encoder, &mut views)?;
+        self.finish(encoder)?;
+        let compute = milliseconds(start);
+        let start = Instant::now();
+        let mut encoder = self.gpu.encoder("picture");
+        self.target.record(&mut encoder, self.world.background, |pass| self.draw(pass, &halves))?;
+        self.finish(encoder)?;
+        Ok(FrameTimes { compute, draw: milliseconds(start) })
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, halves: &[[u32; 2]]) -> Result<(), InputError> {
+        let height = self.rendering.size[1];
+        for (view, [from, to]) in self.views.iter().zip(halves) {
+            let [left, width] = [*from, to - from];
+            pass.set_viewport(left as f32, 0.0, width as f32, height as f32, 0.0, 1.0);
+            pass.set_scissor_rect(left, 0, width, height);
+            self.renderer.draw(pass, &self.world.scene, view, self.rendering.layer)?;
+        }
+        Ok(())
+    }
+
+    /// The columns of each view, from the first to before the end.
+    fn halves(&self) -> Vec<[u32; 2]> {
+        let [width, _] = self.rendering.size;
+        match self.rendering.is_split {
+            true => vec![[0, width / 2], [width / 2, width]],
+            false => vec![[0, width]],
+        }
+    }
+
+    fn finish(&self, encoder: wgpu::CommandEncoder) -> Result<(), Error> {
+        self.gpu.scoped(|| self.gpu.queue().submit([encoder.finish()]))?;
+        Ok(self.gpu.wait()?)
+    }
+
+    /// The colours of the last frame.
+    ///
+    /// # Errors
+    /// [`InputError`] for a layer without colour; [`crate::gpu::GpuError`].
+    pub fn picture(&self) -> Result<RgbaImage, Error> {
+        self.target.read(&self.gpu)
+    }
+
+    /// The distances ahead of the eye of the last frame, in world units, row by row; `None` where nothing was drawn.
+    ///
+    /// # Errors
+    /// [`InputError`] for more than one sample; [`crate::gpu::GpuError`].
+    pub fn distances(&self) -> Result<Vec<Option<f64>>, Error> {
+        let camera = self.camera();
+        // Depth is scale + offset / distance.
+        let [scale, offset] =
+            [-camera.clip_from_view.z_axis.z, camera.clip_from_view.w_axis.z].map(f64::from);
+        let nothing = if camera.depth == Depth::Reversed { 0.0 } else { 1.0 };
+        let depths = self.target.read_depth(&self.gpu)?;
+        let distance = |depth: f32| (depth != nothing).then(|| offset / (f64::from(depth) - scale));
+        Ok(depths.into_iter().map(distance).collect())
+    }
+}
+
+fn milliseconds(start: Instant) -> f64 {
+    1e3 * start.elapsed().as_secs_f64()
+}

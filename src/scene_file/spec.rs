@@ -1,0 +1,68 @@
+//! A scene file that was read: what it says, and which files it names.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use super::camera::CameraPath;
+use super::entries::{EntryKind, ObjectEntry, Source, TerrainEntry};
+use crate::asset::Light;
+use crate::scene::Quality;
+use crate::terrain::config::ZoneTexture;
+
+/// A scene as its file describes it, checked. Files that it names are not read yet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    pub(super) terrain: Option<TerrainEntry>,
+    /// Those of `meshes`, then those of `characters`.
+    pub(super) objects: Vec<ObjectEntry>,
+    pub(super) light: Light,
+    pub(super) camera: CameraPath,
+    pub(super) quality: Quality,
+    pub(super) background: [f32; 3],
+}
+
+impl SceneFile {
+    /// The camera.
+    pub fn camera(&self) -> &CameraPath {
+        &self.camera
+    }
+
+    /// How fine the scene is drawn.
+    pub fn quality(&self) -> Quality {
+        self.quality
+    }
+
+    /// The colour behind everything: linear red, green and blue, each 0 to 1.
+    pub fn background(&self) -> [f32; 3] {
+        self.background
+    }
+
+    /// The light.
+    pub fn light(&self) -> Light {
+        self.light
+    }
+
+    /// The files that the scene names, relative to its own, in ascending order, each once. A browser can fetch them before
+    /// it loads the scene. Buffers and images beside `.gltf` files are not among them; `.glb` files need none.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut found = BTreeSet::new();
+        let mut add = |source: &Source| {
+            if let Source::File(path) = source {
+                found.insert(path.clone());
+            }
+        };
+        for entry in &self.objects {
+            add(&entry.source);
+            if let EntryKind::Relief(relief) = &entry.kind {
+                add(&relief.heights);
+                relief.albedo.iter().chain(&relief.normals).for_each(&mut add);
+            }
+        }
+        let zones = self.terrain.iter().flat_map(|terrain| &terrain.config.zones);
+        found.extend(zones.filter_map(|zone| match &zone.texture {
+            Some(ZoneTexture::File(path)) => Some(path.clone()),
+            _ => None,
+        }));
+        found.into_iter().collect()
+    }
+}

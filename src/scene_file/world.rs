@@ -1,0 +1,200 @@
+//! Builds the scene that a file describes.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+use super::camera::CameraPath;
+use super::entries::{EntryKind, ObjectEntry, PlayEntry, Spot};
+use super::load::{Loaded, LoadedScene};
+use super::parse_object::upright;
+use super::scatter::{self, Drawn};
+use crate::asset::Model;
+use crate::gpu::Gpu;
+use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource};
+use crate::{Error, InputError};
+
+/// A scene that was built from a file, with the file's camera and quality.
+#[derive(Debug)]
+pub struct World {
+    /// The scene, at time 0.
+    pub scene: Scene,
+    /// What the scene has, in the order of the file: terrain, meshes, characters.
+    pub objects: Vec<WorldObject>,
+    /// The camera.
+    pub camera: CameraPath,
+    /// How fine the scene is drawn.
+    pub quality: Quality,
+    /// The colour behind everything: linear red, green and blue.
+    pub background: [f32; 3],
+}
+
+/// An object of the scene, and what it was made from.
+#[derive(Debug, Clone)]
+pub struct WorldObject {
+    /// Its handle.
+    pub object: ObjectId,
+    /// What it is.
+    pub kind: WorldKind,
+    /// The name of its file in the scene file, `builtin:` with a name, or the seed of terrain.
+    pub name: String,
+    /// The model of a mesh or a character, with its levels of detail.
+    pub model: Option<Arc<Model>>,
+}
+
+impl WorldObject {
+    /// The model, if it is a character.
+    pub fn character(&self) -> Option<&Model> {
+        self.model.as_deref().filter(|_| self.kind == WorldKind::Character)
+    }
+}
+
+/// The kinds of objects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum WorldKind {
+    /// Patches of terrain.
+    Terrain,
+    /// A mesh that does not move by itself.
+    Mesh,
+    /// A mesh that carries a relief.
+    Relief,
+    /// An animated model.
+    Character,
+}
+
+impl LoadedScene {
+    /// Builds the scene: adds everything and spawns all instances. It blocks while terrain is read back.
+    ///
+    /// # Errors
+    /// [`InputError`], with the path in the scene file, for what stands on the ground where there is none, and for what the
+    /// device cannot hold; [`crate::gpu::GpuError`].
+    pub fn build(&self, gpu: &Gpu) -> Result<World, Error> {
+        let file = &self.file;
+        let mut scene = Scene::new(gpu)?;
+        scene.set_light(file.light)?;
+        let mut objects = Vec::new();
+        let mut land = None;
+        if let Some(terrain) = &file.terrain {
+            let source = TerrainSource::new(terrain.config.clone())
+                .with_patches(&terrain.patches)
+                .with_textures(self.textures.clone());
+            let object = scene.add_terrain(&source).map_err(|error| below("terrain", error))?;
+            land = Some(object);
+            let name = terrain.config.seed.clone();
+            objects.push(WorldObject { object, kind: WorldKind::Terrain, name, model: None });
+        }
+        for (entry, loaded) in file.objects.iter().zip(&self.objects) {
+            let found = added(&mut scene, entry, loaded)?;
+            self.spawn(&mut scene, land, entry, &found)?;
+            objects.push(found);
+        }
+        let (camera, quality, background) = (file.camera.clone(), file.quality, file.background);
+        Ok(World { scene, objects, camera, quality, background })
+    }
+
+    fn spawn(
+        &self,
+        scene: &mut Scene,
+        land: Option<ObjectId>,
+        entry: &ObjectEntry,
+        found: &WorldObject,
+    ) -> Result<(), Error> {
+        for (index, instance) in entry.instances.iter().enumerate() {
+            let path = format!("{}.instances[{index}]", entry.path);
+            let at = match instance.spot {
+                Spot::At(at) => at,
+                Spot::On { x, z, lift } => {
+                    let Some(height) = height(scene, land, x, z) else {
+                        let bound = "must lie on a patch of the terrain";
+                        let value = format!("[{x}, {z}]");
+                        return Err(InputError::new(format!("{path}.on"), value, bound).into());
+                    };
+                    DVec3::new(x, height + lift * f64::from(instance.scale.y.abs()), z)
+                }
+            };
+            let turned = Placement { turn: instance.turn, scale: instance.scale, ..Placement::at_world(at) };
+            let play = instance.play.as_ref().map(|play| (play, play.start));
+            spawn_one(scene, found, turned, play).map_err(|error| below(&path, error))?;
+        }
+        let Some(scatter) = &entry.scatter else { return Ok(()) };
+        let path = format!("{}.scatter", entry.path);
+        let rectangles = scatter.area.map_or_else(|| self.patches(), |area| vec![area]);
+        let ground = |x: f64, z: f64| if land.is_some() { height(scene, land, x, z) } else { Some(0.0) };
+        let all = scatter::drawn(scatter, &rectangles, ground)
+            .map_err(|error| InputError { path: format!("{}.{}", entry.path, error.path), ..error })?;
+        for Drawn { x, y, z, turn, scale, phase } in all {
+            let at = DVec3::new(x, y + scatter.lift * f64::from(scale), z);
+            let turned =
+                Placement { turn: upright(turn), scale: Vec3::splat(scale), ..Placement::at_world(at) };
+            let play = match (&entry.kind, &found.model) {
+                (EntryKind::Character(play), Some(model)) => Some((play, begun(play, model, phase)?)),
+                _ => None,
+            };
+            spawn_one(scene, found, turned, play).map_err(|error| below(&path, error))?;
+        }
+        Ok(())
+    }
+
+    /// The least and the largest x and z of each patch.
+    fn patches(&self) -> Vec<[[f64; 2]; 2]> {
+        let patches = self.file.terrain.iter().flat_map(|terrain| {
+            let edge = terrain.config.edge_length();
+            terrain.patches.iter().map(move |patch| {
+                let low = patch.map(|index| f64::from(index) * edge);
+                [low, low.map(|start| start + edge)]
+            })
+        });
+        patches.collect()
+    }
+}
+
+/// The time at which a character began that has played a fraction of its clip at its own start.
+fn begun(play: &PlayEntry, model: &Model, phase: f64) -> Result<f64, InputError> {
+    let clip = model.clip(play.clip.as_deref().unwrap_or("0"))?;
+    let rate = if play.rate == 0.0 { 1.0 } else { f64::from(play.rate) };
+    Ok(play.start - phase * f64::from(clip.duration()) / rate.abs())
+}
+
+fn height(scene: &Scene, land: Option<ObjectId>, x: f64, z: f64) -> Option<f64> {
+    Some(scene.ground(land?, x, z).ok()??.height)
+}
+
+/// Adds an object with room for its instances.
+fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Result<WorldObject, Error> {
+    let capacity = entry.count();
+    let object = match (loaded, &entry.kind) {
+        (Loaded::Relief(relief), _) => scene.add_relief(relief, capacity),
+        (Loaded::Model(model), EntryKind::Character(_)) => scene.add_character(model, capacity),
+        (Loaded::Model(model), _) => scene.add_mesh(model, capacity),
+    };
+    let (kind, model) = match (loaded, &entry.kind) {
+        (Loaded::Relief(_), _) => (WorldKind::Relief, None),
+        (Loaded::Model(model), EntryKind::Character(_)) => (WorldKind::Character, Some(model.clone())),
+        (Loaded::Model(model), _) => (WorldKind::Mesh, Some(model.clone())),
+    };
+    let object = object.map_err(|error| below(&entry.path, error))?;
+    Ok(WorldObject { object, kind, name: entry.source.to_string(), model })
+}
+
+fn spawn_one(
+    scene: &mut Scene,
+    found: &WorldObject,
+    placement: Placement,
+    play: Option<(&PlayEntry, f64)>,
+) -> Result<(), Error> {
+    let instance = scene.spawn(found.object, placement)?;
+    if let Some((PlayEntry { clip, rate, wrap, .. }, start)) = play {
+        let clip = clip.as_deref().unwrap_or("0");
+        scene.play(instance, &Play { clip, start, rate: *rate, wrap: *wrap })?;
+    }
+    Ok(())
+}
+
+/// A mistake below a path in the scene file.
+fn below(path: &str, error: Error) -> Error {
+    match error {
+        Error::Input(error) => Error::Input(InputError { path: format!("{path}.{}", error.path), ..error }),
+        other => other,
+    }
+}

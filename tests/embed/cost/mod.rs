@@ -1,0 +1,134 @@
+//! What frames cost, in processor time of the process, which on a software adapter is host and device together. Programs
+//! take turns, and ratios are taken round by round. The tests print tables; they are ignored because they take minutes:
+//! `cargo test --features verify --test embed cost -- --ignored --nocapture --test-threads 1`.
+
+mod clock;
+mod crowd;
+mod hand;
+
+use std::path::Path;
+use std::rc::Rc;
+
+use relievo::asset::Model;
+use relievo::gpu::Gpu;
+
+use crate::frame::{Frame, device};
+use clock::{Program, table, take_turns};
+use crowd::{Crowd, SIZE, Staged};
+use hand::Wired;
+
+fn creature() -> Model {
+    relievo::samples::creature().expect("valid")
+}
+
+/// The creature, and the files that `RELIEVO_MODELS` names.
+fn models() -> Vec<(String, Model)> {
+    let files = std::env::var_os("RELIEVO_MODELS").unwrap_or_default();
+    let file = |path: &Path| (path.display().to_string(), Model::from_file(path).expect("a model"));
+    let files = std::env::split_paths(&files).filter(|path| path.is_file());
+    [("creature".to_owned(), creature())].into_iter().chain(files.map(|path| file(&path))).collect()
+}
+
+fn staged<'a>(name: &str, mut program: Staged) -> Program<'a> {
+    Program::new(name, move || program.frame())
+}
+
+fn wired<'a>(name: &str, mut program: Wired) -> Program<'a> {
+    Program::new(name, move || program.frame())
+}
+
+/// A program that submits nothing.
+fn idle<'a>(gpu: &Gpu) -> Program<'a> {
+    let gpu = gpu.clone();
+    Program::new("an empty submission", move || {
+        gpu.queue().submit([gpu.encoder("nothing").finish()]);
+        gpu.wait().expect("done");
+    })
+}
+
+/// Frames in which nothing is in view, nothing moves, or everything is far.
+#[test]
+#[ignore = "measures"]
+fn frames_with_little_to_do_cost_little() {
+    let gpu = device();
+    let target = Rc::new(Frame::plain(&gpu, SIZE));
+    let (near, far) = (Crowd::new(creature(), 100.0), Crowd::new(creature(), 5.0));
+    for draws in [true, false] {
+        let program = |name: &str, program: Staged| match draws {
+            true => staged(name, program.drawing(&target)),
+            false => staged(name, program),
+        };
+        let away = near.camera(SIZE, std::f32::consts::PI);
+        let mut all = [
+            program("in full detail", Staged::new(&gpu, &near, 0.0)),
+            program("within a pixel", Staged::new(&gpu, &near, 1.0)),
+            program("nothing in view", Staged::new(&gpu, &near, 1.0).looking(away)),
+            program("nothing moves", Staged::new(&gpu, &near, 1.0).still()),
+            program("nothing moves, in full detail", Staged::new(&gpu, &near, 0.0).still()),
+            program("everything far", Staged::new(&gpu, &far, 1.0)),
+            idle(&gpu),
+        ];
+        take_turns(&mut all);
+        println!("{}", table(if draws { "whole frames" } else { "before the drawing" }, &all));
+        for frame in [2, 5] {
+            assert!(all[frame].against(&all[0])[1] < 0.5, "program {frame}");
+        }
+    }
+}
+
+/// A second view of another size that sees the same instances.
+#[test]
+#[ignore = "measures"]
+fn a_second_view_costs_little() {
+    let gpu = device();
+    let crowd = Crowd::new(creature(), 100.0);
+    let small = crowd.camera([960, 540], 0.0);
+    let mut all = [
+        staged("one view", Staged::new(&gpu, &crowd, 1.0)),
+        staged("two views", Staged::new(&gpu, &crowd, 1.0).with_view(small)),
+        staged(
+            "four views",
+            Staged::new(&gpu, &crowd, 1.0).with_view(small).with_view(small).with_view(small),
+        ),
+        idle(&gpu),
+    ];
+    take_turns(&mut all);
+    println!("{}", table("before the drawing", &all));
+    let [_, ratio, _] = all[1].against(&all[0]);
+    assert!(ratio <= 1.3, "{ratio}");
+}
+
+/// A scene costs what a program costs that is wired by hand for one camera, and level of detail saves as much in it.
+#[test]
+#[ignore = "measures"]
+fn a_scene_costs_what_a_program_without_one_does() {
+    let gpu = device();
+    let target = Rc::new(Frame::plain(&gpu, SIZE));
+    let mut failures = Vec::new();
+    for (name, model) in models() {
+        let crowd = Crowd::new(model, 100.0);
+        let mut all = [
+            wired("by hand, within a pixel", Wired::within_a_pixel(&gpu, &crowd).drawing(&target)),
+            staged("scene, within a pixel", Staged::new(&gpu, &crowd, 1.0).drawing(&target)),
+            wired("by hand, in full detail", Wired::full(&gpu, &crowd).drawing(&target)),
+            staged("scene, in full detail", Staged::new(&gpu, &crowd, 0.0).drawing(&target)),
+            wired("by hand, within a pixel, before the drawing", Wired::within_a_pixel(&gpu, &crowd)),
+            staged("scene, within a pixel, before the drawing", Staged::new(&gpu, &crowd, 1.0)),
+            wired("by hand, in full detail, before the drawing", Wired::full(&gpu, &crowd)),
+            staged("scene, in full detail, before the drawing", Staged::new(&gpu, &crowd, 0.0)),
+        ];
+        take_turns(&mut all);
+        let gains = [all[2].against(&all[0]), all[3].against(&all[1])];
+        let ratio = all[1].against(&all[0]);
+        println!(
+            "{}\nscene by hand {ratio:.3?}; cheaper by hand {:.2?}, scene {:.2?}",
+            table(&name, &all),
+            gains[0],
+            gains[1]
+        );
+        if ratio[1] > 1.1 || gains[1][1] < 4.0 {
+            failures.push(format!("{name}: {ratio:?}, {gains:?}"));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}

@@ -1,0 +1,171 @@
+//! What a program may get wrong: each fault is refused by name, before wgpu sees it.
+
+use relievo::InputError;
+use relievo::asset::{Light, Model};
+use relievo::gpu::Gpu;
+use relievo::render::{DepthFormat, Layer, Renderer, TargetFormat};
+use relievo::samples::maps::BuiltInMap;
+use relievo::scene::{Placement, Quality, Relief, Scene, TerrainSource};
+use relievo::terrain::config::Config;
+use relievo::wgpu::{self, TextureFormat as Format};
+
+use crate::frame::{COLOR, Frame, device};
+use crate::world::{SIZE, World, camera};
+
+/// Path and value of what is wrong.
+fn wrong<T>(result: Result<T, impl Into<relievo::Error>>) -> [String; 2] {
+    match result.err().map(Into::into) {
+        Some(relievo::Error::Input(InputError { path, value, .. })) => [path, value],
+        Some(other) => panic!("no input error: {other}"),
+        None => ["nothing".into(), String::new()],
+    }
+}
+
+/// Handles of one scene name nothing in another, although the same slots are taken there.
+#[test]
+fn handles_of_another_scene_are_refused() {
+    let gpu = device();
+    let (one, mut other) = (World::new(&gpu, 2), World::new(&gpu, 2));
+    let (object, instance, scene) = (one.creature, one.crowd[1], &mut other.scene);
+    let of_object = [
+        wrong(scene.spawn(object, Placement::default())),
+        wrong(scene.remove(object)),
+        wrong(scene.show(object, false)),
+        wrong(scene.instances(object)),
+        wrong(scene.coarsening(object)),
+        wrong(scene.ground(one.land, 0.0, 0.0)),
+        wrong(scene.despawn(instance)),
+        wrong(scene.move_to(instance, Placement::default())),
+        wrong(scene.set_tint(instance, [1.0; 4])),
+        wrong(scene.placement(instance)),
+        wrong(scene.clip_time(instance)),
+    ];
+    for (at, found) in of_object.iter().enumerate() {
+        assert_eq!(*found, ["object", "of another scene"], "{at}");
+    }
+    assert_eq!(scene.instances(other.creature).expect("of this scene").len(), 2);
+}
+
+/// Patches of terrain stay where they are, since they would be drawn there anyway; they may be hidden.
+#[test]
+fn patches_of_terrain_stay() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 1);
+    let patch = world.scene.instances(world.land).expect("of this scene")[0];
+    let scene = &mut world.scene;
+    let refused = ["instance", "a patch of terrain"];
+    assert_eq!(wrong(scene.move_to(patch, Placement::default())), refused);
+    assert_eq!(wrong(scene.despawn(patch)), refused);
+    assert_eq!(wrong(scene.set_tint(patch, [0.5; 4])), refused);
+    scene.set_visibility(patch, 0, true).expect("may be hidden");
+    let twice = TerrainSource::new(Config::new(33, 6.0, "twice").expect("valid"));
+    let twice = twice.with_patches(&[[0, 0], [1, 0], [0, 0]]);
+    assert_eq!(wrong(scene.add_terrain(&twice)), ["patches[2]", "[0, 0]"]);
+}
+
+/// A scene is drawn before anything is added, and after everything was removed: it shows nothing.
+#[test]
+fn an_empty_scene_shows_nothing() {
+    let gpu = device();
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let frame = Frame::plain(&gpu, SIZE);
+    let mut view = scene.view(Quality::default()).expect("a view");
+    let mut encoder = gpu.encoder("frame");
+    assert_eq!(wrong(scene.record(&mut encoder, &mut [&mut view])), ["view.camera", "none"]);
+    view.set(camera(SIZE)).expect("a camera");
+    let renderer = frame.renderer(&gpu, &scene);
+    let empty = frame.shot(&mut scene, &mut view, &renderer);
+    assert!(empty.pixels().all(|pixel| pixel == empty.get_pixel(0, 0)), "something is drawn");
+    let bricks = BuiltInMap::Bricks;
+    let maps = (bricks.height_map(32).expect("heights"), bricks.albedo(32).expect("colours"));
+    let wall = scene.add_relief(&Relief::wall(2.0, maps.0, maps.1), 1).expect("added");
+    scene.spawn(wall, Placement::at([0.0, 2.0, -6.0]).scaled(8.0)).expect("room");
+    let renderer = frame.renderer(&gpu, &scene);
+    assert!(frame.shot(&mut scene, &mut view, &renderer) != empty, "no wall");
+    scene.remove(wall).expect("there");
+    assert!(frame.shot(&mut scene, &mut view, &renderer) == empty, "the wall is still there");
+}
+
+/// What changed between recording and drawing is said to have changed.
+#[test]
+fn a_view_is_out_of_date_once_objects_change() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 1);
+    let mut view = world.view(1.0);
+    let frame = Frame::plain(&gpu, SIZE);
+    let renderer = frame.renderer(&gpu, &world.scene);
+    let draw = |scene: &Scene, view: &relievo::scene::View| {
+        let (mut encoder, mut found) = (gpu.encoder("frame"), [String::new(), String::new()]);
+        frame.pass(&mut encoder, |pass| found = wrong(renderer.draw(pass, scene, view, Layer::Color)));
+        gpu.queue().submit([encoder.finish()]);
+        found
+    };
+    assert_eq!(draw(&world.scene, &view), ["view", "not recorded"]);
+    let mut encoder = gpu.encoder("frame");
+    world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+    gpu.queue().submit([encoder.finish()]);
+    assert_eq!(draw(&world.scene, &view), ["nothing", ""]);
+    world.scene.remove(world.creature).expect("there");
+    assert_eq!(draw(&world.scene, &view), ["view", "out of date"]);
+}
+
+/// A renderer draws scenes of its own device; wgpu would panic.
+#[test]
+fn a_scene_of_another_device_is_refused() {
+    let [own, other] = [device(), device()];
+    let mut world = World::new(&own, 1);
+    let mut view = world.view(1.0);
+    let frame = Frame::plain(&own, SIZE);
+    let mut renderer = Renderer::new(&other, &frame.format).expect("a format");
+    let refused = ["scene", "of another device"];
+    assert_eq!(wrong(renderer.prepare(&world.scene)), refused);
+    let mut encoder = own.encoder("frame");
+    world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+    frame.pass(&mut encoder, |pass| {
+        assert_eq!(wrong(renderer.draw(pass, &world.scene, &view, Layer::Color)), refused);
+    });
+    own.queue().submit([encoder.finish()]);
+    let same = Gpu::from_wgpu(own.device().clone(), own.queue().clone());
+    Renderer::new(&same, &frame.format).expect("a format").prepare(&world.scene).expect("the same device");
+}
+
+/// Formats that a device without features does not have are refused by field, not by the driver's compiler.
+#[test]
+fn formats_that_the_device_lacks_are_refused() {
+    let gpu = device();
+    let large = || Some(Format::Rgba32Float.into());
+    let depth = |format| Some(DepthFormat { format, reversed: true });
+    let blend = wgpu::ColorTargetState {
+        blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+        ..Format::Rgba32Float.into()
+    };
+    for (format, path) in [
+        (TargetFormat::new(Format::Bc1RgbaUnorm), "format.color[0].format"),
+        (TargetFormat::new(Format::Rgb9e5Ufloat), "format.color[0].format"),
+        (TargetFormat::new(Format::Rgba32Float).with_samples(4), "format.samples"),
+        (TargetFormat::new(Format::Rgba32Float).with_color(large()).with_color(large()), "format.color"),
+        (TargetFormat { color: vec![Some(blend)], ..TargetFormat::new(COLOR) }, "format.color[0].blend"),
+        (TargetFormat::new(COLOR).with_depth(depth(Format::Depth32FloatStencil8)), "format.depth.format"),
+    ] {
+        assert_eq!(wrong(Renderer::new(&gpu, &format))[0], path, "{format:?}");
+    }
+    let world = World::new(&gpu, 1);
+    for format in [
+        TargetFormat::new(Format::Rgba32Float).with_color(large()),
+        TargetFormat::new(Format::Rgba16Float).with_samples(4),
+        TargetFormat::depth_only(Format::Depth16Unorm).with_samples(4),
+    ] {
+        Renderer::new(&gpu, &format).expect("a format").prepare(&world.scene).expect("compiled");
+    }
+}
+
+/// A file that is no glTF, and light without a direction.
+#[test]
+fn what_is_no_model_and_no_light_is_refused() {
+    let error = Model::from_gltf(b"v 1 2 3\n", None).expect_err("an OBJ");
+    assert_eq!(error.path, "JSON");
+    assert!(error.bound.contains("must be glTF"), "{error}");
+    let mut scene = Scene::new(&device()).expect("compiled");
+    let dark = Light { direction: glam::Vec3::ZERO, ..Light::default() };
+    assert_eq!(wrong(scene.set_light(dark)), ["light.direction", "[0, 0, 0]"]);
+}

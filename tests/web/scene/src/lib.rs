@@ -1,0 +1,54 @@
+//! What the page `scene.html` calls: a small scene, drawn in the browser.
+
+mod picture;
+
+use picture::World;
+use relievo::gpu::{Buffer, Gpu, Options};
+use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
+
+#[wasm_bindgen]
+unsafe extern "C" {
+    /// Tells the page why the program ends.
+    fn panicked(message: &str);
+}
+
+/// Lets the page know why a call fails that Rust aborts.
+#[wasm_bindgen(start)]
+pub fn start() {
+    std::panic::set_hook(Box::new(|panic| panicked(&panic.to_string())));
+}
+
+/// Draws the scene on a device of its own, under the light of the day or, for a picture that must be refused, of the
+/// evening. Pixels are RGBA in sRGB, row by row.
+#[wasm_bindgen]
+pub async fn draw(evening: bool) -> Result<Vec<u8>, JsValue> {
+    drawn(evening).await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
+async fn drawn(evening: bool) -> Result<Vec<u8>, relievo::Error> {
+    let gpu = Gpu::headless_async(&Options::default()).await?;
+    let pixels = World::new(&gpu, evening).await?.draw(&gpu).await?;
+    gpu.check_async().await?;
+    Ok(pixels)
+}
+
+/// What the library says of a write beyond a buffer's end: at once, and once the browser has told the errors so far.
+#[wasm_bindgen]
+pub async fn mistake() -> Result<Vec<String>, JsValue> {
+    made().await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
+async fn made() -> Result<Vec<String>, relievo::Error> {
+    let gpu = Gpu::headless_async(&Options::default()).await?;
+    let buffer = Buffer::from_slice(&gpu, "short", &[1_u32, 2])?;
+    let said = |result: Result<(), relievo::gpu::GpuError>| match result {
+        Ok(()) => "nothing".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    let at_once = said(buffer.write_at(&gpu, 2, &[3_u32]));
+    let later = said(gpu.check_async().await);
+    // The buffer and the device are of use afterwards.
+    buffer.write_at(&gpu, 1, &[7_u32])?;
+    let kept = format!("{:?}", buffer.read(&gpu).await?);
+    Ok(vec![at_once, later, kept])
+}
