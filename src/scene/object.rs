@@ -1,5 +1,7 @@
 //! Objects: what all instances of one model or one terrain share.
 
+mod device;
+
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -8,7 +10,7 @@ use crate::asset::Model;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
-use crate::scene::character::{Character, Runtime};
+use crate::scene::character::Character;
 use crate::scene::drawable::{Drawable, MeshDrawable};
 use crate::scene::handles::Slots;
 use crate::scene::instances::{self, Instances};
@@ -28,6 +30,7 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
 use crate::skinning::pages::PageBuffers;
 use crate::{Error, InputError};
+pub(super) use device::OnDevice;
 
 /// An object of a scene.
 #[derive(Debug)]
@@ -79,13 +82,6 @@ impl MeshOnHost {
             }
         }
     }
-}
-
-/// What an object has on a device.
-#[derive(Debug)]
-pub(super) struct OnDevice {
-    drawables: Vec<Drawable>,
-    runtime: Option<Runtime>,
 }
 
 /// What an object is.
@@ -200,14 +196,6 @@ impl Object {
         }
     }
 
-    /// Makes room for twice as many instances. If it fails, nothing has changed.
-    pub(super) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        let capacity = 2 * self.instances.capacity();
-        self.renew(gpu, layouts, capacity)?;
-        self.instances.grow(capacity);
-        Ok(())
-    }
-
     /// Sets the sphere of an instance that plays something else.
     pub(super) fn bound_again(&mut self, index: u32) {
         if let Kind::Character(character) = &self.kind {
@@ -226,46 +214,6 @@ impl Object {
                 self.bound_again(index);
             }
         }
-    }
-
-    /// Lets everything start afresh.
-    pub(super) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        self.renew(gpu, layouts, self.instances.capacity())?;
-        self.instances.change_all();
-        Ok(())
-    }
-
-    fn renew(&mut self, gpu: &Gpu, layouts: &SceneLayouts, capacity: usize) -> Result<(), Error> {
-        if let Kind::Character(character) = &mut self.kind {
-            let (runtime, drawables) = character.on(gpu, layouts, capacity)?;
-            character.adopt(runtime);
-            self.drawables = drawables;
-        }
-        Ok(())
-    }
-
-    /// Everything on another device.
-    pub(super) async fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
-        let drawables = match &self.kind {
-            Kind::Terrain(terrain) => terrain::generated(gpu, layouts, &terrain.source).await?.2.0,
-            Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, merged)?.0,
-            Kind::Mesh(MeshOnHost::Relief(relief)) => relief::drawn(gpu, layouts, relief)?.1.0,
-            Kind::Character(character) => {
-                let (runtime, drawables) = character.on(gpu, layouts, self.instances.capacity())?;
-                return Ok(OnDevice { drawables, runtime: Some(runtime) });
-            }
-        };
-        Ok(OnDevice { drawables, runtime: None })
-    }
-
-    /// Takes everything on another device. Everything starts afresh.
-    pub(super) fn adopt(&mut self, OnDevice { drawables, runtime }: OnDevice) {
-        if let (Kind::Character(character), Some(runtime)) = (&mut self.kind, runtime) {
-            character.adopt(runtime);
-        }
-        self.drawables = drawables;
-        self.instances.change_all();
-        self.fitted = 0;
     }
 
     /// Provides what the views of a frame need of a character. Where a binding is too small for it, its levels of detail
