@@ -10,6 +10,8 @@ mod modules;
 
 #[path = "build/bindings.rs"]
 mod bindings;
+#[path = "build/prefix.rs"]
+mod prefix;
 #[path = "build/sources.rs"]
 mod sources;
 #[path = "build/types.rs"]
@@ -27,7 +29,7 @@ mod shaders {
     use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
 
     use crate::bindings::Bindings;
-    use crate::{limits, modules};
+    use crate::{limits, modules, prefix};
 
     pub fn build() {
         let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
@@ -47,9 +49,10 @@ mod shaders {
                 let name = format!("{prefix}{}", stem.display());
                 let shader = Shader::compose(&root, &file, name, Keep::Entries);
                 let path = out.join(format!("{}.wgsl", shader.constant().to_lowercase()));
+                bindings.add(&root, &file, &shader);
+                let shader = shader.published(&root, &file);
                 std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
                 shader.describe(&mut manifest, &path);
-                bindings.add(&root, &file, &shader);
                 all.push(shader);
             }
         }
@@ -117,7 +120,8 @@ mod shaders {
     fn refuse_unused_module_bindings(root: &Path, shaders: &[Shader]) {
         for file in shader_files(&root.join("wgsl")) {
             for name in declared_bindings(root, &file) {
-                if !shaders.iter().any(|shader| shader.uses(&name)) {
+                let prefixed = format!("{}{name}", prefix::PREFIX);
+                if !shaders.iter().any(|shader| shader.uses(&name) || shader.uses(&prefixed)) {
                     refuse_binding(root, &file, &name);
                 }
             }
@@ -218,6 +222,24 @@ mod shaders {
                 refuse(relative, &format!("{}{}", origin(root, &flat, at), error.emit_to_string(&flat)))
             });
             Self { name, flat, module, info }
+        }
+
+        /// What the names of its override constants begin with where it is published.
+        pub fn prefix(&self) -> &'static str {
+            if self.takes_shading() { prefix::PREFIX } else { "" }
+        }
+
+        /// Whether the caller's shading may replace a part of it.
+        fn takes_shading(&self) -> bool {
+            self.module.functions.iter().any(|(_, function)| function.name.as_deref() == Some("shade"))
+        }
+
+        /// The shader as it is compiled: if it takes the caller's shading, all of its names are prefixed.
+        fn published(self, root: &Path, file: &Path) -> Self {
+            match self.takes_shading() {
+                true => Self::validated(root, file, self.name.clone(), prefix::prefixed(&self.flat)),
+                false => self,
+            }
         }
 
         /// WESL strips what no entry point reaches, so a binding that the root file declares and the flat

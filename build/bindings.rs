@@ -142,7 +142,8 @@ impl ShaderBindings<'_> {
             writeln!(defaults, "            {field}: {value},").expect("a string");
             let number =
                 if ty == "f32" { format!("f64::from(self.{field})") } else { format!("self.{field}.into()") };
-            writeln!(list, "            ({name:?}, {number}),").expect("a string");
+            let published = format!("{}{name}", shader.prefix());
+            writeln!(list, "            ({published:?}, {number}),").expect("a string");
         }
         let constant = shader.constant();
         let name = &shader.name;

@@ -56,6 +56,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/skin", run: skinning::skin::bench::cases },
     Stem { name: "lod/select", run: lod::select::bench::cases },
     Stem { name: "lod/list", run: lod::list::bench::cases },
+    Stem { name: "lod/single", run: lod::single::bench::cases },
     Stem { name: "lod/assign", run: lod::assign::bench::cases },
     Stem { name: "lod/attach", run: lod::attach::bench::cases },
     // It draws pictures, so it comes last: afterwards lavapipe's timestamps are too short (see its cases).

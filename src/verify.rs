@@ -59,6 +59,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "skinning/skin", run: skinning::skin::verify::cases },
     Stem { name: "lod/select", run: lod::select::verify::cases },
     Stem { name: "lod/list", run: lod::list::verify::cases },
+    Stem { name: "lod/single", run: lod::single::verify::cases },
     Stem { name: "lod/assign", run: lod::assign::verify::cases },
     Stem { name: "lod/attach", run: lod::attach::verify::cases },
 ];

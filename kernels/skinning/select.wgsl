@@ -1,14 +1,17 @@
 // Selects the clusters that are skinned, among those of instances that are seen, at their level of detail:
 // clusters with an updated bone, clusters of instances whose influences changed, clusters beyond the level of
-// the frame before, and, with morph targets, clusters of instances whose weights changed. A thread decides for
-// one cluster. With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame and, with
+// the frame before, and, with morph targets, clusters of instances whose weights changed. With KEEP, the clusters of the
+// frame before are skinned once more, so that their last positions are those that they have. A thread decides for one
+// cluster. With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame and, with
 // CLEAR, clears its updated bones; the first thread writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
-import package::wgsl::skinning::cluster::CLUSTER;
+import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH, CLUSTER_MOVED, CLUSTER_STILL};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 
 override FINISH: bool = false;
 override CLEAR: bool = false;
+// Whether last positions are kept.
+override KEEP: bool = false;
 
 // Words per instance in `skinned`, before its weights.
 const SKINNED_WORDS: u32 = 4u;
@@ -50,7 +53,8 @@ struct Dispatched {
 // The state of each instance after the frame before: its InstanceLod, the number of frames for which it has
 // been seen (2 for more), and its weights.
 @group(0) @binding(6) var<storage, read_write> skinned: array<u32>;
-// cluster * instances + instance, for each pair to be skinned.
+// cluster * instances + instance, for each pair to be skinned. With KEEP, there follows for each pair what was done to it,
+// one of `CLUSTER_STILL`, `CLUSTER_MOVED` and `CLUSTER_FRESH`.
 @group(0) @binding(7) var<storage, read_write> pairs: array<u32>;
 @group(0) @binding(8) var<storage, read_write> dispatched: Dispatched;
 
@@ -127,6 +131,13 @@ fn main(
     }
     if params.targets > 0u && !found {
         found = is_morphed_anew(cluster, instance, last);
+    }
+    if KEEP {
+        let state = params.clusters * params.instances + index;
+        let was_moved = pairs[state] == CLUSTER_MOVED;
+        let is_fresh = skinned[last + 1u] == 0u || cluster >= clusters_of(skinned[last + 2u]);
+        pairs[state] = select(CLUSTER_STILL, select(CLUSTER_MOVED, CLUSTER_FRESH, is_fresh), found);
+        found = found || was_moved;
     }
     if found {
         pairs[atomicAdd(&dispatched.count, 1u)] = index;

@@ -2,7 +2,7 @@
 // InstanceLod leaves. Instances that are not seen, and vertices beyond an instance's level of detail, are
 // skipped. A workgroup skins a cluster of vertices of one instance: every such cluster, or with COMPACTED
 // those of a list. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
-import package::wgsl::skinning::cluster::CLUSTER;
+import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 import package::wgsl::skinning::page::NO_PAGE;
 import package::wgsl::skinning::rows::{LEAST_LENGTH, Rows, rows_of_dual};
@@ -15,6 +15,8 @@ override DUAL: bool = false;
 override MORPHED: bool = false;
 // Whether the output lies in pages. Clusters without a page are skipped.
 override PAGED: bool = false;
+// With COMPACTED and PAGED, whether the positions of the frame before are kept.
+override KEEP: bool = false;
 
 struct SkinParams {
     vertices: u32,
@@ -25,6 +27,8 @@ struct SkinParams {
     // Number of instances in the output; in the other buffers they start at `first_instance`.
     instances: u32,
     first_instance: u32,
+    // With KEEP, the index in `skinned` of the last positions, two pairs per vertex.
+    last: u32,
     // Number of clusters at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
@@ -39,11 +43,12 @@ struct SkinParams {
 // Three rows per bone and instance, or with DUAL four vectors.
 @group(0) @binding(3) var<storage, read> palette: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
-// cluster * instances + instance, for each pair to be skinned.
+// cluster * instances + instance, for each pair to be skinned. With KEEP, there follows for each pair what is done to it.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
-// Skinned vertices in the layout of `vertices`, instance by instance or page by page.
+// Skinned vertices in the layout of `vertices`, instance by instance or page by page; with KEEP, behind all of them the last
+// positions, of which the last number is unused.
 @group(0) @binding(7) var<storage, read_write> skinned: array<vec2<f32>>;
 // With PAGED the page of each cluster of each instance.
 @group(0) @binding(8) var<storage, read> page_table: array<u32>;
@@ -183,6 +188,14 @@ fn main(
     let normal = unit_or(
         side * vec3<f32>(dot(of_x, old_normal), dot(cross(z, x), old_normal), dot(cross(x, y), old_normal)), old_normal);
     let tangent = unit_or(vec3<f32>(dot(x, along), dot(y, along), dot(z, along)), along);
+    if KEEP {
+        let kept = params.last + 2u * (to / 5u);
+        let is_fresh = pairs[params.pairs + pair] == CLUSTER_FRESH;
+        let before = vertex_position(skinned[to], skinned[to + 1u]);
+        let last_position = select(before, position, is_fresh);
+        skinned[kept] = last_position.xy;
+        skinned[kept + 1u] = vec2<f32>(last_position.z, 0.0);
+    }
     skinned[to] = position.xy;
     skinned[to + 1u] = vec2<f32>(position.z, normal.x);
     skinned[to + 2u] = normal.yz;

@@ -84,6 +84,10 @@ pub enum Alpha {
     /// sorting, and depth is written. Where two such surfaces overlap, the nearer hides all of the other unless
     /// that one is denser.
     Dithered,
+    /// Blended with what is behind it. In scenes this needs a layer of its own,
+    /// `render::Layer::Transparent`, which draws such surfaces from back to front, instance by instance; no other layer shows
+    /// them. Where there is no such layer, it is drawn as [`Alpha::Dithered`].
+    Blended,
 }
 
 /// The threshold for a pixel of [`Alpha::Dithered`], between 0 and 1: pixels with an alpha below it are not

@@ -4,6 +4,7 @@
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
 use crate::InputError;
+use crate::asset::material::Alpha;
 use crate::asset::{Material, Mesh};
 
 /// A skeleton with its skins, clips and meshes.
@@ -27,6 +28,14 @@ pub struct Model {
 }
 
 impl Model {
+    /// Lets the materials whose transparency is a pattern of opaque pixels ([`Alpha::Dithered`], as the import makes of
+    /// glTF's `BLEND`) be blended with what is behind them ([`Alpha::Blended`]).
+    pub fn blend(&mut self) {
+        for material in self.materials.iter_mut().filter(|material| material.alpha == Alpha::Dithered) {
+            material.alpha = Alpha::Blended;
+        }
+    }
+
     /// The material of a mesh, if it has one.
     ///
     /// # Errors

@@ -21,6 +21,7 @@ pub struct Camera {
 
 impl Camera {
     /// A camera that sees a box from the south, at a low angle.
+    #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn framing(low: Vec3, high: Vec3) -> Self {
         let (center, extent) = ((low + high) / 2.0, (high - low).max(Vec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;

@@ -1,11 +1,15 @@
 //! The targets into which a scene is drawn: what they are, and nothing of what is drawn.
 
+use wgpu::TextureFormat as Format;
+
+use super::contents::{Contents, can_blend};
+use super::renderer::Layer;
 use crate::InputError;
 
 /// The attachments of the render passes, or of the render bundles, into which a [`Renderer`](super::Renderer) draws.
 ///
-/// The crate's shading writes the first colour attachment. Others may belong to the caller's own draws: what a
-/// renderer draws leaves them as they are.
+/// The first colour attachments are written; [`Contents`] says how many, and with what. Others may belong to the caller's
+/// own draws: what a renderer draws leaves them as they are.
 ///
 /// # Examples
 ///
@@ -30,10 +34,12 @@ use crate::InputError;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with `None` where the pass has none. The first is written, with its blending and its
-    /// write mask. Shading writes values in linear light, which a format with `Srgb` in its name encodes; the format must
-    /// hold floats or normalized integers.
+    /// Colour attachments, at most 8, with `None` where the pass has none. Those that hold [`TargetFormat::contents`] are
+    /// written, with their blending and write masks. Shading writes values in linear light, which a format with `Srgb` in
+    /// its name encodes; the format must hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
+    /// What the first colours hold.
+    pub contents: Contents,
     /// The depth attachment. Without one, what is drawn last covers the rest.
     pub depth: Option<DepthFormat>,
     /// Samples per pixel: 1 or 4.
@@ -58,7 +64,30 @@ impl TargetFormat {
 
     /// No colour, for shadow maps and prepasses of their own: depth that grows with distance, and one sample.
     pub fn depth_only(format: wgpu::TextureFormat) -> Self {
-        Self { color: Vec::new(), depth: Some(DepthFormat { format, reversed: false }), samples: 1 }
+        let depth = Some(DepthFormat { format, reversed: false });
+        Self { color: Vec::new(), contents: Contents::Color, depth, samples: 1 }
+    }
+
+    /// For [`Layer::Surface`]: `Rgba16Float`, `Rgba8Unorm` and `Rg16Uint`, 20 of the 32 bytes that WebGPU allows a sample,
+    /// `Depth32Float` that grows with distance, and one sample.
+    pub fn surface() -> Self {
+        Self::holding(Contents::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
+    }
+
+    /// For [`Layer::Velocity`]: `Rg16Float`, `Depth32Float` that grows with distance, and one sample.
+    pub fn velocity() -> Self {
+        Self::holding(Contents::Velocity, &[Format::Rg16Float])
+    }
+
+    /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, 24 of the 32 bytes that WebGPU allows a sample,
+    /// `Depth32Float` that grows with distance, and one sample.
+    pub fn measure() -> Self {
+        Self::holding(Contents::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
+    }
+
+    fn holding(contents: Contents, formats: &[Format]) -> Self {
+        let color = formats.iter().map(|format| Some((*format).into())).collect();
+        Self { color, contents, ..Self::depth_only(Format::Depth32Float) }
     }
 
     /// The same with one more colour attachment.
@@ -101,22 +130,48 @@ impl TargetFormat {
         if self.depth.is_none() && self.color.iter().all(Option::is_none) {
             return Err(InputError::new("format", "no attachment", "must have a colour or a depth"));
         }
-        for (at, color) in self.color.iter().enumerate() {
-            let Some(color) = color else { continue };
-            let is_float =
-                matches!(color.format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }));
-            if !color.format.has_color_aspect() || at == 0 && !is_float {
-                let bound = if at == 0 { "must be a colour of floats" } else { "must be a colour" };
-                let value = format!("{:?}", color.format);
-                return Err(InputError::new(format!("format.color[{at}].format"), value, bound));
-            }
-        }
+        self.check_colors()?;
         if let Some(DepthFormat { format, .. }) = self.depth.filter(|depth| !depth.format.has_depth_aspect())
         {
             return Err(InputError::new("format.depth.format", format!("{format:?}"), "must have depth"));
         }
         if ![1, 4].contains(&self.samples) {
             return Err(InputError::new("format.samples", self.samples, "must be 1 or 4"));
+        }
+        Ok(())
+    }
+
+    fn check_colors(&self) -> Result<(), InputError> {
+        let refused = |at: usize, format: Format, bound: &str| {
+            Err(InputError::new(format!("format.color[{at}].format"), format!("{format:?}"), bound))
+        };
+        for (at, color) in self.color.iter().enumerate() {
+            match color {
+                Some(color) if !color.format.has_color_aspect() => {
+                    return refused(at, color.format, "must be a colour");
+                }
+                _ => {}
+            }
+        }
+        let is_plain = self.contents == Contents::Color;
+        for (at, (fits, bound)) in self.contents.wanted().iter().enumerate() {
+            match self.color.get(at).and_then(Option::as_ref) {
+                Some(color) if !fits(color.format) => return refused(at, color.format, bound),
+                Some(color) if !is_plain && color.blend.is_some() => {
+                    let path = format!("format.color[{at}].blend");
+                    return Err(InputError::new(path, "blending", "must be none for these contents"));
+                }
+                None if !is_plain => {
+                    return Err(InputError::new(format!("format.color[{at}]"), "nothing", *bound));
+                }
+                _ => {}
+            }
+        }
+        if !is_plain && self.depth.is_none() {
+            return Err(InputError::new("format.depth", "nothing", "must be there for these contents"));
+        }
+        if self.contents == Contents::Measure && self.samples != 1 {
+            return Err(InputError::new("format.samples", self.samples, "must be 1 for positions"));
         }
         Ok(())
     }
@@ -180,9 +235,19 @@ impl TargetFormat {
         Ok(has.flags)
     }
 
-    /// Whether there is a colour for the crate's shading.
-    pub(super) fn is_colored(&self) -> bool {
-        self.color.first().is_some_and(Option::is_some)
+    /// The layers that can be drawn.
+    pub(super) fn layers(&self) -> impl Iterator<Item = Layer> + use<> {
+        let first = self.color.first().and_then(Option::as_ref);
+        let [own, other] = match self.contents {
+            Contents::Color => {
+                let blends = first.filter(|color| can_blend(color.format));
+                [first.map(|_| Layer::Color), blends.map(|_| Layer::Transparent)]
+            }
+            Contents::Surface => [Some(Layer::Surface), None],
+            Contents::Velocity => [Some(Layer::Velocity), None],
+            Contents::Measure => [Some(Layer::Measure), None],
+        };
+        own.into_iter().chain(other).chain(self.depth.map(|_| Layer::Depth))
     }
 
     /// Whether depth falls with distance.
@@ -190,10 +255,14 @@ impl TargetFormat {
         self.depth.is_some_and(|depth| depth.reversed)
     }
 
-    /// The colour attachments as a pipeline sees them that writes the first, or none.
-    pub(super) fn targets(&self, writes: bool) -> Vec<Option<wgpu::ColorTargetState>> {
+    /// The colour attachments as a pipeline of a layer sees them.
+    pub(super) fn targets(&self, layer: Layer) -> Vec<Option<wgpu::ColorTargetState>> {
         let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
-            color.clone().map(|color| match writes && at == 0 {
+            color.clone().map(|color| match at < layer.colors() {
+                true if layer == Layer::Transparent => wgpu::ColorTargetState {
+                    blend: color.blend.or(Some(wgpu::BlendState::ALPHA_BLENDING)),
+                    ..color
+                },
                 true => color,
                 false => wgpu::ColorTargetState {
                     format: color.format,
@@ -205,8 +274,8 @@ impl TargetFormat {
         self.color.iter().enumerate().map(masked).collect()
     }
 
-    /// The depth test: nearer, or as near.
-    pub(super) fn depth_state(&self) -> Option<wgpu::DepthStencilState> {
+    /// The depth test of a layer: nearer, or as near.
+    pub(super) fn depth_state(&self, layer: Layer) -> Option<wgpu::DepthStencilState> {
         let DepthFormat { format, reversed } = self.depth?;
         let compare = match reversed {
             true => wgpu::CompareFunction::GreaterEqual,
@@ -214,7 +283,7 @@ impl TargetFormat {
         };
         Some(wgpu::DepthStencilState {
             format,
-            depth_write_enabled: Some(true),
+            depth_write_enabled: Some(layer != Layer::Transparent),
             depth_compare: Some(compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
@@ -226,57 +295,4 @@ impl TargetFormat {
 const MAX_COLORS: usize = 8;
 
 #[cfg(test)]
-mod tests {
-    use wgpu::TextureFormat as Format;
-
-    use super::*;
-
-    #[test]
-    fn formats_that_no_pass_has_are_refused_by_field() {
-        let good = || TargetFormat::new(Format::Rgba8UnormSrgb);
-        let with = |color: Vec<Option<wgpu::ColorTargetState>>| TargetFormat { color, ..good() };
-        let depth = |format| Some(DepthFormat { format, reversed: true });
-        for (format, path) in [
-            (good().with_samples(2), "format.samples"),
-            (good().with_depth(depth(Format::Stencil8)), "format.depth.format"),
-            (with(vec![Some(Format::R32Uint.into())]), "format.color[0].format"),
-            (with(vec![Some(Format::Depth32Float.into())]), "format.color[0].format"),
-            (good().with_color(Some(Format::Depth24Plus.into())), "format.color[1].format"),
-            (with(vec![None; 9]), "format.color.len"),
-            (with(vec![None]).with_depth(None), "format"),
-        ] {
-            assert_eq!(format.validate().expect_err("refused").path, path, "{format:?}");
-        }
-        for format in [
-            good().with_samples(4).reversed(),
-            good().with_color(None).with_color(Some(Format::R32Uint.into())).with_depth(None),
-            TargetFormat::depth_only(Format::Depth24PlusStencil8),
-            with(vec![None, Some(Format::Rgba16Float.into())]),
-        ] {
-            assert_eq!(format.validate(), Ok(()), "{format:?}");
-        }
-    }
-
-    #[test]
-    fn only_the_first_color_is_written_and_only_in_color() {
-        let blended = wgpu::ColorTargetState {
-            format: Format::Rgba8Unorm,
-            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-            write_mask: wgpu::ColorWrites::COLOR,
-        };
-        let format = TargetFormat {
-            color: vec![Some(blended.clone()), None, Some(blended.clone())],
-            ..TargetFormat::new(Format::R8Unorm)
-        };
-        let masks = |writes| {
-            let targets = format.targets(writes);
-            targets
-                .into_iter()
-                .map(|target| target.map(|target| (target.write_mask, target.blend)))
-                .collect::<Vec<_>>()
-        };
-        let left = Some((wgpu::ColorWrites::empty(), None));
-        assert_eq!(masks(true), [Some((blended.write_mask, blended.blend)), None, left]);
-        assert_eq!(masks(false), [left, None, left]);
-    }
-}
+mod tests;

@@ -9,6 +9,7 @@
 
 mod albedo;
 mod camera;
+mod contents;
 mod crowd;
 mod format;
 mod offscreen;
@@ -19,6 +20,7 @@ mod pipeline;
 pub mod posed;
 pub mod relief;
 mod renderer;
+mod shading;
 pub mod skinned;
 #[cfg(not(target_arch = "wasm32"))]
 mod square;
@@ -27,6 +29,7 @@ pub mod terrain;
 
 pub use albedo::Albedo;
 pub use camera::Camera;
+pub use contents::Contents;
 pub use crowd::{Character, CrowdScene};
 pub use format::{DepthFormat, TargetFormat};
 pub use offscreen::Offscreen;

@@ -1,6 +1,9 @@
 //! Draws a scene through a view into the caller's render pass or render bundle.
 
+mod layer;
 mod pipelines;
+mod programs;
+mod rebuild;
 mod scene_pass;
 #[cfg(all(test, feature = "samples"))]
 mod tests;
@@ -8,25 +11,16 @@ mod tests;
 use std::collections::HashMap;
 
 use super::format::TargetFormat;
+use super::shading::Shading;
 use crate::gpu::Gpu;
 use crate::lod::{OBJECT_LISTS, SceneDraw};
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, MeshDrawable};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView, MeshDrawable};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::{Scene, View};
 use crate::{Error, InputError};
+pub use layer::Layer;
 use pipelines::{Kind, PipelineKey};
 pub use scene_pass::ScenePass;
-
-/// What of a scene is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Layer {
-    /// The colour of opaque and cut-out surfaces, with their depth.
-    Color,
-    /// Depth alone: for a prepass, in front of [`Layer::Color`] on the same target, and for shadow maps. Reliefs write
-    /// their own depth.
-    Depth,
-}
 
 /// Draws scenes on targets of one format. A shadow map, or a target of another format, has a renderer of its own.
 ///
@@ -65,6 +59,8 @@ pub struct Renderer {
     gpu: Gpu,
     format: TargetFormat,
     layouts: SceneLayouts,
+    /// The caller's shading, if it is not the crate's.
+    shading: Option<Shading>,
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
 }
 
@@ -78,18 +74,39 @@ impl Renderer {
         format.validate()?;
         format.check_on(gpu.device())?;
         let layouts = SceneLayouts::new(gpu)?;
-        Ok(Self { gpu: gpu.clone(), format: format.clone(), layouts, pipelines: HashMap::new() })
+        let (gpu, format) = (gpu.clone(), format.clone());
+        Ok(Self { gpu, format, layouts, shading: None, pipelines: HashMap::new() })
+    }
+
+    /// The same renderer with the caller's shading in every pipeline of colour, and nothing compiled.
+    ///
+    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the crate's
+    /// own. It returns linear colour, and an alpha that the format's blending may use. The text may have further functions,
+    /// structs, constants and private variables, and resources in bind group 3, whose layout is `layout`, visible to the
+    /// fragment stage; before [`Renderer::draw`] the caller sets that group. Calls come from uniform control flow. The
+    /// text must not discard, and none of its names may begin with `relievo_`. Of WebGPU's default limits for the fragment
+    /// stage, the crate's pipelines use up to 2 storage buffers, 4 uniform buffers, 4 textures and 1 sampler.
+    ///
+    /// These are the two structs and the crate's own function:
+    ///
+    /// ```wgsl
+    #[doc = include_str!("../../wgsl/render/scene_shade.wgsl")]
+    /// ```
+    ///
+    /// # Errors
+    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1.
+    pub fn with_shading(
+        self,
+        source: &str,
+        layout: Option<&wgpu::BindGroupLayout>,
+    ) -> Result<Self, InputError> {
+        let shading = Some(Shading::new(source, layout)?);
+        Ok(Self { shading, pipelines: HashMap::new(), ..self })
     }
 
     /// The format of its targets.
     pub fn format(&self) -> &TargetFormat {
         &self.format
-    }
-
-    /// The layers that its targets can hold.
-    fn layers(&self) -> impl Iterator<Item = Layer> {
-        let color = self.format.is_colored().then_some(Layer::Color);
-        color.into_iter().chain(self.format.depth.map(|_| Layer::Depth))
     }
 
     /// Compiles the pipelines that these objects need and that are not there yet.
@@ -98,9 +115,9 @@ impl Renderer {
         objects: impl Iterator<Item = &'a Drawable>,
     ) -> Result<(), Error> {
         let kinds: Vec<Kind> = objects.flat_map(kinds_of).collect();
-        let layers: Vec<Layer> = self.layers().collect();
+        let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
-            for kind in &kinds {
+            for kind in kinds.iter().filter(|kind| kind.is_in(layer)) {
                 for is_flipped in [false, true] {
                     self.compile(PipelineKey::new(layer, *kind, is_flipped))?;
                 }
@@ -114,22 +131,10 @@ impl Renderer {
     /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; what the driver's compiler reports.
+    /// [`InputError`] for a scene on another device of the same [`wgpu::Instance`]; what the driver's compiler reports.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         self.check_device(scene)?;
         self.prepare_objects(scene.drawables())
-    }
-
-    /// Compiles its pipelines again on another device, after its own was lost; the scene is rebuilt there too
-    /// ([`Scene::rebuild`]).
-    ///
-    /// # Errors
-    /// What the driver's compiler reports; then the renderer is as it was.
-    pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
-        let mut fresh = Self::new(gpu, &self.format)?;
-        self.pipelines.keys().try_for_each(|key| fresh.compile(*key))?;
-        *self = fresh;
-        Ok(())
     }
 
     /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
@@ -142,14 +147,15 @@ impl Renderer {
     }
 
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
-    /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: viewport, scissor
-    /// and stencil reference are the caller's. The pass must have the attachments and the samples of the renderer's format,
-    /// which wgpu checks.
+    /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: bind group 3,
+    /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and the samples of the
+    /// renderer's format, which wgpu checks.
     ///
     /// # Errors
     /// [`InputError`] for a scene on another device; a view of another scene; one that was not recorded since objects were
     /// added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
-    /// of depth; a layer that the format has no attachment for; and objects that were added since [`Renderer::prepare`].
+    /// of depth; a layer that the format has no attachment for; objects that were added since [`Renderer::prepare`]; and for
+    /// [`Layer::Velocity`] a scene that does not keep its last frame.
     pub fn draw<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -158,12 +164,18 @@ impl Renderer {
         layer: Layer,
     ) -> Result<(), InputError> {
         self.check_device(scene)?;
-        match scene.drawn(view)? {
-            Some((drawn, objects)) => self.draw_objects(pass, &drawn, objects.iter().copied(), layer),
-            None => Ok(()),
+        let Some((drawn, objects)) = scene.drawn(view)? else { return Ok(()) };
+        if layer == Layer::Transparent {
+            self.check(&drawn, objects.iter().copied(), layer)?;
+            if let Some(singles) = scene.drawn_singles(view) {
+                self.draw_singles(pass, &drawn, &singles);
+            }
+            return Ok(());
         }
+        self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
     }
 
+    /// wgpu does not tell devices of different instances from each other.
     fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
         match scene.gpu().device() == self.gpu.device() {
             true => Ok(()),
@@ -173,7 +185,7 @@ impl Renderer {
 
     fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {
         if !self.pipelines.contains_key(&key) {
-            let pipeline = key.pipeline(&self.gpu, &self.format, &self.layouts)?;
+            let pipeline = key.pipeline(&self.gpu, &self.format, &self.layouts, self.shading.as_ref())?;
             self.pipelines.insert(key, pipeline);
         }
         Ok(())
@@ -191,14 +203,7 @@ impl Renderer {
         objects: impl Iterator<Item = DrawnObject<'a>> + Clone,
         layer: Layer,
     ) -> Result<(), InputError> {
-        self.check(view, layer)?;
-        for (at, object) in objects.clone().enumerate() {
-            let is_ready = |kind| self.pipeline(layer, kind, false).is_some();
-            if !kinds_of(object.drawable).all(is_ready) {
-                let bound = "must be prepared for this renderer after the object was added";
-                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
-            }
-        }
+        self.check(view, objects.clone(), layer)?;
         pass.set_bind_group(0, view.group);
         for object in objects.filter(|object| object.lod.instances > 0) {
             match object.drawable {
@@ -220,8 +225,38 @@ impl Renderer {
         Ok(())
     }
 
-    fn check(&self, view: &DrawnView<'_>, layer: Layer) -> Result<(), InputError> {
-        if !self.layers().any(|known| known == layer) {
+    /// Draws parts of instances one by one.
+    fn draw_singles<'a>(
+        &'a self,
+        pass: &mut impl ScenePass<'a>,
+        view: &DrawnView<'a>,
+        singles: &DrawnSingles<'a>,
+    ) {
+        pass.set_bind_group(0, view.group);
+        for DrawnSingle { mesh, part, draw, instance, is_mirrored } in &singles.parts {
+            let is_flipped = *is_mirrored != view.mirrors;
+            let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped) else {
+                continue;
+            };
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &mesh.group);
+            pass.set_bind_group(2, part.materials.group());
+            pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
+            let bytes = [*instance, instance + 1].map(|index| u64::from(index) * size_of::<u32>() as u64);
+            pass.set_vertex_buffer(0, singles.identity.raw().slice(bytes[0]..bytes[1]));
+            let offset = u64::from(*draw) * size_of::<SceneDraw>() as u64;
+            pass.draw_indexed_indirect(singles.draws.raw(), offset);
+        }
+    }
+
+    /// Whether a layer of these objects can be drawn in a view.
+    fn check<'a>(
+        &self,
+        view: &DrawnView<'_>,
+        objects: impl Iterator<Item = DrawnObject<'a>>,
+        layer: Layer,
+    ) -> Result<(), InputError> {
+        if !self.format.layers().any(|known| known == layer) {
             let bound = "must be a layer for which the renderer's format has an attachment";
             return Err(InputError::new("layer", format!("{layer:?}"), bound));
         }
@@ -230,6 +265,17 @@ impl Renderer {
             let bound =
                 format!("must be {}, as the renderer's format says", direction(self.format.is_reversed()));
             return Err(InputError::new("view.camera.depth", direction(view.reversed), bound));
+        }
+        if layer == Layer::Velocity && !view.keeps_last {
+            let bound = "must keep the last frame: Scene::keep_last_frame";
+            return Err(InputError::new("scene", "does not keep the last frame", bound));
+        }
+        for (at, object) in objects.enumerate() {
+            let is_ready = |kind| self.pipeline(layer, kind, false).is_some();
+            if !kinds_of(object.drawable).filter(|kind| kind.is_in(layer)).all(is_ready) {
+                let bound = "must be prepared for this renderer after the object was added";
+                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
+            }
         }
         Ok(())
     }
@@ -248,7 +294,7 @@ impl Renderer {
     ) {
         pass.set_bind_group(1, &mesh.group);
         pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
-        for (index, part) in (0..).zip(&mesh.parts) {
+        for (index, part) in (0..).zip(&mesh.parts).filter(|(_, part)| Kind::of(part).is_in(layer)) {
             pass.set_bind_group(2, part.materials.group());
             for is_mirrored in [false, true] {
                 let is_flipped = is_mirrored != view.mirrors;

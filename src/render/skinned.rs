@@ -67,7 +67,7 @@ impl SkinnedRenderer {
             fragment: match alpha {
                 Alpha::Opaque => "opaque",
                 Alpha::Mask(_) => "masked",
-                Alpha::Dithered => "screened",
+                Alpha::Dithered | Alpha::Blended => "screened",
             },
             constants: &[("DOUBLE_SIDED", is(Sides::Both)), ("MIRRORED", is(Sides::OuterMirrored))],
             topology: wgpu::PrimitiveTopology::TriangleList,

@@ -10,7 +10,7 @@ use crate::animation::local_to_model::reference::affine;
 use crate::asset::Transform;
 use crate::gpu::{Buffer, Gpu, Staged, Uniform, Upload as _};
 use crate::lod::attach::{AttachParams, Attachment};
-use crate::lod::{INSTANCE_CARRIES, SceneInstance};
+use crate::lod::{INSTANCE_CARRIES, INSTANCE_FOLLOWS, SceneInstance};
 use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId, Slots};
 use crate::scene::instances;
@@ -66,7 +66,8 @@ impl Scene {
     /// and takes a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. The bones of a character
     /// that carries a mesh are sampled in every frame in which it is seen, so that the mesh is at its place but for
     /// rounding. Where no view of a frame sees the character (it is hidden, or masks leave it out), the mesh is not drawn
-    /// either. Despawning the character detaches the mesh.
+    /// either. Despawning the character detaches the mesh. [`Layer::Velocity`](crate::render::Layer::Velocity) shows what is
+    /// attached as if it did not move.
     ///
     /// It takes sampling each clip that the character plays, once for each bone.
     ///
@@ -115,6 +116,7 @@ impl Scene {
         let object = self.instance_mut(mesh)?;
         let sphere = object.sphere;
         object.instances.change(mesh.index, |instance| {
+            instance.flags &= !INSTANCE_FOLLOWS;
             instances::place(instance, &own);
             instances::bound(instance, &sphere);
         });
@@ -219,6 +221,7 @@ fn follow(mesh: &mut SceneInstance, leader: &SceneInstance, path: &BonePath, off
     let mirrors = path.mirrors != (offset.scale.iter().filter(|scale| **scale < 0.0).count() % 2 == 1);
     let factors = Vec3::new(if mirrors { -enlarged } else { enlarged }, enlarged, enlarged);
     let [x, y, z, radius] = leader.bounding_sphere;
+    mesh.flags |= INSTANCE_FOLLOWS;
     mesh.cell = leader.cell;
     mesh.offset = leader.offset;
     mesh.rotation = leader.rotation;

@@ -5,7 +5,7 @@ mod layers;
 mod posed;
 mod runtime;
 
-use crate::animation::{BoundTable, ClipSet, Frame, Gate, Instance, RootMotion, RotationPath, Wrap};
+use crate::animation::{BoundTable, ClipSet, Frame, Gate, RootMotion, RotationPath};
 #[cfg(feature = "verify")]
 use crate::asset::Affine;
 use crate::asset::Model;
@@ -14,7 +14,6 @@ use crate::gpu::{Gpu, Staged, Uniform, Upload as _};
 use crate::lod::assign::{AssignBuffers, AssignPass};
 use crate::lod::{LodObject, SceneDraw, SceneInstance, SelectView};
 use crate::scene::drawable::Drawable;
-use crate::scene::frame::Stage;
 use crate::scene::instances::Changed;
 use crate::scene::layers::{CharacterOptions, bone_of};
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
@@ -22,7 +21,9 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
 use crate::scene::paging::{Needs, needs};
 use crate::scene::placement::Play;
+use crate::scene::playing::Playing;
 use crate::scene::quality::Shares;
+use crate::scene::stage::Stage;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::instance_lod::InstanceLod;
@@ -63,16 +64,9 @@ pub(super) struct Character {
     reach: Option<Reach>,
     /// The motion that was taken out of each clip.
     motions: Option<Vec<RootMotion>>,
+    /// Whether last positions are kept.
+    keeps_last: bool,
     runtime: Runtime,
-}
-
-/// What an instance plays.
-#[derive(Debug, Clone, Copy)]
-struct Playing {
-    clip: u32,
-    wrap: Wrap,
-    start: f64,
-    rate: f32,
 }
 
 impl Character {
@@ -81,7 +75,7 @@ impl Character {
         gpu: &Gpu,
         mut merged: Merged,
         options: &CharacterOptions<'_>,
-        capacity: usize,
+        (capacity, keeps_last): (usize, bool),
     ) -> Result<Self, Error> {
         let motions = options.root_motion.map(|root| root.take(&mut merged.model)).transpose()?;
         let model = &merged.model;
@@ -101,7 +95,7 @@ impl Character {
         let bone = |name: &str| bone_of(model, name);
         let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
         let reach = (!layers.is_empty()).then(|| Reach::new(model, &radii));
-        let runtime = Runtime::new(gpu, model, (&set, &layers), &gate, capacity)?;
+        let runtime = Runtime::new(gpu, model, (&set, &gate, &layers), (capacity, keeps_last))?;
         let mut changed = Changed::default();
         changed.all(capacity);
         Ok(Self {
@@ -119,8 +113,14 @@ impl Character {
             layers,
             reach,
             motions,
+            keeps_last,
             runtime,
         })
+    }
+
+    /// Keeps last positions of what is made on a device from now on, or does no longer.
+    pub fn keep_last(&mut self, keeps_last: bool) {
+        self.keeps_last = keeps_last;
     }
 
     /// Everything on a device, with room for `capacity` instances, and how it is drawn.
@@ -130,8 +130,8 @@ impl Character {
         layouts: &SceneLayouts,
         capacity: usize,
     ) -> Result<(Runtime, Vec<Drawable>), Error> {
-        let data = (&self.set, &self.layers[..]);
-        let runtime = Runtime::new(gpu, &self.merged.model, data, &self.gate, capacity)?;
+        let data = (&self.set, &self.gate, &self.layers[..]);
+        let runtime = Runtime::new(gpu, &self.merged.model, data, (capacity, self.keeps_last))?;
         let drawables = runtime.drawables(gpu, layouts, &self.merged)?;
         Ok((runtime, drawables))
     }
@@ -296,8 +296,9 @@ impl Character {
             self.layers.iter_mut().for_each(|layer| layer.changed.all(self.plays.len()));
         }
         for [from, to] in self.changed.take(self.plays.len()) {
-            let plays =
-                self.plays[from..to].iter().map(|play| play.on_device(&self.merged.model, self.epoch));
+            let clips = &self.merged.model.clips;
+            let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
+            let plays = self.plays[from..to].iter().map(|play| play.on_device(duration(play), self.epoch));
             staged.elements(&self.runtime.crowd.instances, from, &plays.collect::<Vec<_>>())?;
         }
         self.stage_layers(staged, now)?;
@@ -326,23 +327,5 @@ impl Character {
             Stage::LocalToModel => runtime.frame.dispatch_local_to_model(pass),
             Stage::Skin => runtime.skins.iter().for_each(|skin| skin.dispatch(pass)),
         }
-    }
-}
-
-impl Playing {
-    /// The first clip, from time 0 on.
-    const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
-
-    /// What an instance plays, with a start that is counted from an epoch. The start of a clip that repeats is moved by whole
-    /// repetitions, so that it stays near.
-    fn on_device(&self, model: &Model, epoch: f64) -> Instance {
-        let mut start = self.start - epoch;
-        let duration = f64::from(model.clips[self.clip as usize].duration());
-        let period = duration / f64::from(self.rate.abs());
-        if self.wrap == Wrap::Loop && period > 0.0 && period.is_finite() {
-            start %= period;
-        }
-        // The device computes start + rate · elapsed inside the clip.
-        Instance::new(self.clip, self.wrap, (-start * f64::from(self.rate)) as f32, self.rate)
     }
 }

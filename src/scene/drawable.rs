@@ -37,6 +37,8 @@ pub(crate) struct MeshGeometry {
     pub params: Uniform<MeshParams>,
     /// Vertices in the model's space: of the mesh, or in pages of each instance.
     pub vertices: Buffer<Vertex>,
+    /// Where last positions begin in `vertices`, in pairs of floats; 0 if there are none.
+    pub last: u32,
     /// The page of each cluster of each instance; any buffer if vertices do not lie in pages.
     pub page_table: Buffer<u32>,
     /// Texture coordinates, one pair per vertex of the mesh.
@@ -93,7 +95,7 @@ impl MeshDrawable {
         pages: &PageBuffers,
     ) -> Result<Self, GpuError> {
         let (vertices, page_table) = (pages.skinned.clone(), pages.table.clone());
-        let geometry = MeshGeometry { vertices, page_table, ..self.geometry.clone() };
+        let geometry = MeshGeometry { vertices, page_table, last: pages.last, ..self.geometry.clone() };
         Self::new(gpu, layouts, geometry, self.clusters, self.parts.clone())
     }
 }
@@ -131,6 +133,8 @@ impl MeshMaterials {
 pub(crate) struct SurfaceKind {
     /// Whether alpha decides which pixels are drawn (masked or dithered). A relief ignores alpha.
     pub cut_out: bool,
+    /// Whether it is blended with what is behind it, in a layer of its own.
+    pub blended: bool,
     /// Whether both sides of triangles are seen.
     pub double_sided: bool,
 }
@@ -202,6 +206,32 @@ pub(crate) struct DrawnObject<'a> {
     pub ground: Option<&'a Group>,
 }
 
+/// Instances that are drawn one by one.
+#[derive(Debug, Clone)]
+pub(crate) struct DrawnSingles<'a> {
+    /// The draws of all of them.
+    pub draws: &'a Buffer<SceneDraw>,
+    /// 0, 1, 2, …: the list of a single instance.
+    pub identity: &'a Buffer<u32>,
+    /// The parts, in the order in which they are drawn.
+    pub parts: Vec<DrawnSingle<'a>>,
+}
+
+/// A part of an instance that is drawn by itself.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DrawnSingle<'a> {
+    /// The mesh.
+    pub mesh: &'a MeshDrawable,
+    /// The part of it.
+    pub part: &'a MeshPart,
+    /// The index of its draw.
+    pub draw: u32,
+    /// The index of the instance in its object.
+    pub instance: u32,
+    /// Whether its placement mirrors.
+    pub is_mirrored: bool,
+}
+
 /// A view as a renderer needs it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawnView<'a> {
@@ -215,6 +245,8 @@ pub(crate) struct DrawnView<'a> {
     pub mirrors: bool,
     /// Whether depth falls with distance.
     pub reversed: bool,
+    /// Whether the scene keeps its last frame.
+    pub keeps_last: bool,
 }
 
 #[cfg(test)]

@@ -2,11 +2,13 @@
 
 use crate::animation::Frame;
 use crate::gpu::{Staged, Upload as _};
-use crate::lod::SelectView;
+use crate::lod::{SceneInstance, SelectView};
 use crate::scene::camera::Depth;
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
 use crate::scene::drive::Poses;
 use crate::scene::object::{self, Kind, Object};
+use crate::scene::order::Ordered;
+use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
@@ -16,50 +18,6 @@ use crate::{Error, InputError};
 /// What the caller records between sampling and model matrices.
 pub(super) type Between<'a> =
     &'a mut dyn FnMut(&mut wgpu::CommandEncoder, Poses<'_>) -> Result<(), InputError>;
-
-/// Number of stages of a frame.
-pub(super) const STAGES: usize = 5;
-
-/// A stage of a frame's compute work. Each is recorded for everything before the next one begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stage {
-    /// What views see and how fine.
-    Select,
-    /// Which bones are sampled.
-    Gate,
-    /// Their local transforms, and the weights of morph targets.
-    Sample,
-    /// Their model matrices.
-    LocalToModel,
-    /// The vertices.
-    Skin,
-}
-
-impl Stage {
-    /// All stages, in order.
-    pub const ALL: [Self; STAGES] = [Self::Select, Self::Gate, Self::Sample, Self::LocalToModel, Self::Skin];
-
-    /// All in one run.
-    const WHOLE: [&[Self]; 1] = [&Self::ALL];
-
-    /// Each in a run of its own.
-    const EACH: [&[Self]; STAGES] =
-        [&[Self::Select], &[Self::Gate], &[Self::Sample], &[Self::LocalToModel], &[Self::Skin]];
-
-    /// In two runs, between which the caller may write poses.
-    const HALVES: [&[Self]; 2] =
-        [&[Self::Select, Self::Gate, Self::Sample], &[Self::LocalToModel, Self::Skin]];
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Select => "scene: select",
-            Self::Gate => "scene: gate",
-            Self::Sample => "scene: sample",
-            Self::LocalToModel => "scene: local to model",
-            Self::Skin => "scene: skin",
-        }
-    }
-}
 
 impl Scene {
     /// Gives up all recordings whose encoders were dropped without being submitted, and lets everything start afresh, as
@@ -93,6 +51,21 @@ impl Scene {
         }
         self.layout = None;
         Ok(())
+    }
+
+    /// Keeps where everything was in the last frame from the next frame on, or does no longer; at first it is not kept.
+    /// [`Layer::Velocity`](crate::render::Layer::Velocity) needs it. Skinned vertices then take 1.4 times the memory,
+    /// what moved is skinned once more after it stops, and what the host changes is uploaded twice. Characters start
+    /// afresh.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn keep_last_frame(&mut self, keeps: bool) -> Result<(), Error> {
+        if std::mem::replace(&mut self.keeps_last, keeps) == keeps {
+            return Ok(());
+        }
+        self.objects.iter_mut().for_each(|object| object.keep_last(keeps));
+        self.refresh()
     }
 
     /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
@@ -142,6 +115,7 @@ impl Scene {
         }
         self.record_stages(encoder, views, between)?;
         self.count(encoder, views);
+        views.iter_mut().for_each(|view| view.recorded(self.frames));
         self.frames += 1;
         // Unless the time advances again, the next frame is as this one.
         self.step = 0.0;
@@ -237,12 +211,13 @@ impl Scene {
             arguments: &lists.arguments,
             mirrors: is_mirrored(&camera.clip_from_world()),
             reversed: camera.depth == Depth::Reversed,
+            keeps_last: self.keeps_last,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();
         for object in self.objects.iter() {
-            let ground = object.spacing().and_then(|_| view.ground(terrains));
-            terrains += usize::from(object.spacing().is_some());
+            let ground = object.seen_terrain().and_then(|_| view.ground(terrains));
+            terrains += usize::from(object.seen_terrain().is_some());
             if object.is_shown {
                 let of_object = object.drawables.iter().zip(&object.lods);
                 objects.extend(of_object.map(|(drawable, lod)| DrawnObject {
@@ -254,6 +229,25 @@ impl Scene {
             }
         }
         Ok(Some((drawn, objects)))
+    }
+
+    /// What is drawn instance by instance in a view, from back to front.
+    pub(crate) fn drawn_singles<'a>(&'a self, view: &'a View) -> Option<DrawnSingles<'a>> {
+        let lists = view.lists.as_ref()?;
+        let (_, draws) = lists.singles.as_ref()?;
+        let objects: Vec<&Object> = self.objects.iter().collect();
+        let mut parts = Vec::new();
+        for Ordered { object, instance, .. } in &lists.order {
+            let Some(object) = objects.get(*object).filter(|object| object.is_shown) else { continue };
+            let placed = object.instances.all().get(*instance as usize);
+            let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
+            for single in &object.singles {
+                let Drawable::Mesh(mesh) = &object.drawables[single.drawable] else { continue };
+                let (part, draw) = (&mesh.parts[single.part], single.first + instance);
+                parts.push(DrawnSingle { mesh, part, draw, instance: *instance, is_mirrored });
+            }
+        }
+        Some(DrawnSingles { draws, identity: &self.layout.as_ref()?.identity, parts })
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
@@ -271,7 +265,7 @@ impl Scene {
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;
-            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts)?;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, (self.layouts, self.keeps_last))?;
             self.objects.iter_mut().for_each(|object| object.instances.change_all());
             self.layout = Some(layout);
         }
@@ -280,9 +274,9 @@ impl Scene {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
         self.attachments.fit(&self.gpu, &self.objects, layout, &mut self.staged)?;
-        let terrains = self.objects.iter().filter_map(Object::spacing).count();
+        let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
-            let passes = (&self.passes.select, &self.passes.list);
+            let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
             let attachments = (&self.attachments, &self.objects);
             view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;
@@ -294,20 +288,27 @@ impl Scene {
         Ok(())
     }
 
-    fn stage(&mut self, views: &[&mut View]) -> Result<(), Error> {
+    fn stage(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         let Some(layout) = &self.layout else { return Ok(()) };
         let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
         for object in self.objects.iter_mut() {
             object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
         }
-        let spacings: Vec<f64> = self.objects.iter().filter_map(Object::spacing).collect();
+        let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
+        for (view, selected) in views.iter_mut().zip(&seen) {
+            view.order(self.objects.iter(), selected);
+        }
         for (at, view) in views.iter().enumerate() {
-            view.stage(&mut self.staged, (layout.blocks, &self.light), &spacings, at == 0)?;
+            let of_frame = (self.frames, at == 0);
+            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, of_frame)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {
             let first = object.range.first as usize;
+            for (at, run) in object.instances.take_last() {
+                self.staged.elements(&layout.last_instances, first + at, &run)?;
+            }
             for (at, run) in object.instances.take_changed() {
                 self.staged.elements(&layout.instances, first + at, run)?;
             }

@@ -25,6 +25,13 @@ pub struct ObjectId {
     pub(super) generation: u32,
 }
 
+impl ObjectId {
+    /// The number of the object in pictures and shaders, from 1 on. A later object may have it after a removal.
+    pub fn number(&self) -> u32 {
+        self.index + 1
+    }
+}
+
 /// An instance of an object of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct InstanceId {
@@ -43,6 +50,12 @@ impl InstanceId {
     /// The object.
     pub fn object(&self) -> ObjectId {
         self.object
+    }
+
+    /// The number of the instance in its object in pictures and shaders, from 0 on. A later instance may have it after a
+    /// removal.
+    pub fn number(&self) -> u32 {
+        self.index
     }
 }
 

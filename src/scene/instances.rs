@@ -3,7 +3,7 @@
 use crate::asset::transform::Transform;
 use crate::scene::placement::Placement;
 use crate::shared::lod::instance::{
-    INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, SceneInstance,
+    INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, INSTANCE_MASK_SHIFT, SceneInstance,
 };
 use crate::shared::lod::object::BLOCK;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -31,13 +31,22 @@ pub(super) struct Instances {
     /// Indices that are free; the last is used first.
     free: Vec<u32>,
     changed: Changed,
+    last: Option<Last>,
+}
+
+/// The instances of the last frame, where they are kept.
+#[derive(Debug)]
+struct Last {
+    all: Vec<SceneInstance>,
+    /// Which of them the device does not know yet.
+    changed: Changed,
 }
 
 impl Instances {
     /// Room for at least `capacity` instances.
     pub fn new(capacity: usize) -> Self {
         let mut instances =
-            Self { all: vec![], generations: vec![], free: vec![], changed: Changed::default() };
+            Self { all: vec![], generations: vec![], free: vec![], changed: Changed::default(), last: None };
         instances.grow(capacity);
         instances
     }
@@ -59,12 +68,24 @@ impl Instances {
         self.all.resize(after, NOBODY);
         self.generations.resize(after, 0);
         self.free.splice(0..0, (before as u32..after as u32).rev());
+        if let Some(last) = &mut self.last {
+            last.all.resize(after, NOBODY);
+        }
         self.change_all();
     }
 
     /// Counts everything as changed.
     pub fn change_all(&mut self) {
         self.changed.all(self.all.len());
+        if let Some(last) = &mut self.last {
+            last.changed.all(self.all.len());
+        }
+    }
+
+    /// Keeps the instances of the last frame from now on, or does no longer.
+    pub fn keep_last(&mut self, keeps: bool) {
+        self.last = keeps.then(|| Last { all: self.all.clone(), changed: Changed::default() });
+        self.change_all();
     }
 
     /// Adds an instance, if there is room; returns its index and its generation.
@@ -75,6 +96,11 @@ impl Instances {
             place(instance, placement);
             bound(instance, sphere);
         });
+        if let Some(last) = &mut self.last {
+            // It stands where it is, and did not come from where another was.
+            last.all[index as usize] = self.all[index as usize];
+            last.changed.add(index, self.all.len());
+        }
         Some([index, self.generations[index as usize]])
     }
 
@@ -110,6 +136,20 @@ impl Instances {
         self.changed.add(index, self.all.len());
     }
 
+    /// Takes the runs of instances whose last frame's state the device does not know, each with the index of its first. Call
+    /// it once a frame, before [`Instances::take_changed`]. What changed in the last frame is taken once more, as it is.
+    pub fn take_last(&mut self) -> Vec<(usize, Vec<SceneInstance>)> {
+        let (Some(last), count) = (&mut self.last, self.all.len()) else { return Vec::new() };
+        self.changed.indices.iter().for_each(|index| last.changed.add(*index, count));
+        let runs = last.changed.take(count).into_iter();
+        let runs = runs.map(|[from, to]| (from, last.all[from..to].to_vec())).collect();
+        for index in &self.changed.indices {
+            last.all[*index as usize] = self.all[*index as usize];
+            last.changed.add(*index, count);
+        }
+        runs
+    }
+
     /// Takes the runs of instances that have changed, each with the index of its first.
     pub fn take_changed(&mut self) -> Vec<(usize, &[SceneInstance])> {
         let all = &self.all;
@@ -119,7 +159,7 @@ impl Instances {
 
 /// Sets the visibility mask of an instance that exists, and whether it casts.
 pub(super) fn set_visibility(instance: &mut SceneInstance, mask: u16, casts: bool) {
-    instance.flags = flags(mask, casts) | instance.flags & INSTANCE_CARRIES;
+    instance.flags = flags(mask, casts) | instance.flags & (INSTANCE_CARRIES | INSTANCE_FOLLOWS);
 }
 
 /// The flags of an instance that exists.
@@ -198,6 +238,38 @@ mod tests {
         assert_eq!((instances.capacity(), instances.alive()), (192, 128));
         assert_eq!(spawn(&mut instances), Some([128, 0]));
         assert!(!instances.contains([500, 0]));
+    }
+
+    #[test]
+    fn the_last_frame_follows_by_a_frame() {
+        let mut instances = Instances::new(64);
+        assert!(instances.take_last().is_empty(), "nothing is kept");
+        instances.keep_last(true);
+        let mut known = [7; 64];
+        let mut frame = |instances: &mut Instances| {
+            let runs = instances.take_last();
+            for (from, run) in &runs {
+                run.iter().zip(*from..).for_each(|(instance, at)| known[at] = instance.word);
+            }
+            instances.take_changed();
+            (known, runs.iter().map(|(_, run)| run.len()).sum::<usize>())
+        };
+        assert_eq!(frame(&mut instances), ([0; 64], 64));
+        // All of them changed in the frame before, so all are taken once more.
+        assert_eq!(frame(&mut instances), ([0; 64], 64));
+        let at_9 = |word| std::array::from_fn(|at| if at == 9 { word } else { 0 });
+        instances.change(9, |instance| instance.word = 1);
+        assert_eq!(frame(&mut instances), (at_9(0), 1));
+        instances.change(9, |instance| instance.word = 2);
+        assert_eq!(frame(&mut instances), (at_9(1), 1));
+        assert_eq!(frame(&mut instances), (at_9(2), 1));
+        assert_eq!(frame(&mut instances), (at_9(2), 0));
+        // A new instance was where it is.
+        let [index, _] = instances.spawn(&Placement::default(), &SPHERE).expect("room");
+        let last = instances.take_last();
+        assert!(last.iter().any(|(from, run)| {
+            *from == index as usize && run[0].flags & INSTANCE_ALIVE != 0 && run[0].bounding_sphere[3] == 2.0
+        }));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use glam::Vec4;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
+use crate::lod::single::Single;
 use crate::scene::statistics::view::Counted;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
@@ -27,6 +28,8 @@ pub(crate) struct Layout {
     /// Counts the layouts of a scene: what was prepared for another is out of date.
     pub version: u64,
     pub instances: Buffer<SceneInstance>,
+    /// The same as they were in the last frame, if it is kept; else the same buffer.
+    pub last_instances: Buffer<SceneInstance>,
     /// The allowed displacement of each instance, in its model's units; −1 for those that no view sees.
     pub allowed: Buffer<f32>,
     pub objects: Buffer<LodObject>,
@@ -38,6 +41,10 @@ pub(crate) struct Layout {
     pub list_words: u32,
     /// The draws of a view that sees nothing.
     pub draws: Vec<SceneDraw>,
+    /// The parts of instances that are drawn one by one.
+    pub singles: Buffer<Single>,
+    /// 0, 1, 2, … for as many instances as the largest object with such parts has.
+    pub identity: Buffer<u32>,
     /// What statistics need to know of the objects.
     pub counted: Arc<Counted>,
 }
@@ -49,17 +56,25 @@ impl Layout {
     /// [`crate::gpu::GpuError`].
     pub(super) fn new(
         gpu: &Gpu,
-        (objects, draws): (&[LodObject], Vec<SceneDraw>),
+        (objects, draws, singles): (&[LodObject], Vec<SceneDraw>, &[Single]),
         end: ObjectRange,
-        (version, counted): (u64, Arc<Counted>),
+        (version, keeps_last, counted): (u64, bool, Arc<Counted>),
     ) -> Result<Self, Error> {
         let of_object =
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
         let block_objects: Vec<u32> = (0..).zip(objects).flat_map(of_object).collect();
         let count = end.first as usize;
+        let largest = objects.iter().map(|object| object.instances).max().filter(|_| !singles.is_empty());
+        let identity: Vec<u32> = (0..largest.unwrap_or(0)).collect();
+        let instances = Buffer::new(gpu, "instances", count)?;
+        let last_instances = match keeps_last {
+            true => Buffer::new(gpu, "instances in the last frame", count)?,
+            false => instances.clone(),
+        };
         Ok(Self {
             version,
-            instances: Buffer::new(gpu, "instances", count)?,
+            instances,
+            last_instances,
             allowed: Buffer::new(gpu, "allowed displacements", count)?,
             objects: Buffer::from_slice(gpu, "objects", objects)?,
             object_count: objects.len() as u32,
@@ -67,6 +82,8 @@ impl Layout {
             blocks: block_objects.len() as u32,
             list_words: end.first_list,
             draws,
+            singles: Buffer::from_slice(gpu, "single instances", singles)?,
+            identity: Buffer::from_slice(gpu, "lists of one", &identity)?,
             counted,
         })
     }

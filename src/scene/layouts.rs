@@ -32,7 +32,8 @@ impl SceneLayouts {
         })
     }
 
-    /// Group 0: a view, its `rows` (three for each instance of the scene), and all instances of the scene.
+    /// Group 0: a view, its `rows` (three for each instance of the scene), and all instances of the scene, as they are and as
+    /// they were in the last frame.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -41,9 +42,10 @@ impl SceneLayouts {
         gpu: &Gpu,
         view: &Uniform<SceneView>,
         rows: &Buffer<[f32; 4]>,
-        instances: &Buffer<SceneInstance>,
+        [instances, last]: [&Buffer<SceneInstance>; 2],
     ) -> Result<Group, GpuError> {
-        let group = scene_mesh::Group { view, rows: rows.slice(), instances: instances.slice() };
+        let (instances, last_instances) = (instances.slice(), last.slice());
+        let group = scene_mesh::Group { view, rows: rows.slice(), instances, last_instances };
         group.bind(gpu, &self.mesh)
     }
 

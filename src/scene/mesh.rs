@@ -11,7 +11,7 @@ use crate::skinning::at_rest::at_rest;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::Clusters;
-use crate::skinning::merged::{Merged, Part, merged};
+use crate::skinning::merged::{Merged, Part, PartKey, merged};
 use crate::skinning::pages::PageBuffers;
 use crate::{Error, InputError};
 
@@ -100,7 +100,8 @@ pub(super) fn drawable(
     let placed: Vec<u32> = clusters.order.iter().map(|vertex| entries[*vertex as usize]).collect();
     let parts = (own.iter().zip(&tables))
         .map(|(part, table)| {
-            let surface = SurfaceKind { cut_out: part.key.cut_out, double_sided: part.key.double_sided };
+            let PartKey { cut_out, blended, double_sided, .. } = part.key;
+            let surface = SurfaceKind { cut_out, blended, double_sided };
             let sampling = part.key.sampling.unwrap_or_default();
             let materials = PartMaterials::new(gpu, layouts, &merged.model, table, &sampling)?;
             Ok(MeshPart { surface, materials: MeshMaterials::Plain(materials) })
@@ -109,8 +110,13 @@ pub(super) fn drawable(
     let count = if pages.is_some() { buffers.clusters() as u32 } else { 0 };
     let material_of = Buffer::from_slice(gpu, "materials of vertices", &placed)?;
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 0, clusters: count })?,
+        params: Uniform::new(
+            gpu,
+            "mesh",
+            &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0 },
+        )?,
         vertices: pages.map_or(&buffers.vertices, |pages| &pages.skinned).clone(),
+        last: pages.map_or(0, |pages| pages.last),
         page_table: pages.map_or(&material_of, |pages| &pages.table).clone(),
         uv: buffers.uv.clone(),
         material_of,

@@ -27,15 +27,18 @@ mod measured;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
+pub(crate) mod order;
 mod paging;
 mod pick;
 mod placement;
+mod playing;
 mod quality;
 pub(crate) mod query;
 mod ray;
 mod rebuild;
 mod relief;
 mod spawned;
+mod stage;
 mod statistics;
 mod terrain;
 mod view;
@@ -63,6 +66,7 @@ use crate::lod::assign::AssignPass;
 use crate::lod::attach::AttachPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::lod::single::SinglePass;
 use crate::{Error, InputError};
 use attach::Attachments;
 use handles::Slots;
@@ -116,6 +120,8 @@ pub struct Scene {
     /// Seconds since the scene began, and seconds since the last frame.
     now: f64,
     step: f32,
+    /// Whether the last frame's placements and vertices are kept.
+    keeps_last: bool,
     /// Number of frames that were recorded.
     frames: u64,
     layout: Option<Layout>,
@@ -137,6 +143,7 @@ pub struct Scene {
 struct Passes {
     select: SelectPass,
     list: ListPass,
+    single: SinglePass,
     assign: AssignPass,
     attach: AttachPass,
 }
@@ -146,6 +153,7 @@ impl Passes {
         Ok(Self {
             select: SelectPass::new(gpu)?,
             list: ListPass::new(gpu)?,
+            single: SinglePass::new(gpu)?,
             assign: AssignPass::new(gpu)?,
             attach: AttachPass::new(gpu)?,
         })
@@ -167,6 +175,7 @@ impl Scene {
             light: Light::default(),
             now: 0.0,
             step: 0.0,
+            keeps_last: false,
             frames: 0,
             layout: None,
             layouts: 0,

@@ -11,26 +11,27 @@ use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::lod::SelectView;
 use crate::lod::assign::AssignPass;
 use crate::scene::character::Character;
-use crate::scene::drawable::{Drawable, MeshDrawable};
+use crate::scene::drawable::Drawable;
 use crate::scene::handles::Slots;
 use crate::scene::instances::{self, Instances};
 use crate::scene::layers::CharacterOptions;
 use crate::scene::layout::{Layout, ObjectRange, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh;
+use crate::scene::order::SinglePart;
 use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
 use crate::scene::statistics::view::Counted;
 use crate::scene::terrain::{self, Terrain, TerrainSource};
+use crate::scene::view::SeenTerrain;
 use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
-use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
-use crate::skinning::pages::PageBuffers;
 use crate::{Error, InputError};
 pub(super) use device::OnDevice;
+use device::{rebound, stage_params};
 
 /// An object of a scene.
 #[derive(Debug)]
@@ -46,6 +47,8 @@ pub(crate) struct Object {
     pub(super) coarsening: f32,
     /// Its number among the objects of the layout.
     pub(super) number: usize,
+    /// The number that its handle tells.
+    pub(super) handle: u32,
     pub(super) is_shown: bool,
     /// What is drawn, part by part.
     pub(crate) drawables: Vec<Drawable>,
@@ -55,6 +58,8 @@ pub(crate) struct Object {
     /// For each drawable, the object as kernels see it, with the draws of the drawable's parts, in the layout for which it
     /// was prepared.
     pub(crate) lods: Vec<LodObject>,
+    /// Its parts that are drawn instance by instance.
+    pub(super) singles: Vec<SinglePart>,
     pub(super) fitted: u64,
 }
 
@@ -108,11 +113,13 @@ impl Object {
             mesh_fraction,
             coarsening: 1.0,
             number: 0,
+            handle: 0,
             is_shown: true,
             drawables,
             draws,
             range: ObjectRange::default(),
             lods: Vec::new(),
+            singles: Vec::new(),
             fitted: 0,
         }
     }
@@ -162,21 +169,21 @@ impl Object {
         layouts: &SceneLayouts,
         (model, options): (&Model, &CharacterOptions<'_>),
         capacity: usize,
-        shares: Shares,
+        (shares, keeps_last): (Shares, bool),
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let merged = mesh::moving_merged(model)?;
-        let character = Character::new(gpu, merged, options, instances.capacity())?;
+        let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
         let drawn = (character.drawables(gpu, layouts)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let kind = Kind::Character(Box::new(character));
         Ok(Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn))
     }
 
-    /// World units between the samples of a terrain.
-    pub(super) fn spacing(&self) -> Option<f64> {
+    /// What views need to know of a terrain.
+    pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
         match &self.kind {
-            Kind::Terrain(terrain) => Some(terrain.spacing),
+            Kind::Terrain(terrain) => Some(SeenTerrain { spacing: terrain.spacing, object: self.handle }),
             Kind::Mesh(_) | Kind::Character(_) => None,
         }
     }
@@ -201,6 +208,14 @@ impl Object {
         if let Kind::Character(character) = &self.kind {
             let sphere = character.sphere_of(index);
             self.instances.change(index, |instance| instances::bound(instance, &sphere));
+        }
+    }
+
+    /// Keeps the last frame, once it is refreshed, or does no longer.
+    pub(super) fn keep_last(&mut self, keeps: bool) {
+        self.instances.keep_last(keeps);
+        if let Kind::Character(character) = &mut self.kind {
+            character.keep_last(keeps);
         }
     }
 
@@ -231,6 +246,7 @@ impl Object {
         // One mesh may have got its pages before another failed to.
         if provided.as_ref().map_or(true, |(_, is_replaced)| *is_replaced) {
             self.drawables = rebound(&self.drawables, gpu, layouts, character)?;
+            stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         }
         let (coarsening, _) = provided?;
         if coarsening != self.coarsening {
@@ -261,12 +277,7 @@ impl Object {
             self.lods.push(lod);
             lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
         }
-        for drawable in &self.drawables {
-            if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-                let params = MeshParams { first_instance: self.range.first, clusters: *clusters };
-                staged.uniform(&geometry.params, &params)?;
-            }
-        }
+        stage_params(staged, &self.drawables, self.range.first, self.handle)?;
         if let Kind::Character(character) = &mut self.kind {
             character.fit(gpu, layout, pass, (self.range, &self.errors, shares))?;
         }
@@ -280,20 +291,6 @@ impl Object {
     }
 }
 
-/// The same drawables over a character's pages, after these were replaced.
-fn rebound(
-    drawables: &[Drawable],
-    gpu: &Gpu,
-    layouts: &SceneLayouts,
-    character: &Character,
-) -> Result<Vec<Drawable>, Error> {
-    let with_pages = |(drawable, pages): (&Drawable, &PageBuffers)| match drawable {
-        Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.with_pages(gpu, layouts, pages)?)),
-        Drawable::Terrain(_) => Ok(drawable.clone()),
-    };
-    drawables.iter().zip(character.pages()).map(with_pages).collect()
-}
-
 /// Room for at least `capacity` instances.
 fn room(capacity: usize) -> Result<Instances, InputError> {
     match (1..=1 << 20).contains(&capacity) {
@@ -302,13 +299,18 @@ fn room(capacity: usize) -> Result<Instances, InputError> {
     }
 }
 
-/// Lays out objects, one after the other, and tells each its range.
+/// Lays out objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the
+/// last frame is kept.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
-pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> Result<Layout, Error> {
+pub(super) fn laid_out(
+    gpu: &Gpu,
+    objects: &mut Slots<Object>,
+    (version, keeps_last): (u64, bool),
+) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
-    let (mut all, mut draws) = (Vec::new(), Vec::new());
+    let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
     for object in objects.iter_mut() {
         object.range = range;
         object.number = all.len();
@@ -316,10 +318,11 @@ pub(super) fn laid_out(gpu: &Gpu, objects: &mut Slots<Object>, version: u64) -> 
         let instances = object.instances.capacity() as u32;
         all.push(object.lod_object());
         draws.extend_from_slice(&object.draws);
+        object.lay_out_singles(&mut singles);
         range.first += instances;
         range.first_list += 2 * object.errors.len() as u32 * instances;
         range.first_draw += object.draws.len() as u32;
     }
     let counted = Arc::new(Counted::new(objects));
-    Layout::new(gpu, (&all, draws), range, (version, counted))
+    Layout::new(gpu, (&all, draws, &singles), range, (version, keeps_last, counted))
 }

@@ -120,7 +120,10 @@ impl Scene {
         let layouts = &self.layouts_of_groups;
         match model.clips.is_empty() {
             true => Object::mesh(&self.gpu, layouts, model, capacity),
-            false => Object::character(&self.gpu, layouts, (model, options), capacity, self.shares),
+            false => {
+                let settings = (self.shares, self.keeps_last);
+                Object::character(&self.gpu, layouts, (model, options), capacity, settings)
+            }
         }
     }
 
@@ -154,7 +157,14 @@ impl Scene {
     fn add(&mut self, object: Object) -> ObjectId {
         self.layout = None;
         let [index, generation] = self.objects.insert(object);
-        ObjectId { scene: self.objects.scene(), index, generation }
+        let (id, keeps_last) = (ObjectId { scene: self.objects.scene(), index, generation }, self.keeps_last);
+        if let Some(object) = self.objects.get_mut([index, generation]) {
+            object.handle = id.number();
+            if keeps_last {
+                object.instances.keep_last(true);
+            }
+        }
+        id
     }
 
     /// Removes an object with all of its instances, and releases its memory.

@@ -1,9 +1,9 @@
 //! How many pages of skinned vertices a character needs in a frame: the host foresees what the device will decide, so that
 //! memory follows what is seen and no frame waits for an answer.
 
-use crate::lod::select::reference::{depth_inside, is_shown, placed_sphere, view_allows};
+use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere, view_allows};
 use crate::lod::{LodObject, SceneInstance, SelectView};
-use crate::skinning::pages::PAGE_BYTES;
+use crate::skinning::pages::{KEEPING_PAGE_BYTES, PAGE_BYTES};
 
 /// Up to this size, pages for all instances in full detail are allocated at once: 4 MiB.
 const SMALL: usize = 4 << 20;
@@ -23,19 +23,23 @@ pub(super) struct Paging {
     pub full: u32,
     /// As many as a binding holds.
     pub most: u32,
+    /// The bytes of a page.
+    bytes: usize,
 }
 
 impl Paging {
-    /// Of a mesh with so many clusters at each level, for so many instances, with bindings of so many bytes.
-    pub fn new(clusters: Vec<u32>, instances: usize, binding: u64) -> Self {
+    /// Of a mesh with so many clusters at each level, for so many instances, with bindings of so many bytes, with last
+    /// positions or without.
+    pub fn new(clusters: Vec<u32>, instances: usize, binding: u64, keeps_last: bool) -> Self {
+        let bytes = if keeps_last { KEEPING_PAGE_BYTES } else { PAGE_BYTES };
         let full = clusters.first().map_or(0, |clusters| instances * *clusters as usize);
-        let most = (binding / PAGE_BYTES as u64).min(u64::from(u32::MAX)) as u32;
-        Self { clusters, full: u32::try_from(full).unwrap_or(u32::MAX), most }
+        let most = (binding / bytes as u64).min(u64::from(u32::MAX)) as u32;
+        Self { clusters, full: u32::try_from(full).unwrap_or(u32::MAX), most, bytes }
     }
 
     /// The number of pages to begin with.
     pub fn initial(&self) -> u32 {
-        self.full.min((SMALL / PAGE_BYTES) as u32).min(self.most).max(1)
+        self.full.min((SMALL / self.bytes) as u32).min(self.most).max(1)
     }
 
     /// The number of pages for a frame that needs `needed`: more than that, so that the next frames need no others.
@@ -85,8 +89,7 @@ pub(super) fn needs(
 fn allowed(views: &[SelectView], object: &LodObject, instance: &SceneInstance) -> Option<f32> {
     let of_view = |view: &SelectView| {
         let (center, radius) = placed_sphere(instance, view.cell);
-        let is_seen =
-            is_shown(view, object, instance) && depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius;
+        let is_seen = is_shown(view, object, instance) && nearly_seen(view, center, radius);
         is_seen.then(|| view_allows(view, center, radius, instance.largest_scale()))
     };
     views.iter().filter_map(of_view).reduce(f32::min)

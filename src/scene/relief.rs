@@ -84,14 +84,19 @@ pub(super) fn drawn(
     let uv: Vec<[f32; 2]> = relief.mesh.vertices.iter().map(|vertex| vertex.uv).collect();
     let material_of = Buffer::new(gpu, "materials of vertices", vertices.len())?;
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 0, clusters: 0 })?,
+        params: Uniform::new(
+            gpu,
+            "mesh",
+            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0 },
+        )?,
         vertices: Buffer::from_slice(gpu, "mesh vertices", &vertices)?,
+        last: 0,
         page_table: material_of.clone(),
         uv: Buffer::from_slice(gpu, "mesh uv", &uv)?,
         material_of,
         indices: Buffer::from_slice(gpu, "mesh indices", &relief.mesh.indices)?,
     };
-    let surface = SurfaceKind { cut_out: false, double_sided: relief.double_sided };
+    let surface = SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided };
     let materials = MeshMaterials::Relief(material(gpu, layouts, relief)?);
     let parts = vec![MeshPart { surface, materials }];
     let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);

@@ -168,8 +168,11 @@ impl SkinnedCrowd {
 /// The list of clusters to be skinned, in a buffer that kernels may fill.
 #[derive(Debug, Clone)]
 pub struct ActiveClusters {
-    /// `cluster · instances + instance` of each; all other clusters are skipped.
+    /// `cluster · instances + instance` of each; all other clusters are skipped. If last positions are kept, as many words
+    /// follow as there are pairs: for each what the last selection did to it ([`ClusterState`](super::select::ClusterState)).
     pub pairs: Buffer<u32>,
+    /// Whether last positions are kept.
+    pub keeps_last: bool,
     /// Workgroups along x, y and z, as arguments of an indirect dispatch; the number of pairs; and a counter,
     /// which is 0 between dispatches.
     pub dispatched: Buffer<u32>,
@@ -186,8 +189,23 @@ impl ActiveClusters {
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         Ok(Self {
             pairs: Buffer::new(gpu, "clusters", mesh.clusters() * crowd.instances)?,
+            keeps_last: false,
             dispatched: Buffer::from_slice(gpu, "dispatched clusters", &[0, 1, 1, 0, 0])?,
         })
+    }
+
+    /// As [`ActiveClusters::new`], where last positions are kept.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn keeping(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
+        let pairs = Buffer::new(gpu, "clusters", 2 * mesh.clusters() * crowd.instances)?;
+        Ok(Self { pairs, keeps_last: true, ..Self::new(gpu, mesh, crowd)? })
+    }
+
+    /// The number of words for so many pairs.
+    pub(crate) fn words(&self, pairs: usize) -> usize {
+        if self.keeps_last { 2 * pairs } else { pairs }
     }
 
     /// Sets the list from the host.

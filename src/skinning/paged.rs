@@ -15,7 +15,9 @@ use crate::animation::ModelMatrices;
 use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::asset::Model;
 use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
-use crate::skinning::vertex::{Blend, Vertex};
+use crate::skinning::vertex::Blend;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::skinning::vertex::Vertex;
 
 /// The prepared skinning of all instances of one mesh into pages, by linear blending.
 #[derive(Debug, Clone)]
@@ -35,6 +37,7 @@ pub struct PagedSkin {
     /// The selection that keeps the updated bones, and the one that clears them.
     selections: [Job; 2],
     after: Vec<IndirectJob>,
+    keeps_last: bool,
     reader: Arc<UpdatedBonesReader>,
 }
 
@@ -74,7 +77,32 @@ impl PagedSkin {
         let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
         let after = morph.into_iter().chain([skin]).collect();
         let reader = Arc::new(updated.reader());
-        Ok(Self { mesh, clusters, crowd, pages, select, active, before, selections, after, reader })
+        let keeps_last = false;
+        Ok(Self {
+            mesh,
+            clusters,
+            crowd,
+            pages,
+            select,
+            active,
+            before,
+            selections,
+            after,
+            keeps_last,
+            reader,
+        })
+    }
+
+    /// Keeps the position that each vertex had before the last [`PagedSkin::dispatch`], behind the vertices of all pages
+    /// ([`PageBuffers::last`]): a page takes 3584 bytes then instead of 2560. What moves is skinned once more after it
+    /// stops. What was not seen in the frame before counts as if it had not moved. Replaces the pages.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn keep_last(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        self.keeps_last = true;
+        self.active = ActiveClusters::keeping(gpu, &self.mesh, &self.crowd)?;
+        self.set_pages(gpu, self.pages.pages() as u32)
     }
 
     /// Replaces the pages by so many others. Everything that is seen is dealt out and skinned anew in the next frame.
@@ -82,7 +110,8 @@ impl PagedSkin {
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub fn set_pages(&mut self, gpu: &Gpu, pages: u32) -> Result<(), Error> {
-        let pages = PageBuffers::new(gpu, &self.mesh, &self.crowd, pages)?;
+        let new = if self.keeps_last { PageBuffers::keeping } else { PageBuffers::new };
+        let pages = new(gpu, &self.mesh, &self.crowd, pages)?;
         let dealt = PagesPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &pages)?;
         // A new record of what was skinned: frames that are recorded already go on with the old one.
         let skinned = SelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
@@ -96,12 +125,11 @@ impl PagedSkin {
             &pages,
             &self.active,
         )?;
+        let morph = MorphPass::new(gpu)?.prepare_active(gpu, &self.mesh, &self.crowd, &self.active)?;
         // From here on nothing fails: an error has changed nothing.
         self.before[0] = dealt;
         (self.pages, self.select, self.selections) = (pages, select, selections);
-        if let Some(last) = self.after.last_mut() {
-            *last = skin;
-        }
+        self.after = morph.into_iter().chain([skin]).collect();
         Ok(())
     }
 

@@ -17,7 +17,13 @@ mod placements;
 #[cfg(feature = "verify")]
 mod promise;
 mod query;
+mod raw;
+mod rays;
 mod rebuild;
+mod shading;
+mod surfaces;
 mod targets;
+mod transparent;
+mod velocity;
 mod views;
 mod world;

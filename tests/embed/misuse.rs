@@ -109,10 +109,23 @@ fn a_view_is_out_of_date_once_objects_change() {
     assert_eq!(draw(&world.scene, &view), ["view", "out of date"]);
 }
 
+/// Two devices of one adapter.
+fn devices() -> [Gpu; 2] {
+    let name = crate::harness::gpu().adapter().name.clone();
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there");
+    [0, 1].map(|_| {
+        let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
+        let (device, queue) = opened.expect("a device");
+        Gpu::from_wgpu(device, queue)
+    })
+}
+
 /// A renderer draws scenes of its own device; wgpu would panic.
 #[test]
 fn a_scene_of_another_device_is_refused() {
-    let [own, other] = [device(), device()];
+    let [own, other] = devices();
     let mut world = World::new(&own, 1);
     let mut view = world.view(1.0);
     let frame = Frame::plain(&own, SIZE);

@@ -329,7 +329,7 @@ fn with_keys(keys: &[(usize, bool)], triangles: impl Fn(usize) -> usize) -> Merg
 
 fn keys(merged: &Merged) -> Vec<(bool, bool, Option<Sampling>, usize)> {
     let key = |part: &relievo::skinning::merged::Part| {
-        let PartKey { cut_out, double_sided, sampling } = part.key;
+        let PartKey { cut_out, double_sided, sampling, .. } = part.key;
         (cut_out, double_sided, sampling, part.indices[0].len() / 3)
     };
     merged.parts.iter().map(key).collect()

@@ -13,8 +13,8 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("animation/gate", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
     ("render/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("render/relief", "SHADOW", &[0.0, 1.0, 2.0]),
-    ("render/scene_relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
-    ("render/scene_relief", "SHADOW", &[0.0, 1.0, 2.0]),
+    ("render/scene_relief", "relievo_METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+    ("render/scene_relief", "relievo_SHADOW", &[0.0, 1.0, 2.0]),
     ("surface/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("surface/shade", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("terrain/despike", "FEATURES", &[0.0, 1.0]),
@@ -98,15 +98,14 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
         .collect();
     for vertex in of_stage("vertex") {
         let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
-        // Entries of that name take the vertices of one.
-        let is_bumpy = |entry: &Value| name_of(entry).ends_with("_bumpy");
-        let fitting =
-            of_stage("fragment").into_iter().filter(|fragment| is_bumpy(vertex) == is_bumpy(fragment));
+        // Entries of such names take the vertices of one.
+        let kind = |entry: &Value| {
+            ["_plain", "_bumpy", "_whole", "_moving"].into_iter().find(|end| name_of(entry).ends_with(end))
+        };
+        let fitting = of_stage("fragment").into_iter().filter(|fragment| kind(vertex) == kind(fragment));
         all.extend(fitting.map(|fragment| {
-            // Fragment entries of this name write no colour.
-            let is_deep = name_of(fragment).starts_with("depth_");
             let render = json!({
-                "writeMask": if is_deep { 0 } else { 15 },
+                "targets": targets(&name_of(fragment)),
                 "vertex": vertex["name"],
                 "fragment": fragment["name"],
                 "topology": strip,
@@ -116,6 +115,19 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
         }));
     }
     all
+}
+
+/// The colours of a fragment entry, by its name.
+fn targets(entry: &str) -> Value {
+    let target = |format: &str| json!({ "format": format });
+    let entry = entry.trim_start_matches("relievo_");
+    match entry.split('_').next() {
+        Some("depth") => json!([{ "format": "rgba8unorm-srgb", "writeMask": 0 }]),
+        Some("surface") => json!(["rgba16float", "rgba8unorm", "rg16uint"].map(target)),
+        Some("velocity") => json!([target("rg16float")]),
+        Some("measure") => json!(["rgba32float", "rg32uint"].map(target)),
+        _ => json!([target("rgba8unorm-srgb")]),
+    }
 }
 
 /// One vertex buffer that holds all inputs, if there are any.

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use base64::Engine as _;
 use image::RgbaImage;
+use image::imageops::{FilterType, resize};
 use relievo::gpu::Gpu;
 use serde_json::Value;
 
@@ -45,7 +46,13 @@ fn picture(name: &str) -> RgbaImage {
     assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
     let text = said[name].as_str().expect("pixels");
     let pixels = base64::prelude::BASE64_STANDARD.decode(text).expect("base64");
-    RgbaImage::from_raw(SIZE[0], SIZE[1], pixels).expect("of that size")
+    reduced(pixels)
+}
+
+/// Half the size, since triangles have jagged edges with one sample a pixel.
+fn reduced(pixels: Vec<u8>) -> RgbaImage {
+    let picture = RgbaImage::from_raw(SIZE[0], SIZE[1], pixels).expect("of that size");
+    resize(&picture, SIZE[0] / 2, SIZE[1] / 2, FilterType::Triangle)
 }
 
 /// Drives work that awaits the device.
@@ -62,9 +69,34 @@ fn driven<T>(gpu: &Gpu, work: impl Future<Output = T>) -> T {
 fn native() -> RgbaImage {
     let gpu = gpu();
     let drawn = async { World::new(&gpu, false).await?.draw(&gpu).await };
-    let pixels = driven(&gpu, drawn).expect("drawn");
-    RgbaImage::from_raw(SIZE[0], SIZE[1], pixels).expect("of that size")
+    reduced(driven(&gpu, drawn).expect("drawn"))
 }
+
+/// The fraction of pixels with a channel beyond those of the 9 pixels around its place in the other picture, by more than
+/// `levels`.
+fn foreign(actual: &RgbaImage, expected: &RgbaImage, levels: u8) -> f64 {
+    let (width, height) = expected.dimensions();
+    let is_foreign = |x: u32, y: u32, channel: usize| {
+        let rows = y.saturating_sub(1)..(y + 2).min(height);
+        let columns = x.saturating_sub(1)..(x + 2).min(width);
+        let around =
+            || rows.clone().flat_map(|y| columns.clone().map(move |x| expected.get_pixel(x, y).0[channel]));
+        let (low, high) = (around().min().unwrap_or(0), around().max().unwrap_or(u8::MAX));
+        !(low.saturating_sub(levels)..=high.saturating_add(levels))
+            .contains(&actual.get_pixel(x, y).0[channel])
+    };
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let found = pixels.filter(|(x, y)| (0..3).any(|channel| is_foreign(*x, *y, channel))).count();
+    found as f64 / f64::from(width * height)
+}
+
+/// How far pictures of two drivers may differ. A pixel beyond 3 levels lies on an edge of a triangle, a brick or a shadow,
+/// which the drivers place otherwise by a fraction of a pixel: its colours are then among those around it. lavapipe and
+/// SwiftShader have 0.5 % such pixels without the reduction; where both sides are SwiftShader, no pixel differs at all.
+const TOLERANCE: Tolerance = Tolerance { levels: 3, outliers: 0.01, flip: 0.01 };
+
+/// The largest fraction of pixels with colours that are not among those around them: details finer than a pixel.
+const FOREIGN: f64 = 0.000_5;
 
 #[test]
 fn a_scene_in_the_browser_equals_the_native_one_and_another_light_does_not() {
@@ -74,12 +106,20 @@ fn a_scene_in_the_browser_equals_the_native_one_and_another_light_does_not() {
     for (name, picture) in [("native", &native), ("browser", &browser), ("evening", &evening)] {
         picture.save(folder.join(format!("{name}.png"))).expect("writable");
     }
-    let tolerance = Tolerance::IMAGE;
-    let difference = Difference::of(&browser, &native, tolerance.levels);
-    println!("{difference:?}; see {}", folder.display());
-    assert!(difference.within(tolerance), "{difference:?}; see {}", folder.display());
-    let fault = Difference::of(&evening, &native, tolerance.levels);
-    assert!(!fault.within(tolerance), "another light passes: {fault:?}");
+    let compared = |picture: &RgbaImage| {
+        let difference = Difference::of(picture, &native, TOLERANCE.levels);
+        (difference, foreign(picture, &native, TOLERANCE.levels))
+    };
+    let (difference, beyond) = compared(&browser);
+    println!("{difference:?}, {beyond} foreign; see {}", folder.display());
+    assert!(difference.within(TOLERANCE), "{difference:?}; see {}", folder.display());
+    assert!(beyond <= FOREIGN, "{beyond} foreign; see {}", folder.display());
+    let (difference, beyond) = compared(&evening);
+    println!("another light: {difference:?}, {beyond} foreign");
+    assert!(
+        !difference.within(TOLERANCE) && beyond > FOREIGN,
+        "another light passes: {difference:?}, {beyond}"
+    );
 }
 
 /// A browser tells errors only after the call, and then to whoever asks.

@@ -1,13 +1,20 @@
 // Draws instances of a mesh of a scene, textured and lit. Surfaces are opaque, cut out, or drawn through a screen-door
 // pattern, as each vertex's material says.
-import package::wgsl::render::scene_vertex::placed_vertex;
-import package::wgsl::render::scene_view::{scene_lit, view};
+import package::wgsl::render::scene_motion::last_position;
+import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_vertex::{PlacedVertex, instances, mesh, placed_vertex};
+import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
 // Whether the only material of a part has a texture.
 override TEXTURED: bool = false;
+// Whether the colour is blended with what is behind it, by its alpha.
+override BLENDED: bool = false;
+// For whole surfaces: whether alpha leaves out pixels, and whether a material has a normal map.
+override CUT_OUT: bool = false;
+override NORMAL_MAPPED: bool = false;
 
 // The cutoff of materials that ignore alpha.
 const CUTOFF_OPAQUE: f32 = -1.0;
@@ -72,6 +79,19 @@ struct PlainVertex {
     @location(1) v_and_color: vec4<f32>,
 }
 
+// A vertex with everything that there is to know of a surface.
+struct WholeVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec4<f32>,
+    @location(1) surface: vec4<f32>,
+    @location(2) @interpolate(flat) color: vec4<f32>,
+    @location(3) tangent: vec4<f32>,
+    // Relative to the corner of the view's cell.
+    @location(4) position: vec3<f32>,
+    // The index of the instance in the object.
+    @location(5) @interpolate(flat) instance: u32,
+}
+
 @vertex
 fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> PlainVertex {
     let placed = placed_vertex(instance, vertex);
@@ -85,16 +105,39 @@ fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) 
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Vertex {
-    return without_tangent(bumpy(vertex, instance));
+    return without_tangent(bumpy(placed_vertex(instance, vertex), vertex));
 }
 
 @vertex
 fn vertex_bumpy(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> BumpyVertex {
-    return bumpy(vertex, instance);
+    return bumpy(placed_vertex(instance, vertex), vertex);
 }
 
-fn bumpy(vertex: u32, instance: u32) -> BumpyVertex {
+@vertex
+fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> WholeVertex {
     let placed = placed_vertex(instance, vertex);
+    let out = bumpy(placed, vertex);
+    return WholeVertex(out.clip, out.normal, out.surface, out.color, out.tangent, placed.position, instance);
+}
+
+// A vertex with what there is to know of its motion.
+struct MovingVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) surface: vec4<f32>,
+    @location(1) @interpolate(flat) color: vec4<f32>,
+    // Its places on the screen in this frame and in the last.
+    @location(2) now: vec3<f32>,
+    @location(3) last: vec3<f32>,
+}
+
+@vertex
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
+    let out = bumpy(placed_vertex(instance, vertex), vertex);
+    let last = view.last_clip_from_world * vec4<f32>(last_position(instance, vertex), 1.0);
+    return MovingVertex(out.clip, out.surface, out.color, scene_place(out.clip), scene_place(last));
+}
+
+fn bumpy(placed: PlacedVertex, vertex: u32) -> BumpyVertex {
     let index = material_of[vertex];
     let layer = materials[index].layer;
     return BumpyVertex(
@@ -109,10 +152,35 @@ fn without_tangent(in: BumpyVertex) -> Vertex {
     return Vertex(in.clip, in.normal, in.surface, in.color);
 }
 
+fn with_tangent(in: WholeVertex) -> BumpyVertex {
+    return BumpyVertex(in.clip, in.normal, in.surface, in.color, in.tangent);
+}
+
 fn colored(in: Vertex) -> vec4<f32> {
     let layer = in.surface.z + 0.5;
     let texel = textureSample(albedo, filtering, in.surface.xy, u32(max(layer, 0.0)));
     return select(texel, vec4<f32>(1.0), layer < 0.0) * in.color;
+}
+
+// A normal, given outwards, on the side that is seen; `side` is that of the vertex.
+fn facing(outwards: vec3<f32>, side: f32, is_front: bool) -> vec3<f32> {
+    if DOUBLE_SIDED {
+        return select(-outwards, outwards, is_front == (side > 0.0));
+    }
+    return outwards;
+}
+
+// The unit normal outwards, of the normal map where the material has one.
+fn bumpy_normal(in: BumpyVertex) -> vec3<f32> {
+    let normal = normalize(in.normal.xyz);
+    let material = materials[material_at(without_tangent(in))];
+    let is_plain = material.normal_layer == NO_LAYER;
+    let texel = textureSample(normals, filtering, in.surface.xy, select(material.normal_layer, 0u, is_plain));
+    let bump = (2.0 * texel.xyz - 1.0) * vec3<f32>(material.normal_scale, -material.normal_scale, 1.0);
+    let tangent = normalize(in.tangent.xyz - normal * dot(normal, in.tangent.xyz));
+    let bitangent = in.tangent.w * cross(normal, tangent);
+    let bumpy = normalize(bump.x * tangent + bump.y * bitangent + bump.z * normal);
+    return select(bumpy, normal, is_plain);
 }
 
 // Ignores alpha.
@@ -123,34 +191,25 @@ fn opaque_plain(in: PlainVertex, @builtin(front_facing) is_front: bool) -> @loca
         color *= textureSample(albedo, filtering, vec2<f32>(in.normal_and_u.w, in.v_and_color.x), 0).rgb;
     }
     let normal = normalize(in.normal_and_u.xyz);
-    let facing = select(normal, -normal, DOUBLE_SIDED && !is_front);
-    return vec4<f32>(scene_lit(color, max(dot(facing, view.light.xyz), 0.0)), 1.0);
-}
-
-// What the light makes of a colour; `outwards` is the unit normal.
-fn lit(color: vec4<f32>, outwards: vec3<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
-    var facing = outwards;
-    if DOUBLE_SIDED {
-        facing = select(-outwards, outwards, is_front == (in.normal.w > 0.0));
-    }
-    let direct = max(dot(facing, view.light.xyz), 0.0);
-    return vec4<f32>(scene_lit(color.rgb, direct), 1.0);
+    return scene_shaded(scene_surface(color, select(normal, -normal, DOUBLE_SIDED && !is_front)));
 }
 
 fn flat_lit(color: vec4<f32>, in: Vertex, is_front: bool) -> vec4<f32> {
-    return lit(color, normalize(in.normal.xyz), in, is_front);
+    return lit(color, facing(normalize(in.normal.xyz), in.normal.w, is_front));
 }
 
 fn bumpy_lit(color: vec4<f32>, in: BumpyVertex, is_front: bool) -> vec4<f32> {
-    let normal = normalize(in.normal.xyz);
-    let material = materials[material_at(without_tangent(in))];
-    let is_plain = material.normal_layer == NO_LAYER;
-    let texel = textureSample(normals, filtering, in.surface.xy, select(material.normal_layer, 0u, is_plain));
-    let bump = (2.0 * texel.xyz - 1.0) * vec3<f32>(material.normal_scale, -material.normal_scale, 1.0);
-    let tangent = normalize(in.tangent.xyz - normal * dot(normal, in.tangent.xyz));
-    let bitangent = in.tangent.w * cross(normal, tangent);
-    let bumpy = normalize(bump.x * tangent + bump.y * bitangent + bump.z * normal);
-    return lit(color, select(bumpy, normal, is_plain), without_tangent(in), is_front);
+    return lit(color, facing(bumpy_normal(in), in.normal.w, is_front));
+}
+
+fn lit(color: vec4<f32>, normal: vec3<f32>) -> vec4<f32> {
+    var surface = scene_surface(color.rgb, normal);
+    surface.alpha = blended_alpha(color.a);
+    return scene_shaded(surface);
+}
+
+fn blended_alpha(alpha: f32) -> f32 {
+    return select(1.0, alpha, BLENDED);
 }
 
 fn material_at(in: Vertex) -> u32 {
@@ -161,6 +220,27 @@ fn material_at(in: Vertex) -> u32 {
 fn is_cut(alpha: f32, in: Vertex) -> bool {
     let cutoff = materials[material_at(in)].cutoff;
     return alpha < select(cutoff, surface_dither_threshold(vec2<u32>(in.clip.xy)), cutoff == CUTOFF_DITHERED);
+}
+
+// A surface with everything that there is to know of it. Its alpha is that of its colour.
+fn whole_surface(in: WholeVertex, is_front: bool) -> Surface {
+    let bumpy = with_tangent(in);
+    let color = colored(without_tangent(bumpy));
+    let geometric = normalize(in.normal.xyz);
+    var outwards = geometric;
+    if NORMAL_MAPPED {
+        outwards = bumpy_normal(bumpy);
+    }
+    let index = mesh.first_instance + in.instance;
+    return Surface(
+        in.position, facing(outwards, in.normal.w, is_front), facing(geometric, in.normal.w, is_front),
+        in.surface.xy, color.rgb, color.a, 1.0, unpack4x8unorm(instances[index].tint), instances[index].word,
+        mesh.object, in.instance, in.clip.xy);
+}
+
+// Whether alpha leaves a pixel of a whole surface out.
+fn is_whole_cut(alpha: f32, in: WholeVertex) -> bool {
+    return CUT_OUT && is_cut(alpha, without_tangent(with_tangent(in)));
 }
 
 // Ignores alpha. It is a separate entry point because shaders with a discard are tested for depth late.
@@ -203,4 +283,46 @@ fn depth_cut_out(in: Vertex) {
     if is_cut(colored(in).a, in) {
         discard;
     }
+}
+
+// Colour by the caller's shading.
+@fragment
+fn shaded_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
+    var surface = whole_surface(in, is_front);
+    let is_out = is_whole_cut(surface.alpha, in);
+    surface.alpha = blended_alpha(surface.alpha);
+    let color = scene_shaded(surface);
+    if is_out {
+        discard;
+    }
+    return color;
+}
+
+@fragment
+fn surface_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> SurfaceTargets {
+    let surface = whole_surface(in, is_front);
+    if is_whole_cut(surface.alpha, in) {
+        discard;
+    }
+    return scene_surface_targets(surface);
+}
+
+@fragment
+fn measure_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> MeasureTargets {
+    let surface = whole_surface(in, is_front);
+    if is_whole_cut(surface.alpha, in) {
+        discard;
+    }
+    return scene_measure_targets(surface);
+}
+
+@fragment
+fn velocity_moving(in: MovingVertex) -> @location(0) vec4<f32> {
+    if CUT_OUT {
+        let surface = Vertex(in.clip, vec4<f32>(0.0), in.surface, in.color);
+        if is_cut(colored(surface).a, surface) {
+            discard;
+        }
+    }
+    return scene_velocity(in.now, in.last);
 }

@@ -1,7 +1,10 @@
 // Draws instances of a static mesh of a scene with relief (B section 3.1, tables 4.1 to 4.4) by any method, with
 // self-shadow, silhouettes and the depth of the relief.
-import package::wgsl::render::scene_vertex::placed_vertex;
-import package::wgsl::render::scene_view::{scene_lit, view};
+import package::wgsl::render::scene_motion::rows_to_last;
+import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_vertex::{instances, mesh, placed_vertex};
+import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface_targets, scene_velocity, view};
+import package::wgsl::skinning::rows::{Rows, placed_position};
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;
@@ -60,8 +63,8 @@ struct Vertex {
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,
     @location(3) uv: vec2<f32>,
-    // The factor of the instance's colours, 8 bits each.
-    @location(4) @interpolate(flat) tint: u32,
+    // The factor of the instance's colours, 8 bits each, and the index of the instance in the object.
+    @location(4) @interpolate(flat) instance: vec2<u32>,
     // World units per uv unit.
     @location(5) world: f32,
 }
@@ -75,8 +78,40 @@ fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Ver
         placed.normal,
         placed.tangent,
         placed.uv,
-        placed.tint,
+        vec2<u32>(placed.tint, instance),
         relief.world * placed.stretch);
+}
+
+// A vertex with what there is to know of its motion.
+struct MovingVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec2<f32>,
+    @location(4) @interpolate(flat) instance: vec2<u32>,
+    @location(5) world: f32,
+    // The transform from where the instance is to where it was in the last frame.
+    @location(6) @interpolate(flat) last_x: vec4<f32>,
+    @location(7) @interpolate(flat) last_y: vec4<f32>,
+    @location(8) @interpolate(flat) last_z: vec4<f32>,
+}
+
+@vertex
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
+    let placed = placed_vertex(instance, vertex);
+    let last = rows_to_last(mesh.first_instance + instance);
+    return MovingVertex(
+        view.clip_from_world * vec4<f32>(placed.position, 1.0),
+        placed.position,
+        placed.normal,
+        placed.tangent,
+        placed.uv,
+        vec2<u32>(placed.tint, instance),
+        relief.world * placed.stretch,
+        last.x,
+        last.y,
+        last.z);
 }
 
 // The frame of a fragment's tangent space: unit vectors along u, along v, and outwards.
@@ -91,6 +126,8 @@ struct Traced {
     hit: SurfaceHit,
     frame: Frame,
     settings: SurfaceMarch,
+    // Relative to the corner of the view's cell.
+    position: vec3<f32>,
     depth: f32,
     is_outside: bool,
 }
@@ -110,25 +147,35 @@ fn traced(in: Vertex, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> Traced {
     let distance = surface_distance(ray, hit, relief.scale) * in.world;
     let depth = surface_depth(view.clip_from_world, in.position, towards, distance);
     let is_outside = SILHOUETTE && !surface_inside(hit.uv, relief.range.xy, relief.range.zw);
-    return Traced(hit, frame, settings, depth, is_outside);
+    return Traced(hit, frame, settings, in.position - towards * distance, depth, is_outside);
 }
 
 fn in_frame(frame: Frame, direction: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(dot(frame.tangent, direction), dot(frame.bitangent, direction), dot(frame.normal, direction));
 }
 
-fn shaded(in: Vertex, found: Traced, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> vec4<f32> {
+fn in_world(frame: Frame, direction: vec3<f32>) -> vec3<f32> {
+    return direction.x * frame.tangent + direction.y * frame.bitangent + direction.z * frame.normal;
+}
+
+fn surface_of(in: Vertex, found: Traced, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> Surface {
     let hit = found.hit;
-    let color = textureSampleGrad(albedo, filtering, hit.uv, uv_dx, uv_dy).rgb * relief.color.rgb * unpack4x8unorm(in.tint).rgb;
+    let tint = unpack4x8unorm(in.instance.x);
+    let color = textureSampleGrad(albedo, filtering, hit.uv, uv_dx, uv_dy).rgb * relief.color.rgb * tint.rgb;
     var facing = surface_normal(heights, hit.uv, relief.scale, found.settings);
     if NORMAL_MAP {
         facing = surface_mapped_normal(textureSampleGrad(normals, filtering, hit.uv, uv_dx, uv_dy), GREEN_UP);
     }
-    let light = in_frame(found.frame, view.light.xyz);
-    let direct = max(dot(facing, light), 0.0) * surface_sunlit(
-        METHOD, SHADOW, heights, acceleration, hit, light,
+    let sunlit = surface_sunlit(
+        METHOD, SHADOW, heights, acceleration, hit, in_frame(found.frame, view.light.xyz),
         SurfaceShadow(relief.scale, relief.shadow_steps, relief.softness), found.settings);
-    return vec4<f32>(scene_lit(color, direct), 1.0);
+    return Surface(
+        found.position, in_world(found.frame, facing), found.frame.normal, hit.uv, color, 1.0, sunlit, tint,
+        instances[mesh.first_instance + in.instance.y].word, mesh.object, in.instance.y, in.clip.xy);
+}
+
+fn shaded(in: Vertex, found: Traced, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> vec4<f32> {
+    return scene_shaded(surface_of(in, found, uv_dx, uv_dy));
 }
 
 @fragment
@@ -178,4 +225,61 @@ fn depth_relief(in: Vertex) -> @builtin(frag_depth) f32 {
     }
     let deepest = select(max(found.depth, polygon + slope), found.depth, OWN_DEPTH);
     return min(deepest * 1.00000095367431640625, 1.0);
+}
+
+struct DeepSurface {
+    @location(0) normal: vec4<f32>,
+    @location(1) albedo: vec4<f32>,
+    @location(2) id: vec2<u32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn surface(in: Vertex) -> DeepSurface {
+    let uv_dx = dpdx(in.uv);
+    let uv_dy = dpdy(in.uv);
+    let found = traced(in, uv_dx, uv_dy);
+    let targets = scene_surface_targets(surface_of(in, found, uv_dx, uv_dy));
+    if found.is_outside {
+        discard;
+    }
+    return DeepSurface(targets.normal, targets.albedo, targets.id, select(in.clip.z, found.depth, OWN_DEPTH));
+}
+
+struct DeepMeasure {
+    @location(0) position: vec4<f32>,
+    @location(1) id: vec2<u32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn measure(in: Vertex) -> DeepMeasure {
+    let uv_dx = dpdx(in.uv);
+    let uv_dy = dpdy(in.uv);
+    let found = traced(in, uv_dx, uv_dy);
+    let targets = scene_measure_targets(surface_of(in, found, uv_dx, uv_dy));
+    if found.is_outside {
+        discard;
+    }
+    return DeepMeasure(targets.position, targets.id, select(in.clip.z, found.depth, OWN_DEPTH));
+}
+
+struct DeepVelocity {
+    @location(0) velocity: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+// The motion of the point that the eye's ray meets.
+@fragment
+fn velocity_moving(in: MovingVertex) -> DeepVelocity {
+    let vertex = Vertex(in.clip, in.position, in.normal, in.tangent, in.uv, in.instance, in.world);
+    let found = traced(vertex, dpdx(in.uv), dpdy(in.uv));
+    let last = placed_position(Rows(in.last_x, in.last_y, in.last_z), found.position);
+    let velocity = scene_velocity(
+        scene_place(view.clip_from_world * vec4<f32>(found.position, 1.0)),
+        scene_place(view.last_clip_from_world * vec4<f32>(last, 1.0)));
+    if found.is_outside {
+        discard;
+    }
+    return DeepVelocity(velocity, select(in.clip.z, found.depth, OWN_DEPTH));
 }

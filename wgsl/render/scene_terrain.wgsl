@@ -1,6 +1,7 @@
 // Draws patches of terrain of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8): an indexed patch for
 // each visible one, zone textures blended by height, a directional light.
-import package::wgsl::render::scene_view::{scene_lit, view};
+import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
 
@@ -11,6 +12,8 @@ struct TerrainView {
     base: vec2<i32>,
     // The place of that sample at height 0, relative to the corner of the view's cell.
     rest: vec3<f32>,
+    // The number of the object, from 1 on.
+    object: u32,
 }
 
 // What the patches of a terrain have in common.
@@ -58,8 +61,45 @@ struct Vertex {
     @location(2) height: f32,
 }
 
+// A vertex with everything that there is to know of a surface.
+struct WholeVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) height: f32,
+    // Relative to the corner of the view's cell.
+    @location(3) position: vec3<f32>,
+    // The index of the patch.
+    @location(4) @interpolate(flat) instance: u32,
+}
+
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Vertex {
+    let out = placed(vertex, instance);
+    return Vertex(out.clip, out.normal, out.uv, out.height);
+}
+
+@vertex
+fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> WholeVertex {
+    return placed(vertex, instance);
+}
+
+// A vertex with what there is to know of its motion: the camera's.
+struct MovingVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    // Its places on the screen in this frame and in the last.
+    @location(0) now: vec3<f32>,
+    @location(1) last: vec3<f32>,
+}
+
+@vertex
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
+    let out = placed(vertex, instance);
+    let last = view.last_clip_from_world * vec4<f32>(out.position, 1.0);
+    return MovingVertex(out.clip, scene_place(out.clip), scene_place(last));
+}
+
+fn placed(vertex: u32, instance: u32) -> WholeVertex {
     let patch_of = patches[instance];
     let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
     let margin = (terrain.in_width - terrain.size) / 2u;
@@ -72,29 +112,63 @@ fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Ver
     let sample_index = vec2<f32>(patch_of.origin + vec2<i32>(at) - ground.base);
     let position = ground.rest
         + vec3<f32>(sample_index.x * terrain.spacing, height, sample_index.y * terrain.spacing);
-    return Vertex(
+    return WholeVertex(
         view.clip_from_world * vec4<f32>(position, 1.0),
         slope_normal(gradient, terrain.run),
         patch_of.uv + vec2<f32>(at) * terrain.tiling,
-        height);
+        height,
+        position,
+        instance);
+}
+
+// The zones' colours at a height, blended.
+fn zones_colored(uv: vec2<f32>, height: f32) -> vec3<f32> {
+    // Derivatives need uniform control flow, so they are taken here and not in the loop.
+    let uv_dx = dpdx(uv);
+    let uv_dy = dpdy(uv);
+    var fold = zone_fold();
+    for (var z = 0u; z < terrain.zone_count; z++) {
+        fold = zone_folded(fold, z, zones[z], height);
+    }
+    var albedo = vec3<f32>(0.0);
+    for (var z = 0u; z < terrain.zone_count; z++) {
+        let fraction = zone_fraction(fold, z, zones[z], height, terrain.additive != 0u);
+        albedo += fraction * textureSampleGrad(textures, texture_sampler, uv, z, uv_dx, uv_dy).rgb;
+    }
+    return albedo;
 }
 
 @fragment
 fn fragment(in: Vertex) -> @location(0) vec4<f32> {
-    // Derivatives need uniform control flow, so they are taken here and not in the loop.
-    let uv_dx = dpdx(in.uv);
-    let uv_dy = dpdy(in.uv);
-    var fold = zone_fold();
-    for (var z = 0u; z < terrain.zone_count; z++) {
-        fold = zone_folded(fold, z, zones[z], in.height);
-    }
-    var albedo = vec3<f32>(0.0);
-    for (var z = 0u; z < terrain.zone_count; z++) {
-        let fraction = zone_fraction(fold, z, zones[z], in.height, terrain.additive != 0u);
-        albedo += fraction * textureSampleGrad(textures, texture_sampler, in.uv, z, uv_dx, uv_dy).rgb;
-    }
-    let direct = max(0.0, dot(normalize(in.normal), view.light.xyz));
-    return vec4<f32>(scene_lit(albedo, direct), 1.0);
+    return scene_shaded(scene_surface(zones_colored(in.uv, in.height), normalize(in.normal)));
+}
+
+fn whole_surface(in: WholeVertex) -> Surface {
+    let normal = normalize(in.normal);
+    return Surface(
+        in.position, normal, normal, in.uv, zones_colored(in.uv, in.height), 1.0, 1.0, vec4<f32>(1.0), 0u,
+        ground.object, in.instance, in.clip.xy);
+}
+
+// Colour by the caller's shading.
+@fragment
+fn shaded_whole(in: WholeVertex) -> @location(0) vec4<f32> {
+    return scene_shaded(whole_surface(in));
+}
+
+@fragment
+fn surface_whole(in: WholeVertex) -> SurfaceTargets {
+    return scene_surface_targets(whole_surface(in));
+}
+
+@fragment
+fn measure_whole(in: WholeVertex) -> MeasureTargets {
+    return scene_measure_targets(whole_surface(in));
+}
+
+@fragment
+fn velocity_moving(in: MovingVertex) -> @location(0) vec4<f32> {
+    return scene_velocity(in.now, in.last);
 }
 
 // Only depth is written, where a pass has colour attachments as well.

@@ -10,6 +10,10 @@ struct MeshParams {
     first_instance: u32,
     // Number of clusters of the mesh if vertices lie in pages; 0 if all instances share those of the mesh.
     clusters: u32,
+    // The number of the object, from 1 on.
+    object: u32,
+    // The index in `vertices` of the last frame's positions, two pairs per vertex in pages; 0 if vertices do not move.
+    last: u32,
 }
 
 // Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the

@@ -32,7 +32,8 @@
 //!   JPEG, in the GLB, in `data:` URIs or in files beside the document; any set of texture coordinates, with
 //!   `KHR_texture_transform` applied to them), samplers, alpha, and `doubleSided`. A normal map is left out if
 //!   it is not read at the same coordinates as the base colour's texture. The opacity of `BLEND` becomes a
-//!   [screen-door pattern](crate::asset::material::Alpha::Dithered). Vertex colours, everything else in
+//!   [screen-door pattern](crate::asset::material::Alpha::Dithered), which
+//!   [`Model::blend`](crate::asset::Model::blend) turns into blending. Vertex colours, everything else in
 //!   materials, and materials that no mesh uses are left out.
 //!
 //! Of `extensionsRequired`, `KHR_draco_mesh_compression` (without the meshes), `KHR_mesh_quantization` and

@@ -45,6 +45,12 @@ pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
     view.planes.iter().map(depth).fold(MAX_ALLOWED, f32::min)
 }
 
+/// Whether a view may see a sphere, which is a thousandth larger than it must be, so that rounding on the device does not
+/// show it where it is not expected.
+pub(crate) fn nearly_seen(view: &SelectView, center: Vec3, radius: f32) -> bool {
+    depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius
+}
+
 /// The displacement that all of a view's cameras allow for a sphere, in units of a model with this largest scale.
 pub fn view_allows(view: &SelectView, center: Vec3, radius: f32, scale: f32) -> f32 {
     let least = view.cameras().iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);

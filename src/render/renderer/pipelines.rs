@@ -1,12 +1,15 @@
 //! The pipelines of a renderer, by what they are compiled from.
 
+use std::borrow::Cow;
+
 use super::Layer;
-use crate::gpu::bindings::render::{scene_mesh, scene_relief};
-use crate::gpu::{Gpu, GpuError, module, shaders};
+use super::programs::Program;
+use crate::gpu::{Gpu, GpuError};
 use crate::render::format::TargetFormat;
+use crate::render::shading::{PREFIX, Shading};
 use crate::scene::drawable::{MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
-use crate::surface::{Green, ReliefOptions, Shadow};
+use crate::surface::{ReliefOptions, Shadow};
 
 /// What a surface needs of a pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -29,7 +32,7 @@ impl Kind {
         match &part.materials {
             MeshMaterials::Plain(materials) => {
                 let (surface, normal_mapped) = (part.surface, materials.normal_mapped);
-                let is_plain = !surface.cut_out && !normal_mapped;
+                let is_plain = !surface.cut_out && !surface.blended && !normal_mapped;
                 Self::Mesh {
                     surface,
                     normal_mapped,
@@ -42,13 +45,26 @@ impl Kind {
         }
     }
 
-    /// The same without what has no influence on depth.
-    fn without_shading(self) -> Self {
+    /// Whether a layer shows it.
+    pub fn is_in(self, layer: Layer) -> bool {
+        let is_blended = matches!(self, Self::Mesh { surface, .. } if surface.blended);
+        is_blended == (layer == Layer::Transparent)
+    }
+
+    /// The same without what has no influence on a layer.
+    fn in_layer(self, layer: Layer) -> Self {
+        let is_lit = layer.is_shaded();
+        let has_normals = is_lit || layer == Layer::Surface;
         match self {
-            Self::Mesh { surface, .. } => Self::Mesh { surface, normal_mapped: false, only_textured: None },
+            Self::Mesh { surface, normal_mapped, only_textured } => Self::Mesh {
+                surface,
+                normal_mapped: normal_mapped && has_normals,
+                only_textured: only_textured.filter(|_| layer == Layer::Color),
+            },
             Self::Relief { double_sided, options } => {
-                let options = ReliefOptions { shadow: Shadow::None, normal_map: None, ..options };
-                Self::Relief { double_sided, options }
+                let shadow = if is_lit { options.shadow } else { Shadow::None };
+                let normal_map = options.normal_map.filter(|_| has_normals);
+                Self::Relief { double_sided, options: ReliefOptions { shadow, normal_map, ..options } }
             }
             Self::Terrain => Self::Terrain,
         }
@@ -73,23 +89,14 @@ pub(super) struct PipelineKey {
     is_flipped: bool,
 }
 
-/// The shader of a pipeline with its entry points and constants.
-struct Program {
-    shader: &'static shaders::Shader,
-    vertex: &'static str,
-    /// None where depth alone is written and nothing is left out.
-    fragment: Option<&'static str>,
-    constants: Vec<(&'static str, f64)>,
-}
-
 impl PipelineKey {
     /// The key, with what makes no difference set to one value.
     pub fn new(layer: Layer, kind: Kind, is_flipped: bool) -> Self {
-        let kind = if layer == Layer::Depth { kind.without_shading() } else { kind };
+        let kind = kind.in_layer(layer);
         Self { layer, kind, is_flipped: is_flipped && !kind.is_double_sided() }
     }
 
-    /// Compiles it.
+    /// Compiles it, with the caller's shading if there is any.
     ///
     /// # Errors
     /// What the driver's compiler reports, and what the device does not allow of the format.
@@ -98,42 +105,50 @@ impl PipelineKey {
         gpu: &Gpu,
         format: &TargetFormat,
         layouts: &SceneLayouts,
+        shading: Option<&Shading>,
     ) -> Result<wgpu::RenderPipeline, GpuError> {
-        let program = self.program(format);
+        let shading = shading.filter(|_| self.layer.is_shaded());
+        let program = Program::new(self.layer, self.kind, format, shading.is_some());
         let groups = match self.kind {
             Kind::Mesh { .. } => layouts.of_mesh(),
             Kind::Relief { .. } => layouts.of_relief(),
             Kind::Terrain => layouts.of_terrain(),
         };
-        gpu.scoped(|| self.compile(gpu, format, &program, &groups.map(Some)))
+        let own = shading.and_then(|shading| shading.layout.as_ref());
+        let groups: Vec<_> = groups.into_iter().chain(own).map(Some).collect();
+        let text = shading.map_or(program.shader.source.into(), |shading| shading.text(program.shader));
+        gpu.scoped(|| self.compile(gpu, format, (&program, text), &groups))
     }
 
     fn compile(
         &self,
         gpu: &Gpu,
         format: &TargetFormat,
-        program: &Program,
+        (program, text): (&Program, Cow<'static, str>),
         groups: &[Option<&wgpu::BindGroupLayout>],
     ) -> wgpu::RenderPipeline {
         let (device, label) = (gpu.device(), Some(program.shader.name));
-        let module = module(gpu, program.shader);
+        let source = wgpu::ShaderSource::Wgsl(text);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
         let options =
             || wgpu::PipelineCompilationOptions { constants: &program.constants, ..Default::default() };
-        let targets = format.targets(self.layer == Layer::Color);
+        let targets = format.targets(self.layer);
         let layout = wgpu::PipelineLayoutDescriptor { label, bind_group_layouts: groups, immediate_size: 0 };
+        let vertex = format!("{PREFIX}{}", program.vertex);
+        let fragment = program.fragment.map(|entry| format!("{PREFIX}{entry}"));
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label,
             layout: Some(&device.create_pipeline_layout(&layout)),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some(program.vertex),
+                entry_point: Some(&vertex),
                 compilation_options: options(),
                 buffers: &[Some(INSTANCES)],
             },
             primitive: wgpu::PrimitiveState { cull_mode: self.cull(), ..Default::default() },
-            depth_stencil: format.depth_state(),
+            depth_stencil: format.depth_state(self.layer),
             multisample: wgpu::MultisampleState { count: format.samples, ..Default::default() },
-            fragment: program.fragment.map(|entry| wgpu::FragmentState {
+            fragment: fragment.as_deref().map(|entry| wgpu::FragmentState {
                 module: &module,
                 entry_point: Some(entry),
                 compilation_options: options(),
@@ -151,63 +166,6 @@ impl PipelineKey {
             (false, false) => Some(wgpu::Face::Back),
             (false, true) => Some(wgpu::Face::Front),
         }
-    }
-
-    fn program(&self, format: &TargetFormat) -> Program {
-        // A pipeline without a fragment stage fits no pass with colours.
-        let depth_opaque = (!format.color.is_empty()).then_some("depth_opaque");
-        match (self.kind, self.layer) {
-            (Kind::Mesh { surface, only_textured: Some(textured), .. }, Layer::Color) => Program {
-                shader: &shaders::RENDER_SCENE_MESH,
-                vertex: "vertex_plain",
-                fragment: Some("opaque_plain"),
-                constants: scene_mesh::Constants { double_sided: surface.double_sided, textured }.list(),
-            },
-            (Kind::Mesh { surface, normal_mapped, .. }, layer) => Program {
-                shader: &shaders::RENDER_SCENE_MESH,
-                vertex: if normal_mapped { "vertex_bumpy" } else { "vertex" },
-                fragment: match (layer, surface.cut_out, normal_mapped) {
-                    (Layer::Color, false, false) => Some("opaque"),
-                    (Layer::Color, false, true) => Some("opaque_bumpy"),
-                    (Layer::Color, true, false) => Some("cut_out"),
-                    (Layer::Color, true, true) => Some("cut_out_bumpy"),
-                    (Layer::Depth, false, _) => depth_opaque,
-                    (Layer::Depth, true, _) => Some("depth_cut_out"),
-                },
-                constants: scene_mesh::Constants { double_sided: surface.double_sided, textured: false }
-                    .list(),
-            },
-            (Kind::Relief { options, .. }, layer) => Program {
-                shader: &shaders::RENDER_SCENE_RELIEF,
-                vertex: "vertex",
-                fragment: Some(match layer {
-                    Layer::Depth => "depth_relief",
-                    // Without a depth attachment no shader may write depth.
-                    Layer::Color if options.depth && format.depth.is_some() => "fragment_deep",
-                    Layer::Color => "fragment",
-                }),
-                constants: relief_constants(&options, format.is_reversed()).list(),
-            },
-            (Kind::Terrain, layer) => Program {
-                shader: &shaders::RENDER_SCENE_TERRAIN,
-                vertex: "vertex",
-                fragment: if layer == Layer::Color { Some("fragment") } else { depth_opaque },
-                constants: Vec::new(),
-            },
-        }
-    }
-}
-
-fn relief_constants(options: &ReliefOptions, reversed: bool) -> scene_relief::Constants {
-    scene_relief::Constants {
-        method: options.method.code(),
-        shadow: options.shadow as u32,
-        normal_map: options.normal_map.is_some(),
-        green_up: options.normal_map == Some(Green::Up),
-        silhouette: options.silhouette,
-        choose_mip: options.chooses_mip(),
-        own_depth: options.depth,
-        reversed,
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use super::{Character, Playing};
+use super::Character;
 use crate::InputError;
 use crate::animation::layers::{MAX_LAYERS, mask_below};
 use crate::animation::{Instance, Wrap};
@@ -14,6 +14,7 @@ use crate::gpu::{Staged, Upload as _};
 use crate::scene::instances::Changed;
 use crate::scene::layers::LayerMask;
 use crate::scene::placement::Play;
+use crate::scene::playing::Playing;
 use crate::skinning::bounding_sphere::{BoundingSphere, MARGIN, middle_of, poses};
 
 /// A layer of a character.
@@ -189,7 +190,9 @@ impl Character {
         let (count, model) = (self.plays.len(), &self.merged.model);
         for (at, layer) in self.layers.iter_mut().enumerate() {
             for [from, to] in layer.changed.take(count) {
-                let plays = layer.plays[from..to].iter().map(|play| play.on_device(model, self.epoch));
+                let duration = |play: &Playing| f64::from(model.clips[play.clip as usize].duration());
+                let plays =
+                    layer.plays[from..to].iter().map(|play| play.on_device(duration(play), self.epoch));
                 let first = (1 + at) * count + from;
                 staged.elements(&self.runtime.crowd.instances, first, &plays.collect::<Vec<_>>())?;
             }

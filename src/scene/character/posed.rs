@@ -2,14 +2,15 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::Character;
 use super::layers::layered_pose;
-use super::{Character, Playing};
 use crate::InputError;
 use crate::animation::{Instance, ModelMatrices, Pose};
 use crate::asset::{Model, Transform};
 use crate::gpu::Buffer;
 use crate::scene::layers::bone_of;
 use crate::scene::placement::ClipTime;
+use crate::scene::playing::Playing;
 use crate::scene::ray::Surface;
 use crate::scene::watch::{CharacterMatrices, affine_of};
 use crate::skinning::bone_path::BonePath;

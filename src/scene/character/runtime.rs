@@ -35,9 +35,8 @@ impl Runtime {
     pub(super) fn new(
         gpu: &Gpu,
         model: &Model,
-        (set, layers): (&ClipSet, &[CharacterLayer]),
-        gate: &Gate,
-        capacity: usize,
+        (set, gate, layers): (&ClipSet, &Gate, &[CharacterLayer]),
+        (capacity, keeps_last): (usize, bool),
     ) -> Result<Self, Error> {
         let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
         let layers: Vec<_> = layers.iter().map(|layer| layer.at_rest(capacity)).collect();
@@ -47,9 +46,12 @@ impl Runtime {
         let every: Vec<usize> = (0..model.clips.len()).collect();
         let (mut skins, mut paging, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for (index, mesh) in model.meshes.iter().enumerate() {
-            let skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
+            let mut skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
+            if keeps_last {
+                skin.keep_last(gpu)?;
+            }
             let clusters = skin.mesh.levels.iter().map(|level| level.clusters).collect();
-            paging.push(Paging::new(clusters, capacity, gpu.max_binding()));
+            paging.push(Paging::new(clusters, capacity, gpu.max_binding(), keeps_last));
             if !mesh.targets.is_empty() {
                 let keys = WeightSet::new(mesh, set, &every)?;
                 weights.push(MorphWeightsPass::new(gpu)?.prepare(

@@ -117,7 +117,7 @@ fn entry(
     Ok(SceneMaterial {
         color: *color,
         cutoff: match alpha {
-            Alpha::Opaque => CUTOFF_OPAQUE,
+            Alpha::Opaque | Alpha::Blended => CUTOFF_OPAQUE,
             Alpha::Mask(cutoff) => cutoff.max(0.0),
             Alpha::Dithered => CUTOFF_DITHERED,
         },

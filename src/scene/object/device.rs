@@ -2,11 +2,13 @@
 
 use super::{Kind, MeshOnHost, Object};
 use crate::Error;
-use crate::gpu::Gpu;
-use crate::scene::character::Runtime;
-use crate::scene::drawable::Drawable;
+use crate::gpu::{Gpu, Staged, Upload as _};
+use crate::scene::character::{Character, Runtime};
+use crate::scene::drawable::{Drawable, MeshDrawable};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::{mesh, relief, terrain};
+use crate::shared::render::scene_vertex::MeshParams;
+use crate::skinning::pages::PageBuffers;
 
 /// What an object has on a device.
 #[derive(Debug)]
@@ -63,4 +65,34 @@ impl Object {
         self.instances.change_all();
         self.fitted = 0;
     }
+}
+
+/// Stages where the instances and vertices of drawables lie.
+pub(super) fn stage_params(
+    staged: &mut Staged,
+    drawables: &[Drawable],
+    first_instance: u32,
+    object: u32,
+) -> Result<(), Error> {
+    for drawable in drawables {
+        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
+            let params = MeshParams { first_instance, clusters: *clusters, object, last: geometry.last };
+            staged.uniform(&geometry.params, &params)?;
+        }
+    }
+    Ok(())
+}
+
+/// The same drawables over a character's pages, after these were replaced.
+pub(super) fn rebound(
+    drawables: &[Drawable],
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    character: &Character,
+) -> Result<Vec<Drawable>, Error> {
+    let with_pages = |(drawable, pages): (&Drawable, &PageBuffers)| match drawable {
+        Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.with_pages(gpu, layouts, pages)?)),
+        Drawable::Terrain(_) => Ok(drawable.clone()),
+    };
+    drawables.iter().zip(character.pages()).map(with_pages).collect()
 }

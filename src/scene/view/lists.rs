@@ -6,8 +6,10 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
 use crate::lod::SelectView;
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
+use crate::lod::single::{SingleBuffers, SinglePass};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::order::Ordered;
 use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
@@ -26,6 +28,10 @@ pub(crate) struct ViewLists {
     pub group: Group,
     /// For each terrain, in the order of the objects, where its samples lie, and bind group 1.
     pub terrain: Vec<(Uniform<TerrainView>, Group)>,
+    /// The draws of instances that are drawn one by one, if there are any.
+    pub singles: Option<(Job, Buffer<SceneDraw>)>,
+    /// The instances that are drawn one by one, from back to front.
+    pub order: Vec<Ordered>,
     pub(super) select: Job,
     pub(super) list: Job,
     pub(super) attached: AttachedJobs,
@@ -36,7 +42,7 @@ impl ViewLists {
         gpu: &Gpu,
         layout: &Layout,
         (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
-        (select, list): (&SelectPass, &ListPass),
+        (select, list, single): (&SelectPass, &ListPass, &SinglePass),
         (layouts, terrains): (&SceneLayouts, usize),
     ) -> Result<Self, Error> {
         let instances = layout.instances.len();
@@ -67,13 +73,9 @@ impl ViewLists {
             arguments: &arguments,
         };
         let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
-        let group = layouts.view(gpu, drawn, &rows, &layout.instances)?;
-        let ground = || {
-            let uniform = Uniform::new(gpu, "terrain in a view", &TerrainView::nowhere())?;
-            let group = layouts.ground(gpu, &uniform)?;
-            Ok((uniform, group))
-        };
-        let terrain = (0..terrains).map(|_| ground()).collect::<Result<_, GpuError>>()?;
+        let singles = singles(gpu, layout, single, (&decisions, &arguments))?;
+        let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances])?;
+        let terrain = (0..terrains).map(|_| ground(gpu, layouts)).collect::<Result<_, GpuError>>()?;
         Ok(Self {
             version: layout.version,
             lists,
@@ -81,9 +83,34 @@ impl ViewLists {
             rows,
             group,
             terrain,
+            singles,
+            order: Vec::new(),
             select,
             list,
             attached: AttachedJobs::default(),
         })
     }
+}
+
+/// The draws of instances that are drawn one by one, if there are any, and the job that writes them.
+fn singles(
+    gpu: &Gpu,
+    layout: &Layout,
+    pass: &SinglePass,
+    (decisions, arguments): (&Buffer<u32>, &Buffer<SceneDraw>),
+) -> Result<Option<(Job, Buffer<SceneDraw>)>, Error> {
+    let (singles, count) = (&layout.singles, layout.singles.len());
+    if count == 0 {
+        return Ok(None);
+    }
+    let draws = Buffer::new(gpu, "draws of single instances", count)?;
+    let buffers = SingleBuffers { singles, decisions, arguments, draws: &draws };
+    Ok(Some((pass.prepare(gpu, buffers, count as u32)?, draws)))
+}
+
+/// Where a terrain lies in a view, and bind group 1.
+fn ground(gpu: &Gpu, layouts: &SceneLayouts) -> Result<(Uniform<TerrainView>, Group), GpuError> {
+    let uniform = Uniform::new(gpu, "terrain in a view", &TerrainView::nowhere())?;
+    let group = layouts.ground(gpu, &uniform)?;
+    Ok((uniform, group))
 }

@@ -11,6 +11,7 @@ use crate::asset::Light;
 use crate::gpu::{Gpu, Group, Staged, Uniform, Upload as _};
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
+use crate::lod::single::SinglePass;
 #[cfg(feature = "verify")]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
@@ -19,17 +20,20 @@ use crate::scene::camera::Camera;
 use crate::scene::handles::{SceneNumber, foreign};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::object::Object;
+use crate::scene::order::back_to_front;
 use crate::scene::quality::Quality;
 use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
+pub(crate) use uniforms::SeenTerrain;
 use uniforms::{lod_camera, terrain_view};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
 ///
 /// What is set of a view counts from the next [`Scene::record`](super::Scene::record) on. Set it before that, and not between
-/// recording and drawing.
+/// recording and drawing. For half of a split screen, [`Camera::viewport`] is the size of that half.
 ///
 /// # Examples
 ///
@@ -78,6 +82,8 @@ pub struct View {
     device: u32,
     quality: Quality,
     camera: Option<Camera>,
+    /// The camera of its last frame, and the number of that frame.
+    last: Option<(u64, Camera)>,
     lod_cameras: Vec<Camera>,
     mask: u16,
     casters: bool,
@@ -101,6 +107,7 @@ impl View {
             device,
             quality,
             camera: None,
+            last: None,
             lod_cameras: Vec::new(),
             mask: u16::MAX,
             casters: false,
@@ -217,7 +224,7 @@ impl View {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        passes: (&SelectPass, &ListPass),
+        passes: (&SelectPass, &ListPass, &SinglePass),
         groups: (&SceneLayouts, usize),
     ) -> Result<(), Error> {
         if self.lists.as_ref().is_none_or(|lists| lists.version != layout.version) {
@@ -231,22 +238,38 @@ impl View {
         self.lists.as_ref()?.terrain.get(terrain).map(|(_, group)| group)
     }
 
-    /// Stages the view's uniforms. `spacings` gives the distance between the samples of each terrain.
+    /// Remembers the camera of a frame that was recorded.
+    pub(super) fn recorded(&mut self, frame: u64) {
+        self.last = self.camera.map(|camera| (frame, camera));
+    }
+
+    /// Stages the view's uniforms. `terrains` are those of the scene, in their order; a frame has a number, and a first view.
     pub(super) fn stage(
         &self,
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
-        spacings: &[f64],
-        is_first: bool,
+        terrains: &[SeenTerrain],
+        (frame, is_first): (u64, bool),
     ) -> Result<(), Error> {
+        let last = self.last.filter(|(last, _)| *last + 1 == frame).map(|(_, camera)| camera);
         let (camera, view) = self.select_view(blocks, is_first)?;
         staged.uniform(&self.select, &view)?;
-        staged.uniform(&self.drawn, &SceneView::new(&camera, &view.cameras[0], light))?;
+        staged.uniform(
+            &self.drawn,
+            &SceneView::new([&camera, &last.unwrap_or(camera)], &view.cameras[0], light),
+        )?;
         let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
-        for ((uniform, _), spacing) in terrain.zip(spacings) {
-            staged.uniform(uniform, &terrain_view(&camera, *spacing))?;
+        for ((uniform, _), seen) in terrain.zip(terrains) {
+            staged.uniform(uniform, &terrain_view(&camera, seen))?;
         }
         Ok(())
+    }
+
+    /// Orders what is drawn instance by instance.
+    pub(super) fn order<'a>(&mut self, objects: impl Iterator<Item = &'a Object>, selected: &SelectView) {
+        if let (Some(lists), Some(camera)) = (&mut self.lists, &self.camera) {
+            back_to_front(&mut lists.order, objects, (selected, camera));
+        }
     }
 
     /// The view as kernels see it.
@@ -281,6 +304,9 @@ impl View {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);
             lists.list.dispatch(pass);
+            if let Some((job, _)) = &lists.singles {
+                job.dispatch(pass);
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A view as kernels and shaders see it.
 
-use glam::{DVec3, IVec2, IVec3, Mat4, Vec3, Vec4};
+use glam::{DMat4, DVec3, IVec2, IVec3, Mat4, Vec3, Vec4};
 
 use crate::InputError;
 use crate::asset::Light;
@@ -11,40 +11,72 @@ use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::picture::is_mirrored;
 
+/// What a view needs to know of a terrain.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SeenTerrain {
+    /// World units between samples.
+    pub spacing: f64,
+    /// The number of the object.
+    pub object: u32,
+}
+
 impl SceneView {
-    pub(super) fn new(camera: &Camera, own: &LodCamera, light: &Light) -> Self {
+    /// The view of a camera, and of the last frame's.
+    pub(super) fn new([camera, last]: [&Camera; 2], own: &LodCamera, light: &Light) -> Self {
         let eye = match own.perspective > 0.0 {
             true => camera.eye().extend(1.0),
             false => (-camera.ahead()).extend(0.0),
         };
         Self {
             clip_from_world: camera.clip_from_world(),
+            last_clip_from_world: clip_from_cell(last, camera.cell),
             eye,
             light: light.direction.normalize().extend(light.ambient),
             light_color: light.color,
             side: if is_mirrored(&camera.clip_from_world()) { -1.0 } else { 1.0 },
+            cell: IVec3::from(camera.cell),
         }
     }
 
     pub(super) fn nothing() -> Self {
         let (clip_from_world, eye, light) = (Mat4::IDENTITY, Vec4::W, Vec4::Y);
-        Self { clip_from_world, eye, light, light_color: Vec3::ONE, side: 1.0 }
+        let last_clip_from_world = clip_from_world;
+        Self {
+            clip_from_world,
+            last_clip_from_world,
+            eye,
+            light,
+            light_color: Vec3::ONE,
+            side: 1.0,
+            cell: IVec3::ZERO,
+        }
     }
 }
 
-/// Where the samples of a terrain, `spacing` world units apart, lie in a view: counted from the one nearest to the eye.
-pub(super) fn terrain_view(camera: &Camera, spacing: f64) -> TerrainView {
+/// The matrix from positions relative to the corner of a cell to a camera's clip space.
+fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> Mat4 {
+    if camera.cell == cell {
+        return camera.clip_from_world();
+    }
+    let cells = [0, 1, 2].map(|axis| f64::from(cell[axis]) - f64::from(camera.cell[axis]));
+    let moved = DMat4::from_translation(DVec3::from(cells) * f64::from(Placement::CELL));
+    (camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4() * moved).as_mat4()
+}
+
+/// Where the samples of a terrain lie in a view: counted from the one nearest to the eye.
+pub(super) fn terrain_view(camera: &Camera, terrain: &SeenTerrain) -> TerrainView {
+    let SeenTerrain { spacing, object } = *terrain;
     let corner = DVec3::from(camera.cell.map(f64::from)) * f64::from(Placement::CELL);
     let eye = corner + camera.eye().as_dvec3();
     // Conversion saturates; samples so far away are not drawn precisely.
     let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
     let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
-    TerrainView { base, rest: (place - corner).as_vec3() }
+    TerrainView { base, rest: (place - corner).as_vec3(), object }
 }
 
 impl TerrainView {
     pub(super) fn nowhere() -> Self {
-        Self { base: IVec2::ZERO, rest: Vec3::ZERO }
+        Self { base: IVec2::ZERO, rest: Vec3::ZERO, object: 0 }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::InputError;
 use crate::asset::material::{Alpha, Sampling};
 use crate::asset::{Material, Mesh, Model};
 
-/// The largest number of parts of an object, unless morphed meshes make it larger.
+/// The largest number of parts of an object, unless morphed or blended meshes make it larger.
 pub const MAX_PARTS: usize = 4;
 
 /// What the meshes of a part have in common.
@@ -12,6 +12,8 @@ pub const MAX_PARTS: usize = 4;
 pub struct PartKey {
     /// Whether alpha leaves out pixels: [`Alpha::Mask`] or [`Alpha::Dithered`].
     pub cut_out: bool,
+    /// Whether it is blended with what is behind it: [`Alpha::Blended`].
+    pub blended: bool,
     /// Whether triangles are also visible from inside.
     pub double_sided: bool,
     /// How textures are sampled: as the texture of the base colour says, or without one the normal map's. `None` if
@@ -27,8 +29,10 @@ impl PartKey {
     pub fn of(model: &Model, mesh: &Mesh) -> Result<Self, InputError> {
         let material = model.material(mesh)?;
         let texture = material.and_then(|material| material.texture.or(material.normal));
+        let alpha = material.map_or(Alpha::Opaque, |Material { alpha, .. }| *alpha);
         Ok(Self {
-            cut_out: material.is_some_and(|Material { alpha, .. }| *alpha != Alpha::Opaque),
+            cut_out: matches!(alpha, Alpha::Mask(_) | Alpha::Dithered),
+            blended: alpha == Alpha::Blended,
             double_sided: mesh.double_sided,
             sampling: texture.map(|texture| texture.sampling),
         })
@@ -50,7 +54,10 @@ impl Sorted {
     }
 
     fn is_beside(&self, other: &Self) -> bool {
-        let pair = |part: &Self| (part.group, part.key.cut_out, part.key.double_sided);
+        let pair = |part: &Self| {
+            let PartKey { cut_out, blended, double_sided, .. } = part.key;
+            (part.group, cut_out, blended, double_sided)
+        };
         pair(self) == pair(other)
     }
 }

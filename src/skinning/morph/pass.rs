@@ -32,6 +32,7 @@ impl MorphPass {
         let mut steps = Vec::new();
         if mesh.targets > 0 {
             let nothing = ActiveClusters {
+                keeps_last: false,
                 pairs: Buffer::new(gpu, "no clusters", 0)?,
                 dispatched: Buffer::from_slice(gpu, "no clusters", &[0; 4])?,
             };

@@ -20,3 +20,6 @@ pub use crate::shared::skinning::pages::PageState;
 
 /// The bytes of a page.
 pub const PAGE_BYTES: usize = super::clusters::CLUSTER * size_of::<super::vertex::Vertex>();
+
+/// The bytes of a page with last positions: four floats for each vertex more.
+pub const KEEPING_PAGE_BYTES: usize = PAGE_BYTES + super::clusters::CLUSTER * size_of::<[f32; 4]>();

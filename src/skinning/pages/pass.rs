@@ -7,6 +7,7 @@ use crate::gpu::bindings::skinning::pages as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::pages::PageParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use crate::skinning::clusters::CLUSTER;
 use crate::skinning::vertex::Vertex;
 
 impl SeenAs<PageState> for u32 {}
@@ -14,8 +15,11 @@ impl SeenAs<PageState> for u32 {}
 /// The pages of all instances of a mesh on the device.
 #[derive(Debug, Clone)]
 pub struct PageBuffers {
-    /// The skinned vertices, 64 a page.
+    /// The skinned vertices, 64 a page. If last positions are kept, they follow: four floats for each vertex, of which the
+    /// last is unused.
     pub skinned: Buffer<Vertex>,
+    /// If last positions are kept, the index of the first of them in pairs of floats; else 0.
+    pub last: u32,
     /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Buffer<u32>,
     /// For each instance the number of clusters, from the first on, that have a page.
@@ -35,12 +39,29 @@ impl PageBuffers {
         let stack: Vec<u32> = (0..pages).rev().collect();
         let entries = crowd.instances * mesh.clusters();
         Ok(Self {
-            skinned: Buffer::new(gpu, "pages of vertices", super::super::clusters::CLUSTER * pages as usize)?,
+            skinned: Buffer::new(gpu, "pages of vertices", CLUSTER * pages as usize)?,
+            last: 0,
             table: Buffer::from_slice(gpu, "page table", &vec![NO_PAGE; entries])?,
             held: Buffer::new(gpu, "pages held", crowd.instances)?,
             stack: Buffer::from_slice(gpu, "free pages", &stack)?,
             state: Buffer::from_slice(gpu, "page state", &[pages, 0])?,
         })
+    }
+
+    /// As [`PageBuffers::new`], with room for last positions.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn keeping(
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        pages: u32,
+    ) -> Result<Self, GpuError> {
+        let vertices = CLUSTER * pages as usize;
+        // Four floats a vertex, in vertices of ten.
+        let skinned = Buffer::new(gpu, "pages of vertices", vertices + (4 * vertices).div_ceil(10))?;
+        Ok(Self { skinned, last: 5 * vertices as u32, ..Self::new(gpu, mesh, crowd, pages)? })
     }
 
     /// Number of pages.

@@ -136,7 +136,7 @@ impl Canvas<'_> {
         let least = match surface.alpha {
             Alpha::Opaque => f32::NEG_INFINITY,
             Alpha::Mask(cutoff) => cutoff,
-            Alpha::Dithered => dither_threshold(pixel),
+            Alpha::Dithered | Alpha::Blended => dither_threshold(pixel),
         };
         if alpha < least {
             return;

@@ -12,8 +12,11 @@ pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
+mod state;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
+
+pub use state::ClusterState;
 
 #[cfg(feature = "gpu")]
 pub use pass::{SKINNED_WORDS, SelectBuffers, SelectPass};

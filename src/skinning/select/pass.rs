@@ -57,7 +57,8 @@ impl SelectPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |finish, clear| bindings::kernel(gpu, &bindings::Constants { finish, clear });
+        let kernel =
+            |finish, clear| bindings::kernel(gpu, &bindings::Constants { finish, clear, keep: false });
         Ok(Self {
             select: kernel(false, false)?,
             finish: kernel(true, false)?,
@@ -110,6 +111,15 @@ impl SelectPass {
         ])
     }
 
+    /// The kernel that selects, where last positions are kept or not.
+    fn selecting(&self, gpu: &Gpu, keep: bool) -> Result<Kernel, GpuError> {
+        if keep {
+            bindings::kernel(gpu, &bindings::Constants { keep, ..Default::default() })
+        } else {
+            Ok(self.select.clone())
+        }
+    }
+
     fn job(
         &self,
         gpu: &Gpu,
@@ -124,7 +134,7 @@ impl SelectPass {
         crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
         active.dispatched.check_holds("active.dispatched", DISPATCHED_WORDS)?;
-        active.pairs.check_holds("active.pairs", pairs)?;
+        active.pairs.check_holds("active.pairs", active.words(pairs))?;
         let params = SelectParams {
             instances: crowd.instances as u32,
             clusters: mesh.clusters() as u32,
@@ -154,7 +164,7 @@ impl SelectPass {
                 kernel: kernel.clone(),
             })
         };
-        let steps = [step(&self.select, pairs), step(finish, crowd.instances)];
+        let steps = [step(&self.selecting(gpu, active.keeps_last)?, pairs), step(finish, crowd.instances)];
         let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "skinning/select", steps)?)
     }

@@ -2,6 +2,7 @@
 
 use crate::skinning::clusters::Clusters;
 use crate::skinning::instance_lod::InstanceLod;
+use crate::skinning::select::ClusterState;
 
 /// The inputs of a frame's selection.
 #[derive(Debug, Clone, Copy)]
@@ -64,6 +65,41 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
             || clusters.morphs[cluster] && weights.clone().any(|(a, b)| a.to_bits() != b.to_bits())
     };
     (0..(clusters.len() * last.len()) as u32).filter(is_selected).collect()
+}
+
+/// As [`select`], where last positions are kept: `states` says for each pair what the last selection did to it, and
+/// becomes what this one does. What moved in the last frame is selected once more.
+///
+/// # Panics
+/// As [`select`], and with fewer states than pairs.
+pub fn select_keeping(
+    clusters: &Clusters,
+    now: &Now<'_>,
+    last: &[Skinned],
+    states: &mut [ClusterState],
+) -> Vec<u32> {
+    let mut selected = select(clusters, now, last);
+    for pair in 0..(clusters.len() * last.len()) as u32 {
+        let (cluster, instance) = (pair as usize / last.len(), pair as usize % last.len());
+        let (lod, before) = (&now.instance_lods[instance], &last[instance].instance_lod);
+        let is_beyond = |level| cluster >= clusters.level(level).clusters as usize;
+        if lod.max_influences == 0 || is_beyond(lod.mesh_lod) {
+            continue;
+        }
+        let state = &mut states[pair as usize];
+        let was = *state;
+        *state = match selected.binary_search(&pair) {
+            Ok(_) if before.max_influences == 0 || is_beyond(before.mesh_lod) => ClusterState::Fresh,
+            Ok(_) => ClusterState::Moved,
+            Err(at) => {
+                if was == ClusterState::Moved {
+                    selected.insert(at, pair);
+                }
+                ClusterState::Still
+            }
+        };
+    }
+    selected
 }
 
 /// Stores the state of a frame; call it after [`select`].

@@ -11,8 +11,8 @@ use crate::harness::{Cases, compare};
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::{CLUSTER, Clusters};
 use crate::skinning::instance_lod::InstanceLod;
-use crate::skinning::select::reference::{Now, Skinned, remember, select};
-use crate::skinning::select::{SKINNED_WORDS, SelectBuffers, SelectPass};
+use crate::skinning::select::reference::{Now, Skinned, remember, select, select_keeping};
+use crate::skinning::select::{ClusterState, SKINNED_WORDS, SelectBuffers, SelectPass};
 use crate::skinning::verify::{SHAPES, Shape, random_instance_lods, random_model};
 use crate::skinning::vertex::Blend;
 use crate::{Error, InputError};
@@ -39,6 +39,15 @@ struct Frame {
 }
 
 impl Frame {
+    /// The frame before the first: nothing is seen.
+    fn before_all(instances: usize, words: usize, targets: usize) -> Self {
+        Self {
+            updated_bones: vec![0; instances * words],
+            instance_lods: vec![InstanceLod::UNSEEN; instances],
+            weights: vec![0.0; instances * targets],
+        }
+    }
+
     fn now(&self) -> Now<'_> {
         Now { updated_bones: &self.updated_bones, instance_lods: &self.instance_lods, weights: &self.weights }
     }
@@ -97,11 +106,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let clearing = pass.prepare_clearing(gpu, &mesh, &crowd, &buffers, &active)?;
         let mut last = vec![Skinned::nothing(shape.targets); instances];
         let mut draw = Draw::new(case ^ 0xb17);
-        let mut frame = Frame {
-            updated_bones: vec![0; instances * clusters.mask_words],
-            instance_lods: vec![InstanceLod::UNSEEN; instances],
-            weights: vec![0.0; instances * shape.targets],
-        };
+        let mut frame = Frame::before_all(instances, clusters.mask_words, shape.targets);
         for (number, given) in FRAMES.into_iter().enumerate() {
             frame = frame.next(&mut draw, case, given);
             crowd.instance_lods.write(gpu, &frame.instance_lods)?;
@@ -122,6 +127,49 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), given.0);
             cases.add(name, remembered.check(gpu, |actual| compare::exact(actual, &words_of(&last)))?);
         }
+        keeping_cases(cases, &pass, case, (&mesh, &clusters), &crowd)?;
+    }
+    Ok(())
+}
+
+/// The same frames where last positions are kept: what moved is selected once more, and every state is compared.
+fn keeping_cases(
+    cases: &mut Cases<'_>,
+    pass: &SelectPass,
+    case: u32,
+    (mesh, clusters): (&MeshBuffers, &Clusters),
+    crowd: &SkinnedCrowd,
+) -> Result<(), Error> {
+    let (gpu, instances) = (cases.gpu, crowd.instances);
+    let count = clusters.len() * instances;
+    let buffers = SelectBuffers::new(gpu, mesh, crowd)?;
+    let mut active = ActiveClusters::keeping(gpu, mesh, crowd)?;
+    let output = Poisoned::<u32>::new(gpu, 2 * count)?;
+    active.pairs = output.buffer.clone();
+    let job = pass.prepare(gpu, mesh, crowd, &buffers, &active)?;
+    let mut last = vec![Skinned::nothing(mesh.targets); instances];
+    let mut states = vec![ClusterState::Still; count];
+    let mut draw = Draw::new(case ^ 0x6ee9);
+    let mut frame = Frame::before_all(instances, clusters.mask_words, mesh.targets);
+    for given in FRAMES {
+        frame = frame.next(&mut draw, case, given);
+        crowd.instance_lods.write(gpu, &frame.instance_lods)?;
+        crowd.weights.write(gpu, &frame.weights)?;
+        buffers.updated_bones.write(gpu, &frame.updated_bones)?;
+        output.poison(gpu)?;
+        let before = states.iter().map(|state| *state as u32);
+        active.pairs.write(gpu, &vec![POISON; count].into_iter().chain(before).collect::<Vec<_>>())?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let expected = select_keeping(clusters, &frame.now(), &last, &mut states);
+        remember(&frame.now(), &mut last);
+        let dispatched = active.dispatched.read_blocking(gpu)?;
+        let words: Vec<u32> = states.iter().map(|state| *state as u32).collect();
+        let compared = output.check(gpu, |actual| {
+            let (pairs, found) = actual.split_at(count.min(actual.len()));
+            let listed = listed(pairs, &dispatched, &expected);
+            if listed.holds { compare::exact(found, &words) } else { listed }
+        })?;
+        cases.add(format!("{} clusters × {instances}, {}: last kept", clusters.len(), given.0), compared);
     }
     Ok(())
 }

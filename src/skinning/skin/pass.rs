@@ -27,6 +27,8 @@ struct Output<'a> {
     active: &'a ActiveClusters,
     /// Any buffer where vertices do not lie in pages.
     table: &'a Buffer<u32>,
+    /// Where last positions begin, in pairs of floats; 0 if they are not kept.
+    last: u32,
 }
 
 /// The prepared skinning of clusters that a kernel or the host selects.
@@ -40,8 +42,10 @@ impl SkinPass {
     pub fn new(gpu: &Gpu, blend: Blend) -> Result<Self, GpuError> {
         let dual = blend == Blend::DualQuaternion;
         let kernels = |compacted, paged| {
-            let kernel =
-                |morphed| bindings::kernel(gpu, &bindings::Constants { compacted, dual, morphed, paged });
+            let kernel = |morphed| {
+                let constants = bindings::Constants { compacted, dual, morphed, paged, keep: false };
+                bindings::kernel(gpu, &constants)
+            };
             Ok::<_, GpuError>([kernel(false)?, kernel(true)?])
         };
         Ok(Self {
@@ -68,13 +72,14 @@ impl SkinPass {
     ) -> Result<Job, Error> {
         let nothing = ActiveClusters {
             pairs: Buffer::new(gpu, "no clusters", 0)?,
+            keeps_last: false,
             dispatched: Buffer::from_slice(gpu, "no clusters", &[0; 4])?,
         };
         let kernel = self.kernel(false, mesh);
         let pairs = (instances.len() * mesh.clusters()) as u32;
         // One workgroup per pair of cluster and instance.
         skinned.check_holds("skinned", instances.len() * mesh.vertices.len())?;
-        let output = Output { skinned, active: &nothing, table: &nothing.pairs };
+        let output = Output { skinned, active: &nothing, table: &nothing.pairs, last: 0 };
         let group = self.bind(gpu, kernel, (mesh, crowd), instances, output)?;
         let workgroups = rows_of_workgroups(gpu, pairs);
         let step = Step { groups: vec![group], workgroups, kernel: kernel.clone() };
@@ -96,16 +101,17 @@ impl SkinPass {
     ) -> Result<SkinActiveJob, Error> {
         let kernel = self.kernel(true, mesh);
         skinned.check_holds("skinned", crowd.instances * mesh.vertices.len())?;
-        let output = Output { skinned, active, table: &active.pairs };
+        let output = Output { skinned, active, table: &active.pairs, last: 0 };
         let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, output)?;
         Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
 
     /// As [`SkinPass::prepare_active`], into the pages that [`PagesPass`](crate::skinning::pages::PagesPass) deals out.
-    /// Clusters without a page are skipped.
+    /// Clusters without a page are skipped. If the pages have room for last positions ([`PageBuffers::keeping`]), each
+    /// vertex's position is kept before it changes, or as it becomes, as the active clusters' states say.
     ///
     /// # Errors
-    /// As [`SkinPass::prepare_active`].
+    /// As [`SkinPass::prepare_active`]; [`InputError`] too where only one of pages and clusters keeps last positions.
     pub fn prepare_paged(
         &self,
         gpu: &Gpu,
@@ -114,9 +120,20 @@ impl SkinPass {
         pages: &PageBuffers,
         active: &ActiveClusters,
     ) -> Result<SkinActiveJob, Error> {
-        let kernel = &self.paged[usize::from(mesh.targets > 0)];
+        let keeps = pages.last > 0;
+        if keeps != active.keeps_last {
+            let bound = format!("must be {keeps}, as the pages have or lack last positions");
+            return Err(InputError::new("active.keeps_last", active.keeps_last, bound).into());
+        }
+        let (morphed, dual) = (mesh.targets > 0, self.blend == Blend::DualQuaternion);
+        let constants = bindings::Constants { compacted: true, dual, morphed, paged: true, keep: true };
+        let kernel = match keeps {
+            true => &bindings::kernel(gpu, &constants)?,
+            false => &self.paged[usize::from(morphed)],
+        };
+        active.pairs.check_holds("active.pairs", active.words(crowd.instances * mesh.clusters()))?;
         pages.table.check_holds("pages.table", crowd.instances * mesh.clusters())?;
-        let output = Output { skinned: &pages.skinned, active, table: &pages.table };
+        let output = Output { skinned: &pages.skinned, active, table: &pages.table, last: pages.last };
         let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, output)?;
         Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
@@ -156,6 +173,7 @@ impl SkinPass {
             bones: mesh.bones.len() as u32,
             instances: instances.len() as u32,
             first_instance: instances.start as u32,
+            last: output.last,
             levels: mesh.clusters_of_levels(),
         };
         let uniform = Uniform::new(gpu, "skin", &params)?;

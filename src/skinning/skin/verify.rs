@@ -14,6 +14,7 @@ use crate::skinning::morph::reference::morph;
 use crate::skinning::pages::{NO_PAGE, PageBuffers};
 use crate::skinning::palette::Palette;
 use crate::skinning::palette::reference::palette_for;
+use crate::skinning::select::ClusterState;
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::skin::reference::{blended, skin_seen};
 use crate::skinning::skin::{SKIN_BOUND, SkinPass, TRUNCATED};
@@ -51,6 +52,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 cases.add(format!("{name}, {list}"), scene.some(cases.gpu, &pass, every)?);
             }
             cases.add(format!("{name}, in pages"), scene.paged(cases.gpu, &pass)?);
+            cases.add(format!("{name}, last kept"), scene.kept(cases.gpu, &pass)?);
         }
     }
     Ok(())
@@ -159,6 +161,51 @@ impl Scene {
             self.compare(&found, &expected)
         })?;
         Ok(comparison)
+    }
+
+    /// All clusters into pages that keep last positions: of those that moved what lay there, of the others, but for those
+    /// without a page, what is written. Both are copies, to the bit.
+    fn kept(&self, gpu: &Gpu, pass: &SkinPass) -> Result<Comparison, Error> {
+        let count = self.clusters.len() * INSTANCES;
+        let mut active = ActiveClusters::keeping(gpu, &self.mesh, &self.crowd)?;
+        active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
+        let is_fresh = |pair: usize| pair.is_multiple_of(3);
+        let state = |pair: usize| {
+            let state = if is_fresh(pair) { ClusterState::Fresh } else { ClusterState::Moved };
+            state as u32
+        };
+        let pairs: Vec<u32> = (0..count as u32).chain((0..count).map(state)).collect();
+        active.pairs = Buffer::from_slice(gpu, "pairs", &pairs)?;
+        let mut pages = PageBuffers::keeping(gpu, &self.mesh, &self.crowd, count as u32)?;
+        let page = |entry: usize| if entry % 5 == 4 { NO_PAGE } else { entry as u32 };
+        pages.table.write(gpu, &(0..count).map(page).collect::<Vec<_>>())?;
+        let old: Vec<f32> = (0..10 * pages.skinned.len()).map(|at| at as f32).collect();
+        pages.skinned = Buffer::from_slice(gpu, "pages", bytemuck::cast_slice::<_, Vertex>(&old))?;
+        let job = pass.prepare_paged(gpu, &self.mesh, &self.crowd, &pages, &active)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let found = pages.skinned.read_blocking(gpu)?;
+        let found: &[f32] = bytemuck::cast_slice(&found);
+        let last = 2 * pages.last as usize;
+        let mut expected = old[last..][..4 * CLUSTER * count].to_vec();
+        for (slot, kept) in expected.chunks_exact_mut(4).enumerate() {
+            let (entry, lane) = (slot / CLUSTER, slot % CLUSTER);
+            let (instance, cluster) = (entry / self.clusters.len(), entry % self.clusters.len());
+            if self.is_skinned(instance, CLUSTER * cluster + lane) && page(entry) != NO_PAGE {
+                let from = if is_fresh(cluster * INSTANCES + instance) { found } else { &old };
+                kept[..3].copy_from_slice(&from[10 * slot..][..3]);
+                kept[3] = 0.0;
+            }
+        }
+        let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        Ok(compare::exact(&bits(&found[last..][..expected.len()]), &bits(&expected)))
+    }
+
+    /// Whether the vertex of a slot is skinned.
+    fn is_skinned(&self, instance: usize, slot: usize) -> bool {
+        let vertices = self.clusters.order.len();
+        let vertex = self.clusters.order.get(slot);
+        vertex
+            .is_some_and(|vertex| self.expected[instance * vertices + *vertex as usize].vertex != poisoned())
     }
 
     fn compare(&self, actual: &[Vertex], expected: &[Expected]) -> Comparison {

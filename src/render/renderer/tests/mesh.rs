@@ -49,7 +49,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];
     let count = buffers.clusters();
-    let params = MeshParams { first_instance: 64, clusters: count as u32 };
+    let params = MeshParams { first_instance: 64, clusters: count as u32, object: 1, last: 0 };
     let mut pages = clusters.vertices.clone();
     pages.resize(64 * count, Vertex::default());
     let pages: Vec<Vertex> = pages.chunks(64).rev().flatten().copied().collect();
@@ -60,6 +60,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
     let geometry = MeshGeometry {
         params: Uniform::new(gpu, "mesh", &params).expect("uploaded"),
         vertices: Buffer::from_slice(gpu, "vertices", &pages.repeat(instances)).expect("uploaded"),
+        last: 0,
         page_table: Buffer::from_slice(gpu, "page table", &table).expect("uploaded"),
         uv: buffers.uv.clone(),
         material_of: Buffer::from_slice(gpu, "material of", &vec![1; clusters.vertices.len()])
@@ -70,7 +71,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
         PartMaterials::new(gpu, layouts, model, &[None, Some(0)], &Sampling::default()).expect("uploaded");
     let cut_out = material.alpha != Alpha::Opaque;
     let part = MeshPart {
-        surface: SurfaceKind { cut_out, double_sided: model.meshes[0].double_sided },
+        surface: SurfaceKind { cut_out, blended: false, double_sided: model.meshes[0].double_sided },
         materials: MeshMaterials::Plain(table),
     };
     let drawable = MeshDrawable::new(gpu, layouts, geometry, params.clusters, vec![part]).expect("bound");

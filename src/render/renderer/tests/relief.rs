@@ -74,12 +74,13 @@ pub fn square(
         color: [1.0; 3],
     };
     let up = "uploaded";
-    let params = MeshParams { first_instance: 64, clusters: 0 };
+    let params = MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0 };
     let uv: Vec<_> = square.vertices.iter().map(|vertex| vertex.uv).collect();
     let vertices: Vec<_> = square.vertices.iter().map(vertex).collect();
     let geometry = MeshGeometry {
         params: Uniform::new(gpu, "mesh", &params).expect(up),
         vertices: Buffer::from_slice(gpu, "vertices", &vertices).expect(up),
+        last: 0,
         page_table: Buffer::from_slice(gpu, "no pages", &[0]).expect(up),
         uv: Buffer::from_slice(gpu, "uv", &uv).expect(up),
         material_of: Buffer::from_slice(gpu, "material of", &[0; 4]).expect(up),
@@ -87,7 +88,7 @@ pub fn square(
     };
     let relief = ReliefMaterial::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
     let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, double_sided: true },
+        surface: SurfaceKind { cut_out: false, blended: false, double_sided: true },
         materials: MeshMaterials::Relief(relief),
     };
     Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))

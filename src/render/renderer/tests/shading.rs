@@ -55,7 +55,13 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
     };
     let up = "uploaded";
     let geometry = MeshGeometry {
-        params: Uniform::new(gpu, "mesh", &MeshParams { first_instance: 64, clusters: 0 }).expect(up),
+        params: Uniform::new(
+            gpu,
+            "mesh",
+            &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0 },
+        )
+        .expect(up),
+        last: 0,
         page_table: Buffer::from_slice(gpu, "no pages", &[0]).expect(up),
         vertices: Buffer::from_slice(gpu, "vertices", &corners.map(vertex)).expect(up),
         uv: Buffer::from_slice(gpu, "uv", &corners.map(|[x, y]| [0.5 * x + 0.5, 0.5 - 0.5 * y])).expect(up),
@@ -64,7 +70,7 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
     };
     let table = [Some(0), Some(1)];
     let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, double_sided },
+        surface: SurfaceKind { cut_out: false, blended: false, double_sided },
         materials: MeshMaterials::Plain(
             PartMaterials::new(gpu, layouts, &model(), &table, &Sampling::default()).expect(up),
         ),

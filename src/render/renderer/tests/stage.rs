@@ -38,10 +38,12 @@ pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
     let light = Light::default();
     SceneView {
         clip_from_world,
+        last_clip_from_world: clip_from_world,
         eye,
         light: light.direction.normalize().extend(light.ambient),
         light_color: light.color,
         side: if is_mirrored(&clip_from_world) { -1.0 } else { 1.0 },
+        cell: glam::IVec3::ZERO,
     }
 }
 
@@ -79,11 +81,12 @@ impl Stage {
         let rows: Vec<[f32; 4]> = nowhere.into_iter().chain(placements.iter().flatten().copied()).collect();
         let instances = vec![SceneInstance::new([0.0; 4]); BLOCK as usize + placements.len()];
         let up = "uploaded";
+        let instances = Buffer::from_slice(gpu, "instances", &instances).expect(up);
         let group = layouts.view(
             gpu,
             &Uniform::new(gpu, "view", &view).expect(up),
             &Buffer::from_slice(gpu, "rows", &rows).expect(up),
-            &Buffer::from_slice(gpu, "instances", &instances).expect(up),
+            [&instances, &instances],
         );
         let z = view.clip_from_world.row(2);
         Self {
@@ -104,6 +107,7 @@ impl Stage {
             arguments: &self.arguments,
             mirrors: self.view.side < 0.0,
             reversed: self.reversed,
+            keeps_last: true,
         }
     }
 

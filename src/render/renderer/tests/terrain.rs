@@ -76,7 +76,8 @@ impl Land {
     /// The samples counted from `base`, in a view whose cell's corner is the first sample.
     pub fn ground(&self, gpu: &Gpu, layouts: &SceneLayouts, base: [i32; 2]) -> Group {
         let rest = base.map(|at| (f64::from(at) * self.config.terrain_scale) as f32);
-        let ground = TerrainView { base: IVec2::from(base), rest: Vec3::new(rest[0], 0.0, rest[1]) };
+        let ground =
+            TerrainView { base: IVec2::from(base), rest: Vec3::new(rest[0], 0.0, rest[1]), object: 1 };
         layouts.ground(gpu, &Uniform::new(gpu, "ground", &ground).expect("uploaded")).expect("bound")
     }
 

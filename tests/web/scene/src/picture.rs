@@ -10,8 +10,8 @@ use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource, View
 use relievo::terrain::config::Config;
 use relievo::{Error, wgpu};
 
-/// Pixels of the picture. Rows are 1024 bytes, which copies need.
-pub const SIZE: [u32; 2] = [256, 192];
+/// Pixels of the picture. Rows are 2048 bytes: copies need multiples of 256.
+pub const SIZE: [u32; 2] = [512, 384];
 
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const SKY: wgpu::Color = wgpu::Color { r: 0.36, g: 0.55, b: 0.8, a: 1.0 };

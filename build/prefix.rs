@@ -1,0 +1,107 @@
+//! Renames what a flat shader declares at module scope, so that the caller's own text can stand beside it.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+/// What the names of the crate begin with in shaders to which the caller's text is added.
+pub const PREFIX: &str = "relievo_";
+
+/// The names that the caller's text uses or replaces.
+const KEPT: &[&str] = &["Surface", "View", "shade"];
+
+/// The function that the caller's text replaces.
+const REPLACED: &str = "fn shade(";
+
+/// The text with all names of module scope prefixed, but for those that the caller's text knows, and with the function
+/// that this text replaces at its end.
+pub fn prefixed(flat: &str) -> String {
+    let text = replaced_last(flat);
+    let words = words(&text);
+    let names: BTreeSet<&str> =
+        declared(&text, &words).into_iter().filter(|name| !KEPT.contains(name)).collect();
+    let mut out = String::with_capacity(text.len() + 8 * words.len());
+    let mut end = 0;
+    for word in &words {
+        let name = &text[word.range.clone()];
+        if !word.is_local && names.contains(name) {
+            out += &text[end..word.range.start];
+            out += PREFIX;
+            end = word.range.start;
+        }
+    }
+    out + &text[end..]
+}
+
+/// The text with the function that may be replaced at its end.
+fn replaced_last(flat: &str) -> String {
+    let Some(start) = flat.find(REPLACED) else { return flat.to_owned() };
+    let end = flat[start..].find("\n}").map_or(flat.len(), |end| start + end + 2);
+    format!("{}{}\n\n{}\n", &flat[..start], flat[end..].trim_start(), &flat[start..end])
+}
+
+/// An identifier or a keyword.
+struct Word {
+    range: Range<usize>,
+    /// Whether it names a member, an attribute or an attribute's value: nothing of module scope.
+    is_local: bool,
+    /// The number of braces around it.
+    depth: usize,
+}
+
+/// The words of a shader without comments.
+fn words(text: &str) -> Vec<Word> {
+    let bytes = text.as_bytes();
+    let is_part = |at: usize| bytes.get(at).is_some_and(|c| c.is_ascii_alphanumeric() || *c == b'_');
+    let (mut words, mut depth, mut at, mut last) = (Vec::new(), 0_usize, 0, b' ');
+    let (mut in_struct, mut attribute) = (false, false);
+    while at < bytes.len() {
+        if text[at..].starts_with("//") {
+            at += text[at..].find('\n').unwrap_or(text.len() - at);
+            continue;
+        }
+        let start = at;
+        while is_part(at) || bytes[start].is_ascii_digit() && bytes.get(at) == Some(&b'.') {
+            at += 1;
+        }
+        if at == start {
+            match bytes[at] {
+                b'{' => depth += 1,
+                b'}' => depth = depth.saturating_sub(1),
+                b')' => attribute = false,
+                _ => {}
+            }
+            in_struct &= bytes[at] != b'}';
+            last = if bytes[at].is_ascii_whitespace() { last } else { bytes[at] };
+            at += 1;
+            continue;
+        }
+        let name = &text[start..at];
+        in_struct |= name == "struct";
+        let is_member = in_struct && depth == 1 && text[at..].trim_start().starts_with(':');
+        if !bytes[start].is_ascii_digit() {
+            let is_local = matches!(last, b'.' | b'@') || attribute || is_member;
+            words.push(Word { range: start..at, is_local, depth });
+        }
+        attribute |= last == b'@' && matches!(name, "builtin" | "interpolate");
+        last = b'a';
+    }
+    words
+}
+
+/// The names that are declared at module scope.
+fn declared<'a>(text: &'a str, words: &[Word]) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for (at, word) in words.iter().enumerate().filter(|(_, word)| word.depth == 0 && !word.is_local) {
+        let keyword = &text[word.range.clone()];
+        if !["fn", "struct", "const", "override", "alias", "var"].contains(&keyword) {
+            continue;
+        }
+        // An address space stands between `var` and its name.
+        let bracket = text[word.range.end..].trim_start().starts_with('<');
+        let from =
+            if bracket { text[word.range.end..].find('>').map_or(0, |end| word.range.end + end) } else { 0 };
+        let name = words[at + 1..].iter().find(|next| next.range.start >= from);
+        names.extend(name.map(|name| &text[name.range.clone()]));
+    }
+    names
+}

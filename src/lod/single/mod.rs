@@ -1,0 +1,17 @@
+//! The draws of single instances, for what is drawn instance by instance in an order that the host chooses: transparent
+//! surfaces from back to front.
+//!
+//! The host knows no level of detail and no visibility, so each part of each such instance has a draw of its own, which the
+//! device fills from [`select`](super::select)'s decision: of nothing if the view does not see the instance.
+
+#[cfg(feature = "verify")]
+pub(crate) mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "verify")]
+pub(crate) mod verify;
+
+pub use crate::shared::lod::single::Single;
+#[cfg(feature = "gpu")]
+pub use pass::{SingleBuffers, SinglePass};

@@ -1,0 +1,19 @@
+//! Draws of single instances: the CPU reference of `kernels/lod/single.wgsl`.
+
+use super::Single;
+use crate::lod::SceneDraw;
+
+/// The draw of each of `singles`, from the decisions of all instances and the draws of all lists.
+///
+/// # Panics
+/// For an instance without a decision, and a decision without a draw.
+pub fn draws(singles: &[Single], decisions: &[u32], arguments: &[SceneDraw]) -> Vec<SceneDraw> {
+    let draw = |single: &Single| match decisions[single.instance as usize] {
+        0 => SceneDraw { indices: 0, instances: 0, first_index: 0, base_vertex: 0, first_instance: 0 },
+        decision => {
+            let draw = arguments[(single.first_draw + decision - 1) as usize];
+            SceneDraw { instances: 1, first_instance: 0, ..draw }
+        }
+    };
+    singles.iter().map(draw).collect()
+}

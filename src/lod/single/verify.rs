@@ -1,0 +1,98 @@
+//! Parity cases of `kernels/lod/single.wgsl`.
+
+use super::reference::draws;
+use super::{Single, SingleBuffers, SinglePass};
+use crate::Error;
+use crate::animation::verify::Draw;
+use crate::gpu::Buffer;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Cases, compare};
+use crate::lod::{OBJECT_LISTS, SceneDraw};
+
+/// Random singles with decisions of which a part sees nothing, and random draws.
+pub(crate) struct Given {
+    pub singles: Vec<Single>,
+    pub decisions: Vec<u32>,
+    pub arguments: Vec<SceneDraw>,
+}
+
+impl Given {
+    /// So many singles of as many instances and a few parts.
+    pub(crate) fn new(count: usize) -> Self {
+        let mut draw = Draw::new(count as u32 ^ 0x51b1);
+        let parts = 7;
+        let single = |draw: &mut Draw| Single {
+            instance: draw.word() % count.max(1) as u32,
+            first_draw: 3 + OBJECT_LISTS * (draw.word() % parts),
+        };
+        let argument = |draw: &mut Draw| SceneDraw {
+            indices: draw.word() % 1000,
+            instances: draw.word(),
+            first_index: draw.word(),
+            base_vertex: draw.word(),
+            first_instance: draw.word(),
+        };
+        Self {
+            singles: (0..count).map(|_| single(&mut draw)).collect(),
+            decisions: (0..count).map(|_| (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2)).collect(),
+            arguments: (0..3 + OBJECT_LISTS * parts).map(|_| argument(&mut draw)).collect(),
+        }
+    }
+
+    /// What the reference writes.
+    pub(crate) fn expected(&self) -> Vec<SceneDraw> {
+        draws(&self.singles, &self.decisions, &self.arguments)
+    }
+}
+
+/// The cases cover numbers of draws around a workgroup's, instances that are not seen and those in each list.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = SinglePass::new(gpu)?;
+    for count in [1, 63, 64, 65, 500] {
+        let given = Given::new(count);
+        let output = Poisoned::<SceneDraw>::new(gpu, count)?;
+        let buffers = SingleBuffers {
+            singles: &Buffer::from_slice(gpu, "singles", &given.singles)?,
+            decisions: &Buffer::from_slice(gpu, "decisions", &given.decisions)?,
+            arguments: &Buffer::from_slice(gpu, "arguments", &given.arguments)?,
+            draws: &output.buffer,
+        };
+        let job = pass.prepare(gpu, buffers, count as u32)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let expected = given.expected();
+        let comparison = output.check(gpu, |actual| compare::exact(words(actual), words(&expected)))?;
+        cases.add(format!("{count} draws"), comparison);
+    }
+    Ok(())
+}
+
+fn words(draws: &[SceneDraw]) -> &[u32] {
+    bytemuck::cast_slice(draws)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_draw_of_what_is_not_seen_or_of_another_list_is_noticed() {
+        let given = Given::new(65);
+        let right = given.expected();
+        assert!(compare::exact(words(&right), words(&right)).holds);
+        let unseen = given.singles.iter().position(|single| given.decisions[single.instance as usize] == 0);
+        for at in [unseen.expect("one of 65"), 64] {
+            let mut wrong = right.clone();
+            wrong[at].instances ^= 1;
+            assert!(!compare::exact(words(&wrong), words(&right)).holds);
+        }
+        let mut other = given.singles.clone();
+        other[3].first_draw += OBJECT_LISTS;
+        let other = draws(&other, &vec![2; 65], &given.arguments);
+        let all = draws(&given.singles, &vec![2; 65], &given.arguments);
+        assert!(!compare::exact(words(&other), words(&all)).holds);
+    }
+}

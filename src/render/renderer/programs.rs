@@ -1,0 +1,93 @@
+//! The shaders, entry points and constants of pipelines.
+
+use super::Layer;
+use super::pipelines::Kind;
+use crate::gpu::bindings::render::{scene_mesh, scene_relief};
+use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN, Shader};
+use crate::render::format::TargetFormat;
+use crate::scene::drawable::SurfaceKind;
+use crate::surface::{Green, ReliefOptions};
+
+/// The shader of a pipeline with its entry points, without the prefix of their names, and constants.
+pub(super) struct Program {
+    pub shader: &'static Shader,
+    pub vertex: &'static str,
+    /// None where depth alone is written and nothing is left out.
+    pub fragment: Option<&'static str>,
+    pub constants: Vec<(&'static str, f64)>,
+}
+
+impl Program {
+    /// The program of a layer of a kind of surface. With `is_shaded` the caller shades.
+    pub fn new(layer: Layer, kind: Kind, format: &TargetFormat, is_shaded: bool) -> Self {
+        // A pipeline without a fragment stage fits no pass with colours.
+        let depth_opaque = (!format.color.is_empty()).then_some("depth_opaque");
+        match kind {
+            Kind::Mesh { surface, normal_mapped, only_textured } => {
+                let (vertex, fragment) = match layer {
+                    Layer::Depth if surface.cut_out => ("vertex", Some("depth_cut_out")),
+                    Layer::Depth => ("vertex", depth_opaque),
+                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color if only_textured.is_some() => ("vertex_plain", Some("opaque_plain")),
+                    Layer::Color | Layer::Transparent => own_color(surface, normal_mapped),
+                    Layer::Surface => ("vertex_whole", Some("surface_whole")),
+                    Layer::Measure => ("vertex_whole", Some("measure_whole")),
+                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
+                };
+                let SurfaceKind { double_sided, cut_out, blended } = surface;
+                let textured = only_textured == Some(true);
+                let constants =
+                    scene_mesh::Constants { double_sided, textured, cut_out, blended, normal_mapped };
+                Self { shader: &RENDER_SCENE_MESH, vertex, fragment, constants: constants.list() }
+            }
+            Kind::Relief { options, .. } => Self {
+                shader: &RENDER_SCENE_RELIEF,
+                vertex: if layer == Layer::Velocity { "vertex_moving" } else { "vertex" },
+                fragment: Some(match layer {
+                    Layer::Depth => "depth_relief",
+                    // Without a depth attachment no shader may write depth.
+                    Layer::Color if options.depth && format.depth.is_some() => "fragment_deep",
+                    Layer::Color | Layer::Transparent => "fragment",
+                    Layer::Surface => "surface",
+                    Layer::Measure => "measure",
+                    Layer::Velocity => "velocity_moving",
+                }),
+                constants: relief_constants(&options, format.is_reversed()).list(),
+            },
+            Kind::Terrain => {
+                let (vertex, fragment) = match layer {
+                    Layer::Depth => ("vertex", depth_opaque),
+                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color | Layer::Transparent => ("vertex", Some("fragment")),
+                    Layer::Surface => ("vertex_whole", Some("surface_whole")),
+                    Layer::Measure => ("vertex_whole", Some("measure_whole")),
+                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
+                };
+                Self { shader: &RENDER_SCENE_TERRAIN, vertex, fragment, constants: Vec::new() }
+            }
+        }
+    }
+}
+
+/// The entries of a mesh in the crate's own shading, which hand over no more than that needs.
+fn own_color(surface: SurfaceKind, normal_mapped: bool) -> (&'static str, Option<&'static str>) {
+    match (surface.cut_out, normal_mapped) {
+        (false, false) => ("vertex", Some("opaque")),
+        (false, true) => ("vertex_bumpy", Some("opaque_bumpy")),
+        (true, false) => ("vertex", Some("cut_out")),
+        (true, true) => ("vertex_bumpy", Some("cut_out_bumpy")),
+    }
+}
+
+fn relief_constants(options: &ReliefOptions, reversed: bool) -> scene_relief::Constants {
+    scene_relief::Constants {
+        method: options.method.code(),
+        shadow: options.shadow as u32,
+        normal_map: options.normal_map.is_some(),
+        green_up: options.normal_map == Some(Green::Up),
+        silhouette: options.silhouette,
+        choose_mip: options.chooses_mip(),
+        own_depth: options.depth,
+        reversed,
+    }
+}

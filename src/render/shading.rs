@@ -1,0 +1,185 @@
+//! The caller's shading: a WGSL text with a function `shade` that replaces the crate's own.
+//!
+//! The text stands in front of the crate's, so that every message about it has the caller's own lines. The crate's names
+//! begin with [`PREFIX`] there; only `Surface` and `View` do not.
+
+use std::borrow::Cow;
+
+use naga::front::wgsl::parse_str;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Block, Function, GlobalVariable, Handle, Module, Span, Statement, Type, TypeInner};
+
+use crate::InputError;
+use crate::gpu::shaders::{RENDER_SCENE_MESH, Shader};
+
+/// What the crate's names begin with beside the caller's text.
+pub(super) const PREFIX: &str = "relievo_";
+
+/// Where the function begins that the caller's text replaces. It is the last one of each shader.
+const REPLACED: &str = "fn shade(";
+
+/// The bind group that belongs to the caller.
+const OWN_GROUP: u32 = 3;
+
+/// A checked text.
+#[derive(Debug, Clone)]
+pub(super) struct Shading {
+    source: String,
+    /// The layout of bind group 3.
+    pub layout: Option<wgpu::BindGroupLayout>,
+}
+
+impl Shading {
+    /// Checks a text. Without a layout it must not bind anything.
+    ///
+    /// # Errors
+    /// [`InputError`] whose path is `shading:LINE:COLUMN`, both counted from 1.
+    pub fn new(source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, InputError> {
+        let text = format!("{source}\n{}\n{}\n", structure("Surface"), structure("View"));
+        let own = Own { source, text: &text };
+        let module = parse_str(&text)
+            .map_err(|error| own.refused(error.labels().map(|(span, _)| span), error.message().to_owned()))?;
+        own.check(&module, layout.is_some())?;
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+        validator.validate(&module).map_err(|error| {
+            // A function, and in it the place: the shortest is the most exact.
+            let mut spans: Vec<Span> = error.spans().map(|(span, _)| *span).collect();
+            spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
+            own.refused(spans.into_iter(), chain(error.as_inner()))
+        })?;
+        Ok(Self { source: source.to_owned(), layout: layout.cloned() })
+    }
+
+    /// The text of a shader that shades as the caller does.
+    pub fn text(&self, shader: &'static Shader) -> Cow<'static, str> {
+        let ours = shader.source.find(REPLACED).map_or(shader.source, |end| &shader.source[..end]);
+        format!("{}\n{ours}", self.source).into()
+    }
+}
+
+/// The declaration of one of the structs that the caller's text uses.
+fn structure(name: &str) -> &'static str {
+    let text = RENDER_SCENE_MESH.source;
+    let start = text.find(&format!("struct {name} {{")).unwrap_or(text.len());
+    let end = text[start..].find('}').map_or(text.len(), |end| start + end + 1);
+    &text[start..end]
+}
+
+/// An error with its causes.
+fn chain(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(Some(error), |error| error.source());
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
+}
+
+/// The caller's text, and the one that is parsed, which begins with it.
+struct Own<'a> {
+    source: &'a str,
+    text: &'a str,
+}
+
+impl Own<'_> {
+    /// The error at the first of these places that lies in the caller's text, else at its end.
+    fn refused(&self, spans: impl Iterator<Item = Span>, bound: String) -> InputError {
+        let mut ranges = spans.filter_map(Span::to_range);
+        let range = ranges.find(|range| range.start < self.source.len());
+        let range = range.unwrap_or(self.source.len()..self.source.len());
+        let before = &self.text[..range.start];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |text| text.chars().count()) + 1;
+        let value: String =
+            self.text[range.start..range.end.min(self.source.len())].chars().take(60).collect();
+        InputError::new(format!("shading:{line}:{column}"), value, bound)
+    }
+
+    /// What a valid text must not do here.
+    fn check(&self, module: &Module, has_layout: bool) -> Result<(), InputError> {
+        let at = |span: Span, bound: &str| Err(self.refused([span].into_iter(), bound.to_owned()));
+        if let Some((handle, _)) = module.overrides.iter().next() {
+            return at(module.overrides.get_span(handle), "must not declare override constants");
+        }
+        if let Some(entry) = module.entry_points.first() {
+            let name = self.source.find(entry.name.as_str()).unwrap_or(0) as u32;
+            let span = Span::new(name, name + entry.name.len() as u32);
+            return at(span, "must not declare entry points");
+        }
+        for (handle, variable) in module.global_variables.iter() {
+            if let Some(bound) = refused_variable(variable, has_layout) {
+                return at(module.global_variables.get_span(handle), bound);
+            }
+        }
+        for (handle, function) in module.functions.iter() {
+            if let Some(span) = discard_in(&function.body) {
+                return at(span, "must not discard: cut-out materials leave out pixels");
+            }
+            if is_ours(function.name.as_deref()) {
+                return at(module.functions.get_span(handle), OURS);
+            }
+        }
+        self.check_names(module)?;
+        self.check_function(module)
+    }
+
+    /// Names with the crate's prefix are the crate's.
+    fn check_names(&self, module: &Module) -> Result<(), InputError> {
+        let constants = module.constants.iter();
+        let constants =
+            constants.map(|(handle, constant)| (&constant.name, module.constants.get_span(handle)));
+        let variables = module.global_variables.iter();
+        let variables =
+            variables.map(|(handle, variable)| (&variable.name, module.global_variables.get_span(handle)));
+        let types = module.types.iter().map(|(handle, ty)| (&ty.name, module.types.get_span(handle)));
+        match constants.chain(variables).chain(types).find(|(name, _)| is_ours(name.as_deref())) {
+            Some((_, span)) => Err(self.refused([span].into_iter(), OURS.to_owned())),
+            None => Ok(()),
+        }
+    }
+
+    /// `shade` must be there, and have the right arguments and result.
+    fn check_function(&self, module: &Module) -> Result<(), InputError> {
+        let named = |(_, function): &(_, &Function)| function.name.as_deref() == Some("shade");
+        let Some((handle, shade)) = module.functions.iter().find(named) else {
+            return Err(self.refused(std::iter::empty(), SIGNATURE.to_owned()));
+        };
+        let is_named = |ty: Handle<Type>, name: &str| module.types[ty].name.as_deref() == Some(name);
+        let arguments: Vec<_> = shade.arguments.iter().map(|argument| argument.ty).collect();
+        let takes = matches!(arguments[..], [surface, view] if is_named(surface, "Surface") && is_named(view, "View"));
+        let is_color = |ty: Handle<Type>| {
+            let color = TypeInner::Vector { size: naga::VectorSize::Quad, scalar: naga::Scalar::F32 };
+            module.types[ty].inner == color
+        };
+        if takes && shade.result.as_ref().is_some_and(|result| is_color(result.ty)) {
+            return Ok(());
+        }
+        Err(self.refused([module.functions.get_span(handle)].into_iter(), SIGNATURE.to_owned()))
+    }
+}
+
+const SIGNATURE: &str = "must be `fn shade(surface: Surface, view: View) -> vec4<f32>`";
+
+const OURS: &str = "must not begin with `relievo_`, as the crate's own names do";
+
+fn is_ours(name: Option<&str>) -> bool {
+    name.is_some_and(|name| name.starts_with(PREFIX))
+}
+
+/// Why a variable of module scope is refused.
+fn refused_variable(variable: &GlobalVariable, has_layout: bool) -> Option<&'static str> {
+    let binding = variable.binding.as_ref()?;
+    match (binding.group == OWN_GROUP, has_layout) {
+        (true, true) => None,
+        (true, false) => Some("must not be bound: no layout of bind group 3 was given"),
+        (false, _) => Some("must be in bind group 3: groups 0 to 2 are the crate's"),
+    }
+}
+
+/// Where a block discards.
+fn discard_in(block: &Block) -> Option<Span> {
+    block.span_iter().find_map(|(statement, span)| match statement {
+        Statement::Kill => Some(*span),
+        Statement::Block(block) => discard_in(block),
+        Statement::If { accept, reject, .. } => discard_in(accept).or_else(|| discard_in(reject)),
+        Statement::Switch { cases, .. } => cases.iter().find_map(|case| discard_in(&case.body)),
+        Statement::Loop { body, continuing, .. } => discard_in(body).or_else(|| discard_in(continuing)),
+        _ => None,
+    })
+}

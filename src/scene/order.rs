@@ -1,0 +1,71 @@
+//! The order in which transparent surfaces are drawn: instance by instance, from back to front.
+
+use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
+use crate::lod::single::Single;
+use crate::lod::{OBJECT_LISTS, SelectView};
+use crate::scene::camera::Camera;
+use crate::scene::drawable::Drawable;
+use crate::scene::object::Object;
+
+/// A part of an object that is drawn instance by instance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SinglePart {
+    /// The drawable, and the part of it.
+    pub drawable: usize,
+    pub part: usize,
+    /// The index of the draw of the first instance.
+    pub first: u32,
+}
+
+impl Object {
+    /// Lays out the parts that are drawn instance by instance, behind those of other objects.
+    pub(super) fn lay_out_singles(&mut self, all: &mut Vec<Single>) {
+        self.singles.clear();
+        let (instances, mut first_draw) = (self.instances.capacity() as u32, self.range.first_draw);
+        for (drawable, of) in self.drawables.iter().enumerate() {
+            let parts = if let Drawable::Mesh(mesh) = of { mesh.parts.as_slice() } else { &[] };
+            for (part, _) in parts.iter().enumerate().filter(|(_, part)| part.surface.blended) {
+                self.singles.push(SinglePart { drawable, part, first: all.len() as u32 });
+                let first_draw = first_draw + OBJECT_LISTS * part as u32;
+                let single = |at| Single { instance: self.range.first + at, first_draw };
+                all.extend((0..instances).map(single));
+            }
+            first_draw += OBJECT_LISTS * of.parts() as u32;
+        }
+    }
+}
+
+/// An instance in its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ordered {
+    /// How far the middle of its bounding sphere is from the eye, or in a parallel view how far ahead.
+    pub distance: f64,
+    /// The number of its object in the layout, and its index in the object.
+    pub object: usize,
+    pub instance: u32,
+}
+
+/// Orders the instances of objects with transparent parts that a view may see, from back to front; of those as far away,
+/// in the order of objects and instances. The device decides which of them are seen.
+pub(super) fn back_to_front<'a>(
+    order: &mut Vec<Ordered>,
+    objects: impl Iterator<Item = &'a Object>,
+    (view, camera): (&SelectView, &Camera),
+) {
+    order.clear();
+    let (eye, ahead) = (camera.eye().as_dvec3(), camera.ahead().as_dvec3());
+    let is_parallel = camera.clip_from_view.row(3).truncate() == glam::Vec3::ZERO;
+    for (object, of) in objects.enumerate().filter(|(_, object)| !object.singles.is_empty()) {
+        let lod = of.lod_object();
+        for (instance, placed) in (0..).zip(of.instances.all()) {
+            let (center, radius) = placed_sphere(placed, view.cell);
+            if !is_shown(view, &lod, placed) || !nearly_seen(view, center, radius) {
+                continue;
+            }
+            let towards = center.as_dvec3() - eye;
+            let distance = if is_parallel { towards.dot(ahead) } else { towards.length() };
+            order.push(Ordered { distance, object, instance });
+        }
+    }
+    order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+}

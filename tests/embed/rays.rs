@@ -1,0 +1,173 @@
+//! What a camera sees in each pixel, computed on the host in f64 from triangles.
+
+use glam::{DMat4, DVec3, DVec4, Mat4};
+use relievo::asset::influences::{Influence, Influences};
+use relievo::asset::material::Alpha;
+use relievo::asset::{Bone, Material, Mesh, Model, Skeleton, Skin, Transform};
+use relievo::scene::{Camera, Placement};
+
+/// A triangle in the world, relative to cell (0, 0, 0).
+#[derive(Clone, Copy)]
+pub struct Triangle {
+    pub corners: [DVec3; 3],
+    /// What it belongs to: anything that the test wants to know.
+    pub tag: usize,
+    /// Whether it is seen from behind too.
+    pub double_sided: bool,
+}
+
+/// What a ray meets first.
+#[derive(Clone, Copy)]
+pub struct Hit {
+    pub triangle: usize,
+    pub position: DVec3,
+    /// Coordinates of the second and the third corner.
+    pub weights: [f64; 2],
+}
+
+/// The ray through a place of the picture in pixels: where it begins, on the near plane, and its direction.
+pub fn ray(camera: &Camera, pixel: [f64; 2]) -> [DVec3; 2] {
+    let clip_from_world = camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4();
+    let inverse = clip_from_world.inverse();
+    let [x, y] = [0, 1].map(|axis| 2.0 * pixel[axis] / f64::from(camera.viewport[axis]) - 1.0);
+    let place = |depth: f64| {
+        let point = inverse * DVec4::new(x, -y, depth, 1.0);
+        point.truncate() / point.w
+    };
+    [place(0.0), (place(0.5) - place(0.0)).normalize()]
+}
+
+/// The first triangle that a ray meets.
+pub fn first(triangles: &[Triangle], [from, along]: [DVec3; 2]) -> Option<Hit> {
+    let mut nearest: Option<(f64, Hit)> = None;
+    for (at, triangle) in triangles.iter().enumerate() {
+        let [a, b, c] = triangle.corners;
+        let (u, v) = (b - a, c - a);
+        let normal = u.cross(v);
+        let facing = -normal.dot(along);
+        if facing.abs() < 1e-12 || facing < 0.0 && !triangle.double_sided {
+            continue;
+        }
+        let distance = (from - a).dot(normal) / facing;
+        let position = from + distance * along;
+        let inside = position - a;
+        let area = normal.length_squared();
+        let weights = [inside.cross(v).dot(normal) / area, u.cross(inside).dot(normal) / area];
+        let is_inside = weights[0] >= 0.0 && weights[1] >= 0.0 && weights[0] + weights[1] <= 1.0;
+        if distance > 0.0 && is_inside && nearest.as_ref().is_none_or(|(before, _)| distance < *before) {
+            nearest = Some((distance, Hit { triangle: at, position, weights }));
+        }
+    }
+    nearest.map(|(_, hit)| hit)
+}
+
+/// For each pixel what its middle sees, or an error where rounding may decide: where places a hundredth of a pixel beside
+/// it see something else.
+pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit>, ()>> {
+    let [width, height] = camera.viewport;
+    let pixels = (0..width * height).map(|at| [at % width, at / width].map(|edge| f64::from(edge) + 0.5));
+    let tag = |hit: &Option<Hit>| hit.as_ref().map(|hit| triangles[hit.triangle].tag);
+    pixels
+        .map(|[x, y]| {
+            let middle = first(triangles, ray(camera, [x, y]));
+            let beside = [[-0.01, 0.0], [0.01, 0.0], [0.0, -0.01], [0.0, 0.01]];
+            let is_sure = beside
+                .iter()
+                .all(|[dx, dy]| tag(&first(triangles, ray(camera, [x + dx, y + dy]))) == tag(&middle));
+            if is_sure { Ok(middle) } else { Err(()) }
+        })
+        .collect()
+}
+
+/// The matrix of a placement, relative to cell (0, 0, 0).
+pub fn matrix(placement: &Placement) -> DMat4 {
+    let turn = placement.turn.as_dquat().normalize();
+    DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, placement.position())
+}
+
+/// A model of given triangles, three corners each, at one bone that rests at the origin, with a normal for each triangle
+/// and texture coordinates from its first two axes.
+pub fn model(corners: &[[[f32; 3]; 3]], material: Material, double_sided: bool) -> Model {
+    let bone = Bone { name: "bone".to_owned(), parent: None, rest: Transform::IDENTITY };
+    let positions = corners.as_flattened().to_vec();
+    let follows = (0..positions.len()).map(|_| vec![Influence { bone: 0, weight: 1.0 }]);
+    let mesh = Mesh {
+        name: "mesh".to_owned(),
+        skin: 0,
+        normals: corners.iter().flat_map(|corners| [normal(corners); 3]).collect(),
+        tangents: corners.iter().flat_map(|corners| [tangent(corners); 3]).collect(),
+        uv: positions.iter().map(|[x, y, _]| [*x, *y]).collect(),
+        indices: (0..positions.len() as u32).collect(),
+        double_sided,
+        material: Some(0),
+        influences: Influences::new("w", 1, follows).expect("one"),
+        targets: Vec::new(),
+        weights: Vec::new(),
+        weight_keys: Vec::new(),
+        levels: Vec::new(),
+        positions,
+    };
+    Model {
+        skeleton: Skeleton::of_joints(vec![bone]).expect("a bone"),
+        skins: vec![Skin {
+            name: "skin".to_owned(),
+            bones: vec![0],
+            inverse_binds: vec![Mat4::IDENTITY.to_cols_array()],
+        }],
+        clips: Vec::new(),
+        meshes: vec![mesh],
+        skinned: 1,
+        materials: vec![material],
+        images: Vec::new(),
+    }
+}
+
+fn normal(corners: &[[f32; 3]; 3]) -> [f32; 3] {
+    let [a, b, c] = corners.map(glam::Vec3::from);
+    (b - a).cross(c - a).normalize().into()
+}
+
+fn tangent(corners: &[[f32; 3]; 3]) -> [f32; 4] {
+    let [a, b, _] = corners.map(glam::Vec3::from);
+    (b - a).normalize().extend(1.0).into()
+}
+
+/// A material of one colour.
+pub fn plain(color: [f32; 4], alpha: Alpha) -> Material {
+    Material { name: "plain".to_owned(), color, texture: None, normal: None, normal_scale: 1.0, alpha }
+}
+
+/// The twelve triangles of a cube with edges of two units around the origin, two for each side.
+pub fn cube() -> Vec<[[f32; 3]; 3]> {
+    let mut all = Vec::new();
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let corner = |u: f32, v: f32| {
+                let mut corner = [0.0; 3];
+                corner[axis] = side;
+                corner[(axis + 1) % 3] = if side > 0.0 { u } else { v };
+                corner[(axis + 2) % 3] = if side > 0.0 { v } else { u };
+                corner
+            };
+            let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            all.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    all
+}
+
+/// Triangles where a placement has them; `tag` from their number.
+pub fn placed(
+    corners: &[[[f32; 3]; 3]],
+    placement: &Placement,
+    double_sided: bool,
+    tag: impl Fn(usize) -> usize,
+) -> Vec<Triangle> {
+    let into = matrix(placement);
+    let is_mirrored = into.determinant() < 0.0;
+    let triangle = |(at, corners): (usize, &[[f32; 3]; 3])| {
+        let [a, b, c] = corners.map(|corner| into.transform_point3(glam::Vec3::from(corner).as_dvec3()));
+        Triangle { corners: if is_mirrored { [a, c, b] } else { [a, b, c] }, tag: tag(at), double_sided }
+    };
+    corners.iter().enumerate().map(triangle).collect()
+}
