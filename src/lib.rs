@@ -119,7 +119,8 @@ pub mod render;
 pub mod samples;
 #[cfg(feature = "gpu")]
 pub mod scene;
-#[cfg(feature = "gpu")]
+// It reads files and waits, neither of which a browser does.
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 pub mod scene_file;
 mod shared;
 pub mod skinning;

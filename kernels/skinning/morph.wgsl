@@ -2,9 +2,15 @@
 // cluster of vertices of one instance that is seen, at its level of detail: every such cluster, or with
 // COMPACTED those of a list.
 import package::wgsl::skinning::cluster::CLUSTER;
-import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
+import package::wgsl::skinning::instance_lod::MAX_LEVELS;
+import package::wgsl::skinning::page::NO_PAGE;
 
 override COMPACTED: bool = false;
+// Whether the output lies in pages. Clusters without a page are skipped.
+override PAGED: bool = false;
+
+// Words of an `InstanceLod`.
+const LOD_WORDS: u32 = 3u;
 
 struct MorphParams {
     vertices: u32,
@@ -25,13 +31,22 @@ struct MorphParams {
 @group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;
 // The weights of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<f32>;
-// One per instance.
-@group(0) @binding(5) var<storage, read> instance_lods: array<InstanceLod>;
+// Which clusters are morphed: the words of the `InstanceLod` of each instance, or with PAGED the page of each cluster of each
+// instance.
+@group(0) @binding(5) var<storage, read> seen: array<u32>;
 // cluster * instances + instance, for each pair to be skinned.
 @group(0) @binding(6) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(7) var<storage, read> dispatched: vec4<u32>;
+// Morphed vertices in the layout of `vertices`, instance by instance or page by page.
 @group(0) @binding(8) var<storage, read_write> morphed: array<vec2<f32>>;
+
+// Whether an instance is seen, at a level of detail with this cluster.
+fn is_seen(instance: u32, cluster: u32) -> bool {
+    let lod = LOD_WORDS * instance;
+    let level = min(seen[lod + 2u], MAX_LEVELS - 1u);
+    return seen[lod + 1u] != 0u && cluster < params.levels[level >> 2u][level & 3u];
+}
 
 @compute @workgroup_size(CLUSTER)
 fn main(
@@ -52,8 +67,14 @@ fn main(
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    let level = min(instance_lods[instance].mesh_lod, MAX_LEVELS - 1u);
-    if instance_lods[instance].max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
+    var to = 5u * (instance * params.vertices + vertex);
+    if PAGED {
+        let page = seen[instance * ((params.vertices + CLUSTER - 1u) / CLUSTER) + cluster];
+        if page == NO_PAGE {
+            return;
+        }
+        to = 5u * (CLUSTER * page + lane);
+    } else if !is_seen(instance, cluster) {
         return;
     }
     let first = 5u * vertex;
@@ -72,7 +93,6 @@ fn main(
         normal += weight * deltas[3u * at + 1u].xyz;
         tangent += weight * deltas[3u * at + 2u].xyz;
     }
-    let to = 5u * (instance * params.vertices + vertex);
     morphed[to] = position.xy;
     morphed[to + 1u] = vec2<f32>(position.z, normal.x);
     morphed[to + 2u] = normal.yz;

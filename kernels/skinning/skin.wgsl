@@ -11,7 +11,7 @@ import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 override COMPACTED: bool = false;
 // Whether the palette holds dual quaternions and not matrices.
 override DUAL: bool = false;
-// Whether each instance has vertices of its own (morphed) and does not use the mesh's.
+// Whether each instance has vertices of its own (morphed), which lie as the output does, and does not use the mesh's.
 override MORPHED: bool = false;
 // Whether the output lies in pages. Clusters without a page are skipped.
 override PAGED: bool = false;
@@ -167,7 +167,9 @@ fn main(
     let rows = blended(
         influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, instance_lod);
     var first = 5u * vertex;
-    if MORPHED {
+    if MORPHED && PAGED {
+        first = to;
+    } else if MORPHED {
         first += 5u * params.vertices * instance;
     }
     let a = vertices[first];

@@ -37,19 +37,19 @@ impl<T: bytemuck::Pod> Buffer<T> {
                 remedy: "split the batch",
             });
         }
+        gpu.memory().check(label, size)?;
         let usage = wgpu::BufferUsages::STORAGE
             | wgpu::BufferUsages::VERTEX
             | wgpu::BufferUsages::INDEX
             | wgpu::BufferUsages::INDIRECT
             | wgpu::BufferUsages::COPY_SRC
             | wgpu::BufferUsages::COPY_DST;
-        let held = Arc::new(gpu.memory().hold(label, size)?);
         let raw = gpu.scoped(|| {
             let descriptor =
                 wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
             gpu.device().create_buffer(&descriptor)
         })?;
-        Ok(Self { raw, _held: held, len, element: PhantomData })
+        Ok(Self { raw, _held: Arc::new(gpu.memory().hold(label, size)), len, element: PhantomData })
     }
 
     /// A buffer that holds `data`.

@@ -1,7 +1,8 @@
 //! Accounting of the bytes that a device's storage buffers hold.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::GpuError;
 
@@ -11,11 +12,13 @@ pub struct Memory {
     now: AtomicU64,
     most: AtomicU64,
     limit: AtomicU64,
+    labels: Mutex<BTreeMap<&'static str, u64>>,
 }
 
 impl Default for Memory {
     fn default() -> Self {
-        Self { now: AtomicU64::new(0), most: AtomicU64::new(0), limit: AtomicU64::new(u64::MAX) }
+        let (now, most, labels) = Default::default();
+        Self { now, most, limit: AtomicU64::new(u64::MAX), labels }
     }
 }
 
@@ -30,22 +33,41 @@ impl Memory {
         self.most.swap(self.now(), Ordering::SeqCst)
     }
 
-    /// Sets the largest number of bytes; `None` is no limit, as at first. What is held already stays. A buffer that would
-    /// exceed it is refused with [`GpuError::OutOfMemory`], as if the device had no more memory.
-    pub fn set_limit(&self, bytes: Option<u64>) {
-        self.limit.store(bytes.unwrap_or(u64::MAX), Ordering::SeqCst);
+    /// What holds them: for each label of buffers the bytes held at present, in alphabetical order.
+    pub fn by_label(&self) -> Vec<(&'static str, u64)> {
+        self.labels().iter().map(|(label, bytes)| (*label, *bytes)).collect()
     }
 
-    pub(super) fn hold(self: &Arc<Self>, label: &str, bytes: u64) -> Result<Held, GpuError> {
-        let before = self.now.fetch_add(bytes, Ordering::SeqCst);
-        let held = Held { memory: self.clone(), bytes };
-        let limit = self.limit.load(Ordering::SeqCst);
-        if before.saturating_add(bytes) > limit {
-            let reason = format!("{label}: {bytes} bytes beside {before} exceed the limit of {limit}");
-            return Err(GpuError::OutOfMemory { reason });
+    /// The most bytes that may be held.
+    pub fn limit(&self) -> u64 {
+        self.limit.load(Ordering::SeqCst)
+    }
+
+    /// Sets the most bytes that may be held; at first there is no limit. A buffer that would exceed it is refused with
+    /// [`GpuError::OutOfMemory`], as where the device has no memory left. Buffers that exist stay.
+    pub fn set_limit(&self, bytes: u64) {
+        self.limit.store(bytes, Ordering::SeqCst);
+    }
+
+    /// Checks that so many bytes more may be held.
+    pub(super) fn check(&self, label: &str, bytes: u64) -> Result<(), GpuError> {
+        let (now, limit) = (self.now(), self.limit());
+        if now.saturating_add(bytes) <= limit {
+            return Ok(());
         }
-        self.most.fetch_max(before + bytes, Ordering::SeqCst);
-        Ok(held)
+        let reason = format!("{label} needs {bytes} bytes, {now} are held, and the limit is {limit}");
+        Err(GpuError::OutOfMemory { reason })
+    }
+
+    pub(super) fn hold(self: &Arc<Self>, label: &'static str, bytes: u64) -> Held {
+        let now = self.now.fetch_add(bytes, Ordering::SeqCst) + bytes;
+        self.most.fetch_max(now, Ordering::SeqCst);
+        *self.labels().entry(label).or_default() += bytes;
+        Held { memory: self.clone(), label, bytes }
+    }
+
+    fn labels(&self) -> MutexGuard<'_, BTreeMap<&'static str, u64>> {
+        self.labels.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
 
@@ -53,11 +75,40 @@ impl Memory {
 #[derive(Debug)]
 pub(super) struct Held {
     memory: Arc<Memory>,
+    label: &'static str,
     bytes: u64,
 }
 
 impl Drop for Held {
     fn drop(&mut self) {
         self.memory.now.fetch_sub(self.bytes, Ordering::SeqCst);
+        let mut labels = self.memory.labels();
+        if let Some(bytes) = labels.get_mut(self.label) {
+            *bytes -= self.bytes;
+            if *bytes == 0 {
+                labels.remove(self.label);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_counted_by_label_up_to_the_limit() {
+        let memory = Arc::new(Memory::default());
+        let (a, b) = (memory.hold("pages", 100), memory.hold("lists", 20));
+        let c = memory.hold("pages", 4);
+        assert_eq!(memory.by_label(), [("lists", 20), ("pages", 104)]);
+        memory.set_limit(130);
+        assert!(memory.check("more", 6).is_ok());
+        let refused = memory.check("more", 7).expect_err("refused").to_string();
+        assert!(refused.contains("more needs 7 bytes, 124 are held, and the limit is 130"), "{refused}");
+        drop((a, b));
+        assert_eq!((memory.by_label(), memory.now(), memory.take_most()), (vec![("pages", 4)], 4, 124));
+        drop(c);
+        assert!(memory.by_label().is_empty());
     }
 }

@@ -12,6 +12,7 @@ mod camera;
 mod contents;
 mod crowd;
 mod format;
+#[cfg(not(target_arch = "wasm32"))]
 mod offscreen;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod picture;
@@ -32,6 +33,7 @@ pub use camera::Camera;
 pub use contents::Contents;
 pub use crowd::{Character, CrowdScene};
 pub use format::{DepthFormat, TargetFormat};
+#[cfg(not(target_arch = "wasm32"))]
 pub use offscreen::Offscreen;
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;

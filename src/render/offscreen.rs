@@ -105,11 +105,20 @@ impl Offscreen {
     ///
     /// # Errors
     /// [`InputError`] for a target without colour; [`GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
+        gpu.block_on(self.read_async(gpu))
+    }
+
+    /// As `Offscreen::read`, but completes once the device has finished; see [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// [`InputError`] for a target without colour; [`GpuError`].
+    pub async fn read_async(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         let Some(color) = self.resolved.as_ref().or(self.color.as_ref()) else {
             return Err(InputError::new("format.color", "none", "must be there to be read").into());
         };
-        let pixels = read_texture(gpu, color, wgpu::TextureAspect::All, 4)?;
+        let pixels = read_texture(gpu, color, wgpu::TextureAspect::All, 4).await?;
         let reason = "the image that was read back has the wrong size".to_owned();
         let image = RgbaImage::from_raw(self.size[0], self.size[1], pixels);
         image.ok_or_else(|| GpuError::Internal { reason }.into())
@@ -119,12 +128,21 @@ impl Offscreen {
     ///
     /// # Errors
     /// [`InputError`] for more than one sample a pixel; [`GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
+        gpu.block_on(self.read_depth_async(gpu))
+    }
+
+    /// As `Offscreen::read_depth`, but completes once the device has finished; see [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// [`InputError`] for more than one sample a pixel; [`GpuError`].
+    pub async fn read_depth_async(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
         if self.format.samples > 1 {
             let bound = "must be 1 where depth is read";
             return Err(InputError::new("format.samples", self.format.samples, bound).into());
         }
-        let bytes = read_texture(gpu, &self.depth, wgpu::TextureAspect::DepthOnly, 4)?;
+        let bytes = read_texture(gpu, &self.depth, wgpu::TextureAspect::DepthOnly, 4).await?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 }

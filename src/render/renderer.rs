@@ -139,6 +139,11 @@ impl Renderer {
 
     /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
     ///
+    /// Each object takes an indirect draw for each of its parts and levels, and as many again if some of its instances are
+    /// mirrored and others are not. A render bundle shows later recordings of the view too. Make it anew after objects were
+    /// added or grew, after materials were changed, and when an object has its first mirrored instance, or its first that is
+    /// not.
+    ///
     /// # Errors
     /// As [`Renderer::prepare`].
     pub async fn prepare_async(&mut self, scene: &Scene) -> Result<(), Error> {
@@ -299,7 +304,8 @@ impl Renderer {
             for is_mirrored in [false, true] {
                 let is_flipped = is_mirrored != view.mirrors;
                 let pipeline = self.pipeline(layer, Kind::of(part), is_flipped);
-                let Some(pipeline) = pipeline.filter(|_| object.mirrors || !is_mirrored) else { continue };
+                let is_listed = object.sides[usize::from(is_mirrored)];
+                let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
                 pass.set_pipeline(pipeline);
                 draw_lists(pass, view, object, index, is_mirrored);
             }

@@ -139,12 +139,12 @@ impl Target {
 
     #[cfg(not(target_arch = "wasm32"))]
     fn read_bytes(&self, gpu: &Gpu, texel: u32) -> Result<Vec<u8>, GpuError> {
-        read_texture(gpu, &self.color, wgpu::TextureAspect::All, texel)
+        gpu.block_on(read_texture(gpu, &self.color, wgpu::TextureAspect::All, texel))
     }
 }
 
-/// Reads an aspect of a texture of `texel` bytes a texel, row by row. Waits for the device.
-pub(super) fn read_texture(
+/// Reads an aspect of a texture of `texel` bytes a texel, row by row; see [`Gpu::wait_async`].
+pub(super) async fn read_texture(
     gpu: &Gpu,
     texture: &wgpu::Texture,
     aspect: wgpu::TextureAspect,
@@ -153,7 +153,7 @@ pub(super) fn read_texture(
     let (width, height) = (texture.width(), texture.height());
     let pitch = (texel * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = crate::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize)?;
-    gpu.run("readback", |encoder| {
+    gpu.submit("readback", |encoder| {
         encoder.copy_texture_to_buffer(
             wgpu::TexelCopyTextureInfo { aspect, ..texture.as_image_copy() },
             wgpu::TexelCopyBufferInfo {
@@ -167,7 +167,7 @@ pub(super) fn read_texture(
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
     })?;
-    let rows = buffer.read_blocking(gpu)?;
+    let rows = buffer.read(gpu).await?;
     let row = (texel * width) as usize;
     Ok(rows.chunks_exact(pitch as usize).flat_map(|padded| &padded[..row]).copied().collect())
 }

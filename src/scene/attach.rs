@@ -29,8 +29,8 @@ pub(super) struct Attachments {
     carried: HashMap<InstanceId, Vec<InstanceId>>,
     /// Where bones go: by character, clip, whether layers are above it, bone, and the bits of the sphere that they carry.
     paths: HashMap<(ObjectId, (u32, bool), usize, [u32; 4]), BonePath>,
-    /// The lists of each character that carries a mesh, or has carried one.
-    lists: BTreeMap<[u32; 2], List>,
+    /// The list of each chunk of a character that carries a mesh, or has carried one, by slot and generation of the object.
+    lists: BTreeMap<([u32; 2], usize), List>,
     /// Counts the times at which a list was allocated: jobs that were prepared for another number are out of date.
     pub version: u64,
     /// The layout for which the lists were written; `None` if attachments have changed since.
@@ -236,9 +236,9 @@ fn renamed(error: InputError, path: &str) -> InputError {
 }
 
 impl Attachments {
-    /// The lists of characters, each with the character's slot and generation.
-    pub fn lists(&self) -> impl Iterator<Item = ([u32; 2], &List)> {
-        self.lists.iter().map(|(object, list)| (*object, list))
+    /// The lists of chunks of characters, by slot and generation of the object and number of the chunk.
+    pub fn lists(&self) -> impl Iterator<Item = (([u32; 2], usize), &List)> {
+        self.lists.iter().map(|(key, list)| (*key, list))
     }
 
     /// Forgets all lists: their device is lost.
@@ -259,27 +259,22 @@ impl Attachments {
         if self.written == Some(layout.version) || self.lists.is_empty() && self.all.is_empty() {
             return Ok(());
         }
-        let mut of_object: BTreeMap<[u32; 2], Vec<Attachment>> =
-            self.lists.keys().map(|object| (*object, Vec::new())).collect();
+        let mut of_chunk: BTreeMap<([u32; 2], usize), Vec<Attachment>> =
+            self.lists.keys().map(|key| (*key, Vec::new())).collect();
         for (mesh, attached) in &self.all {
-            let ObjectId { index, generation, .. } = attached.character.object;
-            let Some(object) = objects.existing(*mesh) else { continue };
-            of_object.entry([index, generation]).or_default().push(Attachment {
-                mesh: object.range.first + mesh.index,
-                character: attached.character.index,
-                bone: attached.bone as u32,
-                unused: 0,
-                offset: affine(&attached.offset),
-            });
+            if let Some((key, attachment)) = on_device(objects, *mesh, attached) {
+                of_chunk.entry(key).or_default().push(attachment);
+            }
         }
-        for (key, mut attachments) in of_object {
-            let Some(object) = objects.get(key) else {
+        for (key, mut attachments) in of_chunk {
+            let (object, chunk) = key;
+            let Some(first) = first_of(objects, object, chunk) else {
                 self.lists.remove(&key);
                 self.version += 1;
                 continue;
             };
             attachments.sort_by_key(|attachment| (attachment.character, attachment.mesh));
-            self.write(gpu, (key, object), &attachments, staged)?;
+            self.write(gpu, (key, first), &attachments, staged)?;
         }
         self.written = Some(layout.version);
         Ok(())
@@ -288,13 +283,11 @@ impl Attachments {
     fn write(
         &mut self,
         gpu: &Gpu,
-        (key, object): ([u32; 2], &Object),
+        (key, [first, bones]): (([u32; 2], usize), [u32; 2]),
         attachments: &[Attachment],
         staged: &mut Staged,
     ) -> Result<(), Error> {
-        let Kind::Character(character) = &object.kind else { return Ok(()) };
-        let bones = character.model().skeleton.len() as u32;
-        let params = AttachParams { attached: attachments.len() as u32, bones, first: object.range.first };
+        let params = AttachParams { attached: attachments.len() as u32, bones, first };
         let room = self.lists.get(&key).map_or(0, |list| list.attachments.len());
         if room < attachments.len() {
             let room = attachments.len().next_power_of_two().max(16);
@@ -311,4 +304,33 @@ impl Attachments {
         }
         Ok(())
     }
+}
+
+/// An attachment as kernels see it, with the chunk of the character in which it is listed.
+fn on_device(
+    objects: &Slots<Object>,
+    mesh: InstanceId,
+    attached: &Attached,
+) -> Option<(([u32; 2], usize), Attachment)> {
+    let Attached { character, bone, offset, .. } = attached;
+    let ObjectId { index, generation, .. } = character.object;
+    let slot = character.index as usize;
+    let chunks = &objects.existing(*character)?.chunks;
+    let chunk = chunks.iter().position(|chunk| chunk.slots.contains(&slot))?;
+    let attachment = Attachment {
+        mesh: objects.existing(mesh)?.place(mesh.index)? as u32,
+        character: (slot - chunks[chunk].slots.start) as u32,
+        bone: *bone as u32,
+        unused: 0,
+        offset: affine(offset),
+    };
+    Some((([index, generation], chunk), attachment))
+}
+
+/// The index in the scene of the first instance of a character's chunk, and the number of the character's bones.
+fn first_of(objects: &Slots<Object>, object: [u32; 2], chunk: usize) -> Option<[u32; 2]> {
+    let object = objects.get(object)?;
+    let Kind::Character(character) = &object.kind else { return None };
+    let bones = character.model().skeleton.len() as u32;
+    Some([object.chunks.get(chunk)?.range.first, bones])
 }

@@ -1,9 +1,10 @@
 //! The camera of a view: the caller's own matrices.
 
 use glam::camera::rh::proj::directx;
-use glam::{Mat4, Vec3, Vec4};
+use glam::{DVec3, Mat4, Vec3, Vec4};
 
 use crate::InputError;
+use crate::skinning::picture::is_mirrored;
 
 /// The direction of depth in clip space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -134,10 +135,24 @@ impl Camera {
         self.clip_from_view * self.view_from_world
     }
 
-    /// The unit vector ahead, relative to the cell: the direction from the eye into the picture for a perspective
-    /// camera, the direction of growing distance for a parallel one.
+    /// For a parallel camera, the unit vector along which distance grows and nothing moves in the picture.
     pub(crate) fn ahead(&self) -> Vec3 {
-        -self.view_from_world.inverse().z_axis.truncate().normalize_or(Vec3::Z)
+        let [right, up, depth] =
+            [0, 1, 2].map(|row| self.clip_with_distance().row(row).truncate().as_dvec3());
+        let along = right.cross(up);
+        let ahead = if along.dot(depth) < 0.0 { -along } else { along };
+        ahead.normalize_or(DVec3::NEG_Z).as_vec3()
+    }
+
+    /// Whether the picture is a mirror image: triangles that are counter-clockwise seen from outside run clockwise in it.
+    pub(crate) fn is_mirrored(&self) -> bool {
+        is_mirrored(&self.clip_with_distance())
+    }
+
+    /// The matrix to clip space with depth that grows with distance, whatever its range.
+    fn clip_with_distance(&self) -> Mat4 {
+        let direction = if self.depth == Depth::Reversed { -1.0 } else { 1.0 };
+        Mat4::from_scale(Vec3::new(1.0, 1.0, direction)) * self.clip_from_world()
     }
 
     /// The position of the eye relative to the cell's corner.

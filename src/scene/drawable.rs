@@ -98,6 +98,17 @@ impl MeshDrawable {
         let geometry = MeshGeometry { vertices, page_table, last: pages.last, ..self.geometry.clone() };
         Self::new(gpu, layouts, geometry, self.clusters, self.parts.clone())
     }
+
+    /// The same mesh for other instances, whose vertices lie in pages of their own.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn beside(&self, gpu: &Gpu, layouts: &SceneLayouts, pages: &PageBuffers) -> Result<Self, GpuError> {
+        let none = MeshParams { first_instance: 0, clusters: self.clusters, object: 0, last: 0 };
+        let params = Uniform::new(gpu, "mesh", &none)?;
+        let geometry = MeshGeometry { params, ..self.geometry.clone() };
+        Self { geometry, ..self.clone() }.with_pages(gpu, layouts, pages)
+    }
 }
 
 /// The triangles of a mesh that share a pipeline, textures and a sampler.
@@ -200,8 +211,8 @@ pub(crate) struct DrawnObject<'a> {
     pub drawable: &'a Drawable,
     /// Where its lists and draws lie, and its number of levels.
     pub lod: &'a LodObject,
-    /// Whether an instance may be mirrored; if none is, the lists of mirrored ones are not drawn.
-    pub mirrors: bool,
+    /// Whether the lists of instances that are not mirrored are drawn, and whether those of mirrored ones are.
+    pub sides: [bool; 2],
     /// Bind group 1 of terrain: [`SceneLayouts::ground`]. Meshes have none.
     pub ground: Option<&'a Group>,
 }

@@ -5,7 +5,7 @@ use crate::InputError;
 use crate::animation::crowd::Local;
 use crate::gpu::Buffer;
 use crate::scene::Scene;
-use crate::scene::handles::{InstanceId, ObjectId, Slots, foreign, stale};
+use crate::scene::handles::{InstanceId, Slots, stale};
 use crate::scene::object::{Kind, Object};
 use crate::scene::view::View;
 
@@ -15,12 +15,12 @@ pub struct Poses<'a> {
     pub(super) objects: &'a Slots<Object>,
 }
 
-/// The buffers that hold the poses of a character. They are the same from frame to frame, until the object grows or
-/// [`Scene::refresh`] is called.
+/// The buffers that hold the pose of an instance, among those of others of its object. They are the same from frame to frame,
+/// until the object grows, what is seen of it exceeds a binding of the device, or [`Scene::refresh`] is called.
 #[derive(Debug, Clone, Copy)]
 pub struct PoseBuffers<'a> {
     /// The local transform of each bone, in its parent's space: three `vec4<f32>` at 3 · (instance · bones + bone), where
-    /// `instance` is [`InstanceId::index`]. The first holds the translation and the scale along x, the second the rotation, a
+    /// `instance` is [`PoseBuffers::index`]. The first holds the translation and the scale along x, the second the rotation, a
     /// unit quaternion (x, y, z, w), and the third the scale along y and z in its first two components. Storage, to
     /// be read and written.
     pub locals: &'a Buffer<Local>,
@@ -31,24 +31,23 @@ pub struct PoseBuffers<'a> {
     pub bones: u32,
     /// Number of instances that there is room for.
     pub instances: u32,
+    /// The instance's number in these buffers.
+    pub index: u32,
 }
 
 impl<'a> Poses<'a> {
-    /// The buffers of a character.
+    /// The buffers in which the pose of an instance lies.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of the scene, or no character.
-    pub fn of(&self, character: ObjectId) -> Result<PoseBuffers<'a>, InputError> {
-        let ObjectId { scene, index, generation } = character;
-        if scene != self.objects.scene() {
-            return Err(foreign("character"));
-        }
-        let object =
-            self.objects.get([index, generation]).ok_or_else(|| stale("character", index, generation))?;
-        match &object.kind {
-            Kind::Character(character) => Ok(character.pose_buffers()),
-            _ => Err(InputError::new("character", "a mesh or terrain", "must be a character")),
-        }
+    /// [`InputError`] for an instance that does not exist any more, or is no character.
+    pub fn of(&self, instance: InstanceId) -> Result<PoseBuffers<'a>, InputError> {
+        let InstanceId { index, generation, .. } = instance;
+        let object = self.objects.existing(instance).ok_or_else(|| stale("instance", index, generation))?;
+        let found = match &object.kind {
+            Kind::Character(character) => character.pose_buffers(index),
+            _ => None,
+        };
+        found.ok_or_else(|| InputError::new("instance", "no character", "must be an instance of a character"))
     }
 }
 

@@ -1,9 +1,8 @@
 //! A frame of a scene: what is recorded for it, and what is drawn of it.
 
 use crate::animation::Frame;
-use crate::gpu::{Staged, Upload as _};
+use crate::gpu::Staged;
 use crate::lod::{SceneInstance, SelectView};
-use crate::scene::camera::Depth;
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
 use crate::scene::drive::Poses;
 use crate::scene::object::{self, Kind, Object};
@@ -12,7 +11,6 @@ use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
-use crate::skinning::picture::is_mirrored;
 use crate::{Error, InputError};
 
 /// What the caller records between sampling and model matrices.
@@ -105,6 +103,7 @@ impl Scene {
             return Ok(());
         }
         self.objects.iter_mut().for_each(|object| object.settle(self.now));
+        self.provide(views)?;
         self.fit(views)?;
         self.stage(views)?;
         let gpu = self.gpu.clone();
@@ -182,7 +181,7 @@ impl Scene {
 
     /// What is drawn, object by object.
     pub(crate) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
-        self.objects.iter().flat_map(|object| &object.drawables)
+        self.objects.iter().flat_map(Object::drawables)
     }
 
     fn is_empty(&self) -> bool {
@@ -198,7 +197,7 @@ impl Scene {
         if self.is_empty() {
             return Ok(None);
         }
-        let (Some(lists), Some(camera)) = (&view.lists, view.camera()) else {
+        let (Some(lists), Some(recorded)) = (&view.lists, view.last_recorded()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
         if self.layout.as_ref().is_none_or(|layout| lists.version != layout.version) {
@@ -209,23 +208,19 @@ impl Scene {
             group: &lists.group,
             lists: &lists.lists,
             arguments: &lists.arguments,
-            mirrors: is_mirrored(&camera.clip_from_world()),
-            reversed: camera.depth == Depth::Reversed,
+            mirrors: recorded.mirrors,
+            reversed: recorded.reversed,
             keeps_last: self.keeps_last,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();
-        for object in self.objects.iter() {
+        for (object, sides) in self.objects.iter().zip(&recorded.sides) {
             let ground = object.seen_terrain().and_then(|_| view.ground(terrains));
             terrains += usize::from(object.seen_terrain().is_some());
             if object.is_shown {
-                let of_object = object.drawables.iter().zip(&object.lods);
-                objects.extend(of_object.map(|(drawable, lod)| DrawnObject {
-                    drawable,
-                    lod,
-                    mirrors: true,
-                    ground,
-                }));
+                let drawn = object.chunks.iter().flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods));
+                let sides = *sides;
+                objects.extend(drawn.map(|(drawable, lod)| DrawnObject { drawable, lod, sides, ground }));
             }
         }
         Ok(Some((drawn, objects)))
@@ -241,10 +236,12 @@ impl Scene {
             let Some(object) = objects.get(*object).filter(|object| object.is_shown) else { continue };
             let placed = object.instances.all().get(*instance as usize);
             let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
-            for single in &object.singles {
-                let Drawable::Mesh(mesh) = &object.drawables[single.drawable] else { continue };
+            let Some(chunk) = object.chunk_of(*instance) else { continue };
+            let instance = (*instance as usize - chunk.slots.start) as u32;
+            for single in &chunk.singles {
+                let Drawable::Mesh(mesh) = &chunk.drawables[single.drawable] else { continue };
                 let (part, draw) = (&mesh.parts[single.part], single.first + instance);
-                parts.push(DrawnSingle { mesh, part, draw, instance: *instance, is_mirrored });
+                parts.push(DrawnSingle { mesh, part, draw, instance, is_mirrored });
             }
         }
         Some(DrawnSingles { draws, identity: &self.layout.as_ref()?.identity, parts })
@@ -257,6 +254,19 @@ impl Scene {
         views.iter().enumerate().try_for_each(|(at, view)| view.check(self, &format!("views[{at}]")))?;
         if views.iter().any(|view| view.camera().is_none()) {
             return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));
+        }
+        Ok(())
+    }
+
+    /// Provides pages for what the views see.
+    fn provide(&mut self, views: &[&mut View]) -> Result<(), Error> {
+        let blocks = self.layout.as_ref().map_or(0, |layout| layout.blocks);
+        let seen = views.iter().map(|view| Ok(view.select_view(blocks, true)?.1));
+        let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
+        for object in self.objects.iter_mut() {
+            if object.provide(&self.gpu, &self.layouts_of_groups, &seen)? {
+                self.layout = None;
+            }
         }
         Ok(())
     }
@@ -292,29 +302,18 @@ impl Scene {
         let Some(layout) = &self.layout else { return Ok(()) };
         let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
-        for object in self.objects.iter_mut() {
-            object.provide(&self.gpu, &self.layouts_of_groups, &seen, (&mut self.staged, layout))?;
-        }
         let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
         for (view, selected) in views.iter_mut().zip(&seen) {
             view.order(self.objects.iter(), selected);
         }
-        for (at, view) in views.iter().enumerate() {
+        for (at, view) in views.iter_mut().enumerate() {
+            let sides = self.objects.iter().map(|object| object.instances.sides());
             let of_frame = (self.frames, at == 0);
-            view.stage(&mut self.staged, (layout.blocks, &self.light), &terrains, of_frame)?;
+            view.stage(&mut self.staged, (layout.blocks, &self.light), (&terrains, sides), of_frame)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {
-            let first = object.range.first as usize;
-            for (at, run) in object.instances.take_last() {
-                self.staged.elements(&layout.last_instances, first + at, &run)?;
-            }
-            for (at, run) in object.instances.take_changed() {
-                self.staged.elements(&layout.instances, first + at, run)?;
-            }
-            if let Kind::Character(character) = &mut object.kind {
-                character.stage(&mut self.staged, &frame, self.now)?;
-            }
+            object.stage((&mut self.staged, layout), (&frame, self.now))?;
         }
         Ok(())
     }

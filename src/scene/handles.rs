@@ -41,12 +41,6 @@ pub struct InstanceId {
 }
 
 impl InstanceId {
-    /// Its number among the instances of its object, which is its place in buffers of poses. A later instance may have the
-    /// same number once this one is gone.
-    pub fn index(&self) -> u32 {
-        self.index
-    }
-
     /// The object.
     pub fn object(&self) -> ObjectId {
         self.object

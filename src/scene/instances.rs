@@ -30,6 +30,8 @@ pub(super) struct Instances {
     generations: Vec<u32>,
     /// Indices that are free; the last is used first.
     free: Vec<u32>,
+    /// Number of instances that exist and are mirrored.
+    mirrored: usize,
     changed: Changed,
     last: Option<Last>,
 }
@@ -45,8 +47,9 @@ struct Last {
 impl Instances {
     /// Room for at least `capacity` instances.
     pub fn new(capacity: usize) -> Self {
+        let changed = Changed::default();
         let mut instances =
-            Self { all: vec![], generations: vec![], free: vec![], changed: Changed::default(), last: None };
+            Self { all: vec![], generations: vec![], free: vec![], mirrored: 0, changed, last: None };
         instances.grow(capacity);
         instances
     }
@@ -59,6 +62,13 @@ impl Instances {
     /// Number of instances that exist.
     pub fn alive(&self) -> usize {
         self.all.len() - self.free.len()
+    }
+
+    /// Whether there are instances that are not mirrored, and whether there are some that are. Without any instance, the
+    /// former is said.
+    pub fn sides(&self) -> [bool; 2] {
+        let plain = self.alive() - self.mirrored;
+        [plain > 0 || self.mirrored == 0, self.mirrored > 0]
     }
 
     /// Makes room for at least `capacity` instances. Everything counts as changed then.
@@ -132,7 +142,12 @@ impl Instances {
 
     /// Changes an instance.
     pub fn change(&mut self, index: u32, change: impl FnOnce(&mut SceneInstance)) {
-        change(&mut self.all[index as usize]);
+        let is_counted =
+            |instance: &SceneInstance| instance.flags & INSTANCE_ALIVE != 0 && instance.is_mirrored();
+        let instance = &mut self.all[index as usize];
+        let before = usize::from(is_counted(instance));
+        change(instance);
+        self.mirrored = self.mirrored + usize::from(is_counted(instance)) - before;
         self.changed.add(index, self.all.len());
     }
 
@@ -238,6 +253,26 @@ mod tests {
         assert_eq!((instances.capacity(), instances.alive()), (192, 128));
         assert_eq!(spawn(&mut instances), Some([128, 0]));
         assert!(!instances.contains([500, 0]));
+    }
+
+    #[test]
+    fn mirrored_instances_are_counted() {
+        let mut instances = Instances::new(64);
+        assert_eq!(instances.sides(), [true, false], "an empty object");
+        let mirrored = Placement { scale: Vec3::new(1.0, -2.0, 1.0), ..Placement::default() };
+        let [plain, _] = instances.spawn(&Placement::default(), &SPHERE).expect("room");
+        let [other, _] = instances.spawn(&mirrored, &SPHERE).expect("room");
+        assert_eq!(instances.sides(), [true, true]);
+        instances.change(plain, |instance| place(instance, &mirrored));
+        assert_eq!(instances.sides(), [false, true]);
+        let twice = Placement { scale: Vec3::new(-1.0, -2.0, 1.0), ..Placement::default() };
+        instances.change(other, |instance| place(instance, &twice));
+        assert_eq!(instances.sides(), [true, true]);
+        instances.despawn(plain);
+        assert_eq!(instances.sides(), [true, false]);
+        // Its place is used again, not mirrored.
+        assert_eq!(instances.spawn(&Placement::default(), &SPHERE), Some([plain, 1]));
+        assert_eq!(instances.sides(), [true, false]);
     }
 
     #[test]

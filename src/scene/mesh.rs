@@ -4,7 +4,7 @@ use crate::asset::{Mesh, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::PartMaterials;
+use crate::scene::material::{Looks, PartMaterials};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::at_rest::at_rest;
@@ -13,6 +13,7 @@ use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::{Merged, Part, PartKey, merged};
 use crate::skinning::pages::PageBuffers;
+use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
 
 /// What an object is drawn from: how, and for each part the draws of all lists.
@@ -41,14 +42,39 @@ pub(crate) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
 }
 
 /// Uploads meshes that all instances share.
-pub(super) fn drawn(gpu: &Gpu, layouts: &SceneLayouts, merged: &Merged) -> Result<Drawn, Error> {
+pub(super) fn drawn(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    (merged, looks): (&Merged, &Looks),
+) -> Result<Drawn, Error> {
     let (mut drawables, mut draws) = (Vec::new(), Vec::new());
     for (index, mesh) in merged.model.meshes.iter().enumerate() {
+        check_binding(gpu, mesh)?;
         let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
         draws.extend(part_draws(merged, index, &buffers));
-        drawables.push(drawable((gpu, layouts), merged, index, (&buffers, &clusters), None)?);
+        drawables.push(drawable((gpu, layouts), (merged, looks), index, (&buffers, &clusters), None)?);
     }
     Ok((drawables, draws))
+}
+
+/// Checks that one binding of the device holds the vertices of a merged mesh, and another its triangles.
+pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
+    let indices = mesh.indices.len() + mesh.levels.iter().map(|level| level.indices.len()).sum::<usize>();
+    let all = [
+        ("model.meshes.positions.len", mesh.vertices(), size_of::<Vertex>()),
+        ("model.meshes.indices.len", indices, size_of::<u32>()),
+    ];
+    all.into_iter().try_for_each(|(path, count, bytes)| within_binding(gpu, path, count, bytes))
+}
+
+/// Checks that one binding of the device holds so many elements of so many bytes.
+pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) -> Result<(), InputError> {
+    let most = gpu.max_binding() / bytes as u64;
+    if count as u64 <= most {
+        return Ok(());
+    }
+    let bound = format!("must be at most {most}, which one binding of the device holds: add several objects");
+    Err(InputError::new(path, count, bound))
 }
 
 fn check(model: &Model) -> Result<(), InputError> {
@@ -85,7 +111,7 @@ pub(super) const NOTHING: SceneDraw =
 /// A merged mesh, to be drawn from its own vertices, or from those in pages.
 pub(super) fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
-    merged: &Merged,
+    (merged, looks): (&Merged, &Looks),
     index: usize,
     (buffers, clusters): (&MeshBuffers, &Clusters),
     pages: Option<&PageBuffers>,
@@ -100,10 +126,10 @@ pub(super) fn drawable(
     let placed: Vec<u32> = clusters.order.iter().map(|vertex| entries[*vertex as usize]).collect();
     let parts = (own.iter().zip(&tables))
         .map(|(part, table)| {
-            let PartKey { cut_out, blended, double_sided, .. } = part.key;
+            let PartKey { cut_out, blended, double_sided, sampling, normal_sampling } = part.key;
             let surface = SurfaceKind { cut_out, blended, double_sided };
-            let sampling = part.key.sampling.unwrap_or_default();
-            let materials = PartMaterials::new(gpu, layouts, &merged.model, table, &sampling)?;
+            let samplings = [sampling, normal_sampling].map(Option::unwrap_or_default);
+            let materials = PartMaterials::new(gpu, layouts, looks, table, samplings)?;
             Ok(MeshPart { surface, materials: MeshMaterials::Plain(materials) })
         })
         .collect::<Result<_, Error>>()?;

@@ -13,6 +13,7 @@
 mod attach;
 mod camera;
 mod character;
+mod chunk;
 pub(crate) mod drawable;
 mod drive;
 mod frame;
@@ -22,6 +23,7 @@ mod layers;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
+mod materials;
 #[cfg(feature = "verify")]
 mod measured;
 pub(crate) mod mesh;
@@ -255,13 +257,22 @@ impl Scene {
     }
 
     /// The factor by which the displacement that levels of detail may use was enlarged in the last frame, because the
-    /// vertices of what is seen of a character exceed what one binding of the device holds. It is 1 where the views'
-    /// [`Quality::pixels`] holds.
+    /// device had no memory left for the vertices of what is seen of a character. It is 1 where the views'
+    /// [`Quality::pixels`] holds. [`Scene::refresh`] tries again whether there is memory.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn coarsening(&self, object: ObjectId) -> Result<f32, InputError> {
         Ok(self.object_at(object)?.coarsening)
+    }
+
+    /// The largest number of draws that an object takes in a view and a layer. It is at most 64, unless a binding of the
+    /// device is too small for the object: its instances are drawn in several chunks then, each with as many draws.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene.
+    pub fn draws(&self, object: ObjectId) -> Result<usize, InputError> {
+        Ok(self.object_at(object)?.draws())
     }
 
     /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.

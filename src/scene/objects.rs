@@ -189,10 +189,13 @@ impl Scene {
     pub fn show(&mut self, object: ObjectId, is_shown: bool) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
-            // Until the next layout, the object's entry is written alone.
-            let (value, number) = (entry.lod_object(), entry.number);
+            // Until the next layout, the object's entries are written alone.
+            let entries = entry.chunks.iter().map(|chunk| (chunk.number, entry.lod_object(chunk)));
+            let entries: Vec<_> = entries.collect();
             if let Some(layout) = &self.layout {
-                self.staged.elements(&layout.objects, number, &[value])?;
+                for (number, value) in entries {
+                    self.staged.elements(&layout.objects, number, &[value])?;
+                }
             }
         }
         Ok(())

@@ -4,6 +4,7 @@ use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
 use crate::lod::single::Single;
 use crate::lod::{OBJECT_LISTS, SelectView};
 use crate::scene::camera::Camera;
+use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
 use crate::scene::object::Object;
 
@@ -17,11 +18,11 @@ pub(crate) struct SinglePart {
     pub first: u32,
 }
 
-impl Object {
+impl Chunk {
     /// Lays out the parts that are drawn instance by instance, behind those of other objects.
     pub(super) fn lay_out_singles(&mut self, all: &mut Vec<Single>) {
         self.singles.clear();
-        let (instances, mut first_draw) = (self.instances.capacity() as u32, self.range.first_draw);
+        let (instances, mut first_draw) = (self.slots.len() as u32, self.range.first_draw);
         for (drawable, of) in self.drawables.iter().enumerate() {
             let parts = if let Drawable::Mesh(mesh) = of { mesh.parts.as_slice() } else { &[] };
             for (part, _) in parts.iter().enumerate().filter(|(_, part)| part.surface.blended) {
@@ -55,8 +56,9 @@ pub(super) fn back_to_front<'a>(
     order.clear();
     let (eye, ahead) = (camera.eye().as_dvec3(), camera.ahead().as_dvec3());
     let is_parallel = camera.clip_from_view.row(3).truncate() == glam::Vec3::ZERO;
-    for (object, of) in objects.enumerate().filter(|(_, object)| !object.singles.is_empty()) {
-        let lod = of.lod_object();
+    for (object, of) in objects.enumerate() {
+        let Some(chunk) = of.chunks.first().filter(|chunk| !chunk.singles.is_empty()) else { continue };
+        let lod = of.lod_object(chunk);
         for (instance, placed) in (0..).zip(of.instances.all()) {
             let (center, radius) = placed_sphere(placed, view.cell);
             if !is_shown(view, &lod, placed) || !nearly_seen(view, center, radius) {

@@ -1,6 +1,8 @@
 //! How many pages of skinned vertices a character needs in a frame: the host foresees what the device will decide, so that
 //! memory follows what is seen and no frame waits for an answer.
 
+use std::ops::Range;
+
 use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere, view_allows};
 use crate::lod::{LodObject, SceneInstance, SelectView};
 use crate::skinning::pages::{KEEPING_PAGE_BYTES, PAGE_BYTES};
@@ -11,17 +13,20 @@ const SMALL: usize = 4 << 20;
 /// The factor by which rounding may make the device allow less than the host.
 const CAUTION: f32 = 0.999;
 
-/// The factor between the displacements that are tried where pages for what is seen exceed a binding.
+/// The factor between the displacements that are tried where pages for what is seen exceed the memory.
 const COARSER: f32 = 1.25;
 
-/// The pages of one mesh, in numbers.
+/// The largest factor that is tried.
+const COARSEST: f32 = 1e6;
+
+/// The pages of one mesh for some instances, in numbers.
 #[derive(Debug, Clone)]
 pub(super) struct Paging {
     /// Clusters at each level of detail.
-    pub clusters: Vec<u32>,
+    clusters: Vec<u32>,
     /// Pages for all instances in full detail.
-    pub full: u32,
-    /// As many as a binding holds.
+    full: u32,
+    /// As many as a binding holds, or as memory is left for.
     pub most: u32,
     /// The bytes of a page.
     bytes: usize,
@@ -37,6 +42,11 @@ impl Paging {
         Self { clusters, full: u32::try_from(full).unwrap_or(u32::MAX), most, bytes }
     }
 
+    /// Whether so many pages are enough for all instances in full detail.
+    pub fn is_full(&self, pages: usize) -> bool {
+        pages as u64 >= u64::from(self.full)
+    }
+
     /// The number of pages to begin with.
     pub fn initial(&self) -> u32 {
         self.full.min((SMALL / self.bytes) as u32).min(self.most).max(1)
@@ -44,44 +54,64 @@ impl Paging {
 
     /// The number of pages for a frame that needs `needed`: more than that, so that the next frames need no others.
     pub fn enough(&self, needed: u32) -> u32 {
-        (needed + needed / 2).min(self.full).min(self.most).max(1)
+        needed.saturating_add(needed / 2).min(self.full).min(self.most).max(1)
     }
 
-    fn needed(&self, levels: &[u32]) -> u64 {
-        let clusters = |level: &u32| self.clusters.get(*level as usize).or(self.clusters.last());
-        levels.iter().filter_map(clusters).map(|clusters| u64::from(*clusters)).sum()
+    fn needed(&self, levels: impl Iterator<Item = u32>) -> u64 {
+        let clusters = |level: u32| self.clusters.get(level as usize).or(self.clusters.last());
+        levels.filter_map(clusters).map(|clusters| u64::from(*clusters)).sum()
     }
 }
 
-/// What a frame needs of a character.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Needs {
-    /// Pages, for each of its meshes.
-    pub pages: Vec<u32>,
-    /// The factor by which the displacement that its levels may use must grow, so that the pages fit: 1 unless there is more
-    /// to see than a binding holds.
-    pub coarsening: f32,
+/// What the views of a frame see of the instances of a character.
+#[derive(Debug)]
+pub(super) struct Seen<'a> {
+    object: &'a LodObject,
+    /// The smallest displacement that a view allows each instance, `None` if none may see it.
+    allowed: Vec<Option<f32>>,
 }
 
-/// What the views of a frame need of the instances of a character.
-pub(super) fn needs(
-    views: &[SelectView],
-    object: &LodObject,
-    instances: &[SceneInstance],
-    meshes: &[Paging],
-) -> Needs {
-    let seen: Vec<f32> = instances.iter().filter_map(|instance| allowed(views, object, instance)).collect();
-    let mut coarsening = 1.0;
-    loop {
-        let fraction = CAUTION * coarsening * object.mesh_fraction;
-        let levels: Vec<u32> = seen.iter().map(|allowed| level(object, fraction * allowed)).collect();
-        let pages: Vec<u64> = meshes.iter().map(|mesh| mesh.needed(&levels)).collect();
-        let fits = pages.iter().zip(meshes).all(|(pages, mesh)| *pages <= u64::from(mesh.most));
-        if fits || coarsening > 1e6 {
-            let pages = pages.iter().map(|pages| (*pages).min(u64::from(u32::MAX)) as u32).collect();
-            return Needs { pages, coarsening };
+impl<'a> Seen<'a> {
+    /// All instances, in the views of a frame. `object` has the fraction of the displacement that levels of detail use by
+    /// themselves.
+    pub fn new(views: &[SelectView], object: &'a LodObject, instances: &[SceneInstance]) -> Self {
+        let allowed = instances.iter().map(|instance| allowed(views, object, instance)).collect();
+        Self { object, allowed }
+    }
+
+    /// The pages that some of the instances need, for each mesh, where levels may be off by so many times more.
+    fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], coarsening: f32) -> Vec<u64> {
+        let fraction = CAUTION * coarsening * self.object.mesh_fraction;
+        let seen = || self.allowed[slots.clone()].iter().flatten();
+        let levels = || seen().map(|allowed| level(self.object, fraction * allowed));
+        meshes.iter().map(|mesh| mesh.needed(levels())).collect()
+    }
+
+    /// As many pages as [`Seen::fits`] allows, for each mesh.
+    pub fn pages(&self, slots: &Range<usize>, meshes: &[Paging], coarsening: f32) -> Vec<u32> {
+        let pages = self.exactly(slots, meshes, coarsening);
+        pages.iter().zip(meshes).map(|(pages, mesh)| (*pages).min(mesh.most.into()) as u32).collect()
+    }
+
+    /// Whether the pages that some of the instances need are no more than there may be.
+    pub fn fits(&self, slots: &Range<usize>, meshes: &[Paging], coarsening: f32) -> bool {
+        let pages = self.exactly(slots, meshes, coarsening);
+        pages.iter().zip(meshes).all(|(pages, mesh)| *pages <= u64::from(mesh.most))
+    }
+
+    /// The factor by which the displacement that levels may use must grow, so that all chunks fit: 1 unless there is more to
+    /// see than there is memory for.
+    pub fn coarsening<'b>(
+        &self,
+        chunks: impl Iterator<Item = (&'b Range<usize>, &'b [Paging])> + Clone,
+    ) -> f32 {
+        let mut coarsening = 1.0;
+        while coarsening < COARSEST
+            && chunks.clone().any(|(slots, meshes)| !self.fits(slots, meshes, coarsening))
+        {
+            coarsening *= COARSER;
         }
-        coarsening *= COARSER;
+        coarsening
     }
 }
 

@@ -10,7 +10,7 @@ pub struct Quality {
     /// and [`Shares`] divide that among levels of detail, bones and influences. Not bounded are shading, textures, and
     /// shadow edges.
     ///
-    /// Where the vertices of what is seen of a character exceed a binding of the device, its levels are coarser than that:
+    /// Where the device has no memory left for the vertices of what is seen of a character, its levels are coarser than that:
     /// [`Scene::coarsening`](super::Scene::coarsening) says by how much.
     pub pixels: f32,
 }

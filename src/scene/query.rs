@@ -98,17 +98,19 @@ mod drawn {
         ) -> Result<Vec<DrawnInstance>, Error> {
             let entry = self.object_at(object)?;
             let buffers = self.lists_of(view)?;
-            let (range, capacity) = (entry.range, entry.instances.capacity());
             let draws = buffers.arguments.read_blocking(&self.gpu)?;
             let lists = buffers.lists.read_blocking(&self.gpu)?;
             let rows = buffers.rows.read_blocking(&self.gpu)?;
-            let mut drawn = vec![None; capacity];
-            for list in 0..2 * entry.errors.len() {
-                let count = draws[range.first_draw as usize + list].instances as usize;
-                for index in &lists[range.first_list as usize + list * capacity..][..count] {
-                    let first = 3 * (range.first + index) as usize;
-                    let placed: Affine = [0, 1, 2].map(|row| rows[first + row]);
-                    drawn[*index as usize] = Some((list as u32, placed));
+            let mut drawn = vec![None; entry.instances.capacity()];
+            for chunk in &entry.chunks {
+                let (range, room) = (chunk.range, chunk.room() as usize);
+                for list in 0..2 * entry.errors.len() {
+                    let count = draws[range.first_draw as usize + list].instances as usize;
+                    for index in &lists[range.first_list as usize + list * room..][..count] {
+                        let first = 3 * (range.first + index) as usize;
+                        let placed: Affine = [0, 1, 2].map(|row| rows[first + row]);
+                        drawn[chunk.slots.start + *index as usize] = Some((list as u32, placed));
+                    }
                 }
             }
             let all = entry.instances.each();
@@ -139,7 +141,9 @@ mod drawn {
             let object = self.object_at(object)?;
             let draws = self.lists_of(view)?.arguments.read_blocking(&self.gpu)?;
             let mut all = Vec::new();
-            for (drawable, lod) in object.drawables.iter().zip(&object.lods) {
+            // All chunks draw the same triangles.
+            let chunks = object.chunks.iter().take(1);
+            for (drawable, lod) in chunks.flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods)) {
                 let Drawable::Mesh(mesh) = drawable else { continue };
                 let indices = mesh.geometry.indices.read_blocking(&self.gpu)?;
                 let of_part = |part: u32| {
@@ -160,7 +164,7 @@ mod drawn {
             if let Kind::Character(character) = &object.kind {
                 return character.skinned(&self.gpu, index);
             }
-            let meshes = object.drawables.iter().filter_map(|drawable| match drawable {
+            let meshes = object.drawables().filter_map(|drawable| match drawable {
                 Drawable::Mesh(mesh) => Some(mesh),
                 Drawable::Terrain(_) => None,
             });

@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{ReliefLook, ReliefMaterial};
-use crate::scene::mesh::{Drawn, NOTHING};
+use crate::scene::mesh::{Drawn, NOTHING, within_binding};
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -21,6 +21,10 @@ use crate::surface::{Address, Material, ReliefMaps, ReliefOptions};
 use crate::{Error, InputError};
 
 /// A mesh that carries a relief, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
+///
+/// It has no levels of detail, and is drawn as it is at any distance: the error of a level says how far its surface is off,
+/// and nothing of its texture coordinates, along which rays march through the relief. Use a mesh with few triangles; the
+/// relief itself has the detail.
 #[derive(Debug, Clone)]
 pub struct Relief {
     /// The mesh, in the model's space.
@@ -78,6 +82,9 @@ pub(super) fn drawn(
     if relief.mesh.indices.is_empty() {
         return Err(InputError::new("relief.mesh.indices.len", 0, "must be at least 3").into());
     }
+    let [vertices, indices] = [relief.mesh.vertices.len(), relief.mesh.indices.len()];
+    within_binding(gpu, "relief.mesh.vertices.len", vertices, size_of::<Vertex>())?;
+    within_binding(gpu, "relief.mesh.indices.len", indices, size_of::<u32>())?;
     let vertices: Vec<Vertex> = (relief.mesh.vertices.iter())
         .map(|vertex| Vertex { position: vertex.position, normal: vertex.normal, tangent: vertex.tangent })
         .collect();

@@ -134,18 +134,14 @@ impl Watch {
             let copies = chosen.iter().filter_map(|(instance, bone)| {
                 let object = objects.existing(*instance)?;
                 let Kind::Character(character) = &object.kind else { return None };
-                Some((
-                    character.model_matrices(),
-                    instance.index as usize,
-                    *bone,
-                    object.range.first as usize,
-                ))
+                let (matrices, own) = character.model_matrices(instance.index)?;
+                Some((matrices, own, *bone, object.place(instance.index)?))
             });
-            for (at, (matrices, instance, bone, first)) in (0..).zip(copies) {
+            for (at, (matrices, instance, bone, place)) in (0..).zip(copies) {
                 let (matrix, word) = (size_of::<Affine>() as u64, size_of::<f32>() as u64);
                 let from = matrix * (instance * matrices.bones + bone) as u64;
                 encoder.copy_buffer_to_buffer(matrices.raw, from, to, BYTES * at, matrix);
-                let from = word * (first + instance) as u64;
+                let from = word * place as u64;
                 encoder.copy_buffer_to_buffer(layout.allowed.raw(), from, to, BYTES * at + matrix, word);
             }
         });

@@ -115,6 +115,7 @@ impl CameraPath {
 }
 
 /// The camera of the columns `from..to` of a camera's picture.
+#[cfg(any(test, not(target_arch = "wasm32")))]
 pub(super) fn columns(camera: &Camera, from: u32, to: u32) -> Camera {
     let [width, height] = camera.viewport;
     let part = (to - from) as f32 / width as f32;
@@ -151,8 +152,8 @@ mod tests {
         for key in &path.keys {
             assert_eq!(path.key(key.time), *key);
         }
-        // The first two parts are passed at one speed.
-        for time in [0.25, 0.5, 1.5] {
+        // The first part is passed at one speed: that of the parts around its ends.
+        for time in [0.25, 0.5, 0.75] {
             assert!((x(time) - time).abs() < 1e-12, "{}", x(time));
         }
         assert_eq!((x(-1.0), x(9.0), path.end()), (0.0, 3.0, 4.0));

@@ -2,8 +2,8 @@
 //! tests draw such files, and a program may do the same.
 //!
 //! [`SceneFile::from_json`] checks a text. [`SceneFile::load`] reads what it names, through a function of the caller's, so
-//! that it works without a file system. [`LoadedScene::build`] makes a [`Scene`](crate::scene::Scene) of it, and
-//! [`Player`] draws its frames off screen.
+//! that it works without a file system. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it ([`LoadedScene::build_async`] in a
+//! browser), and `Player` draws its frames off screen.
 //!
 //! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`), the
 //! value and the bound.
@@ -70,6 +70,7 @@ mod limits;
 mod load;
 mod parse;
 mod parse_object;
+#[cfg(not(target_arch = "wasm32"))]
 mod player;
 mod scatter;
 mod spec;
@@ -77,6 +78,7 @@ mod world;
 
 pub use camera::CameraPath;
 pub use load::LoadedScene;
+#[cfg(not(target_arch = "wasm32"))]
 pub use player::{FrameTimes, Player, Rendering};
 pub use spec::SceneFile;
 pub use world::{World, WorldKind, WorldObject};

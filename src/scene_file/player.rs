@@ -20,7 +20,7 @@ pub struct Rendering {
     pub samples: u32,
     /// The direction of depth.
     pub depth: Depth,
-    /// What is drawn. [`Layer::Depth`] needs one sample.
+    /// What is drawn: [`Layer::Color`], and what is transparent above it; or [`Layer::Depth`], which needs one sample.
     pub layer: Layer,
     /// Whether two views of one submission draw the left half and the right half of the picture.
     pub is_split: bool,
@@ -51,6 +51,9 @@ impl Rendering {
         self.quality.validate()?;
         if ![1, 4].contains(&self.samples) {
             return Err(InputError::new("samples", self.samples, "must be 1 or 4"));
+        }
+        if ![Layer::Color, Layer::Depth].contains(&self.layer) {
+            return Err(InputError::new("layer", format!("{:?}", self.layer), "must be color or depth"));
         }
         if self.layer == Layer::Depth && self.samples > 1 {
             return Err(InputError::new("samples", self.samples, "must be 1 for the layer depth"));
@@ -162,6 +165,9 @@ impl Player {
             pass.set_viewport(left as f32, 0.0, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(left, 0, width, height);
             self.renderer.draw(pass, &self.world.scene, view, self.rendering.layer)?;
+            if self.rendering.layer == Layer::Color {
+                self.renderer.draw(pass, &self.world.scene, view, Layer::Transparent)?;
+            }
         }
         Ok(())
     }

@@ -64,14 +64,23 @@ pub enum WorldKind {
 }
 
 impl LoadedScene {
-    /// Builds the scene: adds everything and spawns all instances. It blocks while terrain is read back.
+    /// Builds the scene: adds everything and spawns all instances. It waits for the heights of terrain.
     ///
     /// # Errors
     /// [`InputError`], with the path in the scene file, for what stands on the ground where there is none, and for what the
     /// device cannot hold; [`crate::gpu::GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn build(&self, gpu: &Gpu) -> Result<World, Error> {
+        gpu.block_on(self.build_async(gpu))
+    }
+
+    /// As `LoadedScene::build`, but completes once the device has generated the terrain and told its errors.
+    ///
+    /// # Errors
+    /// As `LoadedScene::build`.
+    pub async fn build_async(&self, gpu: &Gpu) -> Result<World, Error> {
         let file = &self.file;
-        let mut scene = Scene::new(gpu)?;
+        let mut scene = Scene::new_async(gpu).await?;
         scene.set_light(file.light)?;
         let mut objects = Vec::new();
         let mut land = None;
@@ -79,13 +88,13 @@ impl LoadedScene {
             let source = TerrainSource::new(terrain.config.clone())
                 .with_patches(&terrain.patches)
                 .with_textures(self.textures.clone());
-            let object = scene.add_terrain(&source).map_err(|error| below("terrain", error))?;
+            let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
             let name = terrain.config.seed.clone();
             objects.push(WorldObject { object, kind: WorldKind::Terrain, name, model: None });
         }
         for (entry, loaded) in file.objects.iter().zip(&self.objects) {
-            let found = added(&mut scene, entry, loaded)?;
+            let found = added(&mut scene, entry, loaded).await?;
             self.spawn(&mut scene, land, entry, &found)?;
             objects.push(found);
         }
@@ -161,12 +170,12 @@ fn height(scene: &Scene, land: Option<ObjectId>, x: f64, z: f64) -> Option<f64> 
 }
 
 /// Adds an object with room for its instances.
-fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Result<WorldObject, Error> {
+async fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Result<WorldObject, Error> {
     let capacity = entry.count();
     let object = match (loaded, &entry.kind) {
-        (Loaded::Relief(relief), _) => scene.add_relief(relief, capacity),
-        (Loaded::Model(model), EntryKind::Character(_)) => scene.add_character(model, capacity),
-        (Loaded::Model(model), _) => scene.add_mesh(model, capacity),
+        (Loaded::Relief(relief), _) => scene.add_relief_async(relief, capacity).await,
+        (Loaded::Model(model), EntryKind::Character(_)) => scene.add_character_async(model, capacity).await,
+        (Loaded::Model(model), _) => scene.add_mesh_async(model, capacity).await,
     };
     let (kind, model) = match (loaded, &entry.kind) {
         (Loaded::Relief(_), _) => (WorldKind::Relief, None),

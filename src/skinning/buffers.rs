@@ -18,6 +18,7 @@ use crate::{Error, InputError};
 
 impl SeenAs<[f32; 2]> for Vertex {}
 impl SeenAs<Dispatched> for u32 {}
+impl SeenAs<u32> for InstanceLod {}
 
 /// A mesh on the device, and the skin that it follows. Vertices lie in clusters; see [`Clusters::order`].
 #[derive(Debug, Clone)]
@@ -134,7 +135,8 @@ pub struct SkinnedCrowd {
     /// Weights of morph targets, instance by instance; 0 at first.
     pub weights: Buffer<f32>,
     /// The vertices that [`super::morph::MorphPass`] writes if the mesh has targets, at `instance · vertices +
-    /// slot`. Clusters beyond an instance's level keep their previous contents.
+    /// slot`. Clusters beyond an instance's level keep their previous contents. Empty if vertices lie in pages
+    /// ([`PageBuffers::morphed`](super::pages::PageBuffers::morphed)).
     pub morphed: Buffer<Vertex>,
     /// Number of instances.
     pub instances: usize,
@@ -148,17 +150,26 @@ impl SkinnedCrowd {
     /// # Errors
     /// [`InputError`] for no instances; [`GpuError`].
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, instances: usize, blend: Blend) -> Result<Self, Error> {
+        let crowd = Self::paged(gpu, mesh, instances, blend)?;
+        let morphed = if mesh.targets == 0 { 0 } else { instances * mesh.vertices.len() };
+        Ok(Self { morphed: Buffer::new(gpu, "morphed vertices", morphed)?, ..crowd })
+    }
+
+    /// As [`SkinnedCrowd::new`], for vertices in pages.
+    ///
+    /// # Errors
+    /// As [`SkinnedCrowd::new`].
+    pub fn paged(gpu: &Gpu, mesh: &MeshBuffers, instances: usize, blend: Blend) -> Result<Self, Error> {
         if instances == 0 || u32::try_from(instances * mesh.clusters().max(1)).is_err() {
             let bound = format!("must be in 1..={}", u32::MAX as usize / mesh.clusters().max(1));
             return Err(InputError::new("instances", instances, bound).into());
         }
         let vectors = if blend == Blend::Linear { 3 } else { 4 };
-        let morphed = if mesh.targets == 0 { 0 } else { instances * mesh.vertices.len() };
         Ok(Self {
             palette: Buffer::new(gpu, "palette", vectors * instances * mesh.bones.len())?,
             instance_lods: Buffer::from_slice(gpu, "instance_lods", &vec![InstanceLod::FULL; instances])?,
             weights: Buffer::new(gpu, "morph weights", instances * mesh.targets)?,
-            morphed: Buffer::new(gpu, "morphed vertices", morphed)?,
+            morphed: Buffer::new(gpu, "morphed vertices", 0)?,
             instances,
             blend,
         })

@@ -59,8 +59,8 @@ pub struct Part {
 /// Meshes that morph targets move are merged with those that have the same weights in every clip, and stay meshes of
 /// their own otherwise. Parts differ in their [`PartKey`]. There are at most [`MAX_PARTS`] of them, or one or two for
 /// each merged mesh and use of alpha if these are more: samplings are given up until then, those with the fewest
-/// triangles first, in favour of the one that has most triangles of the same mesh, alpha and sides. A mesh without
-/// textures joins any sampling. Should there be so many morphed meshes that draws exceed [`MAX_DRAWS`], there are
+/// triangles first, in favour of the one that has most triangles of the same mesh, alpha and sides. A mesh that
+/// lacks textures or normal maps joins any sampling of these. Should there be so many morphed meshes that draws exceed [`MAX_DRAWS`], there are
 /// fewer levels, at least one.
 ///
 /// # Errors

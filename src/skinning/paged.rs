@@ -25,20 +25,43 @@ pub struct PagedSkin {
     /// The mesh on the device.
     pub mesh: MeshBuffers,
     /// The arrangement of its vertices.
-    pub clusters: Clusters,
+    pub clusters: Arc<Clusters>,
     /// InstanceLods and weights of morph targets, which the caller may write.
     pub crowd: SkinnedCrowd,
-    /// The pages, and the vertices in them.
-    pub pages: PageBuffers,
-    select: SelectBuffers,
     active: ActiveClusters,
-    /// The jobs of pages and of palettes.
-    before: [Job; 2],
+    palette: Job,
+    paging: Paging,
+    reader: Arc<UpdatedBonesReader>,
+}
+
+/// The pages, and the jobs that depend on them.
+#[derive(Debug, Clone)]
+struct Paging {
+    pages: PageBuffers,
+    select: SelectBuffers,
+    deal: Job,
     /// The selection that keeps the updated bones, and the one that clears them.
     selections: [Job; 2],
+    /// Morphing, if there are targets, and skinning.
     after: Vec<IndirectJob>,
-    keeps_last: bool,
-    reader: Arc<UpdatedBonesReader>,
+}
+
+impl Paging {
+    fn new(
+        gpu: &Gpu,
+        (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
+        (select, active): (SelectBuffers, &ActiveClusters),
+        pages: u32,
+    ) -> Result<Self, Error> {
+        let allocated = if active.keeps_last { PageBuffers::keeping } else { PageBuffers::new };
+        let pages = allocated(gpu, mesh, crowd, pages)?;
+        let deal = PagesPass::new(gpu)?.prepare(gpu, mesh, crowd, &pages)?;
+        let selections = SelectPass::new(gpu)?.prepare_both(gpu, mesh, crowd, &select, active)?;
+        let morph = MorphPass::new(gpu)?.prepare_paged(gpu, mesh, crowd, &pages, active)?;
+        let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(gpu, mesh, crowd, &pages, active)?;
+        let after = morph.into_iter().chain([skin]).collect();
+        Ok(Self { pages, select, deal, selections, after })
+    }
 }
 
 impl PagedSkin {
@@ -59,38 +82,32 @@ impl PagedSkin {
         let Some(mesh) = model.meshes.get(mesh) else {
             return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
         };
+        let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
+        Self::of_mesh(gpu, (mesh, Arc::new(clusters)), matrices, (instances, pages, false))
+    }
+
+    /// As [`PagedSkin::new`], of a mesh that is on the device already: for so many instances, with so many pages, and with last
+    /// positions ([`PagedSkin::keep_last`]) or without.
+    ///
+    /// # Errors
+    /// As [`PagedSkin::new`].
+    pub fn of_mesh(
+        gpu: &Gpu,
+        (mesh, clusters): (MeshBuffers, Arc<Clusters>),
+        matrices: &ModelMatrices,
+        (instances, pages, keeps_last): (usize, u32, bool),
+    ) -> Result<Self, Error> {
         let Some(updated) = matrices.updated_bones() else {
             return Err(InputError::new("matrices.updated_bones", "none", "must be recorded").into());
         };
-        let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
-        let crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
+        let crowd = SkinnedCrowd::paged(gpu, &mesh, instances, Blend::Linear)?;
         let updated_bones = updated.bits().clone();
         let select = SelectBuffers { updated_bones, ..SelectBuffers::new(gpu, &mesh, &crowd)? };
-        let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
-        let pages = PageBuffers::new(gpu, &mesh, &crowd, pages)?;
-        let before = [
-            PagesPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &pages)?,
-            PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?,
-        ];
-        let selections = SelectPass::new(gpu)?.prepare_both(gpu, &mesh, &crowd, &select, &active)?;
-        let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(gpu, &mesh, &crowd, &pages, &active)?;
-        let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
-        let after = morph.into_iter().chain([skin]).collect();
-        let reader = Arc::new(updated.reader());
-        let keeps_last = false;
-        Ok(Self {
-            mesh,
-            clusters,
-            crowd,
-            pages,
-            select,
-            active,
-            before,
-            selections,
-            after,
-            keeps_last,
-            reader,
-        })
+        let listed = if keeps_last { ActiveClusters::keeping } else { ActiveClusters::new };
+        let active = listed(gpu, &mesh, &crowd)?;
+        let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
+        let paging = Paging::new(gpu, (&mesh, &crowd), (select, &active), pages)?;
+        Ok(Self { mesh, clusters, crowd, active, palette, paging, reader: Arc::new(updated.reader()) })
     }
 
     /// Keeps the position that each vertex had before the last [`PagedSkin::dispatch`], behind the vertices of all pages
@@ -100,36 +117,25 @@ impl PagedSkin {
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub fn keep_last(&mut self, gpu: &Gpu) -> Result<(), Error> {
-        self.keeps_last = true;
         self.active = ActiveClusters::keeping(gpu, &self.mesh, &self.crowd)?;
-        self.set_pages(gpu, self.pages.pages() as u32)
+        self.set_pages(gpu, self.pages().pages() as u32)
     }
 
-    /// Replaces the pages by so many others. Everything that is seen is dealt out and skinned anew in the next frame.
+    /// The pages, and the vertices in them.
+    pub fn pages(&self) -> &PageBuffers {
+        &self.paging.pages
+    }
+
+    /// Replaces the pages by so many others. Everything that is seen is dealt out and skinned anew in the next frame. After an
+    /// error the pages are those of before.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub fn set_pages(&mut self, gpu: &Gpu, pages: u32) -> Result<(), Error> {
-        let new = if self.keeps_last { PageBuffers::keeping } else { PageBuffers::new };
-        let pages = new(gpu, &self.mesh, &self.crowd, pages)?;
-        let dealt = PagesPass::new(gpu)?.prepare(gpu, &self.mesh, &self.crowd, &pages)?;
         // A new record of what was skinned: frames that are recorded already go on with the old one.
         let skinned = SelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
-        let select = SelectBuffers { skinned, ..self.select.clone() };
-        let selections =
-            SelectPass::new(gpu)?.prepare_both(gpu, &self.mesh, &self.crowd, &select, &self.active)?;
-        let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(
-            gpu,
-            &self.mesh,
-            &self.crowd,
-            &pages,
-            &self.active,
-        )?;
-        let morph = MorphPass::new(gpu)?.prepare_active(gpu, &self.mesh, &self.crowd, &self.active)?;
-        // From here on nothing fails: an error has changed nothing.
-        self.before[0] = dealt;
-        (self.pages, self.select, self.selections) = (pages, select, selections);
-        self.after = morph.into_iter().chain([skin]).collect();
+        let select = SelectBuffers { skinned, ..self.paging.select.clone() };
+        self.paging = Paging::new(gpu, (&self.mesh, &self.crowd), (select, &self.active), pages)?;
         Ok(())
     }
 
@@ -137,10 +143,11 @@ impl PagedSkin {
     /// changed morph weight, or a new page. The last of several skins over the same model matrices clears the updated
     /// bones ([`UpdatedBones`](crate::animation::UpdatedBones)).
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.before.iter().for_each(|job| job.dispatch(pass));
-        let [keeping, clearing] = &self.selections;
+        self.paging.deal.dispatch(pass);
+        self.palette.dispatch(pass);
+        let [keeping, clearing] = &self.paging.selections;
         if self.reader.read() { clearing } else { keeping }.dispatch(pass);
-        self.after.iter().for_each(|job| job.dispatch(pass));
+        self.paging.after.iter().for_each(|job| job.dispatch(pass));
     }
 
     /// Reads the vertices of an instance that have a page, in the mesh's own order; `None` for the others. Waits for
@@ -154,7 +161,8 @@ impl PagedSkin {
             let bound = format!("must be below {}", self.crowd.instances);
             return Err(InputError::new("instance", instance, bound).into());
         }
-        let (table, skinned) = (self.pages.table.read_blocking(gpu)?, self.pages.skinned.read_blocking(gpu)?);
+        let PageBuffers { table, skinned, .. } = &self.paging.pages;
+        let (table, skinned) = (table.read_blocking(gpu)?, skinned.read_blocking(gpu)?);
         let own = &table[instance * self.mesh.clusters()..];
         let vertex = |place: usize| {
             let page = own[place / super::clusters::CLUSTER] as usize;
@@ -171,6 +179,6 @@ impl PagedSkin {
 
     /// The buffer of updated bones that the selection reads.
     pub fn updated_bones(&self) -> &Buffer<u32> {
-        &self.select.updated_bones
+        &self.paging.select.updated_bones
     }
 }

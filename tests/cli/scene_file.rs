@@ -73,8 +73,8 @@ pub fn good() -> Value {
             },
         ],
         "characters": [{
-            "file": "builtin:creature",
-            "clip": "walk",
+            "file": "rig.glb",
+            "clip": 0,
             "instances": [{"on": [8, 8], "clip": 1}, {"on": [18, 8]}],
             "scatter": {"count": 2, "seed": "crowd", "area": [[2, 2], [20, 12]], "scale": [1, 2]},
         }],
@@ -134,7 +134,7 @@ fn frames_are_drawn_and_counted() {
         levels.map(|level| level[of].as_u64().expect("a count")).sum()
     };
     assert_eq!((drawn(0, 0, "instances"), drawn(0, 0, "triangles")), (2, 2 * 2 * 16 * 16));
-    assert!(drawn(0, 3, "instances") > 1 && drawn(0, 3, "triangles") > 1000);
+    assert!(drawn(0, 3, "instances") > 1 && drawn(0, 3, "triangles") > 10);
     // Nothing stands still: neither camera nor characters.
     let [first, last] = [0, 2].map(|number| folder.frame(number).into_rgba8());
     assert!(first.dimensions() == (96, 64) && first != last);
@@ -194,7 +194,9 @@ fn frames_are_compared_with_full_detail() {
     let folder = Folder::new();
     let far = json!([{"time": 0, "at": [10, 8, 90], "look": [10, 0, 8]}, {"time": 1, "at": [10, 9, 60], "look": [10, 0, 8]}]);
     let arguments = ["--frames", "3", "--rate", "3", "--size", "96x64", "--compare", "--pixels", "2"];
-    let run = folder.run(&with("/camera/path", far), &arguments);
+    let rocks: Value = serde_json::from_str(&with("/camera/path", far)).expect("JSON");
+    let rocks = rocks.to_string().replace("still.glb", "builtin:rock");
+    let run = folder.run(&rocks, &arguments);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     assert!(run.stdout.contains("largest displacement"), "{}", run.stdout);
     let report = folder.report();
@@ -207,10 +209,17 @@ fn frames_are_compared_with_full_detail() {
     assert!(report["frames"][1]["compared"]["full_milliseconds"]["draw"].as_f64() > Some(0.0));
 }
 
+/// A list of numbers.
+fn floats(of: &Value, name: &str) -> Vec<f32> {
+    let list = of[name].as_array().expect("a list").iter();
+    list.map(|value| value.as_f64().expect("a number") as f32).collect()
+}
+
 /// The bones that are drawn at full detail are where the CPU reference puts them.
 #[test]
 fn dumps_hold_the_bones_that_were_drawn() {
     use relievo::animation::Pose;
+    use relievo::asset::Model;
     use relievo::glam::{Mat4, Quat, Vec3, Vec4};
     let folder = Folder::new();
     let arguments = ["--frames", "2", "--rate", "7", "--size", "64x64", "--full", "--dump"];
@@ -222,7 +231,7 @@ fn dumps_hold_the_bones_that_were_drawn() {
         .map(|bytes| f32::from_le_bytes(bytes.try_into().expect("four")))
         .collect();
     assert_documented(&dump);
-    let model = relievo::samples::creature().expect("built in");
+    let model = Model::from_file(&folder.path("rig.glb")).expect("valid");
     let bones = model.skeleton.len();
     assert_eq!(numbers.len(), 2 * 4 * bones * 12);
     let mut matrices = numbers.chunks_exact(12);
@@ -234,16 +243,10 @@ fn dumps_hold_the_bones_that_were_drawn() {
                 continue;
             }
             seen += 1;
-            let floats = |name: &str| -> Vec<f32> {
-                instance[name]
-                    .as_array()
-                    .expect("a list")
-                    .iter()
-                    .map(|value| value.as_f64().expect("a number") as f32)
-                    .collect()
-            };
-            let (at, scale) = (Vec3::from_slice(&floats("at")), Vec3::from_slice(&floats("scale")));
-            let world = Mat4::from_scale_rotation_translation(scale, Quat::from_slice(&floats("turn")), at);
+            let (at, scale) =
+                (Vec3::from_slice(&floats(instance, "at")), Vec3::from_slice(&floats(instance, "scale")));
+            let world =
+                Mat4::from_scale_rotation_translation(scale, Quat::from_slice(&floats(instance, "turn")), at);
             assert_eq!(instance["cell"], json!([0, 0, 0]));
             let clip = &model.clips[instance["clip"].as_u64().expect("an index") as usize];
             let seconds = instance["clip_seconds"].as_f64().expect("seconds") as f32;

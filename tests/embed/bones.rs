@@ -180,10 +180,11 @@ impl Turn {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         poses: Poses<'_>,
-        world: relievo::scene::ObjectId,
+        instance: InstanceId,
     ) -> Result<(), relievo::InputError> {
-        let buffers = poses.of(world)?;
-        assert!(self.instance < buffers.instances && buffers.bones as usize == model().skeleton.len());
+        let buffers = poses.of(instance)?;
+        assert!(self.instance == buffers.index && buffers.index < buffers.instances);
+        assert_eq!(buffers.bones as usize, model().skeleton.len());
         let group = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.pipeline.get_bind_group_layout(0),
@@ -232,7 +233,7 @@ fn programs_pose_bones() {
     let gpu = device();
     let mut world = World::new(&gpu, 3);
     let model = model();
-    let (instance, creature) = (world.crowd[1], world.creature);
+    let instance = world.crowd[1];
     let below = model.skeleton.bones().iter().rposition(|bone| {
         let mut above = bone.parent;
         while let Some(parent) = above.filter(|parent| *parent as usize != BONE) {
@@ -244,7 +245,7 @@ fn programs_pose_bones() {
     let names = watched.map(|bone| bone.to_string());
     let pairs: Vec<_> = names.iter().map(|name| (instance, name.as_str())).collect();
     world.scene.watch_bones(&pairs).expect("bones");
-    let turn = Turn::new(&gpu, instance.index());
+    let turn = Turn::new(&gpu, 1);
     let mut view = world.view(0.0);
     let frame = Frame::plain(&gpu, SIZE);
     let renderer = frame.renderer(&gpu, &world.scene);
@@ -252,7 +253,7 @@ fn programs_pose_bones() {
     world.scene.drive(instance, &[names[0].as_str()]).expect("a bone");
     for step in [0.0, 0.0, 0.07, 0.31, 0.0] {
         world.scene.advance(step).expect("finite");
-        record(&gpu, &mut world, &mut view, |encoder, poses| turn.record(&gpu, encoder, poses, creature));
+        record(&gpu, &mut world, &mut view, |encoder, poses| turn.record(&gpu, encoder, poses, instance));
         let right = turned(&world, instance, 0.5);
         let still = turned(&world, instance, 0.0);
         let found = world.scene.watched_bones().expect("arrived");
@@ -292,11 +293,11 @@ fn programs_pose_bones() {
 }
 
 fn shot_with(gpu: &Gpu, world: &mut World, view: &mut View, frame: &Frame, turn: &Turn) -> RgbaImage {
-    let creature = world.creature;
+    let instance = world.crowd[1];
     let renderer = frame.renderer(gpu, &world.scene);
     let mut encoder = gpu.encoder("frame");
     let pose =
-        |encoder: &mut wgpu::CommandEncoder, poses: Poses<'_>| turn.record(gpu, encoder, poses, creature);
+        |encoder: &mut wgpu::CommandEncoder, poses: Poses<'_>| turn.record(gpu, encoder, poses, instance);
     world.scene.record_with(&mut encoder, &mut [view], pose).expect("recorded");
     frame.pass(&mut encoder, |pass| {
         renderer.draw(pass, &world.scene, view, relievo::render::Layer::Color).expect("drawn");

@@ -38,6 +38,13 @@ fn stale_handles_are_errors() {
     );
 }
 
+/// Scenes, views and renderers may move to other threads.
+#[test]
+fn scenes_move_between_threads() {
+    fn moves<T: Send>() {}
+    moves::<(relievo::scene::Scene, View, relievo::render::Renderer)>();
+}
+
 /// More instances than there is room for let an object grow: the picture is that of a scene with enough room.
 #[test]
 fn objects_grow_in_flight() {

@@ -5,6 +5,7 @@
 mod harness;
 
 mod bones;
+mod chunks;
 #[cfg(unix)]
 mod cost;
 mod counts;
@@ -12,6 +13,7 @@ mod frame;
 mod host;
 mod layers;
 mod life;
+mod materials;
 mod misuse;
 mod placements;
 #[cfg(feature = "verify")]
@@ -21,6 +23,8 @@ mod raw;
 mod rays;
 mod rebuild;
 mod shading;
+mod sides;
+mod solids;
 mod surfaces;
 mod targets;
 mod transparent;

@@ -81,26 +81,52 @@ fn surfaces_are_those_of_traced_rays() {
         let renderer = raw.renderer(&gpu, &scene);
         // A prepass changes nothing.
         raw.frame(&mut scene, &mut view, &renderer, &[Layer::Depth, Layer::Surface]);
-        let (normals, colors, ids) = (raw.floats(&gpu, 0), raw.floats(&gpu, 1), raw.words(&gpu, 2));
-        let mut wrong = [0; 3];
-        let seen = compared(&triangles, &self::camera(), |at, hit| {
-            let Some(hit) = hit else {
-                assert_eq!((normals[at], colors[at], ids[at]), ([0.0; 4], [0.0; 4], [0; 2]), "pixel {at}");
-                return;
-            };
-            let triangle = &triangles[hit.triangle];
-            let expected = normal(triangle).as_vec3().extend(1.0);
-            let near = |found: [f32; 4], wanted: [f32; 4], bound: f32| {
-                found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() <= bound)
-            };
-            // A half float is off by 2^-11 of values below 1 at most, and the normal by some units of 2^-24.
-            wrong[0] += usize::from(!near(normals[at], expected.into(), 0.0005));
-            wrong[1] += usize::from(!near(colors[at], COLOR, 1.0 / 255.0));
-            wrong[2] += usize::from(ids[at] != [object.number(), (triangle.tag / 100) as u32]);
-        });
-        assert_eq!(wrong, [0; 3], "of {seen}");
-        assert!(seen > 600, "{seen} pixels");
+        let (wrong, seen) = wrong_surfaces(&raw, &gpu, &triangles, (COLOR, object.number()));
+        assert!(wrong == [0; 3] && seen > 600, "{wrong:?} of {seen} pixels");
+        // Faults are seen: surfaces that are turned by a third of a degree, another colour, another number.
+        let turned: Vec<Triangle> = triangles.iter().map(turned).collect();
+        assert!(wrong_surfaces(&raw, &gpu, &turned, (COLOR, object.number())).0[0] > seen / 2);
+        let mut other = COLOR;
+        other[1] += 0.01;
+        assert_eq!(wrong_surfaces(&raw, &gpu, &triangles, (other, object.number())).0, [0, seen, 0]);
+        assert_eq!(wrong_surfaces(&raw, &gpu, &triangles, (COLOR, 1 + object.number())).0, [0, 0, seen]);
     }
+}
+
+/// A triangle that is turned a little around its middle.
+fn turned(triangle: &Triangle) -> Triangle {
+    let middle = triangle.corners.iter().sum::<DVec3>() / 3.0;
+    let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.005, 0.005, 0.005);
+    Triangle { corners: triangle.corners.map(|corner| middle + turn * (corner - middle)), ..*triangle }
+}
+
+/// How many pixels of a picture of surfaces have another normal, another colour, and other numbers than traced rays; and how
+/// many see something.
+fn wrong_surfaces(
+    raw: &Raw,
+    gpu: &relievo::gpu::Gpu,
+    triangles: &[Triangle],
+    (color, object): ([f32; 4], u32),
+) -> ([usize; 3], usize) {
+    let (normals, colors, ids) = (raw.floats(gpu, 0), raw.floats(gpu, 1), raw.words(gpu, 2));
+    let mut wrong = [0; 3];
+    let seen = compared(triangles, &camera(), |at, hit| {
+        let Some(hit) = hit else {
+            let found = [normals[at] != [0.0; 4], colors[at] != [0.0; 4], ids[at] != [0; 2]];
+            wrong.iter_mut().zip(found).for_each(|(wrong, found)| *wrong += usize::from(found));
+            return;
+        };
+        let triangle = &triangles[hit.triangle];
+        let expected = normal(triangle).as_vec3().extend(1.0);
+        let near = |found: [f32; 4], wanted: [f32; 4], bound: f32| {
+            found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() <= bound)
+        };
+        // A half float is off by 2^-11 of values below 1 at most, and the normal by some units of 2^-24.
+        wrong[0] += usize::from(!near(normals[at], expected.into(), 0.0005));
+        wrong[1] += usize::from(!near(colors[at], color, 1.0 / 255.0));
+        wrong[2] += usize::from(ids[at] != [object, (triangle.tag / 100) as u32]);
+    });
+    (wrong, seen)
 }
 
 /// Positions are those of the rays, at any distance from the origin of the world: rounding of the transforms, of the
@@ -123,21 +149,41 @@ fn positions_are_those_of_traced_rays() {
         let raw = Raw::new(&gpu, TargetFormat::measure(), SIZE);
         let renderer = raw.renderer(&gpu, &scene);
         raw.frame(&mut scene, &mut view, &renderer, &[Layer::Measure]);
-        let (positions, ids) = (raw.floats(&gpu, 0), raw.words(&gpu, 1));
-        let (mut worst, mut wrong) = (0.0_f64, 0);
-        let seen = compared(&triangles, &camera(), |at, hit| {
-            let Some(hit) = hit else {
-                assert_eq!((positions[at], ids[at]), ([0.0; 4], [0; 2]), "pixel {at}");
-                return;
-            };
-            let [x, y, z, w] = positions[at].map(f64::from);
-            worst = worst.max((DVec3::new(x, y, z) - hit.position).length());
-            wrong += usize::from(w != 1.0);
-            wrong += usize::from(ids[at] != [object.number(), (triangles[hit.triangle].tag / 100) as u32]);
-        });
+        let (worst, wrong, seen) = wrong_positions(&raw, &gpu, &triangles, object.number());
         println!("off by {worst}");
         assert!(seen > 600 && worst < 2e-4 && wrong == 0, "{seen} pixels, off by {worst}, {wrong} wrong");
+        // Faults are seen: surfaces that are moved by a thousandth of a unit, and another number.
+        let shift = DVec3::new(0.001, 0.0, 0.001);
+        let moved = |triangle: &Triangle| Triangle {
+            corners: triangle.corners.map(|corner| corner + shift),
+            ..*triangle
+        };
+        let moved: Vec<Triangle> = triangles.iter().map(moved).collect();
+        assert!(wrong_positions(&raw, &gpu, &moved, object.number()).0 > 4e-4);
+        assert_eq!(wrong_positions(&raw, &gpu, &triangles, 1 + object.number()).1, seen);
     }
+}
+
+/// How far the positions of a picture are from those of traced rays; how many pixels have other numbers or show what is not
+/// there; and how many see something.
+fn wrong_positions(
+    raw: &Raw,
+    gpu: &relievo::gpu::Gpu,
+    triangles: &[Triangle],
+    object: u32,
+) -> (f64, usize, usize) {
+    let (positions, ids) = (raw.floats(gpu, 0), raw.words(gpu, 1));
+    let (mut worst, mut wrong) = (0.0_f64, 0);
+    let seen = compared(triangles, &camera(), |at, hit| {
+        let Some(hit) = hit else {
+            wrong += usize::from((positions[at], ids[at]) != ([0.0; 4], [0; 2]));
+            return;
+        };
+        let [x, y, z, w] = positions[at].map(f64::from);
+        worst = worst.max((DVec3::new(x, y, z) - hit.position).length());
+        wrong += usize::from(w != 1.0 || ids[at] != [object, (triangles[hit.triangle].tag / 100) as u32]);
+    });
+    (worst, wrong, seen)
 }
 
 /// Pixels that alpha leaves out show what is behind them.
@@ -258,5 +304,5 @@ fn targets_hold_their_own_layers() {
     let error = Renderer::new(&gpu, &wide).expect_err("33 bytes").to_string();
     assert!(error.contains("format.color") && error.contains("33"), "{error}");
     let holes = TargetFormat { contents: Contents::Surface, ..TargetFormat::measure() };
-    assert!(Renderer::new(&gpu, &holes).expect_err("refused").to_string().contains("format.color[0]"));
+    assert!(Renderer::new(&gpu, &holes).expect_err("refused").to_string().contains("format.color[1].format"));
 }

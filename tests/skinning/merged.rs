@@ -356,6 +356,32 @@ fn samplings_are_given_up_before_anything_else() {
     assert_eq!(sides, [(false, false), (false, true), (true, false), (true, true)]);
 }
 
+/// What has a normal map of another sampling is drawn apart; what has none, or only a normal map, joins.
+#[test]
+fn normal_maps_have_samplings_of_their_own() {
+    let mut model = Rig::PLAIN.model();
+    model.images = vec![image::RgbaImage::new(1, 1)];
+    let texture = |number| Some(Texture { image: 0, sampling: sampling(number) });
+    let looks = [(texture(0), texture(1)), (texture(0), texture(2)), (texture(0), None), (None, texture(2))];
+    let plain = materials(0).remove(0);
+    let material = |(texture, normal)| Material { texture, normal, ..plain.clone() };
+    model.materials = looks.map(material).to_vec();
+    let mesh = Mesh { levels: Vec::new(), ..model.meshes[0].clone() };
+    let triangles = |at: usize| 1 + usize::from(at == 1);
+    let copy = |at: usize| Mesh {
+        indices: mesh.indices[..3 * triangles(at)].to_vec(),
+        material: Some(at),
+        ..mesh.clone()
+    };
+    model.meshes = (0..4).map(copy).collect();
+    let found = merged(&model, 8).expect("valid");
+    let key = |part: &relievo::skinning::merged::Part| {
+        (part.key.sampling, part.key.normal_sampling, part.indices[0].len() / 3)
+    };
+    let [zero, one, two] = [0, 1, 2].map(|number| Some(sampling(number)));
+    assert_eq!(found.parts.iter().map(key).collect::<Vec<_>>(), [(zero, one, 1), (zero, two, 4)]);
+}
+
 /// Draws stay within their limit however many meshes morph by themselves, at the expense of levels.
 #[test]
 fn many_morphs_cost_levels() {

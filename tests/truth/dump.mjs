@@ -7,7 +7,7 @@
 // compared: levels of detail of meshes and of influences are not in a dump.
 
 import { readFile } from "node:fs/promises";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { AnimationMixer, LoopOnce, Matrix4, Quaternion, Vector3, Vector4 } from "three";
 import { load } from "./judge.mjs";
 
@@ -22,7 +22,7 @@ const numbers = new Float32Array(Uint8Array.from(bytes).buffer);
 // A file, with its objects by their names in the dump.
 async function opened({ file, bones }) {
     if (file.startsWith("builtin:")) return null;
-    const gltf = await load(join(scenes, file));
+    const gltf = await load(resolve(scenes, file));
     const nodes = await Promise.all((gltf.parser.json.nodes ?? []).map((_, node) => gltf.parser.getDependency("node", node)));
     const names = nodes.map((_, node) => gltf.parser.json.nodes[node].name ?? `node_${node}`);
     const order = bones.map((name) => nodes[names.indexOf(name)]);

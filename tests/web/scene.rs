@@ -55,8 +55,8 @@ fn reduced(pixels: Vec<u8>) -> RgbaImage {
     resize(&picture, SIZE[0] / 2, SIZE[1] / 2, FilterType::Triangle)
 }
 
-/// Drives work that awaits the device.
-fn driven<T>(gpu: &Gpu, work: impl Future<Output = T>) -> T {
+/// Drives work that awaits the device, and that may move to another thread meanwhile.
+fn driven<T>(gpu: &Gpu, work: impl Future<Output = T> + Send) -> T {
     let mut work = std::pin::pin!(work);
     loop {
         match work.as_mut().poll(&mut Context::from_waker(Waker::noop())) {

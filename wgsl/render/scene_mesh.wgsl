@@ -44,8 +44,10 @@ struct SceneMaterial {
 @group(2) @binding(1) var albedo: texture_2d_array<f32>;
 // Normal maps, a layer each; the green channel points up the image, against v.
 @group(2) @binding(2) var normals: texture_2d_array<f32>;
-// Filters both.
+// Filters colours.
 @group(2) @binding(3) var filtering: sampler;
+// Filters normal maps.
+@group(2) @binding(4) var normal_filtering: sampler;
 
 // Each location costs about as much as any other, and what fragments load costs more than what vertices load where
 // triangles are small. Hence few locations, and colours that vertices look up.
@@ -175,7 +177,7 @@ fn bumpy_normal(in: BumpyVertex) -> vec3<f32> {
     let normal = normalize(in.normal.xyz);
     let material = materials[material_at(without_tangent(in))];
     let is_plain = material.normal_layer == NO_LAYER;
-    let texel = textureSample(normals, filtering, in.surface.xy, select(material.normal_layer, 0u, is_plain));
+    let texel = textureSample(normals, normal_filtering, in.surface.xy, select(material.normal_layer, 0u, is_plain));
     let bump = (2.0 * texel.xyz - 1.0) * vec3<f32>(material.normal_scale, -material.normal_scale, 1.0);
     let tangent = normalize(in.tangent.xyz - normal * dot(normal, in.tangent.xyz));
     let bitangent = in.tangent.w * cross(normal, tangent);

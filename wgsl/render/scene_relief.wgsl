@@ -54,6 +54,8 @@ struct ReliefParams {
 // Any texture without `NORMAL_MAP`.
 @group(2) @binding(5) var normals: texture_2d<f32>;
 @group(2) @binding(6) var filtering: sampler;
+// Filters the normal map.
+@group(2) @binding(7) var normal_filtering: sampler;
 
 struct Vertex {
     // The layers of a view give equal bits.
@@ -164,7 +166,7 @@ fn surface_of(in: Vertex, found: Traced, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> 
     let color = textureSampleGrad(albedo, filtering, hit.uv, uv_dx, uv_dy).rgb * relief.color.rgb * tint.rgb;
     var facing = surface_normal(heights, hit.uv, relief.scale, found.settings);
     if NORMAL_MAP {
-        facing = surface_mapped_normal(textureSampleGrad(normals, filtering, hit.uv, uv_dx, uv_dy), GREEN_UP);
+        facing = surface_mapped_normal(textureSampleGrad(normals, normal_filtering, hit.uv, uv_dx, uv_dy), GREEN_UP);
     }
     let sunlit = surface_sunlit(
         METHOD, SHADOW, heights, acceleration, hit, in_frame(found.frame, view.light.xyz),

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use super::Character;
 use crate::Error;
-use crate::animation::compact::{CompactJob, CompactPass};
+use crate::animation::compact::CompactPass;
 use crate::animation::drive::{DrivePass, driven_words};
 use crate::animation::order::Order;
-use crate::gpu::{Gpu, Job, Staged, Upload as _};
+use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::scene::drive::PoseBuffers;
 
 /// What the caller drives.
@@ -15,27 +15,10 @@ use crate::scene::drive::PoseBuffers;
 pub(super) struct Driven {
     /// The bones of each instance.
     bones: BTreeMap<u32, Vec<u32>>,
+    /// Counts the changes of `bones`.
+    version: u64,
     /// Instances whose pose is no longer what the gate knows of it.
     strange: Vec<u32>,
-    /// Adds the bones to those that the gate chose, and lists all of them. `None` if it must be prepared, unless nothing is
-    /// driven.
-    jobs: Option<(Job, CompactJob)>,
-}
-
-impl Driven {
-    /// Prepares the same bones anew, over other buffers.
-    pub fn forget_device(&mut self) {
-        self.jobs = None;
-        self.strange.clear();
-    }
-
-    /// Adds the bones and lists them.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        if let Some((drive, lists)) = &self.jobs {
-            drive.dispatch(pass);
-            lists.dispatch(pass);
-        }
-    }
 }
 
 impl Character {
@@ -48,7 +31,7 @@ impl Character {
         };
         // What was driven before is sampled afresh.
         self.driven.strange.extend(before.map(|_| index));
-        self.driven.jobs = None;
+        self.driven.version += 1;
     }
 
     /// Ends what the caller drives of an instance that goes.
@@ -60,31 +43,38 @@ impl Character {
 
     /// Prepares what is driven, unless it is prepared.
     pub fn fit_driven(&mut self, gpu: &Gpu, staged: &mut Staged) -> Result<(), Error> {
-        let runtime = &self.runtime;
-        for index in self.driven.strange.drain(..) {
-            staged.elements(&runtime.frame.state.history, index as usize, &[[0; 4]])?;
+        let Driven { bones, version, strange } = &mut self.driven;
+        for index in strange.drain(..).map(|index| index as usize) {
+            if let Some(runtime) = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index)) {
+                staged.elements(&runtime.frame.state.history, index - runtime.slots.start, &[[0; 4]])?;
+            }
         }
-        if self.driven.jobs.is_some() || self.driven.bones.is_empty() {
-            return Ok(());
+        for runtime in self.runtimes.iter_mut().filter(|runtime| runtime.driven_version != *version) {
+            let (from, to) = (runtime.slots.start as u32, runtime.slots.end as u32);
+            let own = bones.range(from..to).map(|(index, bones)| (*index - from, &bones[..]));
+            let words = driven_words(&Order::new(&self.merged.model.skeleton), own);
+            runtime.driven = None;
+            if !words.is_empty() {
+                let (crowd, frame) = (&runtime.crowd, &runtime.frame);
+                let drive = DrivePass::new(gpu)?.prepare(gpu, &words, crowd, &frame.state, &frame.active)?;
+                let lists = CompactPass::new(gpu)?.prepare(gpu, crowd, &frame.active)?;
+                runtime.driven = Some((drive, lists));
+            }
+            runtime.driven_version = *version;
         }
-        let order = Order::new(&self.merged.model.skeleton);
-        let bones = self.driven.bones.iter().map(|(index, bones)| (*index, &bones[..]));
-        let words = driven_words(&order, bones);
-        let (crowd, state, active) = (&runtime.crowd, &runtime.frame.state, &runtime.frame.active);
-        let drive = DrivePass::new(gpu)?.prepare(gpu, &words, crowd, state, active)?;
-        let lists = CompactPass::new(gpu)?.prepare(gpu, crowd, active)?;
-        self.driven.jobs = Some((drive, lists));
         Ok(())
     }
 
-    /// The buffers of all poses.
-    pub fn pose_buffers(&self) -> PoseBuffers<'_> {
-        let runtime = &self.runtime;
-        PoseBuffers {
+    /// The buffers in which the pose of an instance lies.
+    pub fn pose_buffers(&self, index: u32) -> Option<PoseBuffers<'_>> {
+        let index = index as usize;
+        let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;
+        Some(PoseBuffers {
             locals: &runtime.crowd.locals,
             model_matrices: runtime.frame.model_matrices().raw(),
             bones: self.merged.model.skeleton.len() as u32,
-            instances: runtime.crowd.len() as u32,
-        }
+            instances: runtime.slots.len() as u32,
+            index: (index - runtime.slots.start) as u32,
+        })
     }
 }

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use super::Character;
+use super::{Character, Runtime};
 use crate::InputError;
+use crate::animation::Pose;
 use crate::animation::layers::{MAX_LAYERS, mask_below};
-use crate::animation::{Instance, Wrap};
-use crate::animation::{Layer, Pose};
 use crate::asset::Model;
 use crate::gpu::{Staged, Upload as _};
+use crate::scene::chunk::common;
 use crate::scene::instances::Changed;
 use crate::scene::layers::LayerMask;
 use crate::scene::placement::Play;
@@ -92,12 +92,6 @@ impl CharacterLayer {
         self.weights.resize(capacity, Weight::default());
         self.changed.all(capacity);
         self.weighed.all(capacity);
-    }
-
-    /// The layer as a crowd is made with.
-    pub fn at_rest(&self, capacity: usize) -> Layer {
-        let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
-        Layer { instances: vec![rest; capacity], weights: vec![0.0; capacity], mask: self.mask.clone() }
     }
 
     fn set(&mut self, index: u32, weight: Weight) {
@@ -187,18 +181,23 @@ impl Character {
 
     /// Stages what instances play on layers, and their weights.
     pub(super) fn stage_layers(&mut self, staged: &mut Staged, now: f64) -> Result<(), crate::Error> {
-        let (count, model) = (self.plays.len(), &self.merged.model);
+        let (count, clips) = (self.plays.len(), &self.merged.model.clips);
+        let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
         for (at, layer) in self.layers.iter_mut().enumerate() {
-            for [from, to] in layer.changed.take(count) {
-                let duration = |play: &Playing| f64::from(model.clips[play.clip as usize].duration());
-                let plays =
-                    layer.plays[from..to].iter().map(|play| play.on_device(duration(play), self.epoch));
-                let first = (1 + at) * count + from;
-                staged.elements(&self.runtime.crowd.instances, first, &plays.collect::<Vec<_>>())?;
-            }
-            for [from, to] in layer.weighed.take(count) {
-                let weights: Vec<f32> = layer.weights[from..to].iter().map(|weight| weight.at(now)).collect();
-                staged.elements(&self.runtime.crowd.layer_weights, at * count + from, &weights)?;
+            let (changed, weighed) = (layer.changed.take(count), layer.weighed.take(count));
+            for Runtime { slots, crowd, .. } in &self.runtimes {
+                for own in changed.iter().filter_map(|[from, to]| common(&(*from..*to), slots)) {
+                    let plays = layer.plays[own.clone()].iter();
+                    let plays = plays.map(|play| play.on_device(duration(play), self.epoch));
+                    let first = (1 + at) * slots.len() + own.start - slots.start;
+                    staged.elements(&crowd.instances, first, &plays.collect::<Vec<_>>())?;
+                }
+                for own in weighed.iter().filter_map(|[from, to]| common(&(*from..*to), slots)) {
+                    let weights: Vec<f32> =
+                        layer.weights[own.clone()].iter().map(|weight| weight.at(now)).collect();
+                    let first = at * slots.len() + own.start - slots.start;
+                    staged.elements(&crowd.layer_weights, first, &weights)?;
+                }
             }
         }
         Ok(())

@@ -39,26 +39,9 @@ impl Character {
         motions[clip as usize].delta(&instance, from - start, to - start)
     }
 
-    /// The model matrices of all instances, to be bound.
-    pub fn matrices(&self) -> &ModelMatrices {
-        self.runtime.frame.model_matrices()
-    }
-
-    /// The model matrices of all instances.
-    pub fn model_matrices(&self) -> CharacterMatrices<'_> {
-        let raw = self.runtime.frame.model_matrices().raw();
-        CharacterMatrices { raw, bones: self.merged.model.skeleton.len() }
-    }
-
-    /// The clip that an instance plays, and the time in it at a time of the scene.
-    pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
-        self.time_of(&self.plays[index as usize], now)
-    }
-
-    fn time_of(&self, play: &Playing, now: f64) -> Result<ClipTime, InputError> {
-        let duration = self.merged.model.clips[play.clip as usize].duration();
-        let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
-        Ok(ClipTime { clip: play.clip as usize, seconds })
+    /// The model matrices of a chunk, to be bound.
+    pub fn matrices(&self, chunk: usize) -> Option<&ModelMatrices> {
+        self.runtimes.get(chunk).map(|runtime| runtime.frame.model_matrices())
     }
 
     /// The merged model.
@@ -89,6 +72,26 @@ impl Character {
     /// What `path_of` depends on besides bone and sphere.
     pub fn path_key(&self, index: u32) -> (u32, bool) {
         (self.plays[index as usize].clip, self.is_blended(index))
+    }
+
+    /// The model matrices of the chunk in which an instance lies, and the index of the instance in the chunk.
+    pub fn model_matrices(&self, index: u32) -> Option<(CharacterMatrices<'_>, usize)> {
+        let index = index as usize;
+        let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;
+        let raw = runtime.frame.model_matrices().raw();
+        let matrices = CharacterMatrices { raw, bones: self.merged.model.skeleton.len() };
+        Some((matrices, index - runtime.slots.start))
+    }
+
+    /// The clip that an instance plays, and the time in it at a time of the scene.
+    pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
+        self.time_of(&self.plays[index as usize], now)
+    }
+
+    fn time_of(&self, play: &Playing, now: f64) -> Result<ClipTime, InputError> {
+        let duration = self.merged.model.clips[play.clip as usize].duration();
+        let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
+        Ok(ClipTime { clip: play.clip as usize, seconds })
     }
 
     /// The pose of an instance at a time of the scene.
@@ -132,10 +135,17 @@ impl Character {
         Ok(model.meshes.iter().enumerate().map(of_mesh).collect())
     }
 
-    /// Arguments of the dispatches that sample bones and, for each mesh, skin clusters: the fourth word of each is their
-    /// number.
+    /// For each chunk the arguments of the dispatches that sample bones and, for each mesh, skin clusters: the fourth word of
+    /// each is their number.
     pub fn counters(&self) -> impl Iterator<Item = &Buffer<u32>> {
-        let clusters = self.runtime.skins.iter().map(PagedSkin::dispatched);
-        std::iter::once(&self.runtime.frame.active.pairs.dispatched).chain(clusters)
+        self.runtimes.iter().flat_map(|runtime| {
+            let clusters = runtime.skins.iter().map(PagedSkin::dispatched);
+            std::iter::once(&runtime.frame.active.pairs.dispatched).chain(clusters)
+        })
+    }
+
+    /// The number of meshes, and the number of chunks.
+    pub fn counted(&self) -> [usize; 2] {
+        [self.merged.model.meshes.len(), self.runtimes.len()]
     }
 }

@@ -1,86 +1,223 @@
-//! What lies on the device of a character, with room for all of its instances.
+//! What lies on the device for a chunk of a character's instances.
 
-use super::layers::CharacterLayer;
+use std::ops::Range;
+use std::sync::Arc;
+
 use crate::Error;
+use crate::animation::compact::CompactJob;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
-use crate::animation::{ClipSet, Gate, Instance, Wrap};
+use crate::animation::{ClipSet, Gate, Instance, Layer, Wrap};
 use crate::asset::Model;
-use crate::gpu::{Gpu, Job, Uniform};
-use crate::scene::drawable::Drawable;
-use crate::scene::layouts::SceneLayouts;
+use crate::gpu::{Gpu, GpuError, Job, Uniform};
+use crate::lod::assign::{AssignBuffers, AssignPass};
+use crate::scene::layout::Layout;
 use crate::scene::mesh;
 use crate::scene::paging::Paging;
+use crate::scene::stage::Stage;
 use crate::shared::lod::assign::AssignParams;
-use crate::skinning::merged::Merged;
+use crate::skinning::buffers::MeshBuffers;
+use crate::skinning::clusters::Clusters;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::paged::PagedSkin;
 
-/// What lies on the device, with room for all instances.
+/// What all chunks share.
+#[derive(Debug)]
+pub(in crate::scene) struct Shared {
+    pub set: ClipSet,
+    pub gate: Gate,
+    /// The mask of each layer above the base.
+    masks: Vec<Option<Vec<f32>>>,
+    clips: ClipBuffers,
+    meshes: Vec<(MeshBuffers, Arc<Clusters>)>,
+}
+
+impl Shared {
+    /// Uploads the clips and meshes of a model, with masks of layers above the base.
+    pub fn new(
+        gpu: &Gpu,
+        model: &Model,
+        (set, gate): (ClipSet, Gate),
+        masks: Vec<Option<Vec<f32>>>,
+    ) -> Result<Self, Error> {
+        let clips = ClipBuffers::new(gpu, &set)?;
+        let uploaded = |mesh| {
+            mesh::check_binding(gpu, mesh)?;
+            let (buffers, clusters) = MeshBuffers::new(gpu, model, mesh)?;
+            Ok((buffers, Arc::new(clusters)))
+        };
+        let meshes = model.meshes.iter().map(uploaded).collect::<Result<_, Error>>()?;
+        Ok(Self { set, gate, masks, clips, meshes })
+    }
+
+    /// The same on another device.
+    pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
+        Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
+    }
+}
+
+/// A chunk of instances on the device.
 #[derive(Debug)]
 pub(in crate::scene) struct Runtime {
-    pub(super) crowd: Crowd,
-    pub(super) frame: GatedFrame,
-    pub(super) skins: Vec<PagedSkin>,
+    /// The indices in the object of its instances.
+    pub slots: Range<usize>,
+    pub crowd: Crowd,
+    pub frame: GatedFrame,
+    pub skins: Vec<PagedSkin>,
     /// One for each of `skins`.
-    pub(super) paging: Vec<Paging>,
-    pub(super) weights: Vec<MorphWeightsJob>,
-    pub(super) assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
+    pub paging: Vec<Paging>,
+    pub weights: Vec<MorphWeightsJob>,
+    pub assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
+    /// Adds driven bones to those that the gate chose, and lists all of them; `None` if nothing is driven.
+    pub driven: Option<(Job, CompactJob)>,
+    /// The number of the driven bones for which it was prepared.
+    pub driven_version: u64,
     /// The layout for which `assign` was prepared.
-    pub(super) version: u64,
+    version: u64,
 }
 
 impl Runtime {
-    /// With room for `capacity` instances.
-    pub(super) fn new(
+    /// Instances that start afresh, in as few chunks as bindings permit.
+    pub fn all(
         gpu: &Gpu,
         model: &Model,
-        (set, gate, layers): (&ClipSet, &Gate, &[CharacterLayer]),
-        (capacity, keeps_last): (usize, bool),
-    ) -> Result<Self, Error> {
-        let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
-        let layers: Vec<_> = layers.iter().map(|layer| layer.at_rest(capacity)).collect();
-        let crowd = Crowd::layered(gpu, set, &vec![rest; capacity], &layers)?;
-        let clips = ClipBuffers::new(gpu, set)?;
-        let frame = GatedFrame::new(gpu, &model.skeleton, &clips, &crowd, gate)?;
-        let every: Vec<usize> = (0..model.clips.len()).collect();
-        let (mut skins, mut paging, mut weights) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, mesh) in model.meshes.iter().enumerate() {
-            let mut skin = PagedSkin::new(gpu, model, index, frame.model_matrices(), capacity, 1)?;
-            if keeps_last {
-                skin.keep_last(gpu)?;
+        shared: &Shared,
+        slots: Range<usize>,
+        keeps_last: bool,
+    ) -> Result<Vec<Self>, Error> {
+        let (mut open, mut done) = (vec![slots], Vec::new());
+        while let Some(slots) = open.pop() {
+            match Self::new(gpu, model, shared, slots.clone(), keeps_last) {
+                Ok(runtime) => done.push(runtime),
+                Err(Error::Gpu(GpuError::Limit { limit: "maxStorageBufferBindingSize", .. }))
+                    if slots.len() > 1 =>
+                {
+                    let middle = slots.start + slots.len() / 2;
+                    open.extend([middle..slots.end, slots.start..middle]);
+                }
+                Err(error) => return Err(error),
             }
-            let clusters = skin.mesh.levels.iter().map(|level| level.clusters).collect();
-            paging.push(Paging::new(clusters, capacity, gpu.max_binding(), keeps_last));
-            if !mesh.targets.is_empty() {
-                let keys = WeightSet::new(mesh, set, &every)?;
-                weights.push(MorphWeightsPass::new(gpu)?.prepare(
-                    gpu,
-                    &keys,
-                    &crowd.instances,
-                    &skin.crowd,
-                )?);
-            }
-            skins.push(skin);
         }
-        for (skin, paging) in skins.iter_mut().zip(&paging) {
-            skin.set_pages(gpu, paging.initial())?;
-        }
-        Ok(Self { crowd, frame, skins, paging, weights, assign: Vec::new(), version: 0 })
+        Ok(done)
     }
 
-    /// What is drawn: each mesh, from the vertices of each instance.
-    pub(super) fn drawables(
-        &self,
+    fn new(
         gpu: &Gpu,
-        layouts: &SceneLayouts,
-        merged: &Merged,
-    ) -> Result<Vec<Drawable>, Error> {
-        let skins = self.skins.iter().enumerate();
-        let drawable = |(index, skin): (usize, &PagedSkin)| {
-            let mesh = (&skin.mesh, &skin.clusters);
-            mesh::drawable((gpu, layouts), merged, index, mesh, Some(&skin.pages))
+        model: &Model,
+        shared: &Shared,
+        slots: Range<usize>,
+        keeps_last: bool,
+    ) -> Result<Self, Error> {
+        let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
+        let count = slots.len();
+        let layer = |mask: &Option<Vec<f32>>| {
+            let (instances, weights) = (vec![rest; count], vec![0.0; count]);
+            Layer { instances, weights, mask: mask.clone() }
         };
-        skins.map(drawable).collect()
+        let layers: Vec<Layer> = shared.masks.iter().map(layer).collect();
+        let crowd = Crowd::layered(gpu, &shared.set, &vec![rest; count], &layers)?;
+        let frame = GatedFrame::new(gpu, &model.skeleton, &shared.clips, &crowd, &shared.gate)?;
+        let every: Vec<usize> = (0..model.clips.len()).collect();
+        let (mut skins, mut pagings, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+        for (mesh, (buffers, clusters)) in model.meshes.iter().zip(&shared.meshes) {
+            let of_levels = buffers.levels.iter().map(|level| level.clusters).collect();
+            let paging = Paging::new(of_levels, slots.len(), gpu.max_binding(), keeps_last);
+            let own = (buffers.clone(), clusters.clone());
+            let room = (slots.len(), paging.initial(), keeps_last);
+            let skin = PagedSkin::of_mesh(gpu, own, frame.model_matrices(), room)?;
+            if !mesh.targets.is_empty() {
+                let keys = WeightSet::new(mesh, &shared.set, &every)?;
+                let pass = MorphWeightsPass::new(gpu)?;
+                weights.push(pass.prepare(gpu, &keys, &crowd.instances, &skin.crowd)?);
+            }
+            pagings.push(paging);
+            skins.push(skin);
+        }
+        let (paging, assign, driven) = (pagings, Vec::new(), None);
+        let [driven_version, version] = [0; 2];
+        Ok(Self { slots, crowd, frame, skins, paging, weights, assign, driven, driven_version, version })
     }
+
+    /// Whether its pages are enough for all instances in full detail.
+    pub fn is_full(&self) -> bool {
+        self.skins.iter().zip(&self.paging).all(|(skin, paging)| paging.is_full(skin.pages().pages()))
+    }
+
+    /// Prepares the assignment of levels for a layout, unless it is prepared.
+    pub fn fit(
+        &mut self,
+        gpu: &Gpu,
+        layout: &Layout,
+        pass: &AssignPass,
+        params: AssignParams,
+    ) -> Result<(), Error> {
+        if self.version == layout.version {
+            return Ok(());
+        }
+        let params = AssignParams { instances: self.slots.len() as u32, ..params };
+        self.assign.clear();
+        for skin in &self.skins {
+            let uniform = Uniform::new(gpu, "assign", &params)?;
+            let buffers = AssignBuffers {
+                params: &uniform,
+                allowed: &layout.allowed,
+                instances: &layout.instances,
+                lods: &self.frame.state.lods,
+                instance_lods: &skin.crowd.instance_lods,
+            };
+            let job = pass.prepare(gpu, buffers, params.instances)?;
+            self.assign.push((uniform, params, job));
+        }
+        self.version = layout.version;
+        Ok(())
+    }
+
+    /// Provides so many pages for each mesh. Returns whether pages were replaced, and whether memory ended before: then its
+    /// [`Paging::most`] says how many there may be.
+    pub fn provide(&mut self, gpu: &Gpu, needed: &[u32]) -> Result<[bool; 2], Error> {
+        let (mut is_replaced, mut is_short) = (false, false);
+        for ((skin, paging), needed) in self.skins.iter_mut().zip(&mut self.paging).zip(needed) {
+            if *needed as usize <= skin.pages().pages() {
+                continue;
+            }
+            let mut provided = skin.set_pages(gpu, paging.enough(*needed));
+            if is_out_of_memory(&provided) {
+                provided = skin.set_pages(gpu, *needed);
+            }
+            if is_out_of_memory(&provided) {
+                paging.most = skin.pages().pages() as u32;
+                is_short = true;
+            } else {
+                provided?;
+                is_replaced = true;
+            }
+        }
+        Ok([is_replaced, is_short])
+    }
+
+    /// Adds a stage to a compute pass.
+    pub fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
+        match stage {
+            Stage::Select => {}
+            Stage::Gate => {
+                self.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
+                self.frame.dispatch_gate(pass);
+                if let Some((drive, lists)) = &self.driven {
+                    drive.dispatch(pass);
+                    lists.dispatch(pass);
+                }
+            }
+            Stage::Sample => {
+                self.frame.dispatch_sample(pass);
+                self.weights.iter().for_each(|weights| weights.dispatch(pass));
+            }
+            Stage::LocalToModel => self.frame.dispatch_local_to_model(pass),
+            Stage::Skin => self.skins.iter().for_each(|skin| skin.dispatch(pass)),
+        }
+    }
+}
+
+/// Whether there was no memory left.
+pub(super) fn is_out_of_memory<T>(result: &Result<T, Error>) -> bool {
+    matches!(result, Err(Error::Gpu(GpuError::OutOfMemory { .. })))
 }

@@ -1,71 +1,203 @@
 //! Materials of the parts of meshes, on the device: a table that vertices index, and the textures of the table in layers
 //! of one array.
 
+mod looks;
 mod relief;
 mod textures;
 
+pub(crate) use looks::Looks;
 pub(crate) use relief::{ReliefLook, ReliefMaterial};
 
-use crate::asset::Model;
-use crate::asset::material::{Alpha, Material, Sampling};
+use crate::asset::material::{Alpha, Material, Sampling, Texture};
 use crate::gpu::bindings::render::scene_mesh::Group2;
-use crate::gpu::{Buffer, Gpu, Group};
+use crate::gpu::{Buffer, Gpu, Group, Staged, Upload as _};
 use crate::scene::layouts::SceneLayouts;
 use crate::shared::render::scene_mesh::{CUTOFF_DITHERED, CUTOFF_OPAQUE, NO_LAYER, SceneMaterial};
 use crate::surface::color::sampler_of;
 use crate::{Error, InputError};
 use textures::{Texels, texture_array};
 
-/// The materials of the triangles that share a pipeline and a sampler.
+/// The materials of the triangles that share a pipeline and samplers.
 #[derive(Debug, Clone)]
 pub(crate) struct PartMaterials {
     /// Bind group 2 of `render/scene_mesh`.
     pub group: Group,
     /// Whether one of them has a normal map.
     pub normal_mapped: bool,
+    /// Whether alpha decides which pixels of one of them are drawn.
+    pub cut_out: bool,
     /// Whether the only one has a texture; `None` if there are several.
     pub only_textured: Option<bool>,
+    /// The material of each entry of the table.
+    materials: Vec<Option<usize>>,
+    entries: Buffer<SceneMaterial>,
+    colors: Layers,
+    normals: Layers,
+    /// Of colours and of normal maps.
+    samplings: [Sampling; 2],
 }
 
 impl PartMaterials {
-    /// Uploads a table with an entry for each of `materials`, indices of the model's materials; an entry without a material
-    /// is opaque and white. All textures are filtered by `sampling`. They become layers of one array, whose size is that
-    /// of the widest and of the highest image; smaller images are enlarged.
+    /// Uploads a table with an entry for each of `materials`, indices of the object's materials; an entry without a material
+    /// is opaque and white. Colours are filtered by the first of `samplings`, normal maps by the second. The images become
+    /// layers of two arrays, whose size is that of the widest and of the highest image; smaller images are enlarged.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the model does not have; [`crate::gpu::GpuError`], also for more
+    /// [`InputError`] for a material or an image that the object does not have; [`crate::gpu::GpuError`], also for more
     /// images than an array may have layers.
     pub fn new(
         gpu: &Gpu,
         layouts: &SceneLayouts,
-        model: &Model,
+        looks: &Looks,
         materials: &[Option<usize>],
-        sampling: &Sampling,
+        samplings: [Sampling; 2],
     ) -> Result<Self, Error> {
-        let mut colors = Layers::default();
-        let mut normals = Layers::default();
-        let mut table = Vec::with_capacity(materials.len());
-        for index in materials {
-            table.push(match index {
-                Some(index) => entry(model, *index, &mut colors, &mut normals)?,
-                None => WHITE,
-            });
-        }
-        let has_mips = sampling.mips.is_some();
+        let (mut colors, mut normals) = (Layers::default(), Layers::default());
+        let table = table(looks, materials, &mut colors, &mut normals)?;
         let entries = Buffer::from_slice(gpu, "scene materials", &table)?;
+        let arrays = [(&colors, Texels::Color), (&normals, Texels::Normal)];
+        let mut views = Vec::with_capacity(2);
+        for ((layers, texels), sampling) in arrays.into_iter().zip(&samplings) {
+            let has_mips = sampling.mips.is_some();
+            views.push(texture_array(gpu, &looks.images, &layers.images, texels, has_mips)?);
+        }
+        let [color_sampling, normal_sampling] = &samplings;
         let group = Group2 {
             materials: entries.slice(),
-            albedo: &texture_array(gpu, model, &colors.images, Texels::Color, has_mips)?,
-            normals: &texture_array(gpu, model, &normals.images, Texels::Normal, has_mips)?,
-            filtering: &sampler_of(gpu, sampling)?,
+            albedo: &views[0],
+            normals: &views[1],
+            filtering: &sampler_of(gpu, color_sampling)?,
+            normal_filtering: &sampler_of(gpu, normal_sampling)?,
         };
-        let normal_mapped = table.iter().any(|entry| entry.normal_layer != NO_LAYER);
-        let only_textured = match &table[..] {
-            [only] => Some(only.layer != NO_LAYER),
-            _ => None,
+        let all = Self {
+            group: group.bind(gpu, &layouts.mesh)?,
+            normal_mapped: false,
+            cut_out: false,
+            only_textured: None,
+            materials: materials.to_vec(),
+            entries,
+            colors,
+            normals,
+            samplings,
         };
-        Ok(Self { group: group.bind(gpu, &layouts.mesh)?, normal_mapped, only_textured })
+        Ok(all.with_kinds(&table))
     }
+
+    /// The same with what a table says of pipelines.
+    fn with_kinds(self, table: &[SceneMaterial]) -> Self {
+        Self {
+            normal_mapped: table.iter().any(|entry| entry.normal_layer != NO_LAYER),
+            cut_out: table.iter().any(|entry| entry.cutoff != CUTOFF_OPAQUE),
+            only_textured: match table {
+                [only] => Some(only.layer != NO_LAYER),
+                _ => None,
+            },
+            ..self
+        }
+    }
+
+    /// Whether one of them is the object's material with this index.
+    pub fn has(&self, material: usize) -> bool {
+        self.materials.contains(&Some(material))
+    }
+
+    /// Whether one of them shows an image.
+    pub fn shows(&self, image: usize) -> bool {
+        self.colors.images.contains(&image) || self.normals.images.contains(&image)
+    }
+
+    /// The same with the materials and images that `looks` has now. If no image is new to them, only the table changes; else,
+    /// or if `anew`, everything is uploaded again.
+    ///
+    /// # Errors
+    /// As [`PartMaterials::new`].
+    pub fn changed(
+        &self,
+        (gpu, layouts): (&Gpu, &SceneLayouts),
+        looks: &Looks,
+        samplings: [Sampling; 2],
+        anew: bool,
+    ) -> Result<Changed, Error> {
+        let (mut colors, mut normals) = (self.colors.clone(), self.normals.clone());
+        let table = table(looks, &self.materials, &mut colors, &mut normals)?;
+        let has_all = (&colors, &normals) == (&self.colors, &self.normals);
+        if anew || !has_all || samplings != self.samplings {
+            let materials = Self::new(gpu, layouts, looks, &self.materials, samplings)?;
+            return Ok(Changed { materials, table: None });
+        }
+        Ok(Changed { materials: self.clone().with_kinds(&table), table: Some(table) })
+    }
+
+    /// How colours and normal maps are filtered.
+    pub fn samplings(&self) -> [Sampling; 2] {
+        self.samplings
+    }
+
+    /// How colours and normal maps are filtered after the material with this index has replaced an old one: as before, or as
+    /// it says if no other has a texture.
+    ///
+    /// # Errors
+    /// [`InputError`] for another sampling than that of other materials.
+    pub fn samplings_with(
+        &self,
+        looks: &Looks,
+        (index, old): (usize, &Material),
+    ) -> Result<[Sampling; 2], InputError> {
+        let new = &looks.materials[index];
+        let mut samplings = self.samplings;
+        let uses: [(&str, fn(&Material) -> Option<Texture>); 2] =
+            [("texture", |material| material.texture), ("normal", |material| material.normal)];
+        for ((field, of), sampling) in uses.into_iter().zip(&mut samplings) {
+            let Some(wanted) = of(new).map(|texture| texture.sampling) else { continue };
+            let is_old = of(old).is_some_and(|texture| texture.sampling == wanted);
+            if wanted == *sampling || is_old {
+                continue;
+            }
+            let mut others = self.materials.iter().flatten().filter(|other| **other != index);
+            if others.any(|other| of(&looks.materials[*other]).is_some()) {
+                let bound = format!("must be {sampling:?}, as of the materials with which it is drawn");
+                let path = format!("material.{field}.sampling");
+                return Err(InputError::new(path, format!("{wanted:?}"), bound));
+            }
+            *sampling = wanted;
+        }
+        Ok(samplings)
+    }
+}
+
+/// What becomes of the materials of a part.
+#[derive(Debug)]
+pub(crate) struct Changed {
+    pub materials: PartMaterials,
+    /// The entries of the table, if the buffers stay.
+    table: Option<Vec<SceneMaterial>>,
+}
+
+impl Changed {
+    /// Stages what is new in buffers that stay.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn stage(&self, staged: &mut Staged) -> Result<(), Error> {
+        if let Some(table) = &self.table {
+            staged.elements(&self.materials.entries, 0, table)?;
+        }
+        Ok(())
+    }
+}
+
+/// The table of a part; images that it lacks are added to the layers.
+fn table(
+    looks: &Looks,
+    materials: &[Option<usize>],
+    colors: &mut Layers,
+    normals: &mut Layers,
+) -> Result<Vec<SceneMaterial>, InputError> {
+    let entry = |index: &Option<usize>| match index {
+        Some(index) => entry(looks, *index, colors, normals),
+        None => Ok(WHITE),
+    };
+    materials.iter().map(entry).collect()
 }
 
 /// The material of meshes that have none.
@@ -77,8 +209,8 @@ const WHITE: SceneMaterial = SceneMaterial {
     normal_scale: 1.0,
 };
 
-/// Images of a model that share an array, in the order of their layers.
-#[derive(Debug, Default)]
+/// Images of an object that share an array, in the order of their layers.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Layers {
     images: Vec<usize>,
 }
@@ -97,19 +229,19 @@ impl Layers {
 
 /// The table's entry of a material.
 fn entry(
-    model: &Model,
+    looks: &Looks,
     index: usize,
     colors: &mut Layers,
     normals: &mut Layers,
 ) -> Result<SceneMaterial, InputError> {
-    let Some(material) = model.materials.get(index) else {
-        let bound = format!("must be below {}", model.materials.len());
+    let Some(material) = looks.materials.get(index) else {
+        let bound = format!("must be below {}", looks.materials.len());
         return Err(InputError::new("mesh.material", index, bound));
     };
     let Material { color, alpha, texture, normal, normal_scale, .. } = material;
     let layer = |image: usize, field: &str, layers: &mut Layers| {
-        if model.images.get(image).is_none_or(|image| image.is_empty()) {
-            let bound = format!("must be below {}, and the image must have texels", model.images.len());
+        if looks.images.get(image).is_none_or(|image| image.is_empty()) {
+            let bound = format!("must be below {}, and the image must have texels", looks.images.len());
             return Err(InputError::new(format!("materials[{index}].{field}.image"), image, bound));
         }
         Ok(layers.layer(image))

@@ -34,7 +34,7 @@ pub(crate) struct ReliefLook {
 }
 
 impl ReliefMaterial {
-    /// Binds the maps of a relief. The albedo's sampler filters the normals too.
+    /// Binds the maps of a relief, each with its own sampler.
     ///
     /// # Errors
     /// [`InputError`] for arguments out of range or that do not match each other; [`crate::gpu::GpuError`].
@@ -61,6 +61,7 @@ impl ReliefMaterial {
             albedo: &view(&maps.albedo.texture),
             normals: &view(&maps.normals.unwrap_or(maps.albedo).texture),
             filtering: &maps.albedo.sampler,
+            normal_filtering: &maps.normals.unwrap_or(maps.albedo).sampler,
         };
         Ok(Self { group: group.bind(gpu, &layouts.relief)?, options })
     }

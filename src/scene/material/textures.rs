@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
-use crate::asset::Model;
 use crate::gpu::{Gpu, GpuError};
 use crate::srgb;
 use crate::surface::mips::Mips;
@@ -22,14 +21,14 @@ pub(super) enum Texels {
     Normal,
 }
 
-/// Uploads images of a model, a layer each, with mip levels if `has_mips`. Without images there is one layer of one texel,
+/// Uploads some of `all` images, a layer each, with mip levels if `has_mips`. Without images there is one layer of one texel,
 /// white or flat.
 ///
 /// # Errors
 /// [`GpuError`], also for more images than an array may have layers.
 pub(super) fn texture_array(
     gpu: &Gpu,
-    model: &Model,
+    all: &[RgbaImage],
     images: &[usize],
     texels: Texels,
     has_mips: bool,
@@ -37,7 +36,7 @@ pub(super) fn texture_array(
     let flat = RgbaImage::from_pixel(1, 1, image::Rgba(texels.flat()));
     let images: Vec<&RgbaImage> = match images {
         [] => vec![&flat],
-        images => images.iter().map(|image| &model.images[*image]).collect(),
+        images => images.iter().map(|image| &all[*image]).collect(),
     };
     let limits = gpu.device().limits();
     if images.len() > limits.max_texture_array_layers as usize {

@@ -1,26 +1,32 @@
 //! What an object has on a device: made larger, made afresh, or made on another one.
 
-use super::{Kind, MeshOnHost, Object};
-use crate::Error;
-use crate::gpu::{Gpu, Staged, Upload as _};
-use crate::scene::character::{Character, Runtime};
-use crate::scene::drawable::{Drawable, MeshDrawable};
+use super::{Kind, MAX_CAPACITY, MeshOnHost, Object, whole};
+use crate::gpu::Gpu;
+use crate::scene::character::{Character, Runtime, Shared};
+use crate::scene::chunk::Chunk;
+use crate::scene::instances;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Looks;
 use crate::scene::{mesh, relief, terrain};
-use crate::shared::render::scene_vertex::MeshParams;
-use crate::skinning::pages::PageBuffers;
+use crate::shared::lod::instance::INSTANCE_CARRIES;
+use crate::{Error, InputError};
 
 /// What an object has on a device.
 #[derive(Debug)]
 pub(in crate::scene) struct OnDevice {
-    drawables: Vec<Drawable>,
-    runtime: Option<Runtime>,
+    chunks: Vec<Chunk>,
+    character: Option<(Shared, Vec<Runtime>)>,
 }
 
 impl Object {
     /// Makes room for twice as many instances. If it fails, nothing has changed.
     pub(in crate::scene) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        let capacity = 2 * self.instances.capacity();
+        let capacity = self.instances.capacity();
+        if capacity >= MAX_CAPACITY {
+            let bound = format!("must be at most {MAX_CAPACITY}: add another object");
+            return Err(InputError::new("object.capacity", 2 * capacity, bound).into());
+        }
+        let capacity = (2 * capacity).min(MAX_CAPACITY);
         self.renew(gpu, layouts, capacity)?;
         self.instances.grow(capacity);
         Ok(())
@@ -34,65 +40,65 @@ impl Object {
     }
 
     fn renew(&mut self, gpu: &Gpu, layouts: &SceneLayouts, capacity: usize) -> Result<(), Error> {
-        if let Kind::Character(character) = &mut self.kind {
-            let (runtime, drawables) = character.on(gpu, layouts, capacity)?;
-            character.adopt(runtime);
-            self.drawables = drawables;
+        match &mut self.kind {
+            Kind::Character(character) => {
+                character.grow(gpu, capacity)?;
+                let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
+                self.chunks = character.chunks(gpu, layouts, first)?;
+            }
+            Kind::Mesh(_) | Kind::Terrain(_) => {
+                self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
+            }
         }
         Ok(())
     }
 
     /// Everything on another device.
     pub(in crate::scene) async fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
-        let drawables = match &self.kind {
-            Kind::Terrain(terrain) => terrain::generated(gpu, layouts, &terrain.source).await?.2.0,
-            Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, merged)?.0,
-            Kind::Mesh(MeshOnHost::Relief(relief)) => relief::drawn(gpu, layouts, relief)?.1.0,
+        let none = Looks { materials: Vec::new(), images: Vec::new() };
+        let looks = self.looks.as_ref().unwrap_or(&none);
+        let drawn = match &self.kind {
+            Kind::Terrain(terrain) => terrain::generated(gpu, layouts, &terrain.source).await?.2,
+            Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, (merged, looks))?,
+            Kind::Mesh(MeshOnHost::Relief(relief)) => relief::drawn(gpu, layouts, relief)?.1,
             Kind::Character(character) => {
-                let (runtime, drawables) = character.on(gpu, layouts, self.instances.capacity())?;
-                return Ok(OnDevice { drawables, runtime: Some(runtime) });
+                let (shared, runtimes) = character.on(gpu)?;
+                let first = character.drawables_of((gpu, layouts), looks, &runtimes)?;
+                let chunks = Character::chunks_of((gpu, layouts), &first, &runtimes)?;
+                return Ok(OnDevice { chunks, character: Some((shared, runtimes)) });
             }
         };
-        Ok(OnDevice { drawables, runtime: None })
+        Ok(OnDevice { chunks: whole(&self.instances, drawn).0, character: None })
     }
 
     /// Takes everything on another device. Everything starts afresh.
-    pub(in crate::scene) fn adopt(&mut self, OnDevice { drawables, runtime }: OnDevice) {
-        if let (Kind::Character(character), Some(runtime)) = (&mut self.kind, runtime) {
-            character.adopt(runtime);
+    pub(in crate::scene) fn adopt(&mut self, OnDevice { chunks, character: on_device }: OnDevice) {
+        if let (Kind::Character(character), Some(on_device)) = (&mut self.kind, on_device) {
+            character.adopt(on_device);
         }
-        self.drawables = drawables;
+        self.chunks = chunks;
+        self.coarsening = 1.0;
+        (self.is_retuned, self.is_rebound, self.fitted) = (false, false, 0);
         self.instances.change_all();
-        self.fitted = 0;
     }
-}
 
-/// Stages where the instances and vertices of drawables lie.
-pub(super) fn stage_params(
-    staged: &mut Staged,
-    drawables: &[Drawable],
-    first_instance: u32,
-    object: u32,
-) -> Result<(), Error> {
-    for drawable in drawables {
-        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-            let params = MeshParams { first_instance, clusters: *clusters, object, last: geometry.last };
-            staged.uniform(&geometry.params, &params)?;
+    /// Sets the sphere of an instance that plays something else.
+    pub(in crate::scene) fn bound_again(&mut self, index: u32) {
+        if let Kind::Character(character) = &self.kind {
+            let sphere = character.sphere_of(index);
+            self.instances.change(index, |instance| instances::bound(instance, &sphere));
         }
     }
-    Ok(())
-}
 
-/// The same drawables over a character's pages, after these were replaced.
-pub(super) fn rebound(
-    drawables: &[Drawable],
-    gpu: &Gpu,
-    layouts: &SceneLayouts,
-    character: &Character,
-) -> Result<Vec<Drawable>, Error> {
-    let with_pages = |(drawable, pages): (&Drawable, &PageBuffers)| match drawable {
-        Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.with_pages(gpu, layouts, pages)?)),
-        Drawable::Terrain(_) => Ok(drawable.clone()),
-    };
-    drawables.iter().zip(character.pages()).map(with_pages).collect()
+    /// Ends fades that have reached their weight.
+    pub(in crate::scene) fn settle(&mut self, now: f64) {
+        let Kind::Character(character) = &mut self.kind else { return };
+        let settled = character.settle(now);
+        for index in settled {
+            // What carries a mesh keeps the larger sphere until it plays something else.
+            if self.instances.all()[index as usize].flags & INSTANCE_CARRIES == 0 {
+                self.bound_again(index);
+            }
+        }
+    }
 }

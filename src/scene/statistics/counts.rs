@@ -10,15 +10,15 @@ use crate::scene::object::{Kind, Object};
 /// The word of `[workgroups x, y, z, number]` that holds the number.
 const NUMBER: u64 = 12;
 
-/// A frame on its way: its number, and for each character the number of its meshes.
-type About = (u64, Arc<[(ObjectId, usize)]>);
+/// A frame on its way: its number, and for each character the numbers of its meshes and of its chunks.
+type About = (u64, Arc<[(ObjectId, [usize; 2])]>);
 
 /// The counts of a scene's characters.
 #[derive(Debug)]
 pub(in crate::scene) struct SceneCounts {
     /// The layout for which it was made.
     pub version: u64,
-    characters: Arc<[(ObjectId, usize)]>,
+    characters: Arc<[(ObjectId, [usize; 2])]>,
     ring: ReadbackRing<About>,
     last: Option<SceneStatistics>,
 }
@@ -27,11 +27,11 @@ impl SceneCounts {
     /// Room for the counts of these objects.
     pub fn new(gpu: &Gpu, version: u64, objects: &Slots<Object>) -> Result<Self, GpuError> {
         let character = |(object, entry): (ObjectId, &Object)| match &entry.kind {
-            Kind::Character(character) => Some((object, character.counters().skip(1).count())),
+            Kind::Character(character) => Some((object, character.counted())),
             _ => None,
         };
         let characters: Arc<[_]> = objects.each().filter_map(character).collect();
-        let words: usize = characters.iter().map(|(_, meshes)| 1 + meshes).sum();
+        let words: usize = characters.iter().map(|(_, [meshes, chunks])| chunks * (1 + meshes)).sum();
         let ring = ReadbackRing::new(gpu, "statistics of characters", FRAMES, 4 * words as u64)?;
         Ok(Self { version, characters, ring, last: None })
     }
@@ -65,10 +65,13 @@ impl SceneCounts {
     fn arrive(&mut self) {
         let Some(((frame, characters), bytes)) = self.ring.take() else { return };
         let mut words = bytemuck::pod_collect_to_vec::<u8, u32>(&bytes).into_iter();
-        let characters = characters.iter().map(|(object, meshes)| CharacterStatistics {
-            object: *object,
-            bones: words.next().unwrap_or(0),
-            clusters: words.by_ref().take(*meshes).sum(),
+        let characters = characters.iter().map(|(object, [meshes, chunks])| {
+            let mut found = CharacterStatistics { object: *object, bones: 0, clusters: 0 };
+            for _ in 0..*chunks {
+                found.bones += words.next().unwrap_or(0);
+                found.clusters += words.by_ref().take(*meshes).sum::<u32>();
+            }
+            found
         });
         self.last = Some(SceneStatistics { frame, characters: characters.collect() });
     }

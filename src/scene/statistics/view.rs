@@ -9,10 +9,11 @@ use crate::scene::handles::{ObjectId, Slots};
 use crate::scene::object::Object;
 
 /// An object whose draws are counted.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(in crate::scene) struct CountedObject {
     object: ObjectId,
-    first_draw: u32,
+    /// The first draw of each of its chunks.
+    first_draws: Vec<u32>,
     parts: u32,
     levels: u32,
     mesh_fraction: f32,
@@ -29,7 +30,7 @@ impl Counted {
     pub(in crate::scene) fn new(objects: &Slots<Object>) -> Self {
         let counted = |(object, entry): (ObjectId, &Object)| CountedObject {
             object,
-            first_draw: entry.range.first_draw,
+            first_draws: entry.chunks.iter().map(|chunk| chunk.range.first_draw).collect(),
             parts: entry.draws.len() as u32 / OBJECT_LISTS,
             levels: entry.errors.len() as u32,
             mesh_fraction: entry.mesh_fraction,
@@ -115,9 +116,10 @@ impl CountedObject {
     /// What the draws of a level show.
     fn level(&self, level: u32, draws: &[SceneDraw]) -> LevelStatistics {
         let mut found = LevelStatistics::default();
-        for list in [2 * level, 2 * level + 1] {
+        let lists = [2 * level, 2 * level + 1].into_iter();
+        for (list, first) in lists.flat_map(|list| self.first_draws.iter().map(move |first| (list, first))) {
             for part in 0..self.parts {
-                let at = (self.first_draw + OBJECT_LISTS * part + list) as usize;
+                let at = (first + OBJECT_LISTS * part + list) as usize;
                 let Some(draw) = draws.get(at) else { continue };
                 found.instances += if part == 0 { draw.instances } else { 0 };
                 found.triangles += u64::from(draw.indices / 3) * u64::from(draw.instances);

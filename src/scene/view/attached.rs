@@ -31,14 +31,15 @@ impl View {
             return Ok(());
         }
         let mut jobs = Vec::new();
-        for (key, list) in attachments.lists() {
-            let Some(object) = objects.get(key) else { continue };
+        for ((object, chunk), list) in attachments.lists() {
+            let Some(object) = objects.get(object) else { continue };
             let Kind::Character(character) = &object.kind else { continue };
+            let Some(model_matrices) = character.matrices(chunk) else { continue };
             let buffers = AttachBuffers {
                 params: &list.params,
                 view: &self.select,
                 attachments: &list.attachments,
-                model_matrices: character.matrices(),
+                model_matrices,
                 instances: &layout.instances,
                 allowed: &layout.allowed,
                 rows: &lists.rows,

@@ -3,6 +3,7 @@
 mod attached;
 mod counted;
 pub(crate) mod lists;
+mod rebuild;
 mod uniforms;
 
 use glam::IVec3;
@@ -15,9 +16,8 @@ use crate::lod::single::SinglePass;
 #[cfg(feature = "verify")]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
-use crate::scene::Scene;
-use crate::scene::camera::Camera;
-use crate::scene::handles::{SceneNumber, foreign};
+use crate::scene::camera::{Camera, Depth};
+use crate::scene::handles::SceneNumber;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object::Object;
@@ -32,8 +32,8 @@ use uniforms::{lod_camera, terrain_view};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
 ///
-/// What is set of a view counts from the next [`Scene::record`](super::Scene::record) on. Set it before that, and not between
-/// recording and drawing. For half of a split screen, [`Camera::viewport`] is the size of that half.
+/// What is set of a view counts from the next [`Scene::record`](super::Scene::record) on. For half of a split screen,
+/// [`Camera::viewport`] is the size of that half.
 ///
 /// # Examples
 ///
@@ -89,8 +89,20 @@ pub struct View {
     casters: bool,
     select: Uniform<SelectView>,
     drawn: Uniform<SceneView>,
+    recorded: Option<Recorded>,
     pub(crate) lists: Option<ViewLists>,
     counts: Option<ViewCounts>,
+}
+
+/// What a renderer needs to know of a view's last frame.
+#[derive(Debug, Default)]
+pub(super) struct Recorded {
+    /// Whether the picture is a mirror image.
+    pub mirrors: bool,
+    /// Whether depth falls with distance.
+    pub reversed: bool,
+    /// For each object, whether it has instances that are not mirrored, and such that are.
+    pub sides: Vec<[bool; 2]>,
 }
 
 impl View {
@@ -113,6 +125,7 @@ impl View {
             casters: false,
             select,
             drawn,
+            recorded: None,
             lists: None,
             counts: None,
         })
@@ -187,34 +200,6 @@ impl View {
         flags & INSTANCE_ALIVE != 0 && is_in_mask && (!self.casters || flags & INSTANCE_CASTS != 0)
     }
 
-    /// Creates everything that the view has on the device again, after its scene was rebuilt on another one
-    /// ([`Scene::rebuild`](crate::scene::Scene::rebuild)). Cameras, quality and mask stay.
-    ///
-    /// # Errors
-    /// [`InputError`] for another scene; [`crate::gpu::GpuError`].
-    pub fn rebuild(&mut self, scene: &Scene) -> Result<(), Error> {
-        if !self.is_of(scene.objects.scene()) {
-            return Err(InputError::new("scene", "another", "must be the one that the view is of").into());
-        }
-        let fresh = Self::new(&scene.gpu, (scene.objects.scene(), scene.device), self.quality)?;
-        let Self { device, select, drawn, .. } = fresh;
-        (self.device, self.select, self.drawn) = (device, select, drawn);
-        (self.lists, self.counts) = (None, None);
-        Ok(())
-    }
-
-    /// Refuses a view that is not of a scene on its present device; `path` names the view.
-    pub(super) fn check(&self, scene: &Scene, path: &str) -> Result<(), InputError> {
-        if !self.is_of(scene.objects.scene()) {
-            return Err(foreign(path));
-        }
-        if self.device != scene.device {
-            let bound = "must be rebuilt after its scene: View::rebuild";
-            return Err(InputError::new(path, "of a device that was lost", bound));
-        }
-        Ok(())
-    }
-
     pub(in crate::scene) fn is_of(&self, scene: SceneNumber) -> bool {
         self.scene == scene
     }
@@ -238,17 +223,23 @@ impl View {
         self.lists.as_ref()?.terrain.get(terrain).map(|(_, group)| group)
     }
 
+    /// What a renderer needs to know of the last frame, if there was one.
+    pub(super) fn last_recorded(&self) -> Option<&Recorded> {
+        self.recorded.as_ref()
+    }
+
     /// Remembers the camera of a frame that was recorded.
     pub(super) fn recorded(&mut self, frame: u64) {
         self.last = self.camera.map(|camera| (frame, camera));
     }
 
-    /// Stages the view's uniforms. `terrains` are those of the scene, in their order; a frame has a number, and a first view.
+    /// Stages the view's uniforms. `terrains` are those of the scene, in their order, `sides` what each object has, as
+    /// [`Recorded::sides`]; a frame has a number, and a first view.
     pub(super) fn stage(
-        &self,
+        &mut self,
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
-        terrains: &[SeenTerrain],
+        (terrains, sides): (&[SeenTerrain], impl Iterator<Item = [bool; 2]>),
         (frame, is_first): (u64, bool),
     ) -> Result<(), Error> {
         let last = self.last.filter(|(last, _)| *last + 1 == frame).map(|(_, camera)| camera);
@@ -262,6 +253,11 @@ impl View {
         for ((uniform, _), seen) in terrain.zip(terrains) {
             staged.uniform(uniform, &terrain_view(&camera, seen))?;
         }
+        let recorded = self.recorded.get_or_insert_default();
+        recorded.mirrors = camera.is_mirrored();
+        recorded.reversed = camera.depth == Depth::Reversed;
+        recorded.sides.clear();
+        recorded.sides.extend(sides);
         Ok(())
     }
 

@@ -9,7 +9,6 @@ use crate::scene::camera::{Camera, Depth};
 use crate::scene::placement::Placement;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
-use crate::skinning::picture::is_mirrored;
 
 /// What a view needs to know of a terrain.
 #[derive(Debug, Clone, Copy)]
@@ -33,7 +32,7 @@ impl SceneView {
             eye,
             light: light.direction.normalize().extend(light.ambient),
             light_color: light.color,
-            side: if is_mirrored(&camera.clip_from_world()) { -1.0 } else { 1.0 },
+            side: if camera.is_mirrored() { -1.0 } else { 1.0 },
             cell: IVec3::from(camera.cell),
         }
     }

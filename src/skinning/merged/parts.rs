@@ -16,9 +16,10 @@ pub struct PartKey {
     pub blended: bool,
     /// Whether triangles are also visible from inside.
     pub double_sided: bool,
-    /// How textures are sampled: as the texture of the base colour says, or without one the normal map's. `None` if
-    /// there are no textures.
+    /// How the textures of base colours are sampled; `None` if there are none.
     pub sampling: Option<Sampling>,
+    /// How normal maps are sampled; `None` if there are none.
+    pub normal_sampling: Option<Sampling>,
 }
 
 impl PartKey {
@@ -28,14 +29,20 @@ impl PartKey {
     /// As [`Model::material`].
     pub fn of(model: &Model, mesh: &Mesh) -> Result<Self, InputError> {
         let material = model.material(mesh)?;
-        let texture = material.and_then(|material| material.texture.or(material.normal));
         let alpha = material.map_or(Alpha::Opaque, |Material { alpha, .. }| *alpha);
         Ok(Self {
             cut_out: matches!(alpha, Alpha::Mask(_) | Alpha::Dithered),
             blended: alpha == Alpha::Blended,
             double_sided: mesh.double_sided,
-            sampling: texture.map(|texture| texture.sampling),
+            sampling: material.and_then(|material| material.texture).map(|texture| texture.sampling),
+            normal_sampling: material.and_then(|material| material.normal).map(|texture| texture.sampling),
         })
+    }
+
+    /// Whether meshes of the other key may join without losing a sampling.
+    fn covers(&self, other: &Self) -> bool {
+        let covers = |own: Option<Sampling>, other: Option<Sampling>| other.is_none() || own == other;
+        covers(self.sampling, other.sampling) && covers(self.normal_sampling, other.normal_sampling)
     }
 }
 
@@ -74,35 +81,36 @@ pub(super) fn parts(model: &Model, groups: &[Vec<usize>], keys: &[PartKey]) -> V
             }
         }
     }
-    while let Some(least) =
-        (0..parts.len()).find(|at| parts[*at].key.sampling.is_none() && has_other(&parts, *at))
-    {
-        give_up(model, &mut parts, least);
+    let covers = |part: &Sorted, given: &Sorted| part.is_beside(given) && part.key.covers(&given.key);
+    while let Some(least) = (0..parts.len()).find(|at| has_other(&parts, *at, covers)) {
+        give_up(model, &mut parts, least, covers);
     }
     while parts.len() > MAX_PARTS {
-        let others = (0..parts.len()).filter(|at| has_other(&parts, *at));
+        let others = (0..parts.len()).filter(|at| has_other(&parts, *at, Sorted::is_beside));
         let Some(least) = others.min_by_key(|at| parts[*at].triangles(model)) else { break };
-        give_up(model, &mut parts, least);
+        give_up(model, &mut parts, least, Sorted::is_beside);
     }
     parts
 }
 
-/// Whether another part differs in nothing but its sampling.
-fn has_other(parts: &[Sorted], at: usize) -> bool {
-    parts.iter().enumerate().any(|(other, part)| other != at && part.is_beside(&parts[at]))
+/// Whether another part fits a part.
+fn has_other(parts: &[Sorted], at: usize, fits: impl Fn(&Sorted, &Sorted) -> bool) -> bool {
+    parts.iter().enumerate().any(|(other, part)| other != at && fits(part, &parts[at]))
 }
 
-/// Adds the meshes of a part to the part with the most triangles among those that differ in nothing but their
-/// sampling; of several, to the first.
-fn give_up(model: &Model, parts: &mut Vec<Sorted>, at: usize) {
+/// Adds the meshes of a part to the part with the most triangles among those that fit it; of several, to the first. A
+/// sampling that this part lacks is added too.
+fn give_up(model: &Model, parts: &mut Vec<Sorted>, at: usize, fits: impl Fn(&Sorted, &Sorted) -> bool) {
     let given = parts.remove(at);
     let mut most: Option<&mut Sorted> = None;
-    for part in parts.iter_mut().filter(|part| part.is_beside(&given)) {
+    for part in parts.iter_mut().filter(|part| fits(part, &given)) {
         if most.as_ref().is_none_or(|most| part.triangles(model) > most.triangles(model)) {
             most = Some(part);
         }
     }
     if let Some(most) = most {
+        most.key.sampling = most.key.sampling.or(given.key.sampling);
+        most.key.normal_sampling = most.key.normal_sampling.or(given.key.normal_sampling);
         most.meshes.extend(given.meshes);
         most.meshes.sort_unstable();
     }

@@ -11,13 +11,14 @@ use crate::skinning::clusters::CLUSTER;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::morph::{MORPH_BOUND, MorphPass};
+use crate::skinning::pages::{NO_PAGE, PageBuffers};
 use crate::skinning::verify::{SHAPES, Shape, flat, poisoned, random_model};
 use crate::skinning::vertex::{Blend, Vertex};
 
 /// The cases cover vertices that no target, one, or every target moves; weights of 0, of either sign and above
 /// 1; all clusters, none and some. The fourth of five instances is not seen: its vertices must stay unchanged,
 /// as must those of other clusters and those beyond the level of an instance. The second instance has the
-/// coarsest level, the third level 1.
+/// coarsest level, the third level 1. Pages in reverse order get the clusters that have one, and nothing else.
 ///
 /// # Errors
 /// What the device reports.
@@ -30,6 +31,9 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let name = format!("{} vertices, {} targets × {instances}", shape.vertices, shape.targets);
                 cases.add(format!("{name}, {list}"), comparison);
             }
+            let comparison = paged(cases.gpu, &pass, (case, shape), instances)?;
+            let name = format!("{} vertices, {} targets × {instances}", shape.vertices, shape.targets);
+            cases.add(format!("{name}, pages"), comparison);
         }
     }
     Ok(())
@@ -76,6 +80,44 @@ fn one(
             let is_morphed = !is_kept && chosen.contains(&(pair as u32));
             if is_morphed { morphed[*vertex as usize] } else { poisoned() }
         }));
+    }
+    Ok(output
+        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))?)
+}
+
+/// All clusters into pages that lie in reverse order; every fifth cluster has none.
+fn paged(
+    gpu: &Gpu,
+    pass: &MorphPass,
+    (case, shape): (u32, Shape),
+    instances: usize,
+) -> Result<Comparison, Error> {
+    let model = random_model(case, shape)?;
+    let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+    let mut draw = Draw::new(case ^ 0x0f0f);
+    let weights: Vec<f32> = (0..instances * shape.targets).map(|_| 1.5 * draw.signed()).collect();
+    let crowd = SkinnedCrowd::paged(gpu, &mesh, instances, Blend::Linear)?;
+    crowd.weights.write(gpu, &weights)?;
+    let count = clusters.len() * instances;
+    let has_page = |entry: usize| entry % 5 != 4;
+    let page = |entry: usize| if has_page(entry) { (count - 1 - entry) as u32 } else { NO_PAGE };
+    let output = Poisoned::<Vertex>::new(gpu, CLUSTER * count)?;
+    let mut pages = PageBuffers::new(gpu, &mesh, &crowd, 0)?;
+    pages.morphed = output.buffer.clone();
+    pages.table.write(gpu, &(0..count).map(page).collect::<Vec<_>>())?;
+    let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
+    active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
+    let job = pass.prepare_paged(gpu, &mesh, &crowd, &pages, &active)?;
+    gpu.run("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
+    let mut expected = vec![poisoned(); CLUSTER * count];
+    for (instance, weights) in weights.chunks(shape.targets).enumerate() {
+        let morphed = morph(&model.meshes[0], weights);
+        for (slot, vertex) in clusters.order.iter().enumerate() {
+            let entry = instance * clusters.len() + slot / CLUSTER;
+            if has_page(entry) {
+                expected[CLUSTER * (count - 1 - entry) + slot % CLUSTER] = morphed[*vertex as usize];
+            }
+        }
     }
     Ok(output
         .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))?)

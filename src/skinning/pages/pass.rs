@@ -18,6 +18,8 @@ pub struct PageBuffers {
     /// The skinned vertices, 64 a page. If last positions are kept, they follow: four floats for each vertex, of which the
     /// last is unused.
     pub skinned: Buffer<Vertex>,
+    /// The same vertices before skinning, if the mesh has morph targets; else empty.
+    pub morphed: Buffer<Vertex>,
     /// If last positions are kept, the index of the first of them in pairs of floats; else 0.
     pub last: u32,
     /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
@@ -36,10 +38,24 @@ impl PageBuffers {
     /// # Errors
     /// [`GpuError`].
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd, pages: u32) -> Result<Self, GpuError> {
+        let vertices = CLUSTER * pages as usize;
+        Self::with_room(gpu, mesh, crowd, pages, vertices)
+    }
+
+    /// With so many pages, and room for so many vertices in them and behind them.
+    fn with_room(
+        gpu: &Gpu,
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        pages: u32,
+        room: usize,
+    ) -> Result<Self, GpuError> {
         let stack: Vec<u32> = (0..pages).rev().collect();
         let entries = crowd.instances * mesh.clusters();
+        let morphed = if mesh.targets == 0 { 0 } else { CLUSTER * pages as usize };
         Ok(Self {
-            skinned: Buffer::new(gpu, "pages of vertices", CLUSTER * pages as usize)?,
+            skinned: Buffer::new(gpu, "pages of vertices", room)?,
+            morphed: Buffer::new(gpu, "pages of morphed vertices", morphed)?,
             last: 0,
             table: Buffer::from_slice(gpu, "page table", &vec![NO_PAGE; entries])?,
             held: Buffer::new(gpu, "pages held", crowd.instances)?,
@@ -60,8 +76,8 @@ impl PageBuffers {
     ) -> Result<Self, GpuError> {
         let vertices = CLUSTER * pages as usize;
         // Four floats a vertex, in vertices of ten.
-        let skinned = Buffer::new(gpu, "pages of vertices", vertices + (4 * vertices).div_ceil(10))?;
-        Ok(Self { skinned, last: 5 * vertices as u32, ..Self::new(gpu, mesh, crowd, pages)? })
+        let room = vertices + (4 * vertices).div_ceil(10);
+        Ok(Self { last: 5 * vertices as u32, ..Self::with_room(gpu, mesh, crowd, pages, room)? })
     }
 
     /// Number of pages.

@@ -24,6 +24,8 @@ pub struct SkinPass {
 #[derive(Clone, Copy)]
 struct Output<'a> {
     skinned: &'a Buffer<Vertex>,
+    /// Vertices before skinning, of meshes with morph targets.
+    morphed: &'a Buffer<Vertex>,
     active: &'a ActiveClusters,
     /// Any buffer where vertices do not lie in pages.
     table: &'a Buffer<u32>,
@@ -79,7 +81,8 @@ impl SkinPass {
         let pairs = (instances.len() * mesh.clusters()) as u32;
         // One workgroup per pair of cluster and instance.
         skinned.check_holds("skinned", instances.len() * mesh.vertices.len())?;
-        let output = Output { skinned, active: &nothing, table: &nothing.pairs, last: 0 };
+        let morphed = morphed(mesh, crowd)?;
+        let output = Output { skinned, morphed, active: &nothing, table: &nothing.pairs, last: 0 };
         let group = self.bind(gpu, kernel, (mesh, crowd), instances, output)?;
         let workgroups = rows_of_workgroups(gpu, pairs);
         let step = Step { groups: vec![group], workgroups, kernel: kernel.clone() };
@@ -101,7 +104,8 @@ impl SkinPass {
     ) -> Result<SkinActiveJob, Error> {
         let kernel = self.kernel(true, mesh);
         skinned.check_holds("skinned", crowd.instances * mesh.vertices.len())?;
-        let output = Output { skinned, active, table: &active.pairs, last: 0 };
+        let morphed = morphed(mesh, crowd)?;
+        let output = Output { skinned, morphed, active, table: &active.pairs, last: 0 };
         let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, output)?;
         Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
@@ -133,7 +137,8 @@ impl SkinPass {
         };
         active.pairs.check_holds("active.pairs", active.words(crowd.instances * mesh.clusters()))?;
         pages.table.check_holds("pages.table", crowd.instances * mesh.clusters())?;
-        let output = Output { skinned: &pages.skinned, active, table: &pages.table, last: pages.last };
+        let PageBuffers { skinned, morphed, table, last, .. } = pages;
+        let output = Output { skinned, morphed, active, table, last: *last };
         let group = self.bind(gpu, kernel, (mesh, crowd), 0..crowd.instances, output)?;
         Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), vec![(group, 0)]))
     }
@@ -163,10 +168,7 @@ impl SkinPass {
         }
         let vectors = if self.blend == Blend::Linear { 3 } else { 4 };
         crowd.palette.check_holds("crowd.palette", vectors * crowd.instances * mesh.bones.len())?;
-        let vertices = if mesh.targets > 0 { &crowd.morphed } else { &mesh.vertices };
-        if mesh.targets > 0 {
-            vertices.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
-        }
+        let vertices = if mesh.targets > 0 { output.morphed } else { &mesh.vertices };
         let params = SkinParams {
             vertices: mesh.vertices.len() as u32,
             pairs: (instances.len() * mesh.clusters()) as u32,
@@ -190,6 +192,13 @@ impl SkinPass {
         };
         Ok(group.bind(gpu, kernel)?)
     }
+}
+
+/// The morphed vertices of a crowd, instance by instance.
+fn morphed<'a>(mesh: &MeshBuffers, crowd: &'a SkinnedCrowd) -> Result<&'a Buffer<Vertex>, InputError> {
+    let needed = if mesh.targets > 0 { crowd.instances * mesh.vertices.len() } else { 0 };
+    crowd.morphed.check_holds("crowd.morphed", needed)?;
+    Ok(&crowd.morphed)
 }
 
 /// Records a copy of the skinned vertices, before the next skinning changes them. Motion vectors need these

@@ -143,6 +143,9 @@ impl Scene {
         let mut pages = PageBuffers::new(gpu, &self.mesh, &self.crowd, 0)?;
         pages.skinned = output.buffer.clone();
         pages.table.write(gpu, &(0..count).map(page).collect::<Vec<_>>())?;
+        if self.mesh.targets > 0 {
+            pages.morphed = Buffer::from_slice(gpu, "morphed", &self.morphed_pages(gpu)?)?;
+        }
         let job = pass.prepare_paged(gpu, &self.mesh, &self.crowd, &pages, &active)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let mut expected = self.expected.clone();
@@ -161,6 +164,19 @@ impl Scene {
             self.compare(&found, &expected)
         })?;
         Ok(comparison)
+    }
+
+    /// The morphed vertices in pages that lie in reverse order.
+    fn morphed_pages(&self, gpu: &Gpu) -> Result<Vec<Vertex>, Error> {
+        let (clusters, vertices) = (self.clusters.len(), self.clusters.order.len());
+        let count = clusters * INSTANCES;
+        let mut all = vec![poisoned(); CLUSTER * count];
+        for (at, vertex) in self.crowd.morphed.read_blocking(gpu)?.into_iter().enumerate() {
+            let (instance, slot) = (at / vertices, at % vertices);
+            let page = count - 1 - (instance * clusters + slot / CLUSTER);
+            all[CLUSTER * page + slot % CLUSTER] = vertex;
+        }
+        Ok(all)
     }
 
     /// All clusters into pages that keep last positions: of those that moved what lay there, of the others, but for those

@@ -126,7 +126,7 @@ mod tests {
             f64::from(seed >> 8) / f64::from(1 << 24)
         };
         let mut hits = 0;
-        for _ in 0..400 {
+        for _ in 0..1_600 {
             let at =
                 DVec3::new(edge * (2.0 * draw() - 0.5), 40.0 * draw() - 10.0, edge * (2.0 * draw() - 0.5));
             let direction = DVec3::new(draw() - 0.5, 0.6 * (draw() - 0.7), draw() - 0.5);

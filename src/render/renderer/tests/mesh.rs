@@ -13,7 +13,7 @@ use crate::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, Tar
 use crate::samples::creature::creature;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::PartMaterials;
+use crate::scene::material::{Looks, PartMaterials};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::vertex::Vertex;
@@ -67,8 +67,14 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
             .expect("uploaded"),
         indices: buffers.indices.clone(),
     };
-    let table =
-        PartMaterials::new(gpu, layouts, model, &[None, Some(0)], &Sampling::default()).expect("uploaded");
+    let table = PartMaterials::new(
+        gpu,
+        layouts,
+        &Looks::taken(&mut model.clone()),
+        &[None, Some(0)],
+        Default::default(),
+    )
+    .expect("uploaded");
     let cut_out = material.alpha != Alpha::Opaque;
     let part = MeshPart {
         surface: SurfaceKind { cut_out, blended: false, double_sided: model.meshes[0].double_sided },

@@ -14,7 +14,7 @@ use crate::render::renderer::Layer;
 use crate::samples::creature::creature;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::PartMaterials;
+use crate::scene::material::{Looks, PartMaterials};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::vertex::Vertex;
@@ -72,7 +72,8 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
     let part = MeshPart {
         surface: SurfaceKind { cut_out: false, blended: false, double_sided },
         materials: MeshMaterials::Plain(
-            PartMaterials::new(gpu, layouts, &model(), &table, &Sampling::default()).expect(up),
+            PartMaterials::new(gpu, layouts, &Looks::taken(&mut model()), &table, Default::default())
+                .expect(up),
         ),
     };
     Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))

@@ -112,7 +112,7 @@ impl Stage {
     }
 
     pub fn object<'a>(&'a self, drawable: &'a Drawable, ground: Option<&'a Group>) -> DrawnObject<'a> {
-        DrawnObject { drawable, lod: &self.lod, mirrors: true, ground }
+        DrawnObject { drawable, lod: &self.lod, sides: [true; 2], ground }
     }
 }
 

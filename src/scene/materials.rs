@@ -1,0 +1,162 @@
+//! What changes the materials of objects.
+
+use image::RgbaImage;
+
+use crate::asset::material::{Alpha, Material};
+use crate::gpu::{Gpu, Staged};
+use crate::scene::Scene;
+use crate::scene::drawable::{Drawable, MeshMaterials};
+use crate::scene::handles::ObjectId;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::{Changed, Looks, PartMaterials};
+use crate::scene::object::{Kind, Object};
+use crate::{Error, InputError};
+
+impl Scene {
+    /// Replaces a material of a mesh or a character, by its name or its index in the model. All instances show it from the
+    /// next frame on. Images are those of the model, by index; [`Scene::set_image`] replaces them and adds others.
+    ///
+    /// Colours, cutoffs, normal scales, and textures among the images that the materials with which it is drawn show
+    /// already are written into buffers. Another texture or sampling is uploaded at once with those of these materials:
+    /// that allocates, and a render bundle must be made anew.
+    ///
+    /// The first material with [`Alpha::Mask`](crate::asset::material::Alpha::Mask) or
+    /// [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered) among opaque ones, the first with a normal map, and the first
+    /// or last texture of a material that is drawn alone, may need a pipeline that a renderer does not have: call [`Renderer::prepare`](crate::render::Renderer::prepare), which
+    /// compiles what is missing. Otherwise [`Renderer::draw`](crate::render::Renderer::draw) says that the object is not
+    /// compiled.
+    ///
+    /// Whether a material is blended stays as it was: blended surfaces are drawn in a layer of their own.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for a material or an image that the
+    /// model does not have, for values out of range, for a change from or to blending, and for a sampling that differs from that of the other materials with
+    /// which it is drawn; [`crate::gpu::GpuError`]. The material stays what it was then.
+    pub fn set_material(&mut self, object: ObjectId, material: &str, new: &Material) -> Result<(), Error> {
+        let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
+        let mut staged = std::mem::take(&mut self.staged);
+        let entry = self.object_mut(object);
+        let set = entry.map_err(Error::from).and_then(|entry| {
+            let (index, looks) = {
+                let looks = looks(entry)?;
+                (looks.find(material)?, looks)
+            };
+            looks.check(new)?;
+            let (is_blended, was_blended) =
+                (new.alpha == Alpha::Blended, looks.materials[index].alpha == Alpha::Blended);
+            if is_blended != was_blended {
+                let bound = if was_blended { "must be blended, as before" } else { "must not be blended" };
+                return Err(InputError::new("material.alpha", format!("{:?}", new.alpha), bound).into());
+            }
+            let old = std::mem::replace(&mut looks.materials[index], new.clone());
+            let set = entry.change_materials((&gpu, &layouts), &mut staged, &Change::Material(index, &old));
+            if let (Err(_), Some(looks)) = (&set, &mut entry.looks) {
+                looks.materials[index] = old;
+            }
+            set
+        });
+        self.staged = staged;
+        set
+    }
+
+    /// Replaces an image of a mesh or a character, wherever its materials use it, or adds one: `index` is that of the image
+    /// in the model, or the number of images there are. Colours are sRGB with linear alpha, normal maps linear. The image is
+    /// uploaded at once with those that lie in the same array: that allocates, and a render bundle must be made anew.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels, and for
+    /// an index beyond; [`crate::gpu::GpuError`].
+    pub fn set_image(&mut self, object: ObjectId, index: usize, image: RgbaImage) -> Result<(), Error> {
+        let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
+        let mut staged = std::mem::take(&mut self.staged);
+        let set = self.object_mut(object).map_err(Error::from).and_then(|entry| {
+            looks(entry)?.set_image(index, image)?;
+            entry.change_materials((&gpu, &layouts), &mut staged, &Change::Image(index))
+        });
+        self.staged = staged;
+        set
+    }
+
+    /// A material of a mesh or a character, by its name or its index in the model.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, and for a material that the model
+    /// does not have.
+    pub fn material(&self, object: ObjectId, material: &str) -> Result<&Material, InputError> {
+        let entry = self.object_at(object)?;
+        let looks = entry.looks.as_ref().ok_or_else(|| without_materials(entry))?;
+        Ok(&looks.materials[looks.find(material)?])
+    }
+}
+
+/// What changes in the materials of an object.
+enum Change<'a> {
+    /// A material, which was another one.
+    Material(usize, &'a Material),
+    /// An image.
+    Image(usize),
+}
+
+impl Change<'_> {
+    /// What becomes of the materials of a part, if they change.
+    fn of(
+        &self,
+        gpu: (&Gpu, &SceneLayouts),
+        looks: &Looks,
+        part: &PartMaterials,
+    ) -> Result<Option<Changed>, Error> {
+        Ok(match self {
+            Self::Material(index, old) if part.has(*index) => {
+                let samplings = part.samplings_with(looks, (*index, old))?;
+                Some(part.changed(gpu, looks, samplings, false)?)
+            }
+            Self::Image(index) if part.shows(*index) => {
+                Some(part.changed(gpu, looks, part.samplings(), true)?)
+            }
+            _ => None,
+        })
+    }
+}
+
+impl Object {
+    /// Changes materials of all parts, or of none.
+    fn change_materials(
+        &mut self,
+        gpu: (&Gpu, &SceneLayouts),
+        staged: &mut Staged,
+        change: &Change<'_>,
+    ) -> Result<(), Error> {
+        let (Some(looks), Some(first)) = (&self.looks, self.chunks.first()) else { return Ok(()) };
+        let mut changes = Vec::new();
+        for (at, drawable) in first.drawables.iter().enumerate() {
+            let Drawable::Mesh(mesh) = drawable else { continue };
+            for (number, part) in mesh.parts.iter().enumerate() {
+                let MeshMaterials::Plain(materials) = &part.materials else { continue };
+                if let Some(changed) = change.of(gpu, looks, materials)? {
+                    changes.push((at, number, changed));
+                }
+            }
+        }
+        for (at, number, changed) in changes {
+            changed.stage(staged)?;
+            for chunk in &mut self.chunks {
+                if let Some(Drawable::Mesh(mesh)) = chunk.drawables.get_mut(at) {
+                    let part = &mut mesh.parts[number];
+                    part.surface.cut_out = changed.materials.cut_out;
+                    part.materials = MeshMaterials::Plain(changed.materials.clone());
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn looks(object: &mut Object) -> Result<&mut Looks, InputError> {
+    let error = without_materials(object);
+    object.looks.as_mut().ok_or(error)
+}
+
+fn without_materials(object: &Object) -> InputError {
+    let value = if let Kind::Terrain(_) = object.kind { "terrain" } else { "a relief" };
+    InputError::new("object", value, "must be a mesh or a character")
+}

@@ -1,0 +1,169 @@
+//! What objects do in a frame: provide what is seen, lie in buffers, and stage what has changed.
+
+use std::sync::Arc;
+
+use super::{Kind, Object};
+use crate::Error;
+use crate::animation::Frame;
+use crate::gpu::{Buffer, Gpu, Staged, Upload as _};
+use crate::lod::assign::AssignPass;
+use crate::lod::{SceneInstance, SelectView};
+use crate::scene::character::{Provided, Replaced};
+use crate::scene::chunk::{Chunk, common};
+use crate::scene::drawable::{Drawable, MeshDrawable};
+use crate::scene::handles::Slots;
+use crate::scene::layout::{Layout, ObjectRange};
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::quality::Shares;
+use crate::scene::statistics::view::Counted;
+use crate::shared::lod::object::{LodObject, OBJECT_LISTS};
+use crate::shared::render::scene_vertex::MeshParams;
+
+impl Object {
+    /// Provides what the views of a frame need of a character. Where memory ends, its levels of detail are coarser. Returns
+    /// whether its chunks are others than before.
+    pub(in crate::scene) fn provide(
+        &mut self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        views: &[SelectView],
+    ) -> Result<bool, Error> {
+        let all = Chunk::new(0..self.instances.capacity(), Vec::new());
+        let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object(&all) };
+        let Kind::Character(character) = &mut self.kind else { return Ok(false) };
+        let Provided { coarsening, replaced } = character.provide(gpu, views, &lod, self.instances.all())?;
+        match replaced {
+            Replaced::Nothing => {}
+            Replaced::Pages => {
+                character.rebind(gpu, layouts, &mut self.chunks)?;
+                self.is_rebound = true;
+            }
+            Replaced::Chunks => {
+                let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
+                self.chunks = character.chunks(gpu, layouts, first)?;
+            }
+        }
+        self.is_retuned |= coarsening != self.coarsening;
+        self.coarsening = coarsening;
+        Ok(replaced == Replaced::Chunks)
+    }
+
+    /// Stages what has changed since the last frame.
+    pub(in crate::scene) fn stage(
+        &mut self,
+        (staged, layout): (&mut Staged, &Layout),
+        (frame, now): (&Frame, f64),
+    ) -> Result<(), Error> {
+        for (at, last) in self.instances.take_last() {
+            stage_instances((staged, &layout.last_instances), &self.chunks, at, &last)?;
+        }
+        for (at, changed) in self.instances.take_changed() {
+            stage_instances((staged, &layout.instances), &self.chunks, at, changed)?;
+        }
+        if std::mem::take(&mut self.is_rebound) {
+            self.chunks.iter().try_for_each(|chunk| stage_params(staged, chunk, self.handle))?;
+        }
+        if std::mem::take(&mut self.is_retuned) {
+            for chunk in &self.chunks {
+                staged.elements(&layout.objects, chunk.number, &[self.lod_object(chunk)])?;
+            }
+            if let Kind::Character(character) = &self.kind {
+                character.stage_mesh_fraction(staged, self.coarsening * self.mesh_fraction)?;
+            }
+        }
+        match &mut self.kind {
+            Kind::Character(character) => character.stage(staged, frame, now),
+            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
+        }
+    }
+
+    /// Prepares what depends on the layout.
+    pub(in crate::scene) fn fit(
+        &mut self,
+        gpu: &Gpu,
+        layout: &Layout,
+        (pass, shares): (&AssignPass, Shares),
+        staged: &mut Staged,
+    ) -> Result<(), Error> {
+        if let Kind::Character(character) = &mut self.kind {
+            character.fit_driven(gpu, staged)?;
+        }
+        if self.fitted == layout.version {
+            return Ok(());
+        }
+        let lods: Vec<LodObject> = self.chunks.iter().map(|chunk| self.lod_object(chunk)).collect();
+        for (chunk, mut lod) in self.chunks.iter_mut().zip(lods) {
+            chunk.lods.clear();
+            for drawable in &chunk.drawables {
+                chunk.lods.push(lod);
+                lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
+            }
+            stage_params(staged, chunk, self.handle)?;
+        }
+        let mesh_fraction = self.coarsening * self.mesh_fraction;
+        if let Kind::Character(character) = &mut self.kind {
+            let object = (&*self.chunks, &*self.errors);
+            character.fit(gpu, layout, pass, object, (shares, mesh_fraction))?;
+        }
+        self.fitted = layout.version;
+        Ok(())
+    }
+}
+
+/// Stages a run of an object's instances, from the one with index `at` on.
+fn stage_instances(
+    (staged, to): (&mut Staged, &Buffer<SceneInstance>),
+    chunks: &[Chunk],
+    at: usize,
+    run: &[SceneInstance],
+) -> Result<(), Error> {
+    for chunk in chunks {
+        if let Some(own) = common(&(at..at + run.len()), &chunk.slots) {
+            staged.elements(to, chunk.place(own.start), &run[own.start - at..own.end - at])?;
+        }
+    }
+    Ok(())
+}
+
+/// Stages where the instances and vertices of a chunk lie.
+fn stage_params(staged: &mut Staged, chunk: &Chunk, object: u32) -> Result<(), Error> {
+    for drawable in &chunk.drawables {
+        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
+            let (first_instance, last) = (chunk.range.first, geometry.last);
+            let params = MeshParams { first_instance, clusters: *clusters, object, last };
+            staged.uniform(&geometry.params, &params)?;
+        }
+    }
+    Ok(())
+}
+
+/// Lays out the chunks of objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the
+/// last frame is kept.
+///
+/// # Errors
+/// [`crate::gpu::GpuError`].
+pub(in crate::scene) fn laid_out(
+    gpu: &Gpu,
+    objects: &mut Slots<Object>,
+    (version, keeps_last): (u64, bool),
+) -> Result<Layout, Error> {
+    let mut range = ObjectRange::default();
+    let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
+    for object in objects.iter_mut() {
+        let levels = object.errors.len() as u32;
+        for at in 0..object.chunks.len() {
+            let chunk = &mut object.chunks[at];
+            chunk.range = range;
+            chunk.number = all.len();
+            chunk.lay_out_singles(&mut singles);
+            let instances = chunk.room();
+            range.first += instances;
+            range.first_list += 2 * levels * instances;
+            range.first_draw += object.draws.len() as u32;
+            draws.extend_from_slice(&object.draws);
+            all.push(object.lod_object(&object.chunks[at]));
+        }
+    }
+    let counted = Arc::new(Counted::new(objects));
+    Layout::new(gpu, (&all, draws, &singles), range, (version, keeps_last, counted))
+}

@@ -1,0 +1,260 @@
+//! Objects: what all instances of one model or one terrain share.
+
+mod device;
+mod frame;
+
+use glam::Vec3;
+
+use crate::asset::Model;
+use crate::gpu::Gpu;
+use crate::scene::character::Character;
+use crate::scene::chunk::Chunk;
+use crate::scene::drawable::Drawable;
+use crate::scene::instances::Instances;
+use crate::scene::layers::CharacterOptions;
+use crate::scene::layout::error_vectors;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Looks;
+use crate::scene::mesh::{self, Drawn};
+use crate::scene::quality::Shares;
+use crate::scene::ray::Surface;
+use crate::scene::relief::{self, Relief};
+use crate::scene::terrain::{self, Terrain, TerrainSource};
+use crate::scene::view::SeenTerrain;
+use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
+use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::skinning::merged::Merged;
+use crate::{Error, InputError};
+pub(super) use device::OnDevice;
+pub(super) use frame::laid_out;
+
+/// The most instances of an object.
+const MAX_CAPACITY: usize = 1 << 20;
+
+/// An object of a scene.
+#[derive(Debug)]
+pub(crate) struct Object {
+    pub(super) kind: Kind,
+    pub(super) instances: Instances,
+    /// A sphere around an instance that moves no bone.
+    pub(super) sphere: BoundingSphere,
+    /// The error of each level in the model's units, ascending from 0.
+    pub(super) errors: Vec<f32>,
+    pub(super) mesh_fraction: f32,
+    /// The factor by which its levels are coarser than the views ask for: 1 unless memory has ended.
+    pub(super) coarsening: f32,
+    /// Whether the device does not know the factor yet.
+    is_retuned: bool,
+    /// Whether the device does not know where the vertices of new pages lie.
+    is_rebound: bool,
+    /// The number that its handle tells.
+    pub(super) handle: u32,
+    pub(super) is_shown: bool,
+    /// The materials of a mesh or a character.
+    pub(super) looks: Option<Looks>,
+    /// Of each part, the draws of all lists of a chunk, without instances.
+    pub(super) draws: Vec<SceneDraw>,
+    /// At least one.
+    pub(super) chunks: Vec<Chunk>,
+    fitted: u64,
+}
+
+/// What the host keeps of a mesh that does not move by itself.
+#[derive(Debug)]
+pub(super) enum MeshOnHost {
+    /// Merged meshes at rest.
+    Model(Box<Merged>),
+    /// A mesh with relief.
+    Relief(Box<Relief>),
+}
+
+impl MeshOnHost {
+    /// Its triangles in full detail.
+    pub fn surfaces(&self) -> Vec<Surface<'_>> {
+        match self {
+            Self::Model(merged) => {
+                let meshes = &merged.model.meshes;
+                let surface = |at: usize| Surface::of_merged(merged, at, &meshes[at].positions[..]);
+                (0..meshes.len()).map(surface).collect()
+            }
+            Self::Relief(relief) => {
+                let positions = relief.mesh.vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>();
+                vec![Surface::new(positions, &relief.mesh.indices, relief.double_sided)]
+            }
+        }
+    }
+}
+
+/// What an object is.
+#[derive(Debug)]
+pub(super) enum Kind {
+    Terrain(Terrain),
+    Mesh(MeshOnHost),
+    Character(Box<Character>),
+}
+
+impl Object {
+    /// An object that is shown.
+    pub(super) fn new(
+        kind: Kind,
+        (instances, sphere): (Instances, BoundingSphere),
+        (errors, mesh_fraction): (Vec<f32>, f32),
+        (chunks, draws): (Vec<Chunk>, Vec<SceneDraw>),
+    ) -> Self {
+        Self {
+            kind,
+            instances,
+            sphere,
+            errors,
+            mesh_fraction,
+            coarsening: 1.0,
+            is_retuned: false,
+            is_rebound: false,
+            handle: 0,
+            is_shown: true,
+            looks: None,
+            draws,
+            chunks,
+            fitted: 0,
+        }
+    }
+
+    /// Terrain.
+    pub(super) async fn terrain(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        source: &TerrainSource,
+    ) -> Result<Self, Error> {
+        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source).await?;
+        let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+        let drawn = whole(&instances, drawn);
+        Ok(Self::new(Kind::Terrain(terrain), (instances, sphere), (vec![0.0], 1.0), drawn))
+    }
+
+    /// A model's meshes at rest.
+    pub(super) fn mesh(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        model: &Model,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let (mut merged, sphere) = mesh::at_rest_merged(model)?;
+        let looks = Looks::taken(&mut merged.model);
+        let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
+        let errors = mesh::errors(&merged);
+        let kind = Kind::Mesh(MeshOnHost::Model(Box::new(merged)));
+        let object = Self::new(kind, (instances, sphere), (errors, 1.0), drawn);
+        Ok(Self { looks: Some(looks), ..object })
+    }
+
+    /// A mesh with relief.
+    pub(super) fn relief(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        relief: &Relief,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
+        let drawn = whole(&instances, drawn);
+        let kind = Kind::Mesh(MeshOnHost::Relief(Box::new(relief.clone())));
+        Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
+    }
+
+    /// A model that has clips.
+    pub(super) fn character(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        (model, options): (&Model, &CharacterOptions<'_>),
+        capacity: usize,
+        (shares, keeps_last): (Shares, bool),
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let mut merged = mesh::moving_merged(model)?;
+        let looks = Looks::taken(&mut merged.model);
+        let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
+        let first = character.drawables(gpu, layouts, &looks)?;
+        let drawn = (character.chunks(gpu, layouts, &first)?, character.draws());
+        let (sphere, errors) = (character.sphere(), character.errors());
+        let kind = Kind::Character(Box::new(character));
+        let object = Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn);
+        Ok(Self { looks: Some(looks), ..object })
+    }
+
+    /// What views need to know of a terrain.
+    pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
+        match &self.kind {
+            Kind::Terrain(terrain) => Some(SeenTerrain { spacing: terrain.spacing, object: self.handle }),
+            Kind::Mesh(_) | Kind::Character(_) => None,
+        }
+    }
+
+    /// A chunk of the object as kernels see it.
+    pub(super) fn lod_object(&self, chunk: &Chunk) -> LodObject {
+        LodObject {
+            first: chunk.range.first,
+            instances: chunk.room(),
+            levels: self.errors.len() as u32,
+            first_list: chunk.range.first_list,
+            first_draw: chunk.range.first_draw,
+            parts: self.draws.len() as u32 / OBJECT_LISTS,
+            mesh_fraction: self.coarsening * self.mesh_fraction,
+            shown: u32::from(self.is_shown),
+            errors: error_vectors(&self.errors).map(Into::into),
+        }
+    }
+
+    /// Keeps the last frame, once it is refreshed, or does no longer.
+    pub(super) fn keep_last(&mut self, keeps: bool) {
+        self.instances.keep_last(keeps);
+        if let Kind::Character(character) = &mut self.kind {
+            character.keep_last(keeps);
+        }
+    }
+
+    /// The largest number of its draws in a view and a layer.
+    pub(super) fn draws(&self) -> usize {
+        let parts: usize = self.drawables().map(Drawable::parts).sum();
+        match self.kind {
+            Kind::Terrain(_) => parts,
+            Kind::Mesh(_) | Kind::Character(_) => {
+                let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
+                sides * parts * self.errors.len()
+            }
+        }
+    }
+
+    /// The index of an instance in the buffers of all instances.
+    pub(super) fn place(&self, index: u32) -> Option<usize> {
+        Some(self.chunk_of(index)?.place(index as usize))
+    }
+
+    /// The chunk in which an instance lies.
+    pub(super) fn chunk_of(&self, index: u32) -> Option<&Chunk> {
+        self.chunks.iter().find(|chunk| chunk.slots.contains(&(index as usize)))
+    }
+
+    /// What is drawn, chunk by chunk.
+    pub(super) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
+        self.chunks.iter().flat_map(|chunk| &chunk.drawables)
+    }
+
+    /// Number of instances that there is room for.
+    pub(crate) fn capacity(&self) -> usize {
+        self.instances.capacity()
+    }
+}
+
+/// What is drawn of all instances in one chunk.
+fn whole(instances: &Instances, (drawables, draws): Drawn) -> (Vec<Chunk>, Vec<SceneDraw>) {
+    (vec![Chunk::new(0..instances.capacity(), drawables)], draws)
+}
+
+/// Room for at least `capacity` instances.
+fn room(capacity: usize) -> Result<Instances, InputError> {
+    match (1..=MAX_CAPACITY).contains(&capacity) {
+        true => Ok(Instances::new(capacity)),
+        false => Err(InputError::new("capacity", capacity, format!("must be in 1..={MAX_CAPACITY}"))),
+    }
+}
