@@ -7,43 +7,11 @@ use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, D
 use crate::scene::handles::foreign;
 use crate::scene::object::{self, Kind, Object};
 use crate::scene::order::Ordered;
+use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
 use crate::{Error, InputError};
-
-/// Number of stages of a frame.
-pub(super) const STAGES: usize = 5;
-
-/// A stage of a frame's compute work. Each is recorded for everything before the next one begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stage {
-    /// What views see and how fine.
-    Select,
-    /// Which bones are sampled.
-    Gate,
-    /// Their local transforms, and the weights of morph targets.
-    Sample,
-    /// Their model matrices.
-    LocalToModel,
-    /// The vertices.
-    Skin,
-}
-
-impl Stage {
-    /// All stages, in order.
-    pub const ALL: [Self; STAGES] = [Self::Select, Self::Gate, Self::Sample, Self::LocalToModel, Self::Skin];
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Select => "scene: select",
-            Self::Gate => "scene: gate",
-            Self::Sample => "scene: sample",
-            Self::LocalToModel => "scene: local to model",
-            Self::Skin => "scene: skin",
-        }
-    }
-}
 
 impl Scene {
     /// Gives up all recordings whose encoders were dropped without being submitted, and lets everything start afresh, as

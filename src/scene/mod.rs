@@ -21,6 +21,7 @@ pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
 mod materials;
+mod matrices;
 #[cfg(feature = "verify")]
 mod measured;
 pub(crate) mod mesh;
@@ -36,8 +37,9 @@ pub(crate) mod query;
 mod ray;
 mod relief;
 mod spawned;
+mod stage;
 mod statistics;
-mod terrain;
+pub(crate) mod terrain;
 mod view;
 mod watch;
 

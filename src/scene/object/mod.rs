@@ -1,6 +1,7 @@
 //! Objects: what all instances of one model or one terrain share.
 
 mod frame;
+mod slots;
 
 use glam::Vec3;
 
@@ -17,8 +18,7 @@ use crate::scene::mesh::{self, Drawn};
 use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
-use crate::scene::terrain::{self, Terrain, TerrainSource};
-use crate::scene::view::SeenTerrain;
+use crate::scene::terrain::{self, SeenTerrain, Terrain, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{FRAMES, StageTimes};
 use crate::gpu::{Gpu, GpuError, ReadbackRing};
-use crate::scene::frame::STAGES;
+use crate::scene::stage::STAGES;
 
 /// The number of timestamps of a frame: one before and one after each stage.
 const STAMPS: u32 = 2 * STAGES as u32;
