@@ -3,7 +3,7 @@
 use wgpu::TextureFormat as Format;
 
 #[cfg(doc)]
-use super::renderer::Layer;
+use super::layer::Layer;
 
 /// What the first colour attachments of a target hold, and so, which layers can be drawn into it. All but the first
 /// kind need a depth attachment, and no blending.

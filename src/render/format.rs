@@ -3,7 +3,7 @@
 use wgpu::TextureFormat as Format;
 
 use super::contents::{Contents, can_blend};
-use super::renderer::Layer;
+use super::layer::Layer;
 use crate::InputError;
 
 /// The attachments of the render passes, or of the render bundles, into which a [`Renderer`](super::Renderer) draws.

@@ -12,7 +12,7 @@ mod camera;
 mod contents;
 mod crowd;
 mod format;
-#[cfg(not(target_arch = "wasm32"))]
+mod layer;
 mod offscreen;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod picture;
@@ -33,12 +33,12 @@ pub use camera::Camera;
 pub use contents::Contents;
 pub use crowd::{Character, CrowdScene};
 pub use format::{DepthFormat, TargetFormat};
-#[cfg(not(target_arch = "wasm32"))]
+pub use layer::Layer;
 pub use offscreen::Offscreen;
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::Picture;
 pub use relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
-pub use renderer::{Layer, Renderer, ScenePass};
+pub use renderer::{Renderer, ScenePass};
 pub use skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 #[cfg(not(target_arch = "wasm32"))]
 pub use square::SquarePicture;

@@ -1,6 +1,5 @@
 //! Draws a scene through a view into the caller's render pass or render bundle.
 
-mod layer;
 mod pipelines;
 mod programs;
 mod rebuild;
@@ -11,6 +10,7 @@ mod tests;
 use std::collections::HashMap;
 
 use super::format::TargetFormat;
+use super::layer::Layer;
 use super::shading::Shading;
 use crate::gpu::Gpu;
 use crate::lod::{OBJECT_LISTS, SceneDraw};
@@ -18,7 +18,6 @@ use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, D
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::{Scene, View};
 use crate::{Error, InputError};
-pub use layer::Layer;
 use pipelines::{Kind, PipelineKey};
 pub use scene_pass::ScenePass;
 

@@ -15,9 +15,9 @@ use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId, Slots};
 use crate::scene::instances;
 use crate::scene::layout::Layout;
+use crate::scene::matrices::affine_of;
 use crate::scene::object::{Kind, Object};
 use crate::scene::placement::Placement;
-use crate::scene::watch::affine_of;
 use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
 

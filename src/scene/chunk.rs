@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use crate::scene::drawable::Drawable;
 use crate::scene::layout::ObjectRange;
-use crate::scene::order::SinglePart;
 use crate::shared::lod::object::{BLOCK, LodObject};
 
 /// A chunk of an object.
@@ -23,6 +22,16 @@ pub(crate) struct Chunk {
     pub lods: Vec<LodObject>,
     /// Its parts that are drawn instance by instance.
     pub singles: Vec<SinglePart>,
+}
+
+/// A part of an object that is drawn instance by instance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SinglePart {
+    /// The drawable, and the part of it.
+    pub drawable: usize,
+    pub part: usize,
+    /// The index of the draw of the first instance.
+    pub first: u32,
 }
 
 impl Chunk {

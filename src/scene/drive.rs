@@ -2,37 +2,16 @@
 
 use crate::Error;
 use crate::InputError;
-use crate::animation::crowd::Local;
-use crate::gpu::Buffer;
 use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, Slots, stale};
 use crate::scene::object::{Kind, Object};
+use crate::scene::poses::PoseBuffers;
 use crate::scene::view::View;
 
 /// The poses of all characters in a frame whose bones have been sampled, for [`Scene::record_with`].
 #[derive(Debug, Clone, Copy)]
 pub struct Poses<'a> {
     pub(super) objects: &'a Slots<Object>,
-}
-
-/// The buffers that hold the pose of an instance, among those of others of its object. They are the same from frame to frame,
-/// until the object grows, what is seen of it exceeds a binding of the device, or [`Scene::refresh`] is called.
-#[derive(Debug, Clone, Copy)]
-pub struct PoseBuffers<'a> {
-    /// The local transform of each bone, in its parent's space: three `vec4<f32>` at 3 · (instance · bones + bone), where
-    /// `instance` is [`PoseBuffers::index`]. The first holds the translation and the scale along x, the second the rotation, a
-    /// unit quaternion (x, y, z, w), and the third the scale along y and z in its first two components. Storage, to
-    /// be read and written.
-    pub locals: &'a Buffer<Local>,
-    /// The model matrices of the frame before: three `vec4<f32>` at 3 · (instance · bones + bone), the rows of the transform
-    /// from the bone's space to the model's. Storage, to be read.
-    pub model_matrices: &'a wgpu::Buffer,
-    /// Number of bones of the skeleton.
-    pub bones: u32,
-    /// Number of instances that there is room for.
-    pub instances: u32,
-    /// The instance's number in these buffers.
-    pub index: u32,
 }
 
 impl<'a> Poses<'a> {

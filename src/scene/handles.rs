@@ -3,7 +3,6 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::InputError;
-use crate::scene::object::Object;
 
 /// Tells one scene of the program from all others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -107,7 +106,7 @@ impl<T> Slots<T> {
     }
 
     /// All values with their slots and generations, slot by slot.
-    fn numbered(&self) -> impl Iterator<Item = ([u32; 2], &T)> {
+    pub fn numbered(&self) -> impl Iterator<Item = ([u32; 2], &T)> {
         let slots = (0..).zip(&self.slots);
         slots.filter_map(|(index, (generation, value))| Some(([index, *generation], value.as_ref()?)))
     }
@@ -120,22 +119,6 @@ impl<T> Slots<T> {
     /// All values, slot by slot, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.slots.iter_mut().filter_map(|(_, value)| value.as_mut())
-    }
-}
-
-impl Slots<Object> {
-    /// The object of an instance, if the instance exists.
-    pub fn existing(&self, instance: InstanceId) -> Option<&Object> {
-        let InstanceId { object: ObjectId { scene, index, generation }, .. } = instance;
-        let object = self.get([index, generation]).filter(|_| scene == self.scene)?;
-        object.instances.contains([instance.index, instance.generation]).then_some(object)
-    }
-
-    /// All objects with their handles, slot by slot.
-    pub fn each(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
-        let scene = self.scene;
-        self.numbered()
-            .map(move |([index, generation], object)| (ObjectId { scene, index, generation }, object))
     }
 }
 

@@ -7,7 +7,7 @@ use glam::Vec4;
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
 use crate::lod::single::Single;
-use crate::scene::statistics::view::Counted;
+use crate::scene::handles::ObjectId;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
@@ -93,4 +93,21 @@ impl Layout {
 pub(super) fn error_vectors(errors: &[f32]) -> [Vec4; OBJECT_LEVELS as usize / 4] {
     let error = |at: usize| errors.get(at).copied().unwrap_or(f32::MAX);
     std::array::from_fn(|at| Vec4::from_array(std::array::from_fn(|lane| error(4 * at + lane))))
+}
+
+/// An object whose draws are counted.
+#[derive(Debug, Clone)]
+pub(super) struct CountedObject {
+    pub object: ObjectId,
+    /// The first draw of each of its chunks.
+    pub first_draws: Vec<u32>,
+    pub parts: u32,
+    pub levels: u32,
+    pub mesh_fraction: f32,
+}
+
+/// All objects of a layout whose draws are counted.
+#[derive(Debug)]
+pub(crate) struct Counted {
+    pub(super) objects: Vec<CountedObject>,
 }

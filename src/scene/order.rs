@@ -4,19 +4,9 @@ use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
 use crate::lod::single::Single;
 use crate::lod::{OBJECT_LISTS, SelectView};
 use crate::scene::camera::Camera;
-use crate::scene::chunk::Chunk;
+use crate::scene::chunk::{Chunk, SinglePart};
 use crate::scene::drawable::Drawable;
 use crate::scene::object::Object;
-
-/// A part of an object that is drawn instance by instance.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SinglePart {
-    /// The drawable, and the part of it.
-    pub drawable: usize,
-    pub part: usize,
-    /// The index of the draw of the first instance.
-    pub first: u32,
-}
 
 impl Chunk {
     /// Lays out the parts that are drawn instance by instance, behind those of other objects.

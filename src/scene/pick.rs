@@ -5,9 +5,9 @@ use glam::{DAffine3, DVec3};
 use crate::InputError;
 use crate::scene::Scene;
 use crate::scene::handles::InstanceId;
+use crate::scene::matrices::placed_model;
 use crate::scene::object::{Kind, Object};
 use crate::scene::ray::{Hit, Ray, Surface, SurfaceHit};
-use crate::scene::watch::placed_model;
 use crate::shared::lod::instance::{INSTANCE_ALIVE, INSTANCE_MASK_SHIFT};
 
 /// By how much a box or a sphere is enlarged, relative to what it is computed from: rounding moves what is drawn, in `f32`,

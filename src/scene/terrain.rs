@@ -71,6 +71,15 @@ impl From<Recipe> for TerrainSource {
     }
 }
 
+/// What a view needs to know of a terrain.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SeenTerrain {
+    /// World units between samples.
+    pub spacing: f64,
+    /// The number of the object.
+    pub object: u32,
+}
+
 /// Terrain in a scene.
 #[derive(Debug)]
 pub(super) struct Terrain {

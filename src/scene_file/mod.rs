@@ -1,9 +1,9 @@
-//! Scenes as files: JSON that names terrain, models, reliefs, a light and a camera. `relievo scene`, the demo and the golden
-//! tests draw such files, and a program may do the same.
+//! Scenes as files: JSON that names terrain, models, reliefs, a light and a camera. `relievo scene` and the demo draw such
+//! files, and a program may do the same.
 //!
 //! [`SceneFile::from_json`] checks a text. [`SceneFile::load`] reads what it names, through a function of the caller's, so
-//! that it works without a file system. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it ([`LoadedScene::build_async`] in a
-//! browser), and `Player` draws its frames off screen.
+//! that it works without a file system. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it (and
+//! [`LoadedScene::build_async`] without blocking), and `Player` draws its frames off screen.
 //!
 //! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`), the
 //! value and the bound.

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::Layer;
 use super::programs::Program;
 use crate::gpu::{Gpu, GpuError};
 use crate::render::format::TargetFormat;
+use crate::render::layer::Layer;
 use crate::render::shading::{PREFIX, Shading};
 use crate::scene::drawable::{MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;

@@ -1,10 +1,10 @@
 //! The shaders, entry points and constants of pipelines.
 
-use super::Layer;
 use super::pipelines::Kind;
 use crate::gpu::bindings::render::{scene_mesh, scene_relief};
 use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN, Shader};
 use crate::render::format::TargetFormat;
+use crate::render::layer::Layer;
 use crate::scene::drawable::SurfaceKind;
 use crate::surface::{Green, ReliefOptions};
 

@@ -8,7 +8,7 @@ use crate::animation::compact::CompactPass;
 use crate::animation::drive::{DrivePass, driven_words};
 use crate::animation::order::Order;
 use crate::gpu::{Gpu, Staged, Upload as _};
-use crate::scene::drive::PoseBuffers;
+use crate::scene::poses::PoseBuffers;
 
 /// What the caller drives.
 #[derive(Debug, Default)]

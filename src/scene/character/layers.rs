@@ -12,7 +12,7 @@ use crate::asset::Model;
 use crate::gpu::{Staged, Upload as _};
 use crate::scene::chunk::common;
 use crate::scene::instances::Changed;
-use crate::scene::layers::LayerMask;
+use crate::scene::options::LayerMask;
 use crate::scene::placement::Play;
 use crate::scene::playing::Playing;
 use crate::skinning::bounding_sphere::{BoundingSphere, MARGIN, middle_of, poses};

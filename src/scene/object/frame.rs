@@ -11,11 +11,10 @@ use crate::lod::{SceneInstance, SelectView};
 use crate::scene::character::{Provided, Replaced};
 use crate::scene::chunk::{Chunk, common};
 use crate::scene::drawable::{Drawable, MeshDrawable};
-use crate::scene::handles::Slots;
-use crate::scene::layout::{Layout, ObjectRange};
+use crate::scene::handles::{ObjectId, Slots};
+use crate::scene::layout::{Counted, CountedObject, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Shares;
-use crate::scene::statistics::view::Counted;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS};
 use crate::shared::render::scene_vertex::MeshParams;
 
@@ -166,4 +165,18 @@ pub(in crate::scene) fn laid_out(
     }
     let counted = Arc::new(Counted::new(objects));
     Layout::new(gpu, (&all, draws, &singles), range, (version, keeps_last, counted))
+}
+
+impl Counted {
+    /// These objects, whose places a layout has set.
+    fn new(objects: &Slots<Object>) -> Self {
+        let counted = |(object, entry): (ObjectId, &Object)| CountedObject {
+            object,
+            first_draws: entry.chunks.iter().map(|chunk| chunk.range.first_draw).collect(),
+            parts: entry.draws.len() as u32 / OBJECT_LISTS,
+            levels: entry.errors.len() as u32,
+            mesh_fraction: entry.mesh_fraction,
+        };
+        Self { objects: objects.each().map(counted).collect() }
+    }
 }

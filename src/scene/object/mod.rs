@@ -2,6 +2,7 @@
 
 mod device;
 mod frame;
+mod slots;
 
 use glam::Vec3;
 
@@ -11,16 +12,15 @@ use crate::scene::character::Character;
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
 use crate::scene::instances::Instances;
-use crate::scene::layers::CharacterOptions;
 use crate::scene::layout::error_vectors;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::mesh::{self, Drawn};
+use crate::scene::options::CharacterOptions;
 use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
-use crate::scene::terrain::{self, Terrain, TerrainSource};
-use crate::scene::view::SeenTerrain;
+use crate::scene::terrain::{self, SeenTerrain, Terrain, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;

@@ -5,39 +5,9 @@ use std::sync::Arc;
 use super::{FRAMES, LevelStatistics, ObjectStatistics, ViewStatistics};
 use crate::gpu::{Gpu, GpuError, ReadbackRing};
 use crate::lod::{OBJECT_LISTS, SceneDraw};
-use crate::scene::handles::{ObjectId, Slots};
+use crate::scene::handles::Slots;
+use crate::scene::layout::{Counted, CountedObject};
 use crate::scene::object::Object;
-
-/// An object whose draws are counted.
-#[derive(Debug, Clone)]
-pub(in crate::scene) struct CountedObject {
-    object: ObjectId,
-    /// The first draw of each of its chunks.
-    first_draws: Vec<u32>,
-    parts: u32,
-    levels: u32,
-    mesh_fraction: f32,
-}
-
-/// All objects of a layout whose draws are counted.
-#[derive(Debug)]
-pub(crate) struct Counted {
-    objects: Vec<CountedObject>,
-}
-
-impl Counted {
-    /// These objects, whose places a layout has set.
-    pub(in crate::scene) fn new(objects: &Slots<Object>) -> Self {
-        let counted = |(object, entry): (ObjectId, &Object)| CountedObject {
-            object,
-            first_draws: entry.chunks.iter().map(|chunk| chunk.range.first_draw).collect(),
-            parts: entry.draws.len() as u32 / OBJECT_LISTS,
-            levels: entry.errors.len() as u32,
-            mesh_fraction: entry.mesh_fraction,
-        };
-        Self { objects: objects.each().map(counted).collect() }
-    }
-}
 
 /// A frame on its way.
 #[derive(Debug)]

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use super::View;
 use crate::gpu::{Gpu, GpuError};
 use crate::scene::handles::Slots;
+use crate::scene::layout::Counted;
 use crate::scene::object::Object;
 use crate::scene::statistics::ViewStatistics;
-use crate::scene::statistics::view::{Counted, ViewCounts};
+use crate::scene::statistics::view::ViewCounts;
 
 impl View {
     /// What the view saw in the last frame whose counts have arrived; `None` before the first, and unless

@@ -51,19 +51,17 @@ impl ViewLists {
         let rows = Buffer::new(gpu, "placements in the view", 3 * instances)?;
         let lists = Buffer::new(gpu, "lists of instances", layout.list_words as usize)?;
         let arguments = Buffer::from_slice(gpu, "draws", &layout.draws)?;
-        let select = select.prepare(
-            gpu,
-            SelectBuffers {
-                view,
-                objects: &layout.objects,
-                block_objects: &layout.block_objects,
-                instances: &layout.instances,
-                allowed: &layout.allowed,
-                decisions: &decisions,
-                rows: &rows,
-                counts: &counts,
-            },
-        )?;
+        let buffers = SelectBuffers {
+            view,
+            objects: &layout.objects,
+            block_objects: &layout.block_objects,
+            instances: &layout.instances,
+            allowed: &layout.allowed,
+            decisions: &decisions,
+            rows: &rows,
+            counts: &counts,
+        };
+        let select = select.prepare(gpu, buffers)?;
         let buffers = ListBuffers {
             objects: &layout.objects,
             block_objects: &layout.block_objects,

@@ -24,10 +24,10 @@ use crate::scene::object::Object;
 use crate::scene::order::back_to_front;
 use crate::scene::quality::Quality;
 use crate::scene::statistics::view::ViewCounts;
+use crate::scene::terrain::SeenTerrain;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
-pub(crate) use uniforms::SeenTerrain;
 use uniforms::{lod_camera, terrain_view};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.

@@ -7,17 +7,9 @@ use crate::asset::Light;
 use crate::lod::{LodCamera, SelectView, VIEW_CAMERAS};
 use crate::scene::camera::{Camera, Depth};
 use crate::scene::placement::Placement;
+use crate::scene::terrain::SeenTerrain;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
-
-/// What a view needs to know of a terrain.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SeenTerrain {
-    /// World units between samples.
-    pub spacing: f64,
-    /// The number of the object.
-    pub object: u32,
-}
 
 impl SceneView {
     /// The view of a camera, and of the last frame's.

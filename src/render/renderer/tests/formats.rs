@@ -8,8 +8,8 @@ use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, renderer,
 use crate::Error;
 use crate::asset::material::Alpha;
 use crate::render::renderer::pipelines::{Kind, PipelineKey};
-use crate::render::renderer::{Layer, Renderer};
 use crate::render::{DepthFormat, TargetFormat};
+use crate::render::{Layer, Renderer};
 use crate::scene::drawable::SurfaceKind;
 use crate::scene::layouts::SceneLayouts;
 use crate::surface::{Green, Method, ReliefOptions, Shadow};

@@ -8,7 +8,7 @@ use crate::asset::material::{Alpha, Material, Sampling, Texture};
 use crate::asset::transform::{Affine, rows};
 use crate::asset::{Light, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::render::renderer::Layer;
+use crate::render::Layer;
 use crate::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, TargetFormat};
 use crate::samples::creature::creature;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};

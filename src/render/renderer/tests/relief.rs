@@ -6,7 +6,7 @@ use super::stage::{Canvas, FORMAT, Stage, differing, drawn, gpu, through, view};
 use crate::asset::Light;
 use crate::asset::transform::rows;
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::render::renderer::Layer;
+use crate::render::Layer;
 use crate::render::{ColorTexture, ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, TargetFormat};
 use crate::samples::maps::BuiltInMap;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};

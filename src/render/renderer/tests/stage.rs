@@ -2,12 +2,12 @@
 
 use glam::{Mat4, Vec3, Vec4, camera};
 
-use super::super::{Layer, Renderer};
 use crate::asset::Light;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, Group, Options, Uniform};
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw, SceneInstance};
 use crate::render::{DepthFormat, TargetFormat};
+use crate::render::{Layer, Renderer};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
 use crate::scene::layouts::SceneLayouts;
 use crate::shared::render::scene_view::SceneView;

@@ -5,7 +5,7 @@ use glam::{IVec2, Mat4, Vec3};
 use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, through};
 use crate::asset::transform::AFFINE_IDENTITY;
 use crate::gpu::{Buffer, Gpu, Group, Uniform};
-use crate::render::renderer::Layer;
+use crate::render::Layer;
 use crate::render::{Camera, Materials, Style, TargetFormat, TerrainRenderer};
 use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::layouts::SceneLayouts;

@@ -1,0 +1,20 @@
+//! The objects of a scene, by their handles.
+
+use crate::scene::handles::{InstanceId, ObjectId, Slots};
+use crate::scene::object::Object;
+
+impl Slots<Object> {
+    /// The object of an instance, if the instance exists.
+    pub fn existing(&self, instance: InstanceId) -> Option<&Object> {
+        let InstanceId { object: ObjectId { scene, index, generation }, .. } = instance;
+        let object = self.get([index, generation]).filter(|_| scene == self.scene())?;
+        object.instances.contains([instance.index, instance.generation]).then_some(object)
+    }
+
+    /// All objects with their handles, slot by slot.
+    pub fn each(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
+        let scene = self.scene();
+        self.numbered()
+            .map(move |([index, generation], object)| (ObjectId { scene, index, generation }, object))
+    }
+}
