@@ -41,6 +41,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/clip_clock", run: animation::clip_clock::bench::cases },
     Stem { name: "animation/gate", run: animation::gate::bench::cases },
     Stem { name: "animation/budget", run: animation::budget::bench::cases },
+    Stem { name: "animation/drive", run: animation::drive::bench::cases },
     Stem { name: "animation/compact", run: animation::compact::bench::cases },
     Stem { name: "animation/decide", run: animation::decide::bench::cases },
     Stem { name: "animation/sample", run: animation::sample::bench::cases },
@@ -57,6 +58,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "lod/list", run: lod::list::bench::cases },
     Stem { name: "lod/single", run: lod::single::bench::cases },
     Stem { name: "lod/assign", run: lod::assign::bench::cases },
+    Stem { name: "lod/attach", run: lod::attach::bench::cases },
     // It draws pictures, so it comes last: afterwards lavapipe's timestamps are too short (see its cases).
     Stem { name: "surface/relief", run: surface::relief::bench::cases },
 ];

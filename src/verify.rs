@@ -44,6 +44,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "animation/clip_clock", run: animation::clip_clock::verify::cases },
     Stem { name: "animation/gate", run: animation::gate::verify::cases },
     Stem { name: "animation/budget", run: animation::budget::verify::cases },
+    Stem { name: "animation/drive", run: animation::drive::verify::cases },
     Stem { name: "animation/compact", run: animation::compact::verify::cases },
     Stem { name: "animation/decide", run: animation::decide::verify::cases },
     Stem { name: "animation/sample", run: animation::sample::verify::cases },
@@ -60,6 +61,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "lod/list", run: lod::list::verify::cases },
     Stem { name: "lod/single", run: lod::single::verify::cases },
     Stem { name: "lod/assign", run: lod::assign::verify::cases },
+    Stem { name: "lod/attach", run: lod::attach::verify::cases },
 ];
 
 /// The results of all cases on one adapter.

@@ -1,6 +1,7 @@
 // What gates and skinning use of the displacement that the views of a frame allow: a thread shares out that of one
 // instance of a character among its bones, its influences and its mesh.
 import package::wgsl::animation::gate_state::{FULL_WEIGHT, LOD_HIDDEN, Lod, OMEGA_ONE};
+import package::wgsl::lod::instance::{INSTANCE_CARRIES, SceneInstance};
 import package::wgsl::lod::object::OBJECT_LEVELS;
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
@@ -39,6 +40,8 @@ struct AssignParams {
 @group(0) @binding(2) var<storage, read_write> lods: array<Lod>;
 // What skinning uses of them.
 @group(0) @binding(3) var<storage, read_write> instance_lods: array<InstanceLod>;
+// All instances of the scene.
+@group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
 
 // The coarsest level whose error is within its fraction.
 fn level_within(within: f32) -> u32 {
@@ -75,7 +78,9 @@ fn main(
         instance_lods[instance] = InstanceLod(0.0, 0u, 0u);
         return;
     }
+    // A mesh may reach further from a bone than the vertices for which the gate's table was made.
+    let carries = (instances[params.first + instance].flags & INSTANCE_CARRIES) != 0u;
     let units = u32(min(floor(params.bone_fraction * within / params.unit), MAX_UNITS));
-    lods[instance] = Lod(OMEGA_ONE, units, FULL_WEIGHT, 0u);
+    lods[instance] = Lod(OMEGA_ONE, select(units, 0u, carries), FULL_WEIGHT, 0u);
     instance_lods[instance] = InstanceLod(fade_within(within), params.max_influences, level_within(within));
 }

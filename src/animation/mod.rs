@@ -14,6 +14,7 @@ pub mod compact;
 #[cfg(feature = "gpu")]
 pub mod crowd;
 pub mod decide;
+pub mod drive;
 pub mod frame;
 pub mod gate;
 #[cfg(feature = "gpu")]

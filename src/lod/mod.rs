@@ -1,5 +1,6 @@
 //! Level of detail in scenes: which instances a view sees and how fine ([`select`]), in which order it draws them
-//! ([`list`]), how it draws instances one by one ([`single`]), and what gates and skinning make of the displacement that the views of a frame allow ([`assign`]).
+//! ([`list`]), how it draws instances one by one ([`single`]), and what gates and skinning make of the displacement that the views
+//! of a frame allow ([`assign`]). Meshes that are attached to bones are placed once these are posed ([`attach`]).
 //!
 //! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep instances and draws of their
 //! own: in a frame, record [`select`] and [`list`] for each view, the first of which says so
@@ -14,6 +15,7 @@
 //! too, once an instance's largest scale has divided them.
 
 pub mod assign;
+pub mod attach;
 mod camera;
 mod instance;
 pub mod list;
@@ -22,7 +24,8 @@ pub mod select;
 pub mod single;
 
 pub use crate::shared::lod::instance::{
-    CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, SceneInstance,
+    CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, INSTANCE_MASK_SHIFT,
+    SceneInstance,
 };
 pub use crate::shared::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 pub use crate::shared::lod::view::{LodCamera, SelectView, VIEW_CAMERAS};

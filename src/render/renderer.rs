@@ -2,6 +2,7 @@
 
 mod pipelines;
 mod programs;
+mod rebuild;
 mod scene_pass;
 #[cfg(all(test, feature = "samples"))]
 mod tests;

@@ -1,10 +1,10 @@
 //! A frame of a scene: what is recorded for it, and what is drawn of it.
 
 use crate::animation::Frame;
-use crate::gpu::{Staged, compute_pass};
+use crate::gpu::Staged;
 use crate::lod::{SceneInstance, SelectView};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
-use crate::scene::handles::foreign;
+use crate::scene::drive::Poses;
 use crate::scene::object::{self, Kind, Object};
 use crate::scene::order::Ordered;
 use crate::scene::stage::Stage;
@@ -12,6 +12,10 @@ use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
 use crate::{Error, InputError};
+
+/// What the caller records between sampling and model matrices.
+pub(super) type Between<'a> =
+    &'a mut dyn FnMut(&mut wgpu::CommandEncoder, Poses<'_>) -> Result<(), InputError>;
 
 impl Scene {
     /// Gives up all recordings whose encoders were dropped without being submitted, and lets everything start afresh, as
@@ -83,11 +87,22 @@ impl Scene {
         encoder: &mut wgpu::CommandEncoder,
         views: &mut [&mut View],
     ) -> Result<(), Error> {
+        self.record_frame(encoder, views, None)
+    }
+
+    /// Records a frame, with passes of the caller between sampling and model matrices.
+    pub(super) fn record_frame(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        views: &mut [&mut View],
+        between: Option<Between<'_>>,
+    ) -> Result<(), Error> {
         self.check(views)?;
         if self.is_empty() {
             self.uploaded = 0;
             return Ok(());
         }
+        self.objects.iter_mut().for_each(|object| object.settle(self.now));
         self.provide(views)?;
         self.fit(views)?;
         self.stage(views)?;
@@ -97,7 +112,7 @@ impl Scene {
             let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
         }
-        self.record_stages(encoder, views);
+        self.record_stages(encoder, views, between)?;
         self.count(encoder, views);
         views.iter_mut().for_each(|view| view.recorded(self.frames));
         self.frames += 1;
@@ -106,21 +121,35 @@ impl Scene {
         Ok(())
     }
 
-    /// Records all stages: in one compute pass, or in one each if their time is taken.
-    fn record_stages(&mut self, encoder: &mut wgpu::CommandEncoder, views: &[&mut View]) {
+    /// Records all stages: in one compute pass, or in one each if their time is taken, or in two with the caller's between.
+    fn record_stages(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        views: &[&mut View],
+        mut between: Option<Between<'_>>,
+    ) -> Result<(), InputError> {
         if let Some(timer) = &mut self.timer {
             timer.begin(encoder, self.frames);
         }
         let timed = |stage: Stage| self.timer.as_ref().and_then(|timer| timer.stage(stage as usize));
-        if timed(Stage::Select).is_none() {
-            let mut pass = compute_pass(encoder, "scene");
-            return Stage::ALL.into_iter().for_each(|stage| self.dispatch(stage, views, &mut pass));
-        }
-        for stage in Stage::ALL {
-            let (label, timestamp_writes) = (Some(stage.label()), timed(stage));
+        let runs: &[&[Stage]] = match (timed(Stage::Select).is_some(), between.is_some()) {
+            (true, _) => &Stage::EACH,
+            (false, true) => &Stage::HALVES,
+            (false, false) => &Stage::WHOLE,
+        };
+        for run in runs {
+            if run[0] == Stage::LocalToModel
+                && let Some(between) = between.take()
+            {
+                between(encoder, Poses { objects: &self.objects })?;
+            }
+            let timestamp_writes = if run.len() == 1 { timed(run[0]) } else { None };
+            let label = Some(if run.len() == 1 { run[0].label() } else { "scene" });
             let descriptor = wgpu::ComputePassDescriptor { label, timestamp_writes };
-            self.dispatch(stage, views, &mut encoder.begin_compute_pass(&descriptor));
+            let mut pass = encoder.begin_compute_pass(&descriptor);
+            run.iter().for_each(|stage| self.dispatch(*stage, views, &mut pass));
         }
+        Ok(())
     }
 
     fn dispatch(&self, stage: Stage, views: &[&mut View], pass: &mut wgpu::ComputePass<'_>) {
@@ -131,6 +160,9 @@ impl Scene {
             if let Kind::Character(character) = &object.kind {
                 character.dispatch(stage, pass);
             }
+        }
+        if stage == Stage::LocalToModel {
+            views.iter().for_each(|view| view.dispatch_attached(pass));
         }
     }
 
@@ -161,9 +193,7 @@ impl Scene {
         &'a self,
         view: &'a View,
     ) -> Result<Option<(DrawnView<'a>, Vec<DrawnObject<'a>>)>, InputError> {
-        if !view.is_of(self.objects.scene()) {
-            return Err(foreign("view"));
-        }
+        view.check(self, "view")?;
         if self.is_empty() {
             return Ok(None);
         }
@@ -221,9 +251,7 @@ impl Scene {
         if views.is_empty() {
             return Err(InputError::new("views", "none", "must be at least one"));
         }
-        if let Some(at) = views.iter().position(|view| !view.is_of(self.objects.scene())) {
-            return Err(foreign(&format!("views[{at}]")));
-        }
+        views.iter().enumerate().try_for_each(|(at, view)| view.check(self, &format!("views[{at}]")))?;
         if views.iter().any(|view| view.camera().is_none()) {
             return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));
         }
@@ -255,10 +283,13 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
+        self.attachments.fit(&self.gpu, &self.objects, layout, &mut self.staged)?;
         let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
             let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
+            let attachments = (&self.attachments, &self.objects);
+            view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;
             view.fit_counts(&self.gpu, self.counted.then_some(&layout.counted))?;
         }
         if self.counted && self.counts.as_ref().is_none_or(|counts| counts.version != layout.version) {

@@ -2,7 +2,9 @@
 
 use crate::asset::transform::Transform;
 use crate::scene::placement::Placement;
-use crate::shared::lod::instance::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, SceneInstance};
+use crate::shared::lod::instance::{
+    INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, INSTANCE_MASK_SHIFT, SceneInstance,
+};
 use crate::shared::lod::object::BLOCK;
 use crate::skinning::bounding_sphere::BoundingSphere;
 
@@ -170,8 +172,13 @@ impl Instances {
     }
 }
 
+/// Sets the visibility mask of an instance that exists, and whether it casts.
+pub(super) fn set_visibility(instance: &mut SceneInstance, mask: u16, casts: bool) {
+    instance.flags = flags(mask, casts) | instance.flags & (INSTANCE_CARRIES | INSTANCE_FOLLOWS);
+}
+
 /// The flags of an instance that exists.
-pub(super) fn flags(mask: u16, casts: bool) -> u32 {
+fn flags(mask: u16, casts: bool) -> u32 {
     INSTANCE_ALIVE | if casts { INSTANCE_CASTS } else { 0 } | u32::from(mask) << INSTANCE_MASK_SHIFT
 }
 

@@ -10,13 +10,16 @@
 //! [`Scene::health`] once a frame. The other forms do the same work, but their errors come with a later call;
 //! `Scene::add_terrain`, which waits, has the `_async` form alone.
 
+mod attach;
 mod camera;
 mod character;
 mod chunk;
 pub(crate) mod drawable;
+mod drive;
 mod frame;
 mod handles;
 mod instances;
+mod layers;
 pub(crate) mod layout;
 pub(crate) mod layouts;
 pub(crate) mod material;
@@ -27,14 +30,17 @@ mod measured;
 pub(crate) mod mesh;
 pub(crate) mod object;
 mod objects;
+mod options;
 pub(crate) mod order;
 mod paging;
 mod pick;
 mod placement;
 mod playing;
+mod poses;
 mod quality;
 pub(crate) mod query;
 mod ray;
+mod rebuild;
 mod relief;
 mod spawned;
 mod stage;
@@ -44,9 +50,12 @@ mod view;
 mod watch;
 
 pub use camera::{Camera, Depth};
+pub use drive::Poses;
 pub use handles::{InstanceId, ObjectId};
+pub use options::{CharacterOptions, LayerMask, RootOptions};
 pub use pick::Bounds;
 pub use placement::{ClipTime, Placement, Play};
+pub use poses::PoseBuffers;
 pub use quality::{Quality, Shares};
 pub use ray::{Hit, Ray};
 pub use relief::Relief;
@@ -60,10 +69,12 @@ pub use watch::{WatchedBone, WatchedBones};
 use crate::asset::Light;
 use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
+use crate::lod::attach::AttachPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::lod::single::SinglePass;
 use crate::{Error, InputError};
+use attach::Attachments;
 use handles::Slots;
 use layout::Layout;
 use layouts::SceneLayouts;
@@ -107,6 +118,8 @@ pub const RECORDINGS: usize = 4;
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
+    /// Counts the devices that it has had.
+    device: u32,
     objects: Slots<Object>,
     shares: Shares,
     light: Light,
@@ -129,6 +142,7 @@ pub struct Scene {
     counts: Option<SceneCounts>,
     timer: Option<StageTimer>,
     watch: Option<Watch>,
+    attachments: Attachments,
 }
 
 #[derive(Debug)]
@@ -137,6 +151,19 @@ struct Passes {
     list: ListPass,
     single: SinglePass,
     assign: AssignPass,
+    attach: AttachPass,
+}
+
+impl Passes {
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self {
+            select: SelectPass::new(gpu)?,
+            list: ListPass::new(gpu)?,
+            single: SinglePass::new(gpu)?,
+            assign: AssignPass::new(gpu)?,
+            attach: AttachPass::new(gpu)?,
+        })
+    }
 }
 
 impl Scene {
@@ -145,14 +172,10 @@ impl Scene {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, Error> {
-        let passes = Passes {
-            select: SelectPass::new(gpu)?,
-            list: ListPass::new(gpu)?,
-            single: SinglePass::new(gpu)?,
-            assign: AssignPass::new(gpu)?,
-        };
+        let passes = Passes::new(gpu)?;
         Ok(Self {
             gpu: gpu.clone(),
+            device: 0,
             objects: Slots::default(),
             shares: Shares::default(),
             light: Light::default(),
@@ -171,6 +194,7 @@ impl Scene {
             counts: None,
             timer: None,
             watch: None,
+            attachments: Attachments::default(),
         })
     }
 
@@ -270,6 +294,6 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, self.objects.scene(), quality)
+        View::new(&self.gpu, (self.objects.scene(), self.device), quality)
     }
 }

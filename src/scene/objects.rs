@@ -5,6 +5,7 @@ use crate::gpu::Upload as _;
 use crate::scene::Scene;
 use crate::scene::handles::{ObjectId, foreign, stale};
 use crate::scene::object::{Kind, Object};
+use crate::scene::options::CharacterOptions;
 use crate::scene::relief::Relief;
 use crate::scene::terrain::TerrainSource;
 use crate::terrain::mesh::GroundPoint;
@@ -81,7 +82,22 @@ impl Scene {
     /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
     /// [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
-        let object = self.character(model, capacity)?;
+        self.add_character_with(model, capacity, &CharacterOptions::default())
+    }
+
+    /// As [`Scene::add_character`], with layers of animation above the base, or with the motion of its root taken out of its
+    /// clips. A model without clips has neither.
+    ///
+    /// # Errors
+    /// As [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, and for
+    /// motion that cannot be taken out ([`RootMotion::extract`](crate::animation::RootMotion::extract)).
+    pub fn add_character_with(
+        &mut self,
+        model: &Model,
+        capacity: usize,
+        options: &CharacterOptions<'_>,
+    ) -> Result<ObjectId, Error> {
+        let object = self.character(model, capacity, options)?;
         Ok(self.add(object))
     }
 
@@ -91,20 +107,23 @@ impl Scene {
     /// # Errors
     /// As [`Scene::add_character`].
     pub async fn add_character_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
-        let object = self.character(model, capacity)?;
+        let object = self.character(model, capacity, &CharacterOptions::default())?;
         self.add_checked(object).await
     }
 
-    fn character(&self, model: &Model, capacity: usize) -> Result<Object, Error> {
+    fn character(
+        &self,
+        model: &Model,
+        capacity: usize,
+        options: &CharacterOptions<'_>,
+    ) -> Result<Object, Error> {
+        let layouts = &self.layouts_of_groups;
         match model.clips.is_empty() {
-            true => Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity),
-            false => Object::character(
-                &self.gpu,
-                &self.layouts_of_groups,
-                model,
-                capacity,
-                (self.shares, self.keeps_last),
-            ),
+            true => Object::mesh(&self.gpu, layouts, model, capacity),
+            false => {
+                let settings = (self.shares, self.keeps_last);
+                Object::character(&self.gpu, layouts, (model, options), capacity, settings)
+            }
         }
     }
 
@@ -153,6 +172,9 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn remove(&mut self, object: ObjectId) -> Result<(), InputError> {
+        for instance in self.instances(object)? {
+            self.let_go(instance)?;
+        }
         self.object_at(object)?;
         self.objects.remove([object.index, object.generation]);
         self.layout = None;

@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::InputError;
 use crate::scene::Scene;
-use crate::scene::handles::{InstanceId, ObjectId};
+use crate::scene::handles::InstanceId;
 use crate::scene::matrices::placed_model;
 use crate::scene::object::{Kind, Object};
 use crate::scene::ray::{Hit, Ray, Surface, SurfaceHit};
@@ -39,14 +39,14 @@ impl Scene {
     pub fn bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
         let object = self.object_of(instance)?;
         let entry = &object.instances.all()[instance.index as usize];
-        let placed = self.placed(instance.object, instance.index, entry.cell)?;
+        let placed = self.placed(instance, entry.cell)?;
         let [low, high] = match &object.kind {
             Kind::Terrain(_) => {
                 let [x, y, z, radius] = entry.bounding_sphere.map(f64::from);
                 let middle = placed.transform_point3(DVec3::new(x, y, z));
                 [middle - radius, middle + radius]
             }
-            Kind::Mesh(mesh) => (mesh.surfaces.iter().map(|surface| surface.bounds(placed)))
+            Kind::Mesh(mesh) => (mesh.surfaces().iter().map(|surface| surface.bounds(placed)))
                 .reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
                 .unwrap_or([placed.translation; 2]),
             Kind::Character(character) => {
@@ -78,8 +78,8 @@ impl Scene {
             if candidate.distance > farthest {
                 break;
             }
-            let InstanceId { object, index, .. } = candidate.instance;
-            let placed = self.placed(object, index, ray.cell)?;
+            let InstanceId { index, .. } = candidate.instance;
+            let placed = self.placed(candidate.instance, ray.cell)?;
             let found =
                 candidate.entry.hit(index, self.now, (placed, ray.cell), ([ray.at, direction], farthest))?;
             first = found.map(|hit| (hit, candidate.instance)).or(first);
@@ -94,13 +94,12 @@ impl Scene {
     }
 
     /// The transform of an instance from its model's space to the world, relative to the corner of a cell.
-    pub(super) fn placed(
-        &self,
-        object: ObjectId,
-        index: u32,
-        cell: [i32; 3],
-    ) -> Result<DAffine3, InputError> {
-        Ok(placed_model(&self.object_at(object)?.instances.all()[index as usize], cell))
+    pub(super) fn placed(&self, instance: InstanceId, cell: [i32; 3]) -> Result<DAffine3, InputError> {
+        if let Some(placed) = self.attached_placed(instance, cell)? {
+            return Ok(placed);
+        }
+        let object = self.object_of(instance)?;
+        Ok(placed_model(&object.instances.all()[instance.index as usize], cell))
     }
 
     /// The instances whose bounding spheres a ray meets within its limit.
@@ -158,12 +157,12 @@ impl Object {
         (placed, cell): (DAffine3, [i32; 3]),
         (ray, limit): ([DVec3; 2], f64),
     ) -> Result<Option<SurfaceHit>, InputError> {
-        let of_all = |surfaces: &[Surface]| {
+        let of_all = |surfaces: &[Surface<'_>]| {
             let hits = surfaces.iter().map(|surface| surface.hit(placed, ray, limit));
             hits.fold(None, SurfaceHit::nearer)
         };
         Ok(match &self.kind {
-            Kind::Mesh(mesh) => of_all(&mesh.surfaces),
+            Kind::Mesh(mesh) => of_all(&mesh.surfaces()),
             Kind::Character(character) => of_all(&character.surface(index, now)?),
             Kind::Terrain(terrain) => terrain.hit(index, cell, ray, limit),
         })

@@ -20,12 +20,15 @@ impl Scene {
         Ok(all.map(|[index, generation]| InstanceId { object, index, generation }).collect())
     }
 
-    /// Where an instance stands.
+    /// Where an instance stands; of one that is attached to a bone, where it stands when it is detached.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn placement(&self, instance: InstanceId) -> Result<Placement, InputError> {
         let InstanceId { object, index, .. } = self.existing(instance)?;
+        if let Some(placement) = self.detached_placement(instance) {
+            return Ok(placement);
+        }
         let SceneInstance { cell, offset, rotation, scale, .. } =
             self.object_at(object)?.instances.all()[index as usize];
         let turn = glam::Quat::from_array(rotation);

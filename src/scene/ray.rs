@@ -1,5 +1,7 @@
 //! Rays, and the surfaces that they hit on the host.
 
+use std::borrow::Cow;
+
 use glam::{DAffine3, DMat4, DVec3};
 
 use crate::InputError;
@@ -87,10 +89,10 @@ impl Ray {
 
 /// Triangles on the host, in a model's space.
 #[derive(Debug, Clone)]
-pub(super) struct Surface {
-    positions: Vec<[f32; 3]>,
+pub(super) struct Surface<'a> {
+    positions: Cow<'a, [[f32; 3]]>,
     /// Runs of triangles, each with whether both of its sides are seen.
-    parts: Vec<(Vec<u32>, bool)>,
+    parts: Vec<(&'a [u32], bool)>,
 }
 
 /// A hit of a surface: the distance, and the triangle's normal of any length.
@@ -108,19 +110,19 @@ impl SurfaceHit {
     }
 }
 
-impl Surface {
+impl<'a> Surface<'a> {
     /// Triangles whose sides are both seen or not.
-    pub fn new(positions: Vec<[f32; 3]>, indices: Vec<u32>, double_sided: bool) -> Self {
-        Self { positions, parts: vec![(indices, double_sided)] }
+    pub fn new(positions: impl Into<Cow<'a, [[f32; 3]]>>, indices: &'a [u32], double_sided: bool) -> Self {
+        Self { positions: positions.into(), parts: vec![(indices, double_sided)] }
     }
 
     /// A merged mesh in full detail, with these positions of its vertices.
-    pub fn of_merged(merged: &Merged, mesh: usize, positions: Vec<[f32; 3]>) -> Self {
+    pub fn of_merged(merged: &'a Merged, mesh: usize, positions: impl Into<Cow<'a, [[f32; 3]]>>) -> Self {
         let own = merged.parts.iter().filter(|part| part.mesh == mesh);
         let indices = &merged.model.meshes[mesh].indices;
-        let part = |range: &std::ops::Range<u32>| indices[range.start as usize..range.end as usize].to_vec();
+        let part = |range: &std::ops::Range<u32>| &indices[range.start as usize..range.end as usize];
         let parts = own.map(|part_of| (part(&part_of.indices[0]), part_of.key.double_sided)).collect();
-        Self { positions, parts }
+        Self { positions: positions.into(), parts }
     }
 
     /// The corners of a box around the surface, along the axes of the space into which `placed` leads.
@@ -163,7 +165,7 @@ mod tests {
     #[test]
     fn triangles_are_hit_where_they_are_seen() {
         let surface =
-            Surface::new(vec![[0.0, 0.0, -2.0], [2.0, 0.0, -2.0], [0.0, 2.0, -2.0]], vec![0, 1, 2], false);
+            Surface::new(vec![[0.0, 0.0, -2.0], [2.0, 0.0, -2.0], [0.0, 2.0, -2.0]], &[0, 1, 2], false);
         let ray = [DVec3::new(0.5, 0.5, 0.0), DVec3::NEG_Z];
         let hit = |placed: DAffine3, ray: [DVec3; 2], limit: f64| {
             surface.hit(placed, ray, limit).map(|hit| hit.distance)

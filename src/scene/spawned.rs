@@ -49,20 +49,31 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, and for a patch of terrain.
     pub fn despawn(&mut self, instance: InstanceId) -> Result<(), InputError> {
-        self.spawned_mut(instance)?.instances.despawn(instance.index);
+        self.spawned_mut(instance)?;
+        self.let_go(instance)?;
+        let object = self.instance_mut(instance)?;
+        if let Kind::Character(character) = &mut object.kind {
+            character.let_go(instance.index);
+        }
+        object.instances.despawn(instance.index);
         Ok(())
     }
 
-    /// Moves, turns and scales an instance: replaces its placement.
+    /// Moves, turns and scales an instance: replaces its placement. One that is attached to a bone stays there, and takes the
+    /// placement when it is detached.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and as
     /// [`Placement::checked`].
     pub fn move_to(&mut self, instance: InstanceId, placement: Placement) -> Result<(), InputError> {
         let placement = placement.checked()?;
-        let object = self.spawned_mut(instance)?;
+        self.spawned_mut(instance)?;
+        if self.move_detached(instance, placement) {
+            return Ok(());
+        }
+        let object = self.instance_mut(instance)?;
         object.instances.change(instance.index, |instance| instances::place(instance, &placement));
-        Ok(())
+        self.carry(instance)
     }
 
     /// Lets a character play a clip, at once and without a transition.
@@ -77,7 +88,7 @@ impl Scene {
         };
         let sphere = character.play(instance.index, play)?;
         object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
-        Ok(())
+        self.carry(instance)
     }
 
     /// Sets the factor of an instance's colours: red, green, blue and alpha, each 0 to 1, in linear light; (1, 1, 1, 1) at
@@ -111,7 +122,9 @@ impl Scene {
     /// [`InputError`] for an instance that does not exist any more.
     pub fn set_visibility(&mut self, instance: InstanceId, mask: u16, casts: bool) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
-        object.instances.change(instance.index, |instance| instance.flags = instances::flags(mask, casts));
+        object.instances.change(instance.index, |instance| {
+            instances::set_visibility(instance, mask, casts);
+        });
         Ok(())
     }
 
@@ -127,7 +140,7 @@ impl Scene {
         }
     }
 
-    fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
+    pub(super) fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
         let InstanceId { index, generation, .. } = instance;
         let object = self.object_mut(instance.object)?;
         match object.instances.contains([index, generation]) {

@@ -22,6 +22,17 @@ impl Stage {
     /// All stages, in order.
     pub const ALL: [Self; STAGES] = [Self::Select, Self::Gate, Self::Sample, Self::LocalToModel, Self::Skin];
 
+    /// All in one run.
+    pub const WHOLE: [&[Self]; 1] = [&Self::ALL];
+
+    /// Each in a run of its own.
+    pub const EACH: [&[Self]; STAGES] =
+        [&[Self::Select], &[Self::Gate], &[Self::Sample], &[Self::LocalToModel], &[Self::Skin]];
+
+    /// In two runs, between which the caller may write poses.
+    pub const HALVES: [&[Self]; 2] =
+        [&[Self::Select, Self::Gate, Self::Sample], &[Self::LocalToModel, Self::Skin]];
+
     /// The label of its compute pass.
     pub fn label(self) -> &'static str {
         match self {

@@ -90,6 +90,8 @@ pub(super) struct Terrain {
     edge: f64,
     /// World units between samples.
     pub spacing: f64,
+    /// What it was generated from.
+    pub source: TerrainSource,
 }
 
 impl Terrain {
@@ -158,6 +160,7 @@ pub(super) async fn generated(
         patches: patches.clone(),
         edge: config.edge_length(),
         spacing: config.terrain_scale,
+        source: source.clone(),
     };
     Ok((terrain, instances, (vec![drawable], draws)))
 }

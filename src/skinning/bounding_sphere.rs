@@ -36,6 +36,20 @@ impl BoundingSphere {
         Self { center, radius: MARGIN * points.map(|point| point.distance(center)).fold(0.0, f32::max) }
     }
 
+    /// A sphere around this one and another.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        let (apart, towards) = (self.center.distance(other.center), other.center - self.center);
+        if apart + other.radius <= self.radius {
+            return *self;
+        }
+        if apart + self.radius <= other.radius {
+            return *other;
+        }
+        let radius = (apart + self.radius + other.radius) / 2.0;
+        // Larger by a little, for rounding.
+        Self { center: self.center + towards * ((radius - self.radius) / apart), radius: 1.000_01 * radius }
+    }
+
     /// A sphere around all meshes at rest and in every clip, for
     /// [`LodView`](super::lod::LodView). Clips are sampled 60 times a second, at least 32 times; a clip of more
     /// than an hour is sampled 216,001 times, at larger intervals. The sphere is enlarged by a twentieth for motion
@@ -74,7 +88,7 @@ pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
 }
 
 /// The transforms of all bones at the sampled moments of a clip.
-fn poses(clip: &Clip) -> impl Iterator<Item = Vec<Transform>> {
+pub(crate) fn poses(clip: &Clip) -> impl Iterator<Item = Vec<Transform>> {
     let [least, most] = MOMENTS;
     let moments = poses_of(clip).unwrap_or(most).max(least);
     let time = move |moment| clip.duration() * (moment as f32 / (moments - 1) as f32);
@@ -152,6 +166,26 @@ mod tests {
         assert_eq!(BoundingSphere::in_clips(&bare), none);
         assert_eq!(BoundingSphere::in_clip(&bare, 0), none);
         assert_eq!(BoundingSphere::around(std::iter::empty()), none);
+    }
+
+    #[test]
+    fn a_sphere_holds_two() {
+        let sphere = |x: f32, radius: f32| BoundingSphere { center: Vec3::X * x, radius };
+        for (a, b) in [
+            (sphere(0.0, 1.0), sphere(5.0, 2.0)),
+            (sphere(0.0, 9.0), sphere(1.0, 2.0)),
+            (sphere(1.0, 1.0), sphere(1.0, 1.0)),
+        ] {
+            for (one, other) in [(a, b), (b, a)] {
+                let both = one.with(&other);
+                let holds = |of: &BoundingSphere| {
+                    both.center.distance(of.center) + of.radius <= 1.000_1 * both.radius
+                };
+                assert!(holds(&a) && holds(&b), "{both:?}");
+                let least = (a.center.distance(b.center) + a.radius + b.radius) / 2.0;
+                assert!(both.radius <= 1.000_1 * least.max(a.radius).max(b.radius), "{both:?}");
+            }
+        }
     }
 
     #[test]

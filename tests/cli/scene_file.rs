@@ -171,7 +171,7 @@ fn split_and_reversed_pictures_are_the_same() {
 fn depth_is_the_distance_ahead() {
     let folder = Folder::new();
     let scene = json!({
-        "meshes": [{"file": "builtin:wall", "instances": [{"at": [0, -1, 0], "scale": [9, 9, 2]}]}],
+        "meshes": [{"file": "builtin:wall", "instances": [{"at": [0, -5, 0], "scale": [9, 9, 2]}]}],
         "camera": {"at": [0, 1, 5.5], "look": [0, 1, 0], "near": 0.25},
     });
     for depth in ["forward", "reversed"] {

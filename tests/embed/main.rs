@@ -4,12 +4,14 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+mod bones;
 mod chunks;
 #[cfg(unix)]
 mod cost;
 mod counts;
 mod frame;
 mod host;
+mod layers;
 mod life;
 mod materials;
 mod misuse;
@@ -19,6 +21,7 @@ mod promise;
 mod query;
 mod raw;
 mod rays;
+mod rebuild;
 mod shading;
 mod sides;
 mod solids;

@@ -18,7 +18,6 @@ mod levels;
 mod materials;
 mod mirrored;
 mod scene;
-mod scene_file;
 mod skinned;
 mod tiling;
 

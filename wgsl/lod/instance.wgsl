@@ -8,6 +8,10 @@ const CELL_SIZE: f32 = 256.0;
 const INSTANCE_ALIVE = 1u;
 // The instance casts shadows.
 const INSTANCE_CASTS = 2u;
+// The instance is a character that carries a mesh: its bones are sampled in every frame that sees it.
+const INSTANCE_CARRIES = 4u;
+// The instance is a mesh that is attached to a bone: only its rows in a view tell where it is.
+const INSTANCE_FOLLOWS = 8u;
 // The first bit of the visibility mask, which takes the upper half of `flags`.
 const INSTANCE_MASK_SHIFT = 16u;
 
@@ -15,7 +19,7 @@ const INSTANCE_MASK_SHIFT = 16u;
 struct SceneInstance {
     // The cell that holds its position.
     cell: vec3<i32>,
-    // `INSTANCE_ALIVE`, `INSTANCE_CASTS`, and from bit `INSTANCE_MASK_SHIFT` on the 16 bits of its visibility mask.
+    // `INSTANCE_ALIVE`, `INSTANCE_CASTS`, `INSTANCE_CARRIES`, `INSTANCE_FOLLOWS`, and from bit `INSTANCE_MASK_SHIFT` on the 16 bits of its visibility mask.
     flags: u32,
     // Its position in the cell, in world units.
     offset: vec3<f32>,

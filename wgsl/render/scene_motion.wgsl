@@ -1,5 +1,5 @@
 // Where the instances of a scene were in the last frame, and how far their surfaces moved on the screen since.
-import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
+import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
 import package::wgsl::render::scene_vertex::{mesh, rows, vertex_index_of, vertices};
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_position};
@@ -11,9 +11,13 @@ import package::wgsl::skinning::vertex::vertex_position;
 // Determinants below this have no inverse.
 const LEAST_DETERMINANT: f32 = 1e-30;
 
-// The transform that an instance had, from the model's space to positions relative to the corner of the view's cell.
+// The transform that an instance had, from the model's space to positions relative to the corner of the view's cell. Where a
+// bone had taken a mesh is not kept: it counts as if it had been there already.
 fn last_rows(index: u32) -> Rows {
     let instance = last_instances[index];
+    if (instance.flags & INSTANCE_FOLLOWS) != 0u {
+        return Rows(rows[3u * index], rows[3u * index + 1u], rows[3u * index + 2u]);
+    }
     let axes = instance_axes(instance);
     let at = instance_position(instance, view.cell);
     return Rows(

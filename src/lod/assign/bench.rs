@@ -8,6 +8,7 @@ use crate::gpu::{Buffer, Uniform};
 use crate::harness::{Backend, Bench, Contender};
 use crate::lod::assign::reference::assign;
 use crate::lod::assign::{AssignBuffers, AssignPass};
+use crate::lod::verify::random_instances;
 use crate::terrain::bench::copy_of;
 
 /// Measures characters of which three quarters are seen.
@@ -35,18 +36,19 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         let buffers = AssignBuffers {
             params: &Uniform::new(gpu, "params", &params)?,
             allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
+            instances: &Buffer::from_slice(gpu, "instances", &random_instances(1, count))?,
             lods: &Buffer::new(gpu, "lods", count)?,
             instance_lods: &Buffer::new(gpu, "instance_lods", count)?,
         };
         let job = pass.prepare(gpu, buffers, count as u32)?;
-        // The kernel reads a word and writes a Lod and an InstanceLod.
-        let words = 8 * count;
+        // The kernel reads two words and writes a Lod and an InstanceLod.
+        let words = 9 * count;
         let copied = copy_of(gpu, words / 2)?;
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
             Contender::host(Backend::Reference, || {
-                let all = allowed.iter().map(|allowed| assign(&params, *allowed));
+                let all = allowed.iter().map(|allowed| assign(&params, *allowed, false));
                 drop(std::hint::black_box(all.collect::<Vec<_>>()));
             }),
         ];

@@ -5,6 +5,7 @@ use crate::Error;
 use crate::animation::lod::PackedLod;
 use crate::gpu::bindings::lod::assign as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::lod::SceneInstance;
 use crate::skinning::instance_lod::InstanceLod;
 
 /// What an assignment reads and writes.
@@ -14,6 +15,8 @@ pub struct AssignBuffers<'a> {
     pub params: &'a Uniform<AssignParams>,
     /// For each instance of the scene the displacement that is allowed, in the model's units, negative if none sees it.
     pub allowed: &'a Buffer<f32>,
+    /// All instances of the scene.
+    pub instances: &'a Buffer<SceneInstance>,
     /// Written, one for each instance of the object: what gates use.
     pub lods: &'a Buffer<PackedLod>,
     /// Written, one for each instance of the object: what skinning uses.
@@ -41,11 +44,13 @@ impl AssignPass {
     /// [`InputError`](crate::InputError) for buffers that hold less; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, buffers: AssignBuffers<'_>, instances: u32) -> Result<Job, Error> {
         buffers.allowed.check_holds("allowed", instances as usize)?;
+        buffers.instances.check_holds("instances", instances as usize)?;
         buffers.lods.check_holds("lods", instances as usize)?;
         buffers.instance_lods.check_holds("instance_lods", instances as usize)?;
         let group = bindings::Group {
             params: buffers.params,
             allowed: buffers.allowed.slice(),
+            instances: buffers.instances.slice(),
             lods: buffers.lods.slice(),
             instance_lods: buffers.instance_lods.slice(),
         };

@@ -7,12 +7,13 @@ use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
 use crate::skinning::instance_lod::InstanceLod;
 
 /// What gates and skinning use of an instance, from the displacement that it is allowed in the model's units, which is
-/// negative if no view sees it.
-pub fn assign(params: &AssignParams, allowed: f32) -> (Lod, InstanceLod) {
+/// negative if no view sees it. If it carries a mesh, no bone may be off.
+pub fn assign(params: &AssignParams, allowed: f32, carries: bool) -> (Lod, InstanceLod) {
     if allowed < 0.0 {
         return (Lod { sampling: Sampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
     }
-    let lod = Lod { allowed: units(params, allowed).floor().min(MAX_UNITS) as u32, ..Lod::FULL };
+    let units = if carries { 0.0 } else { units(params, allowed) };
+    let lod = Lod { allowed: units.floor().min(MAX_UNITS) as u32, ..Lod::FULL };
     let errors = params.errors.map(|errors| errors.to_array());
     let instance_lod = InstanceLod {
         influence_fade: fade_steps(params, allowed).floor() / FADE_STEPS,

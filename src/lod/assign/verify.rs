@@ -12,6 +12,8 @@ use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::Poisoned;
 use crate::lod::assign::reference::assign;
 use crate::lod::assign::{AssignBuffers, AssignPass};
+use crate::lod::verify::random_instances;
+use crate::lod::{INSTANCE_CARRIES, SceneInstance};
 use crate::skinning::instance_lod::InstanceLod;
 
 /// How far rounding may move the quotients: products round by 2⁻²³, divisions by 5 · 2⁻²⁴.
@@ -32,6 +34,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         for levels in [1, 2, 5, 8] {
             let params = params(64 * case, instances, levels);
             let allowed = random_allowed(case, (64 * case + instances) as usize + 64);
+            let all = random_carriers(case, allowed.len());
             let (lods, instance_lods) = (
                 Poisoned::<PackedLod>::new(gpu, instances as usize)?,
                 Poisoned::new(gpu, instances as usize)?,
@@ -39,17 +42,20 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             let buffers = AssignBuffers {
                 params: &Uniform::new(gpu, "params", &params)?,
                 allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
+                instances: &Buffer::from_slice(gpu, "instances", &all)?,
                 lods: &lods.buffer,
                 instance_lods: &instance_lods.buffer,
             };
             // More threads than instances.
             let job = pass.prepare(gpu, buffers, instances)?;
             gpu.run("verify", |encoder| job.record(encoder))?;
-            let allowed = &allowed[params.first as usize..][..instances as usize];
+            let of_object = params.first as usize..(params.first + instances) as usize;
+            let allowed: Vec<(f32, bool)> =
+                allowed[of_object.clone()].iter().copied().zip(all[of_object].iter().map(carries)).collect();
             let name = format!("{instances} instances, {levels} levels");
-            let gates = lods.check(gpu, |lods| compared_lods(&params, allowed, lods))?;
+            let gates = lods.check(gpu, |lods| compared_lods(&params, &allowed, lods))?;
             cases.add(format!("{name}: gates"), gates);
-            let skins = instance_lods.check(gpu, |lods| compared_instance_lods(&params, allowed, lods))?;
+            let skins = instance_lods.check(gpu, |lods| compared_instance_lods(&params, &allowed, lods))?;
             cases.add(format!("{name}: skins"), skins);
         }
     }
@@ -85,20 +91,34 @@ fn random_allowed(case: u32, count: usize) -> Vec<f32> {
     (0..count).map(&mut random).collect()
 }
 
+/// Instances of which some carry a mesh.
+fn random_carriers(case: u32, count: usize) -> Vec<SceneInstance> {
+    let mut draw = Draw::new(case ^ 0xca44);
+    let mut all = random_instances(case, count);
+    for instance in all.iter_mut().filter(|_| draw.word().is_multiple_of(5)) {
+        instance.flags |= INSTANCE_CARRIES;
+    }
+    all
+}
+
+fn carries(instance: &SceneInstance) -> bool {
+    instance.flags & INSTANCE_CARRIES != 0
+}
+
 /// The right results, as the kernel writes them.
-fn packed(params: &AssignParams, allowed: f32) -> (PackedLod, InstanceLod) {
-    let (lod, instance_lod) = assign(params, allowed);
+fn packed(params: &AssignParams, (allowed, carries): (f32, bool)) -> (PackedLod, InstanceLod) {
+    let (lod, instance_lod) = assign(params, allowed, carries);
     (lod.packed(), instance_lod)
 }
 
 /// The right results for the displacement as it is, and for the least and the largest to which rounding may change it.
-fn around(params: &AssignParams, allowed: f32) -> [(PackedLod, InstanceLod); 3] {
-    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, factor * allowed))
+fn around(params: &AssignParams, (allowed, carries): (f32, bool)) -> [(PackedLod, InstanceLod); 3] {
+    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, (factor * allowed, carries)))
 }
 
 /// Units must lie between those of the least and the largest displacement; everything else must be equal.
-fn compared_lods(params: &AssignParams, allowed: &[f32], found: &[PackedLod]) -> Comparison {
-    let judge = |(found, allowed): (&PackedLod, &f32)| {
+fn compared_lods(params: &AssignParams, allowed: &[(f32, bool)], found: &[PackedLod]) -> Comparison {
+    let judge = |(found, allowed): (&PackedLod, &(f32, bool))| {
         let [(right, _), (least, _), (largest, _)] = around(params, *allowed);
         let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
             && PackedLod { allowed: right.allowed, ..*found } == right;
@@ -107,13 +127,17 @@ fn compared_lods(params: &AssignParams, allowed: &[f32], found: &[PackedLod]) ->
     };
     let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
     each(&judgements, "units", MAY_TOUCH, |at| {
-        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).0)
+        format!("{:?} instead of {:?}", found[at], packed(params, allowed[at]).0)
     })
 }
 
 /// A level or a fade may be that of the least or of the largest displacement, if these differ.
-fn compared_instance_lods(params: &AssignParams, allowed: &[f32], found: &[InstanceLod]) -> Comparison {
-    let judge = |(found, allowed): (&InstanceLod, &f32)| {
+fn compared_instance_lods(
+    params: &AssignParams,
+    allowed: &[(f32, bool)],
+    found: &[InstanceLod],
+) -> Comparison {
+    let judge = |(found, allowed): (&InstanceLod, &(f32, bool))| {
         let [(_, right), (_, least), (_, largest)] = around(params, *allowed);
         let is_right = (least.influence_fade..=largest.influence_fade).contains(&found.influence_fade)
             && (least.mesh_lod..=largest.mesh_lod).contains(&found.mesh_lod)
@@ -125,7 +149,7 @@ fn compared_instance_lods(params: &AssignParams, allowed: &[f32], found: &[Insta
     };
     let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
     each(&judgements, "fade", MAY_TOUCH, |at| {
-        format!("{:?} instead of {:?}", found[at], assign(params, allowed[at]).1)
+        format!("{:?} instead of {:?}", found[at], packed(params, allowed[at]).1)
     })
 }
 
@@ -137,14 +161,18 @@ mod tests {
     #[test]
     fn what_is_wrong_of_one_instance_is_seen() {
         let params = params(0, 200, 5);
-        let allowed = random_allowed(5, 200);
+        let carriers = random_carriers(5, 200);
+        let allowed: Vec<(f32, bool)> =
+            random_allowed(5, 200).into_iter().zip(carriers.iter().map(carries)).collect();
         let (lods, instance_lods): (Vec<PackedLod>, Vec<InstanceLod>) =
             allowed.iter().map(|allowed| packed(&params, *allowed)).unzip();
         assert!(compared_lods(&params, &allowed, &lods).holds);
         assert!(compared_instance_lods(&params, &allowed, &instance_lods).holds);
-        let unseen = allowed.iter().position(|allowed| *allowed < 0.0).expect("some");
+        let unseen = allowed.iter().position(|(allowed, _)| *allowed < 0.0).expect("some");
         let faded =
-            instance_lods.iter().position(|lod| (0.1..0.9).contains(&lod.influence_fade)).expect("some");
+            (0..200).position(|at| (0.1..0.9).contains(&instance_lods[at].influence_fade) && !allowed[at].1);
+        let faded = faded.expect("some");
+        let carrier = allowed.iter().position(|(allowed, carries)| *allowed > 0.1 && *carries).expect("some");
         let gate = |at: usize, change: fn(&mut PackedLod)| {
             let mut found = lods.clone();
             change(&mut found[at]);
@@ -152,6 +180,7 @@ mod tests {
         };
         assert!(!gate(unseen, |lod| lod.flags = 0) && !gate(faded, |lod| lod.flags = LOD_HIDDEN));
         assert!(!gate(faded, |lod| lod.allowed += lod.allowed / 1000));
+        assert!(!gate(carrier, |lod| lod.allowed = 1));
         assert!(!gate(faded, |lod| lod.omega = 0) && !gate(faded, |lod| lod.weight -= 1));
         let skin = |at: usize, change: fn(&mut InstanceLod)| {
             let mut found = instance_lods.clone();
@@ -169,12 +198,13 @@ mod tests {
     fn an_edge_may_go_either_way() {
         let params = params(0, 1, 5);
         let edge = params.errors[0].y / params.mesh_fraction;
-        let (_, right) = assign(&params, edge);
-        let level =
-            |level| compared_instance_lods(&params, &[edge], &[InstanceLod { mesh_lod: level, ..right }]);
+        let (_, right) = assign(&params, edge, false);
+        let level = |level| {
+            compared_instance_lods(&params, &[(edge, false)], &[InstanceLod { mesh_lod: level, ..right }])
+        };
         assert!(level(0).holds && level(1).holds && !level(2).holds);
         assert_eq!(level(0).spread.expect("given").touching, 1);
-        let two = compared_instance_lods(&params, &[edge; 2], &[right; 2]);
+        let two = compared_instance_lods(&params, &[(edge, false); 2], &[right; 2]);
         assert!(!two.holds && two.fault.expect("a fault").contains("2 of 2 touch"));
     }
 }

@@ -1,12 +1,14 @@
 //! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
 
+mod driven;
+mod layers;
 mod posed;
 mod provide;
 mod runtime;
 
 use std::ops::Range;
 
-use crate::animation::{BoundTable, ClipSet, Frame, Gate, RotationPath};
+use crate::animation::{BoundTable, ClipSet, Frame, Gate, RootMotion, RotationPath};
 #[cfg(feature = "verify")]
 use crate::asset::Affine;
 use crate::asset::mesh::bone_radii;
@@ -20,6 +22,7 @@ use crate::scene::layout::{Layout, error_vectors};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::mesh;
+use crate::scene::options::{CharacterOptions, bone_of};
 use crate::scene::placement::Play;
 use crate::scene::playing::Playing;
 use crate::scene::quality::Shares;
@@ -33,8 +36,10 @@ use crate::skinning::paged::PagedSkin;
 use crate::skinning::vertex::Vertex;
 use crate::skinning::{Extent, poses_of};
 use crate::{Error, InputError};
+use driven::Driven;
+use layers::{CharacterLayer, Reach};
 pub(super) use provide::{Provided, Replaced};
-use runtime::{Runtime, Shared};
+pub(super) use runtime::{Runtime, Shared};
 
 /// The time in seconds after which starts are counted from a later moment, because `f32` seconds lose precision.
 const EPOCH: f64 = 128.0;
@@ -57,6 +62,12 @@ pub(super) struct Character {
     epoch: f64,
     /// Whether last positions are kept.
     keeps_last: bool,
+    driven: Driven,
+    layers: Vec<CharacterLayer>,
+    /// How far bones get in blends; `None` if there are no layers.
+    reach: Option<Reach>,
+    /// The motion that was taken out of each clip.
+    motions: Option<Vec<RootMotion>>,
     shared: Shared,
     /// One for each chunk of instances, in ascending order.
     runtimes: Vec<Runtime>,
@@ -68,7 +79,13 @@ pub(super) struct Character {
 
 impl Character {
     /// Prepares a model that has clips, with room for `capacity` instances.
-    pub fn new(gpu: &Gpu, merged: Merged, capacity: usize, keeps_last: bool) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Gpu,
+        mut merged: Merged,
+        options: &CharacterOptions<'_>,
+        (capacity, keeps_last): (usize, bool),
+    ) -> Result<Self, Error> {
+        let motions = options.root_motion.map(|root| root.take(&mut merged.model)).transpose()?;
         let model = &merged.model;
         let clips: Vec<_> = model.clips.iter().collect();
         let set = ClipSet::new(&clips)?;
@@ -79,9 +96,13 @@ impl Character {
         let every: Vec<usize> = (0..clips.len()).collect();
         let stray = Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
         let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
-        let shared = Shared::new(gpu, model, set, Gate::Bounded(table))?;
+        let bone = |name: &str| bone_of(model, name);
+        let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
+        let masks = layers.iter().map(|layer| layer.mask.clone()).collect();
+        let shared = Shared::new(gpu, model, (set, Gate::Bounded(table)), masks)?;
         let follows = radii.iter().zip(followed(model));
-        let radii = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
+        let radii: Vec<_> = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
+        let reach = (!layers.is_empty()).then(|| Reach::new(model, &radii));
         let plays = vec![Playing::REST; capacity];
         let runtimes = Runtime::all(gpu, model, &shared, 0..capacity, keeps_last)?;
         let mut changed = Changed::default();
@@ -97,6 +118,10 @@ impl Character {
             changed,
             epoch,
             keeps_last,
+            driven: Driven::default(),
+            layers,
+            reach,
+            motions,
             shared,
             runtimes,
             replaced: Replaced::Nothing,
@@ -109,16 +134,35 @@ impl Character {
         self.keeps_last = keeps_last;
     }
 
-    /// Makes room for more instances. All of them start afresh.
+    /// Makes room for more instances. All of them start afresh. If it fails, nothing has changed.
     pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
         let model = &self.merged.model;
         self.runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
+        self.start_afresh(capacity);
+        Ok(())
+    }
+
+    /// Everything on another device.
+    pub fn on(&self, gpu: &Gpu) -> Result<(Shared, Vec<Runtime>), Error> {
+        let model = &self.merged.model;
+        let shared = self.shared.on(gpu, model)?;
+        let runtimes = Runtime::all(gpu, model, &shared, 0..self.plays.len(), self.keeps_last)?;
+        Ok((shared, runtimes))
+    }
+
+    /// Takes everything on another device. All instances start afresh.
+    pub fn adopt(&mut self, (shared, runtimes): (Shared, Vec<Runtime>)) {
+        (self.shared, self.runtimes) = (shared, runtimes);
+        self.start_afresh(self.plays.len());
+    }
+
+    fn start_afresh(&mut self, capacity: usize) {
         self.is_memory_short = false;
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
+        self.layers.iter_mut().for_each(|layer| layer.resize(capacity));
         // As in a scene that was made anew, whose starts are rounded alike.
         self.epoch = 0.0;
-        Ok(())
     }
 
     /// A sphere around an instance that plays the first clip.
@@ -145,6 +189,15 @@ impl Character {
 
     /// The chunks of its instances. What is drawn of them differs in the pages; `first` has the meshes and materials.
     pub fn chunks(&self, gpu: &Gpu, layouts: &SceneLayouts, first: &[Drawable]) -> Result<Vec<Chunk>, Error> {
+        Self::chunks_of((gpu, layouts), first, &self.runtimes)
+    }
+
+    /// As [`Character::chunks`], of these.
+    pub fn chunks_of(
+        (gpu, layouts): (&Gpu, &SceneLayouts),
+        first: &[Drawable],
+        runtimes: &[Runtime],
+    ) -> Result<Vec<Chunk>, Error> {
         let chunk = |runtime: &Runtime| {
             let drawable = |(drawable, skin): (&Drawable, &PagedSkin)| match drawable {
                 Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.beside(gpu, layouts, skin.pages())?)),
@@ -153,7 +206,7 @@ impl Character {
             let drawables = first.iter().zip(&runtime.skins).map(drawable);
             Ok(Chunk::new(runtime.slots.clone(), drawables.collect::<Result<_, Error>>()?))
         };
-        self.runtimes.iter().map(chunk).collect()
+        runtimes.iter().map(chunk).collect()
     }
 
     /// What is drawn of the first chunk: each mesh, from the vertices of each instance.
@@ -163,11 +216,21 @@ impl Character {
         layouts: &SceneLayouts,
         looks: &Looks,
     ) -> Result<Vec<Drawable>, Error> {
+        self.drawables_of((gpu, layouts), looks, &self.runtimes)
+    }
+
+    /// As [`Character::drawables`], of these chunks.
+    pub fn drawables_of(
+        &self,
+        (gpu, layouts): (&Gpu, &SceneLayouts),
+        looks: &Looks,
+        runtimes: &[Runtime],
+    ) -> Result<Vec<Drawable>, Error> {
         let drawable = |(index, skin): (usize, &PagedSkin)| {
             let mesh = (&skin.mesh, &*skin.clusters);
             mesh::drawable((gpu, layouts), (&self.merged, looks), index, mesh, Some(skin.pages()))
         };
-        self.runtimes
+        runtimes
             .first()
             .map_or(Ok(Vec::new()), |runtime| runtime.skins.iter().enumerate().map(drawable).collect())
     }
@@ -185,13 +248,14 @@ impl Character {
         self.plays[index as usize] =
             Playing { clip: clip as u32, wrap: play.wrap, start: play.start, rate: play.rate };
         self.changed.add(index, self.plays.len());
-        Ok(self.spheres[clip])
+        Ok(self.sphere_of(index))
     }
 
     /// Sets that an instance plays the first clip, and returns a sphere around it.
     pub fn play_first(&mut self, index: u32) -> BoundingSphere {
         self.plays[index as usize] = Playing::REST;
         self.changed.add(index, self.plays.len());
+        self.clear_layers(index);
         self.spheres[0]
     }
 
@@ -269,10 +333,12 @@ impl Character {
         if (now - self.epoch).abs() > EPOCH {
             self.epoch = now;
             self.changed.all(self.plays.len());
+            self.layers.iter_mut().for_each(|layer| layer.changed.all(self.plays.len()));
         }
         for [from, to] in self.changed.take(self.plays.len()) {
             self.stage_plays(staged, &(from..to))?;
         }
+        self.stage_layers(staged, now)?;
         let elapsed = (now - self.epoch) as f32;
         for runtime in &self.runtimes {
             runtime.frame.set_through(staged, frame, elapsed)?;

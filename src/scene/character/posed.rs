@@ -3,12 +3,18 @@
 use glam::{DAffine3, DVec3};
 
 use super::Character;
+use super::layers::layered_pose;
 use crate::InputError;
-use crate::animation::Pose;
+use crate::animation::{Instance, ModelMatrices, Pose};
+use crate::asset::{Model, Transform};
 use crate::gpu::Buffer;
 use crate::scene::matrices::{CharacterMatrices, affine_of};
+use crate::scene::options::bone_of;
 use crate::scene::placement::ClipTime;
+use crate::scene::playing::Playing;
 use crate::scene::ray::Surface;
+use crate::skinning::bone_path::BonePath;
+use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::morph::reference::morph;
 use crate::skinning::paged::PagedSkin;
@@ -17,15 +23,55 @@ use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::Blend;
 
 impl Character {
-    /// The index of a bone, by its name or its index. A name that is a number takes precedence.
+    /// The index of a bone, by its name or its index.
     pub fn bone(&self, name_or_index: &str) -> Result<usize, InputError> {
-        let bones = self.merged.model.skeleton.bones();
-        let by_name = bones.iter().position(|bone| bone.name == name_or_index);
-        let by_index = || name_or_index.parse().ok().filter(|index| *index < bones.len());
-        by_name.or_else(by_index).ok_or_else(|| {
-            let bound = format!("must be below {} or the name of a bone of the model", bones.len());
-            InputError::new("bone", name_or_index, bound)
-        })
+        bone_of(&self.merged.model, name_or_index)
+    }
+
+    /// The motion that was taken out of the clip of an instance's base between two times of the scene.
+    pub fn root_motion(&self, index: u32, from: f64, to: f64) -> Result<Transform, InputError> {
+        let Some(motions) = &self.motions else {
+            let bound = "must be of a character that was added with options.root_motion";
+            return Err(InputError::new("instance", "a character that keeps its motion", bound));
+        };
+        let Playing { clip, wrap, start, rate } = self.plays[index as usize];
+        let instance = Instance::new(clip, wrap, 0.0, rate);
+        motions[clip as usize].delta(&instance, from - start, to - start)
+    }
+
+    /// The model matrices of a chunk, to be bound.
+    pub fn matrices(&self, chunk: usize) -> Option<&ModelMatrices> {
+        self.runtimes.get(chunk).map(|runtime| runtime.frame.model_matrices())
+    }
+
+    /// The merged model.
+    pub fn model(&self) -> &Model {
+        &self.merged.model
+    }
+
+    /// A sphere around an instance as it plays.
+    pub fn sphere_of(&self, index: u32) -> BoundingSphere {
+        match &self.reach {
+            Some(reach) if self.is_blended(index) => reach.sphere(),
+            _ => self.spheres[self.plays[index as usize].clip as usize],
+        }
+    }
+
+    /// Where a bone of an instance carries a sphere, as it plays.
+    pub fn path_of(&self, index: u32, bone: usize, carried: &BoundingSphere) -> BonePath {
+        let path = BonePath::new(&self.merged.model, self.plays[index as usize].clip as usize, bone, carried);
+        match &self.reach {
+            Some(reach) if self.is_blended(index) => {
+                let (sphere, stretch) = reach.of_bone(bone, carried);
+                BonePath { sphere, stretch, ..path }
+            }
+            _ => path,
+        }
+    }
+
+    /// What `path_of` depends on besides bone and sphere.
+    pub fn path_key(&self, index: u32) -> (u32, bool) {
+        (self.plays[index as usize].clip, self.is_blended(index))
     }
 
     /// The model matrices of the chunk in which an instance lies, and the index of the instance in the chunk.
@@ -39,7 +85,10 @@ impl Character {
 
     /// The clip that an instance plays, and the time in it at a time of the scene.
     pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
-        let play = &self.plays[index as usize];
+        self.time_of(&self.plays[index as usize], now)
+    }
+
+    fn time_of(&self, play: &Playing, now: f64) -> Result<ClipTime, InputError> {
         let duration = self.merged.model.clips[play.clip as usize].duration();
         let seconds = play.wrap.inside(duration, (now - play.start) * f64::from(play.rate))?;
         Ok(ClipTime { clip: play.clip as usize, seconds })
@@ -48,8 +97,13 @@ impl Character {
     /// The pose of an instance at a time of the scene.
     pub fn pose(&self, index: u32, now: f64) -> Result<Pose, InputError> {
         let ClipTime { clip, seconds } = self.clip_time(index, now)?;
-        let model = &self.merged.model;
-        Ok(Pose::on_host(&model.skeleton, &model.clips[clip], seconds))
+        let above = self.layers.iter().map(|layer| {
+            let (play, weight) = (&layer.plays[index as usize], layer.weights[index as usize].at(now));
+            let ClipTime { clip, seconds } = self.time_of(play, now)?;
+            Ok((clip, seconds, weight, &layer.mask))
+        });
+        let above = above.collect::<Result<Vec<_>, InputError>>()?;
+        Ok(layered_pose(&self.merged.model, (clip, seconds), above.into_iter()))
     }
 
     /// The corners of a box around a posed instance, along the axes of the space into which `placed` leads. Everything that a
@@ -68,14 +122,14 @@ impl Character {
     }
 
     /// The surface of a posed instance at a time of the scene, in full detail.
-    pub fn surface(&self, index: u32, now: f64) -> Result<Vec<Surface>, InputError> {
+    pub fn surface(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
         let (ClipTime { clip, seconds }, pose) = (self.clip_time(index, now)?, self.pose(index, now)?);
         let model = &self.merged.model;
         let of_mesh = |(at, mesh): (usize, &crate::asset::Mesh)| {
             let palette = palette_for(&model.skins[mesh.skin], &pose.model_matrices, Blend::Linear);
             let morphed = morph(mesh, &mesh.weights_at(clip, seconds));
             let vertices = skin(&morphed, &mesh.influences, &palette, InstanceLod::FULL);
-            let positions = vertices.iter().map(|vertex| vertex.position).collect();
+            let positions: Vec<_> = vertices.iter().map(|vertex| vertex.position).collect();
             Surface::of_merged(&self.merged, at, positions)
         };
         Ok(model.meshes.iter().enumerate().map(of_mesh).collect())

@@ -92,6 +92,8 @@ impl Character {
                 at += parts.len();
                 self.runtimes.splice(replaced..=replaced, parts);
                 self.changed.all(self.plays.len());
+                let count = self.plays.len();
+                self.layers.iter_mut().for_each(|layer| layer.resize(count));
                 self.replaced = Replaced::Chunks;
             } else {
                 at += 1;

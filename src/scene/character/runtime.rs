@@ -4,9 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::Error;
+use crate::animation::compact::CompactJob;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
-use crate::animation::{ClipSet, Gate, Instance, Wrap};
+use crate::animation::{ClipSet, Gate, Instance, Layer, Wrap};
 use crate::asset::Model;
 use crate::gpu::{Gpu, GpuError, Job, Uniform};
 use crate::lod::assign::{AssignBuffers, AssignPass};
@@ -22,16 +23,23 @@ use crate::skinning::paged::PagedSkin;
 
 /// What all chunks share.
 #[derive(Debug)]
-pub(super) struct Shared {
+pub(in crate::scene) struct Shared {
     pub set: ClipSet,
     pub gate: Gate,
+    /// The mask of each layer above the base.
+    masks: Vec<Option<Vec<f32>>>,
     clips: ClipBuffers,
     meshes: Vec<(MeshBuffers, Arc<Clusters>)>,
 }
 
 impl Shared {
-    /// Uploads the clips and meshes of a model.
-    pub fn new(gpu: &Gpu, model: &Model, set: ClipSet, gate: Gate) -> Result<Self, Error> {
+    /// Uploads the clips and meshes of a model, with masks of layers above the base.
+    pub fn new(
+        gpu: &Gpu,
+        model: &Model,
+        (set, gate): (ClipSet, Gate),
+        masks: Vec<Option<Vec<f32>>>,
+    ) -> Result<Self, Error> {
         let clips = ClipBuffers::new(gpu, &set)?;
         let uploaded = |mesh| {
             mesh::check_binding(gpu, mesh)?;
@@ -39,13 +47,18 @@ impl Shared {
             Ok((buffers, Arc::new(clusters)))
         };
         let meshes = model.meshes.iter().map(uploaded).collect::<Result<_, Error>>()?;
-        Ok(Self { set, gate, clips, meshes })
+        Ok(Self { set, gate, masks, clips, meshes })
+    }
+
+    /// The same on another device.
+    pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
+        Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
     }
 }
 
 /// A chunk of instances on the device.
 #[derive(Debug)]
-pub(super) struct Runtime {
+pub(in crate::scene) struct Runtime {
     /// The indices in the object of its instances.
     pub slots: Range<usize>,
     pub crowd: Crowd,
@@ -55,6 +68,10 @@ pub(super) struct Runtime {
     pub paging: Vec<Paging>,
     pub weights: Vec<MorphWeightsJob>,
     pub assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
+    /// Adds driven bones to those that the gate chose, and lists all of them; `None` if nothing is driven.
+    pub driven: Option<(Job, CompactJob)>,
+    /// The number of the driven bones for which it was prepared.
+    pub driven_version: u64,
     /// The layout for which `assign` was prepared.
     version: u64,
 }
@@ -92,7 +109,13 @@ impl Runtime {
         keeps_last: bool,
     ) -> Result<Self, Error> {
         let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
-        let crowd = Crowd::new(gpu, &shared.set, &vec![rest; slots.len()])?;
+        let count = slots.len();
+        let layer = |mask: &Option<Vec<f32>>| {
+            let (instances, weights) = (vec![rest; count], vec![0.0; count]);
+            Layer { instances, weights, mask: mask.clone() }
+        };
+        let layers: Vec<Layer> = shared.masks.iter().map(layer).collect();
+        let crowd = Crowd::layered(gpu, &shared.set, &vec![rest; count], &layers)?;
         let frame = GatedFrame::new(gpu, &model.skeleton, &shared.clips, &crowd, &shared.gate)?;
         let every: Vec<usize> = (0..model.clips.len()).collect();
         let (mut skins, mut pagings, mut weights) = (Vec::new(), Vec::new(), Vec::new());
@@ -110,7 +133,9 @@ impl Runtime {
             pagings.push(paging);
             skins.push(skin);
         }
-        Ok(Self { slots, crowd, frame, skins, paging: pagings, weights, assign: Vec::new(), version: 0 })
+        let (paging, assign, driven) = (pagings, Vec::new(), None);
+        let [driven_version, version] = [0; 2];
+        Ok(Self { slots, crowd, frame, skins, paging, weights, assign, driven, driven_version, version })
     }
 
     /// Whether its pages are enough for all instances in full detail.
@@ -136,6 +161,7 @@ impl Runtime {
             let buffers = AssignBuffers {
                 params: &uniform,
                 allowed: &layout.allowed,
+                instances: &layout.instances,
                 lods: &self.frame.state.lods,
                 instance_lods: &skin.crowd.instance_lods,
             };
@@ -176,6 +202,10 @@ impl Runtime {
             Stage::Gate => {
                 self.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
                 self.frame.dispatch_gate(pass);
+                if let Some((drive, lists)) = &self.driven {
+                    drive.dispatch(pass);
+                    lists.dispatch(pass);
+                }
             }
             Stage::Sample => {
                 self.frame.dispatch_sample(pass);

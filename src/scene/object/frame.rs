@@ -84,10 +84,12 @@ impl Object {
         (pass, shares): (&AssignPass, Shares),
         staged: &mut Staged,
     ) -> Result<(), Error> {
+        if let Kind::Character(character) = &mut self.kind {
+            character.fit_driven(gpu, staged)?;
+        }
         if self.fitted == layout.version {
             return Ok(());
         }
-        self.fitted = layout.version;
         let lods: Vec<LodObject> = self.chunks.iter().map(|chunk| self.lod_object(chunk)).collect();
         for (chunk, mut lod) in self.chunks.iter_mut().zip(lods) {
             chunk.lods.clear();
@@ -98,13 +100,12 @@ impl Object {
             stage_params(staged, chunk, self.handle)?;
         }
         let mesh_fraction = self.coarsening * self.mesh_fraction;
-        match &mut self.kind {
-            Kind::Character(character) => {
-                let object = (&*self.chunks, &*self.errors);
-                character.fit(gpu, layout, pass, object, (shares, mesh_fraction))
-            }
-            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
+        if let Kind::Character(character) = &mut self.kind {
+            let object = (&*self.chunks, &*self.errors);
+            character.fit(gpu, layout, pass, object, (shares, mesh_fraction))?;
         }
+        self.fitted = layout.version;
+        Ok(())
     }
 }
 

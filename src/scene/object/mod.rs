@@ -1,11 +1,12 @@
 //! Objects: what all instances of one model or one terrain share.
 
+mod device;
 mod frame;
 mod slots;
 
 use glam::Vec3;
 
-use crate::asset::{Mesh, Model};
+use crate::asset::Model;
 use crate::gpu::Gpu;
 use crate::scene::character::Character;
 use crate::scene::chunk::Chunk;
@@ -15,6 +16,7 @@ use crate::scene::layout::error_vectors;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::mesh::{self, Drawn};
+use crate::scene::options::CharacterOptions;
 use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
@@ -23,6 +25,7 @@ use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
+pub(super) use device::OnDevice;
 pub(super) use frame::laid_out;
 
 /// The most instances of an object.
@@ -58,23 +61,27 @@ pub(crate) struct Object {
 
 /// What the host keeps of a mesh that does not move by itself.
 #[derive(Debug)]
-pub(super) struct MeshOnHost {
-    /// Its triangles in full detail.
-    pub surfaces: Vec<Surface>,
+pub(super) enum MeshOnHost {
+    /// Merged meshes at rest.
+    Model(Box<Merged>),
+    /// A mesh with relief.
+    Relief(Box<Relief>),
 }
 
 impl MeshOnHost {
-    /// Of merged meshes at rest.
-    fn of_merged(merged: &Merged) -> Self {
-        let meshes = merged.model.meshes.iter().enumerate();
-        let surface = |(at, mesh): (usize, &Mesh)| Surface::of_merged(merged, at, mesh.positions.clone());
-        Self { surfaces: meshes.map(surface).collect() }
-    }
-
-    /// Of a mesh with relief.
-    fn of_relief(Relief { mesh, double_sided, .. }: &Relief) -> Self {
-        let positions = mesh.vertices.iter().map(|vertex| vertex.position).collect();
-        Self { surfaces: vec![Surface::new(positions, mesh.indices.clone(), *double_sided)] }
+    /// Its triangles in full detail.
+    pub fn surfaces(&self) -> Vec<Surface<'_>> {
+        match self {
+            Self::Model(merged) => {
+                let meshes = &merged.model.meshes;
+                let surface = |at: usize| Surface::of_merged(merged, at, &meshes[at].positions[..]);
+                (0..meshes.len()).map(surface).collect()
+            }
+            Self::Relief(relief) => {
+                let positions = relief.mesh.vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>();
+                vec![Surface::new(positions, &relief.mesh.indices, relief.double_sided)]
+            }
+        }
     }
 }
 
@@ -135,8 +142,9 @@ impl Object {
         let (mut merged, sphere) = mesh::at_rest_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
         let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
-        let kind = Kind::Mesh(MeshOnHost::of_merged(&merged));
-        let object = Self::new(kind, (instances, sphere), (mesh::errors(&merged), 1.0), drawn);
+        let errors = mesh::errors(&merged);
+        let kind = Kind::Mesh(MeshOnHost::Model(Box::new(merged)));
+        let object = Self::new(kind, (instances, sphere), (errors, 1.0), drawn);
         Ok(Self { looks: Some(looks), ..object })
     }
 
@@ -150,7 +158,7 @@ impl Object {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
         let drawn = whole(&instances, drawn);
-        let kind = Kind::Mesh(MeshOnHost::of_relief(relief));
+        let kind = Kind::Mesh(MeshOnHost::Relief(Box::new(relief.clone())));
         Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
@@ -158,14 +166,14 @@ impl Object {
     pub(super) fn character(
         gpu: &Gpu,
         layouts: &SceneLayouts,
-        model: &Model,
+        (model, options): (&Model, &CharacterOptions<'_>),
         capacity: usize,
         (shares, keeps_last): (Shares, bool),
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let mut merged = mesh::moving_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
-        let character = Character::new(gpu, merged, instances.capacity(), keeps_last)?;
+        let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
         let first = character.drawables(gpu, layouts, &looks)?;
         let drawn = (character.chunks(gpu, layouts, &first)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
@@ -197,40 +205,12 @@ impl Object {
         }
     }
 
-    /// Makes room for twice as many instances.
-    pub(super) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        let capacity = self.instances.capacity();
-        if capacity >= MAX_CAPACITY {
-            let bound = format!("must be at most {MAX_CAPACITY}: add another object");
-            return Err(InputError::new("object.capacity", 2 * capacity, bound).into());
-        }
-        self.instances.grow((2 * capacity).min(MAX_CAPACITY));
-        self.refresh(gpu, layouts)
-    }
-
     /// Keeps the last frame, once it is refreshed, or does no longer.
     pub(super) fn keep_last(&mut self, keeps: bool) {
         self.instances.keep_last(keeps);
         if let Kind::Character(character) = &mut self.kind {
             character.keep_last(keeps);
         }
-    }
-
-    /// Lets everything start afresh.
-    pub(super) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        self.instances.change_all();
-        let capacity = self.instances.capacity();
-        match &mut self.kind {
-            Kind::Character(character) => {
-                character.grow(gpu, capacity)?;
-                let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
-                self.chunks = character.chunks(gpu, layouts, first)?;
-            }
-            Kind::Mesh(_) | Kind::Terrain(_) => {
-                self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
-            }
-        }
-        Ok(())
     }
 
     /// The largest number of its draws in a view and a layer.

@@ -1,5 +1,6 @@
 //! What a view sees of a scene, in buffers.
 
+use super::attached::AttachedJobs;
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
 use crate::lod::SelectView;
@@ -22,7 +23,6 @@ pub(crate) struct ViewLists {
     /// The draws of all objects.
     pub arguments: Buffer<SceneDraw>,
     /// For each instance that is seen, the rows of its transform from the model's space to the corner of the view's cell.
-    #[cfg(feature = "verify")]
     pub rows: Buffer<[f32; 4]>,
     /// Bind group 0.
     pub group: Group,
@@ -34,6 +34,7 @@ pub(crate) struct ViewLists {
     pub order: Vec<Ordered>,
     pub(super) select: Job,
     pub(super) list: Job,
+    pub(super) attached: AttachedJobs,
 }
 
 impl ViewLists {
@@ -77,7 +78,6 @@ impl ViewLists {
             version: layout.version,
             lists,
             arguments,
-            #[cfg(feature = "verify")]
             rows,
             group,
             terrain,
@@ -85,6 +85,7 @@ impl ViewLists {
             order: Vec::new(),
             select,
             list,
+            attached: AttachedJobs::default(),
         })
     }
 }

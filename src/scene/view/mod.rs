@@ -1,7 +1,9 @@
 //! Views: a camera into a scene, with what it sees and how fine.
 
+mod attached;
 mod counted;
 pub(crate) mod lists;
+mod rebuild;
 mod uniforms;
 
 use glam::IVec3;
@@ -76,6 +78,8 @@ use uniforms::{lod_camera, terrain_view};
 #[derive(Debug)]
 pub struct View {
     scene: SceneNumber,
+    /// The number of the scene's device on which it was made.
+    device: u32,
     quality: Quality,
     camera: Option<Camera>,
     /// The camera of its last frame, and the number of that frame.
@@ -102,12 +106,17 @@ pub(super) struct Recorded {
 }
 
 impl View {
-    pub(super) fn new(gpu: &Gpu, scene: SceneNumber, quality: Quality) -> Result<Self, Error> {
+    pub(super) fn new(
+        gpu: &Gpu,
+        (scene, device): (SceneNumber, u32),
+        quality: Quality,
+    ) -> Result<Self, Error> {
         quality.validate()?;
         let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
         let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
         Ok(Self {
             scene,
+            device,
             quality,
             camera: None,
             last: None,

@@ -1,0 +1,45 @@
+// Adds driven bones, whose local transforms the caller writes after sampling, to those that a gate chose: they are sampled in
+// every frame, at the time of the frame. A thread adds those of one word of bits. Instances that no view sees are left alone.
+import package::wgsl::animation::gate_state::{LOD_HIDDEN, Lod};
+
+struct DriveParams {
+    // Number of words with driven bones.
+    driven: u32,
+    // Number of instances.
+    instances: u32,
+    // Words of bits per instance.
+    words: u32,
+}
+
+// The driven bones of a word of bits.
+struct DrivenWord {
+    // instance * words + word.
+    at: u32,
+    // One bit per slot.
+    bones: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: DriveParams;
+@group(0) @binding(1) var<storage, read> driven: array<DrivenWord>;
+@group(0) @binding(2) var<storage, read> lods: array<Lod>;
+// One bit per slot of each instance: the bones that are sampled; then, in the same layout, those of them that are sampled
+// ahead.
+@group(0) @binding(3) var<storage, read_write> bits: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = (group.y * groups.x + group.x) * 64u + lane;
+    if index >= params.driven {
+        return;
+    }
+    let word = driven[index];
+    if (lods[word.at / params.words].flags & LOD_HIDDEN) != 0u {
+        return;
+    }
+    bits[word.at] |= word.bones;
+    bits[params.instances * params.words + word.at] &= ~word.bones;
+}

@@ -1,0 +1,60 @@
+//! Driven bones: those whose local transforms the caller writes itself, between sampling and concatenation, for inverse
+//! kinematics and ragdolls.
+//!
+//! A gate does not know what the caller makes of a bone. Driven bones are therefore sampled in every frame in which their
+//! instance is seen, at the time of the frame, whatever the gate says; they and all bones below them count as updated. They
+//! are added to the bits of a gate before [`compact`](super::compact) makes lists of them.
+
+#[cfg(feature = "verify")]
+pub(crate) mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "verify")]
+pub(crate) mod verify;
+
+#[cfg(feature = "gpu")]
+pub use pass::DrivePass;
+
+use super::order::Order;
+pub use crate::shared::animation::drive::DrivenWord;
+
+/// The words of bits that hold the driven bones of instances: pairs of an instance and its bones, by index. Each word occurs
+/// once, in ascending order.
+///
+/// # Panics
+/// For bones that the order does not have.
+pub fn driven_words<'a>(
+    order: &Order,
+    driven: impl IntoIterator<Item = (u32, &'a [u32])>,
+) -> Vec<DrivenWord> {
+    let slot_of = order.slots_of_bones();
+    let words = order.words() as u32;
+    let mut all = std::collections::BTreeMap::new();
+    for (instance, bones) in driven {
+        for bone in bones {
+            let slot = slot_of[*bone as usize] as u32;
+            *all.entry(instance * words + slot / 32).or_insert(0) |= 1_u32 << (slot % 32);
+        }
+    }
+    all.into_iter().map(|(at, bones)| DrivenWord { at, bones }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::{Bone, Skeleton, Transform};
+
+    #[test]
+    fn words_hold_the_slots_of_their_bones() {
+        let bone = |index: u32| {
+            let (parent, rest) = (index.checked_sub(1), Transform::IDENTITY);
+            Bone { name: format!("{index}"), parent, rest }
+        };
+        let skeleton = Skeleton::of_joints((0..40).map(bone).collect()).expect("valid");
+        let order = Order::new(&skeleton);
+        let words = driven_words(&order, [(2, &[33, 1, 0][..]), (0, &[39]), (2, &[1])]);
+        let found: Vec<_> = words.iter().map(|word| (word.at, word.bones)).collect();
+        assert_eq!(found, [(1, 1 << 7), (4, 0b11), (5, 0b10)]);
+    }
+}

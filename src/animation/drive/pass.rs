@@ -1,0 +1,62 @@
+//! The GPU pass of `kernels/animation/drive.wgsl`.
+
+use super::DrivenWord;
+use crate::animation::active::Active;
+use crate::animation::crowd::Crowd;
+use crate::animation::gate_state::GateState;
+use crate::gpu::bindings::animation::drive as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::animation::drive::DriveParams;
+use crate::{Error, InputError};
+
+/// Adds driven bones to those that a gate chose.
+#[derive(Debug, Clone)]
+pub struct DrivePass {
+    kernel: Kernel,
+}
+
+impl DrivePass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu)? })
+    }
+
+    /// Prepares the addition to a crowd's bits. Record it behind the gate, and the lists
+    /// ([`CompactPass`](crate::animation::compact::CompactPass)) behind it.
+    ///
+    /// # Errors
+    /// [`InputError`] for words that the crowd does not have; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        driven: &[DrivenWord],
+        crowd: &Crowd,
+        state: &GateState,
+        active: &Active,
+    ) -> Result<Job, Error> {
+        let all = crowd.len() * active.words as usize;
+        if let Some(at) = driven.iter().position(|word| word.at as usize >= all) {
+            let bound = format!("must be below {all}");
+            return Err(InputError::new(format!("driven[{at}].at"), driven[at].at, bound).into());
+        }
+        let (count, instances) = (driven.len() as u32, crowd.len() as u32);
+        let params = DriveParams { driven: count, instances, words: active.words };
+        let params = Uniform::new(gpu, "drive", &params)?;
+        let driven = Buffer::from_slice(gpu, "driven bones", driven)?;
+        let group = bindings::Group {
+            params: &params,
+            driven: driven.slice(),
+            lods: state.lods.slice(),
+            bits: active.bits.slice(),
+        };
+        let step = Step {
+            groups: vec![group.bind(gpu, &self.kernel)?],
+            workgroups: self.kernel.spread(gpu, count),
+            kernel: self.kernel.clone(),
+        };
+        Ok(Job::new(gpu, "animation/drive", vec![step])?)
+    }
+}

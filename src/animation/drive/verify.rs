@@ -1,0 +1,88 @@
+//! Parity cases of `kernels/animation/drive.wgsl`.
+
+use super::reference::drive;
+use super::{DrivePass, DrivenWord, driven_words};
+use crate::Error;
+use crate::animation::active::Active;
+use crate::animation::crowd::Crowd;
+use crate::animation::gate_state::GateState;
+use crate::animation::order::Order;
+use crate::animation::verify::{Draw, SIZES, random_crowd};
+use crate::animation::{Lod, Sampling};
+use crate::harness::Cases;
+use crate::harness::compare::exact;
+use crate::harness::poison::Poisoned;
+
+/// The cases cover no driven bone, one, all bones of some instances, and random ones; a third of the instances is hidden, and
+/// half of the bits are ahead.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = DrivePass::new(gpu)?;
+    for (case, [bones, count]) in (0..).zip(SIZES) {
+        let (skeleton, set, instances) = random_crowd(case, bones, count)?;
+        let order = Order::new(&skeleton);
+        let crowd = Crowd::new(gpu, &set, &instances)?;
+        let mut draw = Draw::new(case ^ 0xd12e);
+        let state = GateState::new(gpu, &crowd)?;
+        let hidden: Vec<bool> = (0..count).map(|_| draw.word().is_multiple_of(3)).collect();
+        let sampling = |hidden: &bool| if *hidden { Sampling::Hidden } else { Sampling::Forced };
+        let lods: Vec<Lod> =
+            hidden.iter().map(|hidden| Lod { sampling: sampling(hidden), ..Lod::FULL }).collect();
+        state.write_lods(gpu, &lods)?;
+        for kind in ["none", "one", "whole instances", "a third"] {
+            let driven = random_driven(&mut draw, kind, &order, count);
+            let words = count * order.words();
+            let before: Vec<u32> = (0..3 * words).map(|_| draw.word()).collect();
+            let bits = Poisoned::<u32>::new(gpu, 3 * words)?;
+            bits.buffer.write(gpu, &before)?;
+            let active = Active { bits: bits.buffer.clone(), ..Active::new(gpu, &order, &crowd)? };
+            let job = pass.prepare(gpu, &driven, &crowd, &state, &active)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let mut expected = before;
+            let (sampled, rest) = expected.split_at_mut(words);
+            drive(&driven, order.words(), &hidden, [sampled, &mut rest[..words]]);
+            let comparison = bits.check(gpu, |found| exact(found, &expected))?;
+            cases.add(format!("{bones} bones × {count}, {kind}"), comparison);
+        }
+    }
+    Ok(())
+}
+
+/// Driven bones of instances.
+fn random_driven(draw: &mut Draw, kind: &str, order: &Order, count: usize) -> Vec<DrivenWord> {
+    let bones = order.slots.len() as u32;
+    let of_instance = |instance: u32| {
+        let whole = draw.word().is_multiple_of(2);
+        let is_driven = |bone: &u32| match kind {
+            "none" => false,
+            "one" => instance == 0 && *bone == bones - 1,
+            "whole instances" => whole,
+            _ => draw.word().is_multiple_of(3),
+        };
+        (instance, (0..bones).filter(is_driven).collect::<Vec<_>>())
+    };
+    let all: Vec<_> = (0..count as u32).map(of_instance).collect();
+    driven_words(order, all.iter().map(|(instance, bones)| (*instance, &bones[..])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every word that differs is found: a bone that is not added, one that stays ahead, and one of a hidden instance.
+    #[test]
+    fn what_is_wrong_of_one_bone_is_seen() {
+        let driven = [DrivenWord { at: 1, bones: 0b110 }, DrivenWord { at: 2, bones: 0b1 }];
+        let (mut bits, mut ahead) = (vec![0b10, 0b10, 0], vec![0b10, 0b10, 0b1]);
+        drive(&driven, 1, &[false, false, true], [&mut bits, &mut ahead]);
+        assert_eq!((&bits[..], &ahead[..]), (&[0b10, 0b110, 0][..], &[0b10, 0, 0b1][..]));
+        for at in 0..3 {
+            let mut found = bits.clone();
+            found[at] ^= 0b100;
+            assert!(!exact(&found, &bits).holds);
+        }
+    }
+}

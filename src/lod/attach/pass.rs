@@ -1,0 +1,70 @@
+//! The GPU pass of `kernels/lod/attach.wgsl`.
+
+use super::{AttachParams, Attachment};
+use crate::Error;
+use crate::animation::ModelMatrices;
+use crate::gpu::bindings::lod::attach as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::lod::{SceneInstance, SelectView};
+
+/// What attaching reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub struct AttachBuffers<'a> {
+    /// The number of attached meshes, and where the character's instances lie.
+    pub params: &'a Uniform<AttachParams>,
+    /// The view.
+    pub view: &'a Uniform<SelectView>,
+    /// The attached meshes, of which only the first [`AttachParams::attached`] count.
+    pub attachments: &'a Buffer<Attachment>,
+    /// The model matrices of the character's bones.
+    pub model_matrices: &'a ModelMatrices,
+    /// All instances of the scene.
+    pub instances: &'a Buffer<SceneInstance>,
+    /// What the views of the frame allow each of them, negative if none sees it.
+    pub allowed: &'a Buffer<f32>,
+    /// Written for the attached meshes, three for each instance: the rows of the transform from the model's space to the
+    /// corner of the view's cell.
+    pub rows: &'a Buffer<[f32; 4]>,
+}
+
+/// Places attached meshes.
+#[derive(Debug, Clone)]
+pub struct AttachPass {
+    kernel: Kernel,
+}
+
+impl AttachPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu)? })
+    }
+
+    /// Prepares the placements of as many meshes as `attachments` has room for, in one view. Record it behind the
+    /// selection of the view and the model matrices of the character.
+    ///
+    /// # Errors
+    /// [`InputError`](crate::InputError) for `allowed` or rows that hold fewer instances than there are; [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, buffers: AttachBuffers<'_>) -> Result<Job, Error> {
+        let instances = buffers.instances.len();
+        buffers.allowed.check_holds("allowed", instances)?;
+        buffers.rows.check_holds("rows", 3 * instances)?;
+        let group = bindings::Group {
+            params: buffers.params,
+            view: buffers.view,
+            attachments: buffers.attachments.slice(),
+            model_matrices: buffers.model_matrices.buffer().slice().cast(),
+            instances: buffers.instances.slice(),
+            allowed: buffers.allowed.slice(),
+            rows: buffers.rows.slice(),
+        };
+        let step = Step {
+            groups: vec![group.bind(gpu, &self.kernel)?],
+            workgroups: self.kernel.spread(gpu, buffers.attachments.len() as u32),
+            kernel: self.kernel.clone(),
+        };
+        Ok(Job::new(gpu, "lod/attach", vec![step])?)
+    }
+}

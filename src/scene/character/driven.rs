@@ -1,0 +1,80 @@
+//! Bones of a character that the caller drives.
+
+use std::collections::BTreeMap;
+
+use super::Character;
+use crate::Error;
+use crate::animation::compact::CompactPass;
+use crate::animation::drive::{DrivePass, driven_words};
+use crate::animation::order::Order;
+use crate::gpu::{Gpu, Staged, Upload as _};
+use crate::scene::poses::PoseBuffers;
+
+/// What the caller drives.
+#[derive(Debug, Default)]
+pub(super) struct Driven {
+    /// The bones of each instance.
+    bones: BTreeMap<u32, Vec<u32>>,
+    /// Counts the changes of `bones`.
+    version: u64,
+    /// Instances whose pose is no longer what the gate knows of it.
+    strange: Vec<u32>,
+}
+
+impl Character {
+    /// Sets the bones of an instance that the caller drives.
+    pub fn drive(&mut self, index: u32, bones: Vec<u32>) {
+        let before = if bones.is_empty() {
+            self.driven.bones.remove(&index)
+        } else {
+            self.driven.bones.insert(index, bones)
+        };
+        // What was driven before is sampled afresh.
+        self.driven.strange.extend(before.map(|_| index));
+        self.driven.version += 1;
+    }
+
+    /// Ends what the caller drives of an instance that goes.
+    pub fn let_go(&mut self, index: u32) {
+        if self.driven.bones.contains_key(&index) {
+            self.drive(index, Vec::new());
+        }
+    }
+
+    /// Prepares what is driven, unless it is prepared.
+    pub fn fit_driven(&mut self, gpu: &Gpu, staged: &mut Staged) -> Result<(), Error> {
+        let Driven { bones, version, strange } = &mut self.driven;
+        for index in strange.drain(..).map(|index| index as usize) {
+            if let Some(runtime) = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index)) {
+                staged.elements(&runtime.frame.state.history, index - runtime.slots.start, &[[0; 4]])?;
+            }
+        }
+        for runtime in self.runtimes.iter_mut().filter(|runtime| runtime.driven_version != *version) {
+            let (from, to) = (runtime.slots.start as u32, runtime.slots.end as u32);
+            let own = bones.range(from..to).map(|(index, bones)| (*index - from, &bones[..]));
+            let words = driven_words(&Order::new(&self.merged.model.skeleton), own);
+            runtime.driven = None;
+            if !words.is_empty() {
+                let (crowd, frame) = (&runtime.crowd, &runtime.frame);
+                let drive = DrivePass::new(gpu)?.prepare(gpu, &words, crowd, &frame.state, &frame.active)?;
+                let lists = CompactPass::new(gpu)?.prepare(gpu, crowd, &frame.active)?;
+                runtime.driven = Some((drive, lists));
+            }
+            runtime.driven_version = *version;
+        }
+        Ok(())
+    }
+
+    /// The buffers in which the pose of an instance lies.
+    pub fn pose_buffers(&self, index: u32) -> Option<PoseBuffers<'_>> {
+        let index = index as usize;
+        let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;
+        Some(PoseBuffers {
+            locals: &runtime.crowd.locals,
+            model_matrices: runtime.frame.model_matrices().raw(),
+            bones: self.merged.model.skeleton.len() as u32,
+            instances: runtime.slots.len() as u32,
+            index: (index - runtime.slots.start) as u32,
+        })
+    }
+}

@@ -1,0 +1,56 @@
+//! A scene on another device, after its own was lost.
+
+use crate::Error;
+use crate::gpu::{Gpu, Staged, StagingRing};
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::object::OnDevice;
+use crate::scene::statistics::StageTimer;
+use crate::scene::{Passes, RECORDINGS, Scene};
+
+impl Scene {
+    /// Creates everything that the scene has on its device again, on another one, after the device was lost. Handles stay valid,
+    /// and so do placements, clips, times, attachments and what else was set. Views and renderers need
+    /// [`View::rebuild`](crate::scene::View::rebuild) and
+    /// [`Renderer::rebuild`](crate::render::Renderer::rebuild). The next frame is that of a scene that was
+    /// [refreshed](Scene::refresh). If it fails, the scene is as it was.
+    ///
+    /// The scene keeps what it needs on the host: meshes with their images, clips, and the recipes of terrain, whose patches are
+    /// generated anew. It takes as long as adding the objects did, less what is computed for characters once
+    /// (bounds of motion), and compiles what the new device has not compiled.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        gpu.block_on(self.rebuild_async(gpu))
+    }
+
+    /// As `Scene::rebuild`, but completes once the device has generated terrain and told its errors; see
+    /// [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// As `Scene::rebuild`.
+    pub async fn rebuild_async(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        let layouts = SceneLayouts::new(gpu)?;
+        let passes = Passes::new(gpu)?;
+        let timer = if self.counted { StageTimer::new(gpu)? } else { None };
+        let watch = self.watch.as_ref().map(|watch| watch.on(gpu)).transpose()?;
+        let mut objects: Vec<OnDevice> = Vec::new();
+        for object in self.objects.iter() {
+            objects.push(object.on(gpu, &layouts).await?);
+        }
+        gpu.check_async().await?;
+        // From here on nothing fails.
+        for (object, on_device) in self.objects.iter_mut().zip(objects) {
+            object.adopt(on_device);
+        }
+        self.gpu = gpu.clone();
+        self.device += 1;
+        (self.passes, self.layouts_of_groups) = (passes, layouts);
+        (self.timer, self.watch, self.counts) = (timer, watch, None);
+        self.attachments.forget_device();
+        (self.staging, self.staged) = (StagingRing::new(RECORDINGS), Staged::default());
+        self.layout = None;
+        Ok(())
+    }
+}

@@ -1,0 +1,58 @@
+//! Placements of attached meshes in a view.
+
+use super::View;
+use crate::Error;
+use crate::gpu::{Gpu, Job};
+use crate::lod::attach::{AttachBuffers, AttachPass};
+use crate::scene::attach::Attachments;
+use crate::scene::handles::Slots;
+use crate::scene::layout::Layout;
+use crate::scene::object::{Kind, Object};
+
+/// The jobs that place attached meshes, one for each character that carries any.
+#[derive(Debug, Default)]
+pub(in crate::scene) struct AttachedJobs {
+    /// The lists of attachments for which they were prepared.
+    version: u64,
+    jobs: Vec<Job>,
+}
+
+impl View {
+    /// Prepares the placements of attached meshes, unless they are prepared.
+    pub(in crate::scene) fn fit_attached(
+        &mut self,
+        gpu: &Gpu,
+        pass: &AttachPass,
+        (attachments, objects): (&Attachments, &Slots<Object>),
+        layout: &Layout,
+    ) -> Result<(), Error> {
+        let Some(lists) = &mut self.lists else { return Ok(()) };
+        if lists.attached.version == attachments.version {
+            return Ok(());
+        }
+        let mut jobs = Vec::new();
+        for ((object, chunk), list) in attachments.lists() {
+            let Some(object) = objects.get(object) else { continue };
+            let Kind::Character(character) = &object.kind else { continue };
+            let Some(model_matrices) = character.matrices(chunk) else { continue };
+            let buffers = AttachBuffers {
+                params: &list.params,
+                view: &self.select,
+                attachments: &list.attachments,
+                model_matrices,
+                instances: &layout.instances,
+                allowed: &layout.allowed,
+                rows: &lists.rows,
+            };
+            jobs.push(pass.prepare(gpu, buffers)?);
+        }
+        lists.attached = AttachedJobs { version: attachments.version, jobs };
+        Ok(())
+    }
+
+    /// Adds the placements of attached meshes to a compute pass.
+    pub(in crate::scene) fn dispatch_attached(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let jobs = self.lists.iter().flat_map(|lists| &lists.attached.jobs);
+        jobs.for_each(|job| job.dispatch(pass));
+    }
+}

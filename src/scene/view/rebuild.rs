@@ -1,0 +1,36 @@
+//! A view on another device, after its scene's was lost.
+
+use super::View;
+use crate::scene::Scene;
+use crate::scene::handles::foreign;
+use crate::{Error, InputError};
+
+impl View {
+    /// Creates everything that the view has on the device again, after its scene was rebuilt on another one
+    /// ([`Scene::rebuild_async`]). Cameras, quality and mask stay.
+    ///
+    /// # Errors
+    /// [`InputError`] for another scene; [`crate::gpu::GpuError`].
+    pub fn rebuild(&mut self, scene: &Scene) -> Result<(), Error> {
+        if !self.is_of(scene.objects.scene()) {
+            return Err(InputError::new("scene", "another", "must be the one that the view is of").into());
+        }
+        let fresh = Self::new(&scene.gpu, (scene.objects.scene(), scene.device), self.quality)?;
+        let Self { device, select, drawn, .. } = fresh;
+        (self.device, self.select, self.drawn) = (device, select, drawn);
+        (self.lists, self.counts, self.recorded) = (None, None, None);
+        Ok(())
+    }
+
+    /// Refuses a view that is not of a scene on its present device; `path` names the view.
+    pub(in crate::scene) fn check(&self, scene: &Scene, path: &str) -> Result<(), InputError> {
+        if !self.is_of(scene.objects.scene()) {
+            return Err(foreign(path));
+        }
+        if self.device != scene.device {
+            let bound = "must be rebuilt after its scene: View::rebuild";
+            return Err(InputError::new(path, "of a device that was lost", bound));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,179 @@
+//! Lost devices, and devices whose memory ends.
+
+use image::RgbaImage;
+use relievo::asset::Transform;
+use relievo::gpu::Gpu;
+use relievo::render::{Layer, Renderer};
+use relievo::samples::maps::BuiltInMap;
+use relievo::scene::{InstanceId, ObjectId, Placement, Quality, Relief, View};
+
+use crate::frame::{Frame, device};
+use crate::world::{SIZE, World, model};
+
+/// A world with every kind of object, in its twentieth frame or any other.
+struct Whole {
+    world: World,
+    view: View,
+    carried: InstanceId,
+}
+
+impl Whole {
+    fn new(gpu: &Gpu) -> Self {
+        let mut world = World::new(gpu, 6);
+        let statue = world.scene.add_mesh(&model(), 4).expect("added");
+        world.scene.spawn(statue, Placement::at([-6.0, 4.0, 4.0])).expect("room");
+        let carried = world.scene.spawn(statue, Placement::default()).expect("room");
+        let offset = Transform { scale: [0.2; 3], ..Transform::IDENTITY };
+        world.scene.attach(carried, world.crowd[1], "40", offset).expect("a bone");
+        let bricks = BuiltInMap::Bricks;
+        let relief =
+            Relief::wall(2.0, bricks.height_map(64).expect("a map"), bricks.albedo(64).expect("a map"));
+        let wall = world.scene.add_relief(&relief, 1).expect("added");
+        world.scene.spawn(wall, Placement::at([7.0, 6.0, 2.0]).scaled(5.0)).expect("room");
+        let view = world.view(1.0);
+        Self { world, view, carried }
+    }
+
+    /// A frame later: someone moves, comes or goes.
+    fn step(&mut self, at: usize) {
+        let World { scene, crowd, .. } = &mut self.world;
+        scene.advance(1.0 / 30.0).expect("finite");
+        let moved = scene.placement(crowd[at % 4]).expect("there").turned(0.1 * at as f32);
+        scene.move_to(crowd[at % 4], moved).expect("there");
+        if at.is_multiple_of(10) {
+            scene.despawn(crowd[5]).expect("there");
+            let heir = self.world.spawn(5 + at % 7);
+            self.world.crowd[5] = heir;
+        }
+    }
+
+    fn record(&mut self) -> Result<(), relievo::Error> {
+        let gpu = self.world.scene.gpu().clone();
+        let mut encoder = gpu.encoder("frame");
+        self.world.scene.record(&mut encoder, &mut [&mut self.view])?;
+        gpu.queue().submit([encoder.finish()]);
+        Ok(())
+    }
+
+    fn shot(&mut self, frame: &Frame, renderer: &Renderer) -> RgbaImage {
+        frame.shot(&mut self.world.scene, &mut self.view, renderer)
+    }
+}
+
+/// A device that is lost in the middle of 100 frames: handles stay valid, and once scene, view and renderer are rebuilt on
+/// another device, its pictures are those of a run that was refreshed there, to the bit.
+#[test]
+fn a_lost_device_leaves_no_trace() {
+    let first = device();
+    // The suite's handler panics; a lost device reports errors, as it should.
+    let lost = device();
+    lost.device().on_uncaptured_error(std::sync::Arc::new(|_| ()));
+    let (mut undisturbed, mut disturbed) = (Whole::new(&first), Whole::new(&lost));
+    let frames = [Frame::plain(&first, SIZE), Frame::plain(&lost, SIZE)];
+    let renderer = frames[0].renderer(&first, &undisturbed.world.scene);
+    let mut other = frames[1].renderer(&lost, &disturbed.world.scene);
+    for at in 0..50 {
+        undisturbed.step(at);
+        undisturbed.record().expect("recorded");
+        disturbed.step(at);
+        disturbed.record().expect("recorded");
+    }
+    let before = undisturbed.shot(&frames[0], &renderer);
+    assert!(disturbed.shot(&frames[1], &other) == before, "another picture before");
+    lost.device().destroy();
+    let refused = disturbed.record().expect_err("lost").to_string();
+    assert!(refused.contains("lost"), "{refused}");
+    let second = device();
+    let frame = Frame::plain(&second, SIZE);
+    disturbed.world.scene.rebuild(&second).expect("a device");
+    // What was not rebuilt is told, and nothing panics.
+    let refused = disturbed.record().expect_err("an old view").to_string();
+    assert!(refused.contains("views[0]") && refused.contains("rebuild"), "{refused}");
+    disturbed.view.rebuild(&disturbed.world.scene).expect("a device");
+    let mut encoder = second.encoder("an old renderer");
+    frame.pass(&mut encoder, |pass| {
+        let drawn = other.draw(pass, &disturbed.world.scene, &disturbed.view, Layer::Color);
+        assert_eq!(drawn.expect_err("an old renderer").path, "scene");
+    });
+    drop(encoder);
+    other.rebuild(&second).expect("compiled");
+    undisturbed.world.scene.refresh().expect("afresh");
+    for at in 50..100 {
+        undisturbed.step(at);
+        disturbed.step(at);
+        if at % 7 == 1 || at == 50 {
+            let picture = undisturbed.shot(&frames[0], &renderer);
+            assert!(picture != before, "nothing moves");
+            assert!(disturbed.shot(&frame, &other) == picture, "another picture in frame {at}");
+        } else {
+            undisturbed.record().expect("recorded");
+            disturbed.record().expect("recorded");
+        }
+    }
+    let carrier = disturbed.world.crowd[1];
+    assert_eq!(disturbed.world.scene.attached_to(disturbed.carried).expect("there"), Some((carrier, 40)));
+}
+
+/// A device without memory refuses what needs some, and the scene goes on as before: then with memory, as if nothing had
+/// happened.
+#[test]
+fn a_scene_survives_the_end_of_memory() {
+    let gpu = device();
+    let mut world = World::empty(&gpu, 64);
+    let mut view = world.view(0.5);
+    let frame = Frame::plain(&gpu, SIZE);
+    let shot = |world: &mut World, view: &mut View| {
+        let renderer = frame.renderer(&gpu, &world.scene);
+        frame.shot(&mut world.scene, view, &renderer)
+    };
+    (0..64).for_each(|at| {
+        world.spawn(at % 10);
+    });
+    let before = shot(&mut world, &mut view);
+    let memory = gpu.memory().clone();
+    memory.set_limit(memory.now());
+    let refused = |result: Result<ObjectId, relievo::Error>| result.expect_err("refused").to_string();
+    assert!(refused(world.scene.add_mesh(&model(), 3)).contains("no memory left"));
+    assert!(refused(world.scene.add_character(&model(), 3)).contains("no memory left"));
+    // No room to grow, in the middle of what growing takes too.
+    let placement = world.placement(3);
+    for further in [0, 100_000, 1_000_000, 4_000_000] {
+        memory.set_limit(memory.now() + further);
+        let refused = world.scene.spawn(world.creature, placement).expect_err("refused").to_string();
+        assert!(refused.contains("no memory left"), "{refused}");
+        memory.set_limit(u64::MAX);
+        assert!(shot(&mut world, &mut view) == before, "another picture after {further} bytes");
+    }
+    assert_eq!(world.scene.instances(world.creature).expect("there").len(), 64);
+    world.spawn(11);
+    let grown = shot(&mut world, &mut view);
+    let mut large = World::empty(&gpu, 128);
+    (0..64).for_each(|at| {
+        large.spawn(at % 10);
+    });
+    large.spawn(11);
+    let mut fresh = large.view(0.5);
+    assert!(shot(&mut large, &mut fresh) == grown, "another picture than with enough room");
+    // A view that needs more pages than there is memory for.
+    let mut near = world.view(8.0);
+    let record = |world: &mut World, near: &mut View| {
+        let mut encoder = gpu.encoder("frame");
+        let recorded = world.scene.record(&mut encoder, &mut [near]);
+        gpu.queue().submit([encoder.finish()]);
+        recorded
+    };
+    record(&mut world, &mut near).expect("recorded");
+    memory.set_limit(memory.now());
+    near.set_quality(Quality { pixels: 0.0 }).expect("a quality");
+    record(&mut world, &mut near).expect("coarser, but recorded");
+    assert!(world.scene.coarsening(world.creature).expect("there") > 1.0);
+    memory.set_limit(u64::MAX);
+    world.scene.refresh().expect("afresh");
+    assert!(shot(&mut world, &mut view) == grown, "another picture afterwards");
+    // A device whose limits are small says which.
+    let small = crate::harness::gpu_of_bindings(1 << 16);
+    let mut scene = relievo::scene::Scene::new(&small).expect("compiled");
+    let refused = scene.add_character(&model(), 1000).expect_err("refused").to_string();
+    assert!(refused.contains("maxStorageBufferBindingSize"), "{refused}");
+    assert!(scene.add_mesh(&relievo::asset::Model { meshes: Vec::new(), ..model() }, 1).is_err());
+}
