@@ -21,8 +21,6 @@ pub struct Triangle {
 pub struct Hit {
     pub triangle: usize,
     pub position: DVec3,
-    /// Coordinates of the second and the third corner.
-    pub weights: [f64; 2],
 }
 
 /// The ray through a place of the picture in pixels: where it begins, on the near plane, and its direction.
@@ -55,7 +53,7 @@ pub fn first(triangles: &[Triangle], [from, along]: [DVec3; 2]) -> Option<Hit> {
         let weights = [inside.cross(v).dot(normal) / area, u.cross(inside).dot(normal) / area];
         let is_inside = weights[0] >= 0.0 && weights[1] >= 0.0 && weights[0] + weights[1] <= 1.0;
         if distance > 0.0 && is_inside && nearest.as_ref().is_none_or(|(before, _)| distance < *before) {
-            nearest = Some((distance, Hit { triangle: at, position, weights }));
+            nearest = Some((distance, Hit { triangle: at, position }));
         }
     }
     nearest.map(|(_, hit)| hit)
