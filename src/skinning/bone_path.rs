@@ -89,6 +89,6 @@ mod tests {
         assert!((largest_stretch(&turned) - 3.0).abs() < 1e-9);
         let sheared = DMat3::from_cols(DVec3::X, DVec3::new(2.0, 1.0, 0.0), DVec3::Z);
         // The golden ratio's relative: 1 + √2.
-        assert!((2.414..3.0).contains(&largest_stretch(&sheared)), "{}", largest_stretch(&sheared));
+        assert!((2.414..=3.0).contains(&largest_stretch(&sheared)), "{}", largest_stretch(&sheared));
     }
 }
