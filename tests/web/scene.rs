@@ -95,8 +95,9 @@ fn foreign(actual: &RgbaImage, expected: &RgbaImage, levels: u8) -> f64 {
 /// SwiftShader have 0.5 % such pixels without the reduction; where both sides are SwiftShader, no pixel differs at all.
 const TOLERANCE: Tolerance = Tolerance { levels: 3, outliers: 0.01, flip: 0.01 };
 
-/// The largest fraction of pixels with colours that are not among those around them: details finer than a pixel.
-const FOREIGN: f64 = 0.000_5;
+/// The largest fraction of pixels with colours that are not among those around them: details finer than a pixel. lavapipe
+/// and SwiftShader have 0.04 % in a picture of a quarter of the pixels, and another light has 45 %.
+const FOREIGN: f64 = 0.001;
 
 #[test]
 fn a_scene_in_the_browser_equals_the_native_one_and_another_light_does_not() {
