@@ -11,16 +11,24 @@ pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 /// A device as a program opens it: WebGPU's default limits, no features.
 pub fn device() -> Gpu {
+    let [device] = devices();
+    device
+}
+
+/// So many such devices, of one adapter: wgpu does not tell devices of different instances from each other.
+pub fn devices<const COUNT: usize>() -> [Gpu; COUNT] {
     let name = crate::harness::gpu().adapter().name.clone();
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
     let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there");
-    let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
-    let (device, queue) = opened.expect("a device");
-    assert_eq!(device.features(), wgpu::Features::empty());
-    assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
-    device.on_uncaptured_error(std::sync::Arc::new(|error| panic!("the device reports: {error}")));
-    Gpu::from_wgpu(device, queue)
+    [(); COUNT].map(|()| {
+        let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
+        let (device, queue) = opened.expect("a device");
+        assert_eq!(device.features(), wgpu::Features::empty());
+        assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
+        device.on_uncaptured_error(std::sync::Arc::new(|error| panic!("the device reports: {error}")));
+        Gpu::from_wgpu(device, queue)
+    })
 }
 
 /// A target of the program, and how it is cleared.

@@ -9,7 +9,7 @@ use relievo::scene::{Placement, Quality, Relief, Scene, TerrainSource};
 use relievo::terrain::config::Config;
 use relievo::wgpu::{self, TextureFormat as Format};
 
-use crate::frame::{COLOR, Frame, device};
+use crate::frame::{COLOR, Frame, device, devices};
 use crate::world::{SIZE, World, camera};
 
 /// Path and value of what is wrong.
@@ -107,19 +107,6 @@ fn a_view_is_out_of_date_once_objects_change() {
     assert_eq!(draw(&world.scene, &view), ["nothing", ""]);
     world.scene.remove(world.creature).expect("there");
     assert_eq!(draw(&world.scene, &view), ["view", "out of date"]);
-}
-
-/// Two devices of one adapter.
-fn devices() -> [Gpu; 2] {
-    let name = crate::harness::gpu().adapter().name.clone();
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there");
-    [0, 1].map(|_| {
-        let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
-        let (device, queue) = opened.expect("a device");
-        Gpu::from_wgpu(device, queue)
-    })
 }
 
 /// A renderer draws scenes of its own device; wgpu would panic.

@@ -7,7 +7,7 @@ use relievo::render::{Layer, Renderer};
 use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{InstanceId, ObjectId, Placement, Quality, Relief, View};
 
-use crate::frame::{Frame, device};
+use crate::frame::{Frame, device, devices};
 use crate::world::{SIZE, World, model};
 
 /// A world with every kind of object, in its twentieth frame or any other.
@@ -66,7 +66,7 @@ impl Whole {
 fn a_lost_device_leaves_no_trace() {
     let first = device();
     // The suite's handler panics; a lost device reports errors, as it should.
-    let lost = device();
+    let [lost, second] = devices();
     lost.device().on_uncaptured_error(std::sync::Arc::new(|_| ()));
     let (mut undisturbed, mut disturbed) = (Whole::new(&first), Whole::new(&lost));
     let frames = [Frame::plain(&first, SIZE), Frame::plain(&lost, SIZE)];
@@ -83,7 +83,6 @@ fn a_lost_device_leaves_no_trace() {
     lost.device().destroy();
     // wgpu tells the loss to the handler of the device's owner. Recording may succeed or fail, and does not panic.
     let _ = disturbed.record();
-    let second = device();
     let frame = Frame::plain(&second, SIZE);
     disturbed.world.scene.rebuild(&second).expect("a device");
     // What was not rebuilt is told, and nothing panics.
