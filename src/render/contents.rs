@@ -24,9 +24,12 @@ pub enum Contents {
     Measure,
 }
 
+/// What a colour must be, and in words.
+type Wanted = (fn(Format) -> bool, &'static str);
+
 impl Contents {
-    /// What each of the first colours must be, and in words.
-    pub(super) fn wanted(self) -> &'static [(fn(Format) -> bool, &'static str)] {
+    /// What each of the first colours must be.
+    pub(super) fn wanted(self) -> &'static [Wanted] {
         match self {
             Self::Color => &[(is_float, "must be a colour of floats")],
             Self::Surface => &[

@@ -21,14 +21,17 @@ use crate::scene::placement::Placement;
 use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
 
+/// A character, its clip, whether layers are above it, a bone, and the bits of the sphere that the bone carries.
+type PathKey = (ObjectId, (u32, bool), usize, [u32; 4]);
+
 /// The meshes that are attached.
 #[derive(Debug, Default)]
 pub(super) struct Attachments {
     all: HashMap<InstanceId, Attached>,
     /// The meshes that each character carries.
     carried: HashMap<InstanceId, Vec<InstanceId>>,
-    /// Where bones go: by character, clip, whether layers are above it, bone, and the bits of the sphere that they carry.
-    paths: HashMap<(ObjectId, (u32, bool), usize, [u32; 4]), BonePath>,
+    /// Where bones go.
+    paths: HashMap<PathKey, BonePath>,
     /// The list of each chunk of a character that carries a mesh, or has carried one, by slot and generation of the object.
     lists: BTreeMap<([u32; 2], usize), List>,
     /// Counts the times at which a list was allocated: jobs that were prepared for another number are out of date.

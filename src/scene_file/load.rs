@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use image::{DynamicImage, Rgba, RgbaImage};
@@ -215,7 +215,7 @@ impl Files<'_> {
         }
     }
 
-    fn decoded(&self, path: &str, file: &PathBuf) -> Result<DynamicImage, InputError> {
+    fn decoded(&self, path: &str, file: &Path) -> Result<DynamicImage, InputError> {
         let bytes = self.bytes(path, file)?;
         crate::surface::map::decode(Cursor::new(bytes)).map_err(|error| {
             InputError::new(path, file.display(), format!("must be a whole PNG or JPEG: {error}"))

@@ -37,6 +37,9 @@ pub(crate) struct PartMaterials {
     samplings: [Sampling; 2],
 }
 
+/// A texture of a material.
+type TextureOf = fn(&Material) -> Option<Texture>;
+
 impl PartMaterials {
     /// Uploads a table with an entry for each of `materials`, indices of the object's materials; an entry without a material
     /// is opaque and white. Colours are filtered by the first of `samplings`, normal maps by the second. The images become
@@ -145,7 +148,7 @@ impl PartMaterials {
     ) -> Result<[Sampling; 2], InputError> {
         let new = &looks.materials[index];
         let mut samplings = self.samplings;
-        let uses: [(&str, fn(&Material) -> Option<Texture>); 2] =
+        let uses: [(&str, TextureOf); 2] =
             [("texture", |material| material.texture), ("normal", |material| material.normal)];
         for ((field, of), sampling) in uses.into_iter().zip(&mut samplings) {
             let Some(wanted) = of(new).map(|texture| texture.sampling) else { continue };

@@ -88,7 +88,7 @@ impl MeshOnHost {
 /// What an object is.
 #[derive(Debug)]
 pub(super) enum Kind {
-    Terrain(Terrain),
+    Terrain(Box<Terrain>),
     Mesh(MeshOnHost),
     Character(Box<Character>),
 }
@@ -128,7 +128,7 @@ impl Object {
         let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source).await?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
         let drawn = whole(&instances, drawn);
-        Ok(Self::new(Kind::Terrain(terrain), (instances, sphere), (vec![0.0], 1.0), drawn))
+        Ok(Self::new(Kind::Terrain(Box::new(terrain)), (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
     /// A model's meshes at rest.

@@ -26,7 +26,7 @@ const SHARES: [f32; 3] = [0.25, 0.05, 0.7];
 /// What animates the crowd.
 enum Bones {
     Gated(Box<GatedFrame>),
-    Full(KeyframeCursorJob, Job, Box<LocalToModelJob>),
+    Full(Box<(KeyframeCursorJob, Job, LocalToModelJob)>),
 }
 
 /// A program that draws a crowd.
@@ -46,11 +46,11 @@ impl Wired {
         let cursors = KeyframeCursorPass::new(gpu).expect("compiled");
         let sample = SamplePass::new(gpu, RotationPath::Slerp).expect("compiled");
         let local_to_model = LocalToModelPass::new(gpu).expect("compiled");
-        let bones = Bones::Full(
+        let bones = Bones::Full(Box::new((
             cursors.prepare(gpu, &clips, &animated).expect("prepared"),
             sample.prepare(gpu, &clips, &animated).expect("prepared"),
-            Box::new(local_to_model.prepare(gpu, &crowd.model.skeleton, &animated).expect("prepared")),
-        );
+            local_to_model.prepare(gpu, &crowd.model.skeleton, &animated).expect("prepared"),
+        )));
         Self::new(gpu, crowd, (bones, &animated), (FadeRange::NEVER, &[]))
     }
 
@@ -94,7 +94,7 @@ impl Wired {
         let clay: Albedo = ColorTexture::new(gpu, &clay, true).expect("uploaded").into();
         let matrices = match &bones {
             Bones::Gated(frame) => frame.model_matrices(),
-            Bones::Full(..) => animated.model_matrices(),
+            Bones::Full(_) => animated.model_matrices(),
         };
         let character = Character {
             model: &crowd.model,
@@ -127,7 +127,8 @@ impl Wired {
                 frame.set(&self.gpu, &moment, elapsed).expect("set");
                 frame.record(&mut encoder);
             }
-            Bones::Full(cursors, sample, local_to_model) => {
+            Bones::Full(jobs) => {
+                let (cursors, sample, local_to_model) = &**jobs;
                 cursors.set(&self.gpu, elapsed).expect("set");
                 let mut pass = compute_pass(&mut encoder, "bones");
                 cursors.dispatch(&mut pass);
