@@ -20,8 +20,8 @@ impl Scene {
     /// already are written into buffers. Another texture or sampling is uploaded at once with those of these materials:
     /// that allocates, and a render bundle must be made anew.
     ///
-    /// The first material with [`Alpha::Mask`](crate::asset::material::Alpha::Mask) or
-    /// [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered) among opaque ones, the first with a normal map, and the first
+    /// The first material with [`Alpha::Mask`] or
+    /// [`Alpha::Dithered`] among opaque ones, the first with a normal map, and the first
     /// or last texture of a material that is drawn alone, may need a pipeline that a renderer does not have: call [`Renderer::prepare`](crate::render::Renderer::prepare), which
     /// compiles what is missing. Otherwise [`Renderer::draw`](crate::render::Renderer::draw) says that the object is not
     /// compiled.

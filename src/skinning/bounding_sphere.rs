@@ -37,6 +37,7 @@ impl BoundingSphere {
     }
 
     /// A sphere around this one and another.
+    #[cfg(feature = "gpu")]
     pub(crate) fn with(&self, other: &Self) -> Self {
         let (apart, towards) = (self.center.distance(other.center), other.center - self.center);
         if apart + other.radius <= self.radius {
@@ -168,6 +169,7 @@ mod tests {
         assert_eq!(BoundingSphere::around(std::iter::empty()), none);
     }
 
+    #[cfg(feature = "gpu")]
     #[test]
     fn a_sphere_holds_two() {
         let sphere = |x: f32, radius: f32| BoundingSphere { center: Vec3::X * x, radius };

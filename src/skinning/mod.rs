@@ -4,6 +4,7 @@
 pub mod at_rest;
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
+#[cfg(feature = "gpu")]
 pub(crate) mod bone_path;
 pub mod bounding_sphere;
 #[cfg(feature = "gpu")]

@@ -47,6 +47,7 @@ pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
 
 /// Whether a view may see a sphere, which is a thousandth larger than it must be, so that rounding on the device does not
 /// show it where it is not expected.
+#[cfg(feature = "gpu")]
 pub(crate) fn nearly_seen(view: &SelectView, center: Vec3, radius: f32) -> bool {
     depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius
 }
