@@ -119,8 +119,7 @@ pub mod render;
 pub mod samples;
 #[cfg(feature = "gpu")]
 pub mod scene;
-// It reads files and waits, neither of which a browser does.
-#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+#[cfg(feature = "gpu")]
 pub mod scene_file;
 mod shared;
 pub mod skinning;

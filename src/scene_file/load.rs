@@ -10,13 +10,15 @@ use image::{DynamicImage, Rgba, RgbaImage};
 use super::builtin;
 use super::entries::{EntryKind, ObjectEntry, PlayEntry, ReliefEntry, Source};
 use super::spec::SceneFile;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::Error;
 use crate::asset::{Mesh, Model};
 use crate::scene::Relief;
 use crate::skinning::{add_levels, at_rest, poses_of};
 use crate::surface::{Green, HeightMap, Material, ReliefOptions, SurfaceMesh, SurfaceVertex};
 use crate::terrain::config::ZoneTexture;
 use crate::terrain::texture::Texture;
-use crate::{Error, InputError, srgb};
+use crate::{InputError, srgb};
 
 /// Levels of detail are computed from a quarter of the poses that [`poses_of`] gives, 15 a second, within these bounds, so
 /// that a scene loads in seconds. `relievo scene --compare` measures what comes of it.
@@ -52,6 +54,7 @@ impl LoadedScene {
     ///
     /// # Errors
     /// [`Error::File`] if the file cannot be read; [`Error::InputFile`] with the path of a mistake inside the file.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn from_path(path: &Path) -> Result<Self, Error> {
         let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
         let folder = path.parent().unwrap_or(Path::new(""));

@@ -1,6 +1,6 @@
 //! Bounding spheres: of points, and of models in all of their clips.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3Swizzles as _};
 
 use super::pose::poses_of;
 use crate::animation::bounds::reference::bounds;
@@ -125,6 +125,15 @@ pub(crate) fn followed(model: &Model) -> Vec<bool> {
         }
     }
     followed
+}
+
+/// An upper bound on how much a matrix with these rows stretches: the square root of the largest row sum of the
+/// products of columns (Gershgorin), or of the sum of their squares, whichever is less. Up to rounding it is
+/// exact for a rotation combined with any scale before it.
+pub(crate) fn stretch(rows: [Vec3; 3]) -> f32 {
+    let squares: Vec3 = rows.iter().map(|row| row * row).sum();
+    let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();
+    (squares + mixed + mixed.zxy()).max_element().min(squares.element_sum()).sqrt()
 }
 
 #[cfg(all(test, feature = "samples"))]

@@ -72,6 +72,12 @@ fn native() -> RgbaImage {
     reduced(driven(&gpu, drawn).expect("drawn"))
 }
 
+fn native_of_file() -> RgbaImage {
+    let gpu = gpu();
+    let drawn = async { World::of_file(&gpu).await?.draw(&gpu).await };
+    reduced(driven(&gpu, drawn).expect("drawn"))
+}
+
 /// The fraction of pixels with a channel beyond those of the 9 pixels around its place in the other picture, by more than
 /// `levels`.
 fn foreign(actual: &RgbaImage, expected: &RgbaImage, levels: u8) -> f64 {
@@ -121,6 +127,24 @@ fn a_scene_in_the_browser_equals_the_native_one_and_another_light_does_not() {
         !difference.within(TOLERANCE) && beyond > FOREIGN,
         "another light passes: {difference:?}, {beyond}"
     );
+}
+
+#[test]
+fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
+    let (native, browser) = (native_of_file(), picture("file"));
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("web-scene");
+    std::fs::create_dir_all(&folder).expect("writable");
+    for (name, picture) in [("file-native", &native), ("file-browser", &browser)] {
+        picture.save(folder.join(format!("{name}.png"))).expect("writable");
+    }
+    let difference = Difference::of(&browser, &native, TOLERANCE.levels);
+    let beyond = foreign(&browser, &native, TOLERANCE.levels);
+    println!("{difference:?}, {beyond} foreign; see {}", folder.display());
+    assert!(difference.within(TOLERANCE), "{difference:?}; see {}", folder.display());
+    assert!(beyond <= FOREIGN, "{beyond} foreign; see {}", folder.display());
+    // Another scene is refused.
+    let other = picture("day");
+    assert!(!Difference::of(&other, &native, TOLERANCE.levels).within(TOLERANCE), "another scene passes");
 }
 
 /// A browser tells errors only after the call, and then to whoever asks.

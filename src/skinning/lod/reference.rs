@@ -1,9 +1,10 @@
 //! Culling and level of detail of instances: the CPU reference of `kernels/skinning/lod.wgsl`.
 
-use glam::{Vec3, Vec3Swizzles as _, Vec4};
+use glam::{Vec3, Vec4};
 
 use crate::asset::transform::Affine;
 use crate::shared::skinning::lod::NEARLY_SINGULAR;
+use crate::skinning::bounding_sphere::stretch;
 use crate::skinning::instance_lod::{FadeRange, InstanceLod};
 use crate::skinning::lod::LodView;
 use crate::skinning::picture::is_mirrored;
@@ -17,15 +18,6 @@ pub struct Seen {
     pub projected_distance: f32,
     /// The position between the beginning and the end of the fade, 0 to 1, before it is rounded to steps.
     pub fade_fraction: f32,
-}
-
-/// An upper bound on how much a matrix with these rows stretches: the square root of the largest row sum of the
-/// products of columns (Gershgorin), or of the sum of their squares, whichever is less. Up to rounding it is
-/// exact for a rotation combined with any scale before it.
-fn stretch(rows: [Vec3; 3]) -> f32 {
-    let squares: Vec3 = rows.iter().map(|row| row * row).sum();
-    let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();
-    (squares + mixed + mixed.zxy()).max_element().min(squares.element_sum()).sqrt()
 }
 
 /// How an instance is seen.

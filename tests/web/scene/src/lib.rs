@@ -22,12 +22,25 @@ pub fn start() {
 /// evening. Pixels are RGBA in sRGB, row by row.
 #[wasm_bindgen]
 pub async fn draw(evening: bool) -> Result<Vec<u8>, JsValue> {
-    drawn(evening).await.map_err(|error| JsValue::from_str(&error.to_string()))
+    let drawn = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        drawn(&gpu, World::new(&gpu, evening).await?).await
+    };
+    drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
 }
 
-async fn drawn(evening: bool) -> Result<Vec<u8>, relievo::Error> {
-    let gpu = Gpu::headless_async(&Options::default()).await?;
-    let pixels = World::new(&gpu, evening).await?.draw(&gpu).await?;
+/// Draws the scene of a file on a device of its own; pixels as above.
+#[wasm_bindgen]
+pub async fn draw_file() -> Result<Vec<u8>, JsValue> {
+    let drawn = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        drawn(&gpu, World::of_file(&gpu).await?).await
+    };
+    drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
+async fn drawn(gpu: &Gpu, mut world: World) -> Result<Vec<u8>, relievo::Error> {
+    let pixels = world.draw(gpu).await?;
     gpu.check_async().await?;
     Ok(pixels)
 }

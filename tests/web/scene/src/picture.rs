@@ -1,13 +1,16 @@
 //! A small scene and a picture of it: a patch of terrain, three walking creatures that stand on it, and a relief wall.
 //! The page and the native test draw it with this code.
 
+use std::path::Path;
+
 use relievo::Error;
 use relievo::asset::Light;
 use relievo::glam::Vec3;
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::samples::{creature, maps::BuiltInMap};
-use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource, View};
+use relievo::scene::{Camera, Depth, Placement, Play, Relief, Scene, TerrainSource, View};
+use relievo::scene_file::SceneFile;
 use relievo::terrain::config::Config;
 
 /// Pixels of the picture.
@@ -50,13 +53,26 @@ impl World {
         if evening {
             scene.set_light(Light { direction: Vec3::new(-0.8, 0.3, 0.1), ..Light::default() })?;
         }
+        let focus = ground(&scene, 15.0, 17.0).position().as_vec3() + Vec3::Y * 2.0;
+        let position = focus + Vec3::new(-4.0, 4.0, 13.0);
+        Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
+    }
+
+    /// Builds the scene of a file, which names no other files.
+    pub async fn of_file(gpu: &Gpu) -> Result<Self, Error> {
+        let none = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
+        let file = SceneFile::from_json(include_str!("scene.json"))?;
+        let camera = file.camera().camera(0.0, SIZE, Depth::Forward);
+        let world = file.load(&none)?.build_async(gpu).await?;
+        Self::seen(gpu, world.scene, camera).await
+    }
+
+    async fn seen(gpu: &Gpu, scene: Scene, camera: Camera) -> Result<Self, Error> {
         let target = Offscreen::new(gpu, SIZE, true, 1, false)?;
         let mut renderer = Renderer::new(gpu, target.format())?;
         renderer.prepare_async(&scene).await?;
         let mut eye = scene.view(Default::default())?;
-        let focus = ground(&scene, 15.0, 17.0).position().as_vec3() + Vec3::Y * 2.0;
-        let position = focus + Vec3::new(-4.0, 4.0, 13.0);
-        eye.set(Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE))?;
+        eye.set(camera)?;
         Ok(Self { scene, renderer, eye, target })
     }
 
