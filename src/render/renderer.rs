@@ -214,7 +214,7 @@ impl Renderer {
                 Drawable::Mesh(mesh) => self.draw_mesh(pass, view, &object, mesh, layer),
                 Drawable::Terrain(terrain) => {
                     let (Some(ground), Some(pipeline)) =
-                        (object.ground, self.pipeline(layer, Kind::Terrain, false))
+                        (object.ground, self.pipeline(layer, Kind::Terrain { style: terrain.style }, false))
                     else {
                         continue;
                     };
@@ -316,7 +316,7 @@ impl Renderer {
 fn kinds_of(drawable: &Drawable) -> impl Iterator<Item = Kind> {
     let (parts, terrain) = match drawable {
         Drawable::Mesh(mesh) => (mesh.parts.as_slice(), None),
-        Drawable::Terrain(_) => (&[][..], Some(Kind::Terrain)),
+        Drawable::Terrain(terrain) => (&[][..], Some(Kind::Terrain { style: terrain.style })),
     };
     parts.iter().map(Kind::of).chain(terrain)
 }
