@@ -68,15 +68,18 @@ impl Staged {
         self.encode(name, |bytes| image.write_to(bytes, image::ImageFormat::Png))
     }
 
-    /// Stages a picture of 16-bit brightness as PNG.
+    /// Stages a picture with 16 bits a channel as PNG.
     ///
     /// # Errors
     /// [`Error::Output`] if the file cannot be written.
-    pub fn write_gray_png(
+    pub fn write_deep_png<P>(
         &mut self,
         name: impl Into<String>,
-        image: &image::ImageBuffer<image::Luma<u16>, Vec<u16>>,
-    ) -> Result<(), Error> {
+        image: &image::ImageBuffer<P, Vec<u16>>,
+    ) -> Result<(), Error>
+    where
+        P: image::Pixel<Subpixel = u16> + image::PixelWithColorType,
+    {
         self.encode(name, |bytes| image.write_to(bytes, image::ImageFormat::Png))
     }
 

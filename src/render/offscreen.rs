@@ -2,6 +2,7 @@
 
 use image::RgbaImage;
 
+use super::contents::Contents;
 use super::format::TargetFormat;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, read_texture};
 #[cfg(not(target_arch = "wasm32"))]
@@ -40,10 +41,15 @@ use crate::{Error, InputError};
 pub struct Offscreen {
     format: TargetFormat,
     size: [u32; 2],
-    color: Option<wgpu::Texture>,
+    colors: Vec<Attachment>,
+    depth: wgpu::Texture,
+}
+
+#[derive(Debug, Clone)]
+struct Attachment {
+    drawn: wgpu::Texture,
     /// Where samples are resolved to.
     resolved: Option<wgpu::Texture>,
-    depth: wgpu::Texture,
 }
 
 impl Offscreen {
@@ -64,7 +70,7 @@ impl Offscreen {
             false => TargetFormat::depth_only(DEPTH_FORMAT),
         };
         let format = format.with_samples(samples);
-        Self::of(gpu, size, if is_reversed { format.reversed() } else { format })
+        Self::with_format(gpu, size, if is_reversed { format.reversed() } else { format })
     }
 
     /// A target of `size` pixels in linear light, `Rgba32Float`, whose values depend on no driver's rounding or encoding; with
@@ -73,7 +79,7 @@ impl Offscreen {
     /// # Errors
     /// As [`Offscreen::new`].
     pub fn linear(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
-        Self::of(gpu, size, TargetFormat::new(LINEAR_FORMAT))
+        Self::with_format(gpu, size, TargetFormat::new(LINEAR_FORMAT))
     }
 
     /// Whether the device has targets of so many pixels, whose colours in this format fit a binding, through which they are
@@ -86,22 +92,39 @@ impl Offscreen {
             && texel.saturating_mul(width * height) <= gpu.max_binding()
     }
 
-    fn of(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, Error> {
+    /// A target of `size` pixels of any format whose attachments are all there, with depth as `Depth32Float`.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`TargetFormat::validate`], for colours that are missing, for other formats of depth, for more than
+    /// one sample of what cannot be resolved, and for a size of 0 or beyond what the device allows; [`GpuError`].
+    pub fn with_format(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, Error> {
         format.validate()?;
+        let depth = format.depth.map(|depth| depth.format);
+        if depth != Some(DEPTH_FORMAT) {
+            let bound = format!("must be {DEPTH_FORMAT:?}");
+            return Err(InputError::new("format.depth", format!("{depth:?}"), bound).into());
+        }
+        if format.samples > 1 && format.contents != Contents::Color {
+            return Err(InputError::new("format.samples", format.samples, "must be 1 for these contents").into());
+        }
+        if let Some(at) = format.color.iter().position(Option::is_none) {
+            return Err(InputError::new(format!("format.color[{at}]"), "none", "must be there").into());
+        }
         let most = gpu.device().limits().max_texture_dimension_2d;
         if size.iter().any(|edge| !(1..=most).contains(edge)) {
             let value = format!("{}x{}", size[0], size[1]);
             return Err(InputError::new("size", value, format!("must be 1 to {most} pixels each way")).into());
         }
         let texture = |format, samples: u32| texture(gpu, size, format, samples);
-        let of_color = format.color.iter().flatten().map(|color| color.format).next();
         let samples = format.samples;
-        let (color, resolved, depth) = gpu.scoped(|| {
-            let color = of_color.map(|color| texture(color, samples));
-            let resolved = of_color.filter(|_| samples > 1).map(|color| texture(color, 1));
-            (color, resolved, texture(DEPTH_FORMAT, samples))
+        let attachment = |color: &wgpu::ColorTargetState| Attachment {
+            drawn: texture(color.format, samples),
+            resolved: (samples > 1).then(|| texture(color.format, 1)),
+        };
+        let (colors, depth) = gpu.scoped(|| {
+            (format.color.iter().flatten().map(attachment).collect(), texture(DEPTH_FORMAT, samples))
         })?;
-        Ok(Self { format, size, color, resolved, depth })
+        Ok(Self { format, size, colors, depth })
     }
 
     /// The format, for a [`Renderer`](super::Renderer).
@@ -114,7 +137,8 @@ impl Offscreen {
         self.size
     }
 
-    /// Records a pass that clears colour to `background` (linear) and depth to the farthest, and then draws.
+    /// Records a pass that clears colour to `background` (linear), other contents to 0 and depth to the farthest, and then
+    /// draws.
     ///
     /// # Errors
     /// Those of `draw`.
@@ -125,21 +149,24 @@ impl Offscreen {
         draw: impl FnOnce(&mut wgpu::RenderPass<'_>) -> Result<(), InputError>,
     ) -> Result<(), InputError> {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let (color, resolved) = (self.color.as_ref().map(view), self.resolved.as_ref().map(view));
+        let views = self.colors.iter().map(|color| (view(&color.drawn), color.resolved.as_ref().map(view)));
+        let views: Vec<_> = views.collect();
         let [r, g, b] = background.map(f64::from);
-        let attachment = color.as_ref().map(|view| wgpu::RenderPassColorAttachment {
+        let clear = match self.format.contents {
+            Contents::Color => wgpu::Color { r, g, b, a: 1.0 },
+            _ => wgpu::Color::TRANSPARENT,
+        };
+        let attachment = |(view, resolved)| wgpu::RenderPassColorAttachment {
             view,
             depth_slice: None,
-            resolve_target: resolved.as_ref(),
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
-                store: wgpu::StoreOp::Store,
-            },
-        });
-        let attachments = if attachment.is_some() { &[attachment][..] } else { &[] };
+            resolve_target: resolved,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+        };
+        let attachments: Vec<_> =
+            views.iter().map(|(view, resolved)| Some(attachment((view, resolved.as_ref())))).collect();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("off screen"),
-            color_attachments: attachments,
+            color_attachments: &attachments,
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &view(&self.depth),
                 depth_ops: Some(wgpu::Operations {
@@ -191,7 +218,7 @@ impl Offscreen {
     /// # Errors
     /// [`InputError`] for a target without colour, or of another one than sRGB; [`GpuError`].
     pub async fn read_async(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
-        let pixels = self.read_color(gpu, COLOR_FORMAT).await?;
+        let pixels = self.read_color(gpu, 0, COLOR_FORMAT).await?;
         let reason = "the image that was read back has the wrong size".to_owned();
         let image = RgbaImage::from_raw(self.size[0], self.size[1], pixels);
         image.ok_or_else(|| GpuError::Internal { reason }.into())
@@ -203,7 +230,7 @@ impl Offscreen {
     /// [`InputError`] for another target; [`GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_linear(&self, gpu: &Gpu) -> Result<LinearImage, Error> {
-        let bytes = gpu.block_on(self.read_color(gpu, LINEAR_FORMAT))?;
+        let bytes = gpu.block_on(self.read_color(gpu, 0, LINEAR_FORMAT))?;
         let pixels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
         Ok(LinearImage {
             size: self.size,
@@ -211,15 +238,25 @@ impl Offscreen {
         })
     }
 
-    /// Reads the bytes of the colours, which must have this format.
-    async fn read_color(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Vec<u8>, Error> {
-        let Some(color) = self.resolved.as_ref().or(self.color.as_ref()) else {
-            return Err(InputError::new("format.color", "none", "must be there to be read").into());
+    /// Reads the bytes of a colour attachment, which must have this format: texel by texel, row by row.
+    ///
+    /// # Errors
+    /// [`InputError`] for an attachment that does not exist or has another format; [`GpuError`].
+    pub async fn read_color(
+        &self,
+        gpu: &Gpu,
+        index: usize,
+        format: wgpu::TextureFormat,
+    ) -> Result<Vec<u8>, Error> {
+        let Some(Attachment { drawn, resolved }) = self.colors.get(index) else {
+            let path = format!("format.color[{index}]");
+            return Err(InputError::new(path, "none", "must be there to be read").into());
         };
+        let color = resolved.as_ref().unwrap_or(drawn);
         if color.format() != format {
             let bound = format!("must be {format:?} to be read like this");
             let value = format!("{:?}", color.format());
-            return Err(InputError::new("format.color[0].format", value, bound).into());
+            return Err(InputError::new(format!("format.color[{index}].format"), value, bound).into());
         }
         let texel = format.block_copy_size(None).unwrap_or(4);
         Ok(read_texture(gpu, color, wgpu::TextureAspect::All, texel).await?)

@@ -20,7 +20,8 @@ pub struct Rendering {
     pub samples: u32,
     /// The direction of depth.
     pub depth: Depth,
-    /// What is drawn: [`Layer::Color`], and what is transparent above it; or [`Layer::Depth`], which needs one sample.
+    /// What is drawn: [`Layer::Color`], and what is transparent above it; or with one sample [`Layer::Depth`],
+    /// [`Layer::Surface`] or [`Layer::Velocity`].
     pub layer: Layer,
     /// Whether two views of one submission draw the left half and the right half of the picture.
     pub is_split: bool,
@@ -52,11 +53,12 @@ impl Rendering {
         if ![1, 4].contains(&self.samples) {
             return Err(InputError::new("samples", self.samples, "must be 1 or 4"));
         }
-        if ![Layer::Color, Layer::Depth].contains(&self.layer) {
-            return Err(InputError::new("layer", format!("{:?}", self.layer), "must be color or depth"));
+        if ![Layer::Color, Layer::Depth, Layer::Surface, Layer::Velocity].contains(&self.layer) {
+            let bound = "must be color, depth, surface or velocity";
+            return Err(InputError::new("layer", format!("{:?}", self.layer), bound));
         }
-        if self.layer == Layer::Depth && self.samples > 1 {
-            return Err(InputError::new("samples", self.samples, "must be 1 for the layer depth"));
+        if self.layer != Layer::Color && self.samples > 1 {
+            return Err(InputError::new("samples", self.samples, "must be 1 for layers other than color"));
         }
         if self.size.contains(&0) || self.is_split && self.size[0] < 2 {
             let value = format!("{}x{}", self.size[0], self.size[1]);
