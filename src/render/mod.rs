@@ -25,6 +25,7 @@ mod shading;
 pub mod skinned;
 #[cfg(not(target_arch = "wasm32"))]
 mod square;
+mod sun_shadow;
 pub mod target;
 pub mod terrain;
 
@@ -42,6 +43,7 @@ pub use renderer::{Renderer, ScenePass};
 pub use skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
 #[cfg(not(target_arch = "wasm32"))]
 pub use square::SquarePicture;
+pub use sun_shadow::SunShadow;
 pub use target::Target;
 pub use terrain::{FieldsId, Materials, Style, TerrainRenderer, TerrainScene};
 

@@ -23,6 +23,7 @@ mod raw;
 mod rays;
 mod rebuild;
 mod shading;
+mod shadow;
 mod sides;
 mod solids;
 mod surfaces;
