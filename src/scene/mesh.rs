@@ -5,6 +5,7 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
+use crate::scene::pieces::{Most, pieces};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::at_rest::at_rest;
@@ -41,18 +42,28 @@ pub(crate) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
     merged(model, OBJECT_LEVELS as usize)
 }
 
-/// Uploads meshes that all instances share.
+/// Uploads meshes that all instances share, in pieces where one binding cannot hold a mesh.
 pub(super) fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     (merged, looks): (&Merged, &Looks),
 ) -> Result<Drawn, Error> {
     let (mut drawables, mut draws) = (Vec::new(), Vec::new());
-    for (index, mesh) in merged.model.meshes.iter().enumerate() {
-        check_binding(gpu, mesh)?;
-        let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, mesh)?;
+    let mut upload = |merged: &Merged, index: usize| -> Result<(), Error> {
+        let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, &merged.model.meshes[index])?;
         draws.extend(part_draws(merged, index, &buffers));
         drawables.push(drawable((gpu, layouts), (merged, looks), index, (&buffers, &clusters), None)?);
+        Ok(())
+    };
+    let most = |bytes: usize| (gpu.max_binding() / bytes as u64) as usize;
+    let most = Most { vertices: most(size_of::<Vertex>()), indices: most(size_of::<u32>()) };
+    for (index, mesh) in merged.model.meshes.iter().enumerate() {
+        if most.holds(mesh) {
+            upload(merged, index)?;
+        } else {
+            let pieces = pieces(merged, index, most)?;
+            (0..pieces.model.meshes.len()).try_for_each(|piece| upload(&pieces, piece))?;
+        }
     }
     Ok((drawables, draws))
 }
@@ -155,7 +166,8 @@ pub(super) fn drawable(
 fn parts_of_vertices(mesh: &Mesh, parts: &[&Part]) -> Vec<usize> {
     let mut part_of = vec![0; mesh.vertices()];
     for (at, part) in parts.iter().enumerate() {
-        let range = part.indices[0].clone();
+        // At level 0, which has all vertices, or at the one level at which a piece is drawn.
+        let Some(range) = part.indices.iter().find(|range| !range.is_empty()).cloned() else { continue };
         for vertex in &mesh.indices[range.start as usize..range.end as usize] {
             part_of[*vertex as usize] = at;
         }

@@ -34,6 +34,7 @@ mod options;
 pub(crate) mod order;
 mod paging;
 mod pick;
+mod pieces;
 mod placement;
 mod playing;
 mod poses;
@@ -292,7 +293,8 @@ impl Scene {
     }
 
     /// The largest number of draws that an object takes in a view and a layer. It is at most 64, unless a binding of the
-    /// device is too small for the object: its instances are drawn in several chunks then, each with as many draws.
+    /// device is too small for the object: a character's instances are drawn in several chunks then, a mesh's triangles in
+    /// several pieces, each with draws of its own.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.

@@ -18,6 +18,7 @@ mod levels;
 mod materials;
 mod mirrored;
 mod scene;
+mod shadows;
 mod skinned;
 mod tiling;
 

@@ -9,8 +9,9 @@ import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
-// Whether the only material of a part has a texture.
+// For plain vertices: whether the materials of the part have a texture, and whether there are several.
 override TEXTURED: bool = false;
+override SEVERAL: bool = false;
 // Whether the colour is blended with what is behind it, by its alpha.
 override BLENDED: bool = false;
 // For whole surfaces: whether alpha leaves out pixels, and whether a material has a normal map.
@@ -73,7 +74,7 @@ struct BumpyVertex {
     @location(3) tangent: vec4<f32>,
 }
 
-// A vertex of an opaque part with one material and without a normal map.
+// A vertex of an opaque part without normal maps, whose materials have one texture or none.
 struct PlainVertex {
     @invariant @builtin(position) clip: vec4<f32>,
     // The normal on the side of triangles that is in front, if both are seen, else outwards; w: the texture coordinate u.
@@ -98,7 +99,11 @@ struct WholeVertex {
 @vertex
 fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> PlainVertex {
     let placed = placed_vertex(instance, vertex);
-    let color = materials[0].color * unpack4x8unorm(placed.tint);
+    var index = 0u;
+    if SEVERAL {
+        index = material_of[vertex];
+    }
+    let color = materials[index].color * unpack4x8unorm(placed.tint);
     let is_behind = DOUBLE_SIDED && view.side * placed.side < 0.0;
     return PlainVertex(
         view.clip_from_world * vec4<f32>(placed.position, 1.0),

@@ -9,6 +9,7 @@ use crate::render::layer::Layer;
 use crate::render::shading::{PREFIX, Shading};
 use crate::scene::drawable::{MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Alike;
 use crate::surface::{ReliefOptions, Shadow};
 
 /// What a surface needs of a pipeline.
@@ -18,8 +19,8 @@ pub(super) enum Kind {
     Mesh {
         surface: SurfaceKind,
         normal_mapped: bool,
-        /// Whether the only material of an opaque part without a normal map has a texture; `None` for other parts.
-        only_textured: Option<bool>,
+        /// What the materials of an opaque part without a normal map have in common; `None` for other parts.
+        alike: Option<Alike>,
     },
     /// A mesh with relief.
     Relief { double_sided: bool, options: ReliefOptions },
@@ -33,11 +34,7 @@ impl Kind {
             MeshMaterials::Plain(materials) => {
                 let (surface, normal_mapped) = (part.surface, materials.normal_mapped);
                 let is_plain = !surface.cut_out && !surface.blended && !normal_mapped;
-                Self::Mesh {
-                    surface,
-                    normal_mapped,
-                    only_textured: materials.only_textured.filter(|_| is_plain),
-                }
+                Self::Mesh { surface, normal_mapped, alike: materials.alike.filter(|_| is_plain) }
             }
             MeshMaterials::Relief(relief) => {
                 Self::Relief { double_sided: part.surface.double_sided, options: relief.options }
@@ -54,9 +51,9 @@ impl Kind {
     /// The same with both sides of triangles.
     pub fn two_sided(self) -> Self {
         match self {
-            Self::Mesh { surface, normal_mapped, only_textured } => {
+            Self::Mesh { surface, normal_mapped, alike } => {
                 let surface = SurfaceKind { double_sided: true, ..surface };
-                Self::Mesh { surface, normal_mapped, only_textured }
+                Self::Mesh { surface, normal_mapped, alike }
             }
             Self::Relief { options, .. } => Self::Relief { double_sided: true, options },
             Self::Terrain => Self::Terrain,
@@ -68,10 +65,10 @@ impl Kind {
         let is_lit = layer.is_shaded();
         let has_normals = is_lit || layer == Layer::Surface;
         match self {
-            Self::Mesh { surface, normal_mapped, only_textured } => Self::Mesh {
+            Self::Mesh { surface, normal_mapped, alike } => Self::Mesh {
                 surface,
                 normal_mapped: normal_mapped && has_normals,
-                only_textured: only_textured.filter(|_| layer == Layer::Color),
+                alike: alike.filter(|_| layer == Layer::Color),
             },
             Self::Relief { double_sided, options } => {
                 let shadow = if is_lit { options.shadow } else { Shadow::None };
@@ -116,7 +113,7 @@ impl PipelineKey {
         let kind = match self.kind {
             // There is one program with the positions that shadows need.
             Kind::Mesh { surface, normal_mapped, .. } if is_shadowed => {
-                Kind::Mesh { surface, normal_mapped, only_textured: None }
+                Kind::Mesh { surface, normal_mapped, alike: None }
             }
             kind => kind,
         };

@@ -25,22 +25,24 @@ impl Program {
         // A pipeline without a fragment stage fits no pass with colours.
         let depth_opaque = (!format.color.is_empty()).then_some("depth_opaque");
         match kind {
-            Kind::Mesh { surface, normal_mapped, only_textured } => {
+            Kind::Mesh { surface, normal_mapped, alike } => {
                 let (vertex, fragment) = match layer {
                     Layer::Depth if surface.cut_out => ("vertex", Some("depth_cut_out")),
                     Layer::Depth => ("vertex", depth_opaque),
                     Layer::Color | Layer::Transparent if is_whole => ("vertex_whole", Some("shaded_whole")),
-                    Layer::Color if only_textured.is_some() => ("vertex_plain", Some("opaque_plain")),
+                    Layer::Color if alike.is_some() => ("vertex_plain", Some("opaque_plain")),
                     Layer::Color | Layer::Transparent => own_color(surface, normal_mapped),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
                     Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
                 };
                 let SurfaceKind { double_sided, cut_out, blended } = surface;
-                let textured = only_textured == Some(true);
+                let textured = alike.is_some_and(|alike| alike.textured);
+                let several = alike.is_some_and(|alike| alike.several);
                 let constants = scene_mesh::Constants {
                     double_sided,
                     textured,
+                    several,
                     cut_out,
                     blended,
                     normal_mapped,

@@ -12,6 +12,7 @@ use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
 use crate::scene::drawable::SurfaceKind;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Alike;
 use crate::surface::{Green, Method, ReliefOptions, Shadow};
 
 /// Kinds that take every entry point and both values of every flag.
@@ -21,9 +22,10 @@ fn kinds() -> Vec<Kind> {
         flags().map(move |double_sided| SurfaceKind { cut_out, blended: false, double_sided })
     });
     let meshes = surfaces.flat_map(|surface| {
-        let mesh = move |normal_mapped, only_textured| Kind::Mesh { surface, normal_mapped, only_textured };
-        let plain =
-            flags().filter(move |_| !surface.cut_out).map(move |textured| mesh(false, Some(textured)));
+        let mesh = move |normal_mapped, alike| Kind::Mesh { surface, normal_mapped, alike };
+        let alike =
+            flags().flat_map(|textured| flags().map(move |several| Some(Alike { textured, several })));
+        let plain = alike.filter(move |_| !surface.cut_out).map(move |alike| mesh(false, alike));
         flags().map(move |normal_mapped| mesh(normal_mapped, None)).chain(plain)
     });
     let reliefs = Method::ALL.into_iter().flat_map(|method| {

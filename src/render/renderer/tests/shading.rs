@@ -47,6 +47,11 @@ fn model() -> Model {
 
 /// A square of two by two units that faces +Z, with u along +X and v along −Y, with the second material.
 fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
+    square_of(gpu, layouts, &mut model(), double_sided)
+}
+
+/// The same with the second of two materials.
+fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided: bool) -> Drawable {
     let corners = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
     let vertex = |[x, y]: [f32; 2]| Vertex {
         position: [x, y, 0.0],
@@ -72,8 +77,7 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
     let part = MeshPart {
         surface: SurfaceKind { cut_out: false, blended: false, double_sided },
         materials: MeshMaterials::Plain(
-            PartMaterials::new(gpu, layouts, &Looks::taken(&mut model()), &table, Default::default())
-                .expect(up),
+            PartMaterials::new(gpu, layouts, &Looks::taken(model), &table, Default::default()).expect(up),
         ),
     };
     Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))
@@ -157,5 +161,41 @@ fn a_square_with_one_side_is_seen_from_that_side_only() {
             let is_seen = pixels.iter().any(|pixel| *pixel != [0; 4]);
             assert_eq!(is_seen, from_behind == is_seen_from_behind, "{placement} {from_behind}");
         }
+    }
+}
+
+#[test]
+fn materials_that_share_a_texture_or_have_none_keep_their_colors() {
+    let gpu = gpu();
+    let layouts = SceneLayouts::new(&gpu).expect("valid");
+    let (light, format) = (Vec3::Z, TargetFormat::new(FORMAT));
+    let colors = [[1.0, 0.25, 0.5, 1.0], [0.5, 0.8, 1.0, 1.0]];
+    // No texture; one for both; one for the second alone; two.
+    for images in [[None, None], [Some(0), Some(0)], [None, Some(0)], [Some(1), Some(0)]] {
+        let mut model = model();
+        let texture = |image| Texture { image, sampling: Sampling::default() };
+        let material = |at: usize| Material {
+            color: colors[at],
+            texture: images[at].map(texture),
+            normal: None,
+            ..model.materials[0].clone()
+        };
+        model.materials = [0, 1].map(material).to_vec();
+        let square = square_of(&gpu, &layouts, &mut model, true);
+        let stage = Stage::new(
+            &gpu,
+            &layouts,
+            seen(false, light),
+            &[rows(&Mat4::IDENTITY.to_cols_array())],
+            &[[0, 6]],
+        );
+        let pixels = drawn(&gpu, &format, &square, &stage, None, &[Layer::Color]);
+        let middle = pixels[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize];
+        let texel = images[1]
+            .map_or(Vec3::ONE, |_| Vec3::new(srgb::linear(200), srgb::linear(100), srgb::linear(50)));
+        let color = texel * Vec3::new(0.5, 0.8, 1.0) * Vec3::new(1.0, 0.5, 0.75);
+        let wanted = [srgb::byte(color.x), srgb::byte(color.y), srgb::byte(color.z), 255];
+        let far = middle.iter().zip(wanted).any(|(found, wanted)| found.abs_diff(wanted) > 1);
+        assert!(!far, "{images:?}: {middle:?}, not {wanted:?}");
     }
 }

@@ -1,0 +1,142 @@
+//! Meshes that a binding of the device cannot hold, in pieces: each level of detail is cut where its triangles begin to use
+//! more vertices than fit, and each piece has vertices of its own.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use crate::InputError;
+use crate::asset::{Influence, Influences, Mesh, Model};
+use crate::skinning::character_levels::own_levels;
+use crate::skinning::merged::{Merged, Part};
+
+/// The most that a piece may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Most {
+    pub vertices: usize,
+    pub indices: usize,
+}
+
+impl Most {
+    /// Whether a mesh fits, with all its levels.
+    pub fn holds(self, mesh: &Mesh) -> bool {
+        let levels: usize = mesh.levels.iter().map(|level| level.indices.len()).sum();
+        mesh.vertices() <= self.vertices && mesh.indices.len() + levels <= self.indices
+    }
+}
+
+/// A merged mesh at rest in pieces: meshes without levels, whose parts are drawn at one level each. The triangles of a level
+/// keep their order, and their vertices have the same bits.
+///
+/// # Errors
+/// None for a mesh at rest.
+pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Result<Merged, InputError> {
+    let whole = &merged.model.meshes[index];
+    let own = own_levels(whole, &merged.errors);
+    let mut all = Merged {
+        model: Model {
+            skeleton: merged.model.skeleton.clone(),
+            skins: merged.model.skins.clone(),
+            clips: Vec::new(),
+            meshes: Vec::new(),
+            skinned: 0,
+            materials: Vec::new(),
+            images: Vec::new(),
+        },
+        errors: merged.errors.clone(),
+        materials: Vec::new(),
+        sources: Vec::new(),
+        parts: Vec::new(),
+    };
+    for (level, own) in own.iter().enumerate() {
+        let triangles = whole.triangles(*own);
+        let parts = merged.parts.iter().filter(|part| part.mesh == index);
+        let mut piece = Piece::default();
+        for part in parts {
+            let Range { start, end } = part.indices[level];
+            for triangle in triangles[start as usize..end as usize].chunks_exact(3) {
+                if !piece.has_room(triangle, most) {
+                    std::mem::take(&mut piece).finish(merged, index, level, &mut all)?;
+                }
+                piece.add(triangle, part);
+            }
+        }
+        piece.finish(merged, index, level, &mut all)?;
+    }
+    Ok(all)
+}
+
+/// A piece that is being filled.
+#[derive(Default)]
+struct Piece<'a> {
+    /// For each vertex of the whole mesh that it has, its own index.
+    slots: HashMap<u32, u32>,
+    /// The vertex of the whole mesh that each of its vertices is.
+    vertices: Vec<u32>,
+    indices: Vec<u32>,
+    /// The parts that it has triangles of, and where these end.
+    parts: Vec<(&'a Part, u32)>,
+}
+
+impl<'a> Piece<'a> {
+    fn has_room(&self, triangle: &[u32], most: Most) -> bool {
+        let new = triangle.iter().filter(|vertex| !self.slots.contains_key(vertex)).count();
+        self.vertices.len() + new <= most.vertices && self.indices.len() + 3 <= most.indices
+    }
+
+    fn add(&mut self, triangle: &[u32], part: &'a Part) {
+        for vertex in triangle {
+            let slot = *self.slots.entry(*vertex).or_insert_with(|| {
+                self.vertices.push(*vertex);
+                self.vertices.len() as u32 - 1
+            });
+            self.indices.push(slot);
+        }
+        let end = self.indices.len() as u32;
+        match self.parts.last_mut() {
+            Some((last, to)) if std::ptr::eq(*last, part) => *to = end,
+            _ => self.parts.push((part, end)),
+        }
+    }
+
+    /// Adds it to `all` as a mesh with parts that are drawn at `level` alone.
+    fn finish(self, merged: &Merged, index: usize, level: usize, all: &mut Merged) -> Result<(), InputError> {
+        let (whole, mesh) = (&merged.model.meshes[index], all.model.meshes.len());
+        let mut begin = 0;
+        for (part, end) in &self.parts {
+            let mut indices = vec![0..0; part.indices.len()];
+            indices[level] = begin..*end;
+            all.parts.push(Part { mesh, key: part.key, indices });
+            begin = *end;
+        }
+        if self.indices.is_empty() {
+            return Ok(());
+        }
+        let (materials, sources) = (&merged.materials[index], &merged.sources[index]);
+        all.materials.push(self.vertices.iter().map(|vertex| materials[*vertex as usize]).collect());
+        all.sources.push(self.vertices.iter().map(|vertex| sources[*vertex as usize]).collect());
+        let one = |_: &u32| vec![Influence { bone: 0, weight: 1.0 }];
+        let influences = Influences::new("influences", 1, self.vertices.iter().map(one))?;
+        all.model.meshes.push(Mesh {
+            name: whole.name.clone(),
+            skin: whole.skin,
+            positions: self.taken(&whole.positions),
+            normals: self.taken(&whole.normals),
+            tangents: self.taken(&whole.tangents),
+            uv: self.taken(&whole.uv),
+            indices: self.indices,
+            double_sided: whole.double_sided,
+            material: whole.material,
+            influences,
+            targets: Vec::new(),
+            weights: Vec::new(),
+            weight_keys: Vec::new(),
+            levels: Vec::new(),
+        });
+        Ok(())
+    }
+
+    /// The values of its vertices among those of the whole mesh.
+    fn taken<T: Copy>(&self, of_whole: &[T]) -> Vec<T> {
+        self.vertices.iter().map(|vertex| of_whole[*vertex as usize]).collect()
+    }
+}
