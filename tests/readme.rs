@@ -16,8 +16,9 @@ use relievo::asset::Light;
 use relievo::asset::{Affine, Model};
 use relievo::gpu::{Buffer, Gpu, shaders};
 use relievo::render::TerrainScene;
-use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, SunShadow};
 use relievo::samples::creature;
+use relievo::scene::{Scene, View};
 use relievo::scene_file::SceneFile;
 use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
 use relievo::skinning::{Blend, Extent, add_levels, level_errors, poses_of};
@@ -192,6 +193,16 @@ fn embedding(
     batch.set(&gpu, &patches, &Features::default())?;
     batch.record(&mut encoder);
     scene.add(&gpu, &config, &batch.fields()[0], &patches, origin)?;
+    Ok(())
+}
+
+/// Compiles the README's example of a shadow, with the variables that it leaves out.
+#[allow(dead_code, reason = "it is compiled, not run")]
+fn shadow((mut scene, mut eye): (Scene, View), mut encoder: wgpu::CommandEncoder) -> Result<(), Error> {
+    let mut shadow = SunShadow::new(&mut scene, 2048)?;
+    shadow.fit(&scene, &mut [&mut eye], 120.0)?;
+    scene.record(&mut encoder, &mut [&mut eye, shadow.view()])?;
+    shadow.draw(&mut encoder, &scene)?;
     Ok(())
 }
 
