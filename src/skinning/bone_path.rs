@@ -1,6 +1,6 @@
 //! Where a bone carries a sphere through a clip.
 
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 
 use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of, poses, stretch};
 use crate::animation::bounds::reference::bounds;
@@ -45,6 +45,8 @@ impl BonePath {
 
 #[cfg(all(test, feature = "samples"))]
 mod tests {
+    use glam::Mat3;
+
     use super::*;
 
     #[test]

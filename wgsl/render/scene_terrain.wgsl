@@ -1,6 +1,7 @@
 // Draws patches of terrain of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8): an indexed patch for
 // each visible one, zone textures blended by height, a directional light.
 import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
 import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
@@ -184,10 +185,14 @@ fn shaded_wired(in: WiredVertex) -> @location(0) vec4<f32> {
     return mix(vec4<f32>(0.01, 0.014, 0.02, 1.0), line, near);
 }
 
-// Colour by the caller's shading.
+// Colour by the caller's shading, or in the shadow of the sun.
 @fragment
 fn shaded_whole(in: WholeVertex) -> @location(0) vec4<f32> {
-    return scene_shaded(whole_surface(in));
+    var surface = whole_surface(in);
+    if SHADOWED {
+        surface.sunlit = scene_sunlit(surface.position, surface.geometric_normal);
+    }
+    return scene_shaded(surface);
 }
 
 @fragment
