@@ -105,7 +105,9 @@ impl Offscreen {
             return Err(InputError::new("format.depth", format!("{depth:?}"), bound).into());
         }
         if format.samples > 1 && format.contents != Contents::Color {
-            return Err(InputError::new("format.samples", format.samples, "must be 1 for these contents").into());
+            return Err(
+                InputError::new("format.samples", format.samples, "must be 1 for these contents").into()
+            );
         }
         if let Some(at) = format.color.iter().position(Option::is_none) {
             return Err(InputError::new(format!("format.color[{at}]"), "none", "must be there").into());

@@ -214,7 +214,8 @@ impl Renderer {
             match object.drawable {
                 Drawable::Mesh(mesh) => self.draw_mesh(pass, view, &object, mesh, layer),
                 Drawable::Terrain(terrain) => {
-                    let pipeline = self.pipeline(layer, Kind::Terrain { style: terrain.style }, false, view);
+                    let kind = Kind::Terrain { style: terrain.style };
+                    let pipeline = self.pipeline(layer, kind, false, view);
                     let (Some(ground), Some(pipeline)) = (object.ground, pipeline) else {
                         continue;
                     };

@@ -79,6 +79,6 @@ mod world;
 pub use camera::CameraPath;
 pub use load::LoadedScene;
 #[cfg(not(target_arch = "wasm32"))]
-pub use player::{FrameTimes, Player, Rendering};
+pub use player::{FrameTimes, Player, Rendering, SurfacePixel};
 pub use spec::{SceneFile, SunOptions};
 pub use world::{World, WorldKind, WorldObject};

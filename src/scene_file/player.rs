@@ -3,12 +3,14 @@
 use std::time::Instant;
 
 use image::RgbaImage;
+use wgpu::TextureFormat;
 
 use super::camera::columns;
 use super::spec::SunOptions;
 use super::world::World;
 use crate::gpu::Gpu;
-use crate::render::{Layer, Offscreen, Renderer, SunShadow};
+use crate::render::target::COLOR_FORMAT;
+use crate::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use crate::scene::{Camera, Depth, Quality, View};
 use crate::{Error, InputError};
 
@@ -100,8 +102,13 @@ impl Player {
         rendering.validate()?;
         let gpu = world.scene.gpu().clone();
         let Rendering { size, samples, depth, layer, is_split, quality } = rendering;
-        let target = Offscreen::new(&gpu, size, layer != Layer::Depth, samples, depth == Depth::Reversed)?;
-        let shadow = match world.shadow.filter(|_| layer != Layer::Depth) {
+        let format = format_of(layer).with_samples(samples);
+        let format = if depth == Depth::Reversed { format.reversed() } else { format };
+        let target = Offscreen::with_format(&gpu, size, format)?;
+        if layer == Layer::Velocity {
+            world.scene.keep_last_frame(true)?;
+        }
+        let shadow = match world.shadow.filter(|_| layer == Layer::Color) {
             Some(SunOptions { size, range }) => Some((SunShadow::new(&mut world.scene, size)?, range)),
             None => None,
         };
@@ -210,6 +217,43 @@ impl Player {
         self.target.read(&self.gpu)
     }
 
+    /// The surfaces of the last frame, row by row; `None` where nothing was drawn. For [`Layer::Surface`].
+    ///
+    /// # Errors
+    /// [`InputError`] for another layer; [`crate::gpu::GpuError`].
+    pub fn surfaces(&self) -> Result<Vec<Option<SurfacePixel>>, Error> {
+        let read = |index: usize| self.gpu.block_on(self.target.read_color(&self.gpu, index, SURFACE[index]));
+        let normals: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(0)?);
+        let albedo: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&read(1)?);
+        let numbers: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&read(2)?);
+        let pixels = normals.into_iter().zip(albedo).zip(numbers);
+        let pixel = |(([x, y, z, there], [r, g, b, _]), numbers): (([f32; 4], [u8; 4]), [u32; 2])| {
+            (there > 0.0).then_some(SurfacePixel { normal: [x, y, z], albedo: [r, g, b], numbers })
+        };
+        Ok(pixels.map(pixel).collect())
+    }
+
+    /// How many pixels to the right and down what is seen in the last frame has moved since the one before, row by row; `None`
+    /// where nothing was drawn. For [`Layer::Velocity`].
+    ///
+    /// # Errors
+    /// [`InputError`] for another layer; [`crate::gpu::GpuError`].
+    pub fn velocities(&self) -> Result<Vec<Option<[f32; 2]>>, Error> {
+        let bytes = self.gpu.block_on(self.target.read_color(&self.gpu, 0, VELOCITY))?;
+        let velocities: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
+        let [width, height] = self.rendering.size;
+        let halves = self.halves();
+        let widths = (0..width).map(|x| {
+            let [from, to] = halves.iter().copied().find(|[_, to]| x < *to).unwrap_or([0, width]);
+            (to - from) as f32
+        });
+        let widths: Vec<f32> = widths.collect();
+        let pixel = |(at, [right, down, _, there]): (usize, [f32; 4])| {
+            (there > 0.0).then_some([right * widths[at % width as usize], down * height as f32])
+        };
+        Ok(velocities.into_iter().enumerate().map(pixel).collect())
+    }
+
     /// The distances ahead of the eye of the last frame, in world units, row by row; `None` where nothing was drawn.
     ///
     /// # Errors
@@ -225,6 +269,33 @@ impl Player {
         Ok(depths.into_iter().map(distance).collect())
     }
 }
+
+/// What the surface in a pixel is before it is lit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePixel {
+    /// The unit normal in world axes, on the side that is seen.
+    pub normal: [f32; 3],
+    /// The colour in sRGB.
+    pub albedo: [u8; 3],
+    /// The numbers of the object ([`ObjectId::number`](crate::scene::ObjectId::number)) and the instance.
+    pub numbers: [u32; 2],
+}
+
+/// The target of a layer, of values that need no other feature to be read: a velocity's and a normal's w tell whether there is
+/// anything.
+fn format_of(layer: Layer) -> TargetFormat {
+    let color = |formats: &[TextureFormat]| formats.iter().map(|format| Some((*format).into())).collect();
+    match layer {
+        Layer::Depth => TargetFormat::depth_only(TextureFormat::Depth32Float),
+        Layer::Surface => TargetFormat { color: color(&SURFACE), ..TargetFormat::surface() },
+        Layer::Velocity => TargetFormat { color: color(&[VELOCITY]), ..TargetFormat::velocity() },
+        _ => TargetFormat::new(COLOR_FORMAT),
+    }
+}
+
+const SURFACE: [TextureFormat; 3] =
+    [TextureFormat::Rgba32Float, TextureFormat::Rgba8UnormSrgb, TextureFormat::Rg32Uint];
+const VELOCITY: TextureFormat = TextureFormat::Rgba32Float;
 
 fn milliseconds(start: Instant) -> f64 {
     1e3 * start.elapsed().as_secs_f64()

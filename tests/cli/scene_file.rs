@@ -100,6 +100,8 @@ fn arguments_are_checked_before_anything_is_loaded() {
         (&["--samples", "2"], "samples = 2"),
         (&["--layer", "depth", "--samples", "4"], "samples = 4"),
         (&["--layer", "depth", "--compare"], "layer = depth"),
+        (&["--layer", "velocity", "--compare"], "layer = velocity"),
+        (&["--layer", "surface", "--samples", "4"], "samples = 4"),
         (&["--layer", "smell"], "smell"),
         (&["--depth", "sideways"], "sideways"),
         (&["--rate", "0"], "rate = 0"),
@@ -187,6 +189,58 @@ fn depth_is_the_distance_ahead() {
         }
         assert!(folder.frame(0).into_luma16().pixels().all(|pixel| pixel.0[0] > 1000));
     }
+}
+
+#[test]
+fn velocity_is_the_motion_on_the_screen() {
+    let folder = Folder::new();
+    let path = |time: u32, x: u32| json!({"time": time, "at": [x, 1, 5.5], "look": [x, 1, 0]});
+    let scene = json!({
+        "meshes": [{"file": "builtin:wall", "instances": [{"at": [0, -5, 0], "scale": [20, 20, 2]}]}],
+        "camera": {"path": [path(0, 0), path(1, 1)], "fov": 0.8},
+    });
+    for split in [&[][..], &["--split"]] {
+        let arguments = ["--layer", "velocity", "--frames", "2", "--rate", "2", "--size", "40x32"];
+        let run = folder.run(&scene.to_string(), &[&arguments[..], split].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let report = folder.report();
+        assert_documented(&report);
+        // In half a second the camera has gone half of its way, half a unit, five units before the wall.
+        let expected = 16.0 / f64::tan(0.4) * 0.5 / 5.0;
+        let fastest = |frame: usize| report["frames"][frame]["fastest"].as_f64().expect("a number");
+        assert_eq!(fastest(0), 0.0, "{split:?}");
+        assert!((fastest(1) - expected).abs() < 1e-3, "{split:?}: {} pixels, not {expected}", fastest(1));
+        // Everything moves to the left.
+        let picture = folder.frame(1).into_rgb16();
+        let is_left = |pixel: &image::Rgb<u16>| pixel.0[0] < 10 && pixel.0[1].abs_diff(32_768) < 10;
+        assert!(picture.pixels().all(is_left), "{split:?}");
+    }
+}
+
+#[test]
+fn surfaces_have_normals_colors_and_numbers() {
+    let folder = Folder::new();
+    let wall = |x: i32| json!({"at": [x, -5, 0], "scale": [8, 20, 2]});
+    let scene = json!({
+        "meshes": [{"file": "builtin:wall", "instances": [wall(-4), wall(4)]}],
+        "camera": {"at": [0, 1, 5.5], "look": [0, 1, 0]},
+    });
+    let run = folder.run(&scene.to_string(), &["--layer", "surface", "--size", "40x32"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let read =
+        |name: &str| image::open(folder.path(&format!("out/frame_0000{name}.png"))).expect("a picture");
+    let normals = read("").into_rgb8();
+    assert!(normals.pixels().all(|pixel| pixel.0 == [128, 128, 255]), "walls face the eye");
+    let numbers = read("_id").into_rgb16();
+    assert_eq!([numbers.get_pixel(2, 9).0, numbers.get_pixel(37, 9).0], [[1, 0, 0], [1, 1, 0]]);
+    let albedo = read("_albedo").into_rgb8();
+    assert!(albedo.pixels().any(|pixel| pixel.0.iter().all(|channel| *channel > 20)));
+    // Another layer's run leaves none of these pictures behind.
+    let run = folder.run(&scene.to_string(), &["--size", "40x32"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(
+        !folder.path("out/frame_0000_id.png").exists() && !folder.path("out/frame_0000_albedo.png").exists()
+    );
 }
 
 #[test]

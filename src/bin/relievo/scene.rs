@@ -1,5 +1,7 @@
 //! `relievo scene`: draws the frames of a scene file, and compares them with full detail.
 
+mod layers;
+
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
@@ -7,12 +9,12 @@ use std::process::ExitCode;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use image::{ImageBuffer, Luma, RgbaImage};
+use image::RgbaImage;
 use relievo::files::Staged;
 use relievo::measure::{CharacterDump, FrameReport, FrameSummary, ObjectReport, ScenePlay};
 use relievo::render::Layer;
 use relievo::scene::{Depth, Quality};
-use relievo::scene_file::{LoadedScene, Player, Rendering};
+use relievo::scene_file::{LoadedScene, Rendering};
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -20,8 +22,14 @@ use crate::Context;
 use crate::arguments::{one_of, pair};
 use crate::output::say;
 use crate::progress::{bar, during};
+use layers::Extremes;
 
-const LAYERS: [(&str, Layer); 2] = [("color", Layer::Color), ("depth", Layer::Depth)];
+const LAYERS: [(&str, Layer); 4] = [
+    ("color", Layer::Color),
+    ("depth", Layer::Depth),
+    ("velocity", Layer::Velocity),
+    ("surface", Layer::Surface),
+];
 const DEPTHS: [(&str, Depth); 2] = [("forward", Depth::Forward), ("reversed", Depth::Reversed)];
 
 /// Draws the frames of a scene file: terrain, models, reliefs and crowds, along the path of its camera.
@@ -53,11 +61,15 @@ pub struct Scene {
     /// Draws everything in full detail.
     #[arg(long, conflicts_with = "compare")]
     full: bool,
-    /// What is drawn. Of depth, brightness falls linearly from the nearest distance ahead of the eye to the farthest,
-    /// which report.json has as nearest and farthest; black is where nothing is.
+    /// What is drawn; black is where nothing is. Of depth, brightness falls linearly from the nearest distance ahead of the
+    /// eye to the farthest, which report.json has as nearest and farthest. Of velocity, red is the motion to the right since
+    /// the frame before and green that downwards: half of the range is none, and the ends are the largest motion in the
+    /// frame, which report.json has as fastest, in pixels. Of surface, colours are normals (-1 to 1 in world axes);
+    /// frame_0000_albedo.png has the colours before light, and frame_0000_id.png the number of the object in red and of the
+    /// instance in green, with 16 bits.
     #[arg(long, default_value = "color", value_parser = one_of(LAYERS))]
     layer: Layer,
-    /// Samples a pixel: 1 or 4. Default: 4, and 1 for depth.
+    /// Samples a pixel: 1 or 4. Default: 4, and 1 for other layers than color, which have one alone.
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
     /// The direction of depth: from 0 at the near plane, or from 1.
@@ -103,10 +115,8 @@ struct Frame {
     frame: u32,
     #[serde(flatten)]
     report: FrameReport,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    nearest: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    farthest: Option<f64>,
+    #[serde(flatten)]
+    extremes: Extremes,
 }
 
 impl Scene {
@@ -120,6 +130,7 @@ impl Scene {
         let summary = self.report(&play, frames, &mut staged)?;
         let is_ours = |name: &str| {
             let number = name.strip_prefix("frame_").and_then(|name| name.strip_suffix(".png"));
+            let number = number.map(|name| name.trim_end_matches("_albedo").trim_end_matches("_id"));
             number.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()))
                 || ["characters.json", "characters.f32"].contains(&name)
         };
@@ -144,7 +155,12 @@ impl Scene {
             return Err(InputError::new("rate", self.rate, "must be above 0 and at most 1e6").into());
         }
         if self.compare && self.layer != Layer::Color {
-            return Err(InputError::new("layer", "depth", "must be color where frames are compared").into());
+            return Err(InputError::new(
+                "layer",
+                name_of(LAYERS, self.layer),
+                "must be color where frames are compared",
+            )
+            .into());
         }
         let size = pair::<u32>("size", &self.size, 'x', "must be width x height in pixels, such as 960x600")?;
         if size.iter().any(|edge| !(1..=8192).contains(edge)) {
@@ -184,18 +200,11 @@ impl Scene {
         let mut frames: Vec<Frame> = Vec::new();
         for frame in 0..self.frames {
             let report = play.frame(if frame == 0 { 0.0 } else { 1.0 / self.rate })?;
-            let name = format!("frame_{frame:04}.png");
-            let [nearest, farthest] = match self.layer {
-                Layer::Depth => write_depth(play.player(), &name, staged)?,
-                _ => {
-                    staged.write_png(name, &play.player().picture()?)?;
-                    [None; 2]
-                }
-            };
+            let extremes = layers::write(play.player(), &format!("frame_{frame:04}"), staged)?;
             if let Some(numbers) = &mut numbers {
                 dump.add(play.player(), numbers)?;
             }
-            frames.push(Frame { frame, report, nearest, farthest });
+            frames.push(Frame { frame, report, extremes });
             if let Some((number, stages)) = play.stages()
                 && let Some(earlier) = frames.get_mut(number as usize)
             {
@@ -251,25 +260,6 @@ fn in_file(path: &Path, error: Error) -> Error {
         Error::Input(source) => Error::InputFile { path: path.to_owned(), source },
         other => other,
     }
-}
-
-/// Writes distances as brightness; returns the nearest and the farthest.
-fn write_depth(player: &Player, name: &str, staged: &mut Staged) -> Result<[Option<f64>; 2], Error> {
-    let distances = player.distances()?;
-    let there = || distances.iter().copied().flatten();
-    let [nearest, farthest] = [there().reduce(f64::min), there().reduce(f64::max)];
-    let brightness = |distance: &Option<f64>| {
-        let (Some(distance), Some(near), Some(far)) = (distance, nearest, farthest) else { return 0 };
-        let part = (distance - near) / (far - near).max(f64::MIN_POSITIVE);
-        // Nothing is black, the farthest nearly.
-        (65_535.0 - 64_000.0 * part).round() as u16
-    };
-    let [width, height] = player.rendering().size;
-    let image = ImageBuffer::<Luma<u16>, _>::from_fn(width, height, |x, y| {
-        Luma([brightness(&distances[(y * width + x) as usize])])
-    });
-    staged.write_gray_png(name, &image)?;
-    Ok([nearest, farthest])
 }
 
 fn lines(frames: u32, is_compared: bool, summary: &FrameSummary) -> String {
