@@ -129,7 +129,7 @@ impl Offscreen {
         Ok(Self { format, size, colors, depth })
     }
 
-    /// The format, for a [`Renderer`](super::Renderer).
+    /// The format, for a [`Renderer`].
     pub fn format(&self) -> &TargetFormat {
         &self.format
     }
