@@ -105,7 +105,8 @@ impl MeshDrawable {
     /// # Errors
     /// [`GpuError`].
     pub fn beside(&self, gpu: &Gpu, layouts: &SceneLayouts, pages: &PageBuffers) -> Result<Self, GpuError> {
-        let none = MeshParams { first_instance: 0, clusters: self.clusters, object: 0, last: 0 };
+        let none =
+            MeshParams { first_instance: 0, clusters: self.clusters, object: 0, last: 0, first_slot: 0 };
         let params = Uniform::new(gpu, "mesh", &none)?;
         let geometry = MeshGeometry { params, ..self.geometry.clone() };
         Self { geometry, ..self.clone() }.with_pages(gpu, layouts, pages)

@@ -150,7 +150,7 @@ pub(super) fn drawable(
         params: Uniform::new(
             gpu,
             "mesh",
-            &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0 },
+            &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0, first_slot: 0 },
         )?,
         vertices: pages.map_or(&buffers.vertices, |pages| &pages.skinned).clone(),
         last: pages.map_or(0, |pages| pages.last),

@@ -153,7 +153,7 @@ pub(super) fn drawn(
         params: Uniform::new(
             gpu,
             "mesh",
-            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0 },
+            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0, first_slot: 0 },
         )?,
         vertices: Buffer::from_slice(gpu, "mesh vertices", &vertices)?,
         last: 0,

@@ -1,14 +1,19 @@
-//! Characters and meshes whose vertices exceed a binding of the device, or its memory.
+//! Characters, meshes and terrain that exceed a binding of the device, or its memory.
 
 use glam::Vec3;
 use relievo::asset::material::Alpha;
 use relievo::asset::morph::{MorphDelta, MorphTarget};
 use relievo::asset::{Influence, Influences, Material, Mesh, MeshLevel, Model};
 use relievo::gpu::Gpu;
-use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Quality, Ray, Scene, View};
+use relievo::render::{Layer, TargetFormat};
+use relievo::scene::{
+    Camera, InstanceId, ObjectId, Placement, Play, Quality, Ray, Scene, TerrainSource, View,
+};
+use relievo::terrain::config::Config;
 
 use crate::frame::{Frame, device};
 use crate::harness::{Difference, gpu_of_bindings};
+use crate::raw::Raw;
 use crate::world::{SIZE, model};
 
 const COUNT: usize = 40;
@@ -316,4 +321,56 @@ fn meshes_beyond_a_binding_are_drawn_in_pieces() {
     assert!(distance == expected, "{distance} m, {expected} m");
     let difference = Difference::of(&divided, &whole, 0);
     assert!(difference.outliers < 0.001, "{difference:?}");
+}
+
+/// Terrain whose heights exceed a binding is drawn in chunks, and looks as it does whole; its patches keep their numbers.
+#[test]
+fn terrain_beyond_a_binding_is_drawn_in_chunks() {
+    let patches: Vec<[i32; 2]> = (0..256).map(|at| [at % 16 - 8, at / 16 - 8]).collect();
+    let draw = |gpu: &Gpu| {
+        let mut scene = Scene::new(gpu).expect("compiled");
+        let config = Config::new(65, 12.0, "chunks").expect("valid");
+        let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
+        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let camera = Camera::looking_at(Vec3::new(20.0, 180.0, 300.0), Vec3::ZERO, 0.8, [1.0, 4000.0], SIZE);
+        view.set(camera).expect("a camera");
+        let frame = Frame::plain(gpu, SIZE);
+        let renderer = frame.renderer(gpu, &scene);
+        let before = frame.shot(&mut scene, &mut view, &renderer);
+        scene.refresh().expect("afresh");
+        let after = frame.shot(&mut scene, &mut view, &renderer);
+        assert!(before == after, "another picture afresh");
+        let raw = Raw::new(gpu, TargetFormat::measure(), SIZE);
+        let renderer = raw.renderer(gpu, &scene);
+        raw.frame(&mut scene, &mut view, &renderer, &[Layer::Measure]);
+        let numbers = raw.words(gpu, 1);
+        (before, scene.draws(land).expect("there"), numbers)
+    };
+    // 256 patches of 67 × 67 heights are 4.6 MB.
+    let (divided, chunks, numbers) = draw(&gpu_of_bindings(3 << 20));
+    let (whole, draws, expected) = draw(&device());
+    println!("draws: {chunks} in chunks, {draws} whole");
+    assert!(draws == 1 && chunks > 1, "{chunks} draws, {draws}");
+    let difference = Difference::of(&divided, &whole, 0);
+    assert!(difference.outliers < 0.001, "{difference:?}");
+    let wrong = numbers.iter().zip(&expected).filter(|(a, b)| a != b).count();
+    assert!(1000 * wrong < numbers.len(), "{wrong} other numbers");
+    assert!(numbers.iter().any(|[_, instance]| *instance > 200), "patches of the last chunk are seen");
+}
+
+/// Of a crowd in chunks, every instance keeps the number of its handle.
+#[test]
+fn instances_in_chunks_keep_their_numbers() {
+    let numbers = |gpu: &Gpu| {
+        let mut crowd = Crowd::new(gpu, 0.0);
+        crowd.look(9.0);
+        let raw = Raw::new(gpu, TargetFormat::measure(), SIZE);
+        let renderer = raw.renderer(gpu, &crowd.scene);
+        raw.frame(&mut crowd.scene, &mut crowd.view, &renderer, &[Layer::Measure]);
+        raw.words(gpu, 1)
+    };
+    let (divided, whole) = (numbers(&gpu_of_bindings(3 << 20)), numbers(&device()));
+    let wrong = divided.iter().zip(&whole).filter(|(a, b)| a != b).count();
+    assert!(1000 * wrong < whole.len(), "{wrong} other numbers");
+    assert!(divided.iter().any(|[_, instance]| *instance >= 32), "instances of the last chunk are seen");
 }

@@ -243,7 +243,7 @@ fn whole_surface(in: WholeVertex, is_front: bool) -> Surface {
     return Surface(
         in.position, facing(outwards, in.normal.w, is_front), facing(geometric, in.normal.w, is_front),
         in.surface.xy, color.rgb, color.a, 1.0, unpack4x8unorm(instances[index].tint), instances[index].word,
-        mesh.object, in.instance, in.clip.xy);
+        mesh.object, mesh.first_slot + in.instance, in.clip.xy);
 }
 
 // Whether alpha leaves a pixel of a whole surface out.

@@ -30,6 +30,8 @@ struct TerrainParams {
     zone_count: u32,
     // 1 if zones add their weights as they are, 0 if these are normalized.
     additive: u32,
+    // The number in the object of its first patch here.
+    first_patch: u32,
 }
 
 // A patch.
@@ -172,7 +174,8 @@ fn whole_surface(in: WholeVertex) -> Surface {
 fn colored_surface(in: WholeVertex, color: vec3<f32>) -> Surface {
     let normal = normalize(in.normal);
     return Surface(
-        in.position, normal, normal, in.uv, color, 1.0, 1.0, vec4<f32>(1.0), 0u, ground.object, in.instance, in.clip.xy);
+        in.position, normal, normal, in.uv, color, 1.0, 1.0, vec4<f32>(1.0), 0u, ground.object,
+        terrain.first_patch + in.instance, in.clip.xy);
 }
 
 // The edges of triangles, by the crate's or the caller's shading, on ground that no light reaches.

@@ -14,6 +14,8 @@ struct MeshParams {
     object: u32,
     // The index in `vertices` of the last frame's positions, two pairs per vertex in pages; 0 if vertices do not move.
     last: u32,
+    // The number in the object of its first instance here.
+    first_slot: u32,
 }
 
 // Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the

@@ -39,6 +39,8 @@ struct Page<'a> {
     /// The folder for the files that the commands write themselves.
     inputs: &'a Path,
     progress: ProgressBar,
+    /// The list of contents, and what follows it.
+    contents: String,
     figures: String,
     /// Number of pictures so far.
     count: usize,
@@ -55,17 +57,45 @@ impl Demo {
                 (scene::COUNT + terrain::COUNT + relief::COUNT + skin::COUNT + crowd::COUNT) as u64,
                 "drawing",
             ),
+            contents: String::new(),
             figures: String::new(),
             count: 0,
         };
+        page.section(
+            "scene",
+            "A scene",
+            "Everything below in one picture, with one number of pixels for the whole of it.",
+        );
         scene::draw(&mut page, &self.size)?;
+        page.section(
+            "terrain",
+            "Terrain",
+            "Heights that are the same bits on every device, computed patch by patch from a few parameters. On the right the \
+             same ground from above.",
+        );
         terrain::draw(&mut page, &self.size)?;
+        page.section(
+            "surface",
+            "Surface mapping",
+            "A flat square that shows a height map: each pixel's ray is followed to where it meets the heights, by one of \
+             several methods, and the error of each is measured.",
+        );
         relief::draw(&mut page, &self.size)?;
+        page.section(
+            "skinning",
+            "Skinning",
+            "Vertices that follow bones, with fewer influences and triangles where that does not show.",
+        );
         skin::draw(&mut page)?;
+        page.section(
+            "animation",
+            "Animation level of detail",
+            "Crowds in which a bone is only interpolated where its motion would show.",
+        );
         crowd::draw(&mut page)?;
         page.progress.finish_and_clear();
         let adapter = context.gpu()?.adapter().to_string();
-        page.staged.write("index.html", html(&adapter, &page.figures).as_bytes())?;
+        page.staged.write("index.html", html(&adapter, &page.contents, &page.figures).as_bytes())?;
         page.staged.publish()?;
         say(format_args!("{} pictures, and {}", page.count, self.out.join("index.html").display()))?;
         Ok(ExitCode::SUCCESS)
@@ -96,6 +126,12 @@ impl Entry {
 }
 
 impl Page<'_> {
+    /// Begins a section, with a sentence on what it shows.
+    fn section(&mut self, id: &str, title: &str, words: &str) {
+        self.contents += &format!("<li><a href=\"#{id}\">{title}</a></li>\n");
+        self.figures += &format!("<h2 id=\"{id}\">{title}</h2>\n<p>{words}</p>\n");
+    }
+
     /// Draws the pictures of a command; `draw` returns each picture with a note.
     fn draw<T: Args + FromArgMatches>(
         &mut self,
@@ -121,7 +157,7 @@ impl Page<'_> {
     }
 }
 
-fn html(adapter: &str, figures: &str) -> String {
+fn html(adapter: &str, contents: &str, figures: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>relievo</title>\n<style>\n\
@@ -132,10 +168,12 @@ fn html(adapter: &str, figures: &str) -> String {
          img {{ width: 100%; display: block; border-radius: 4px }}\n\
          img.map {{ aspect-ratio: 1; image-rendering: auto }}\n\
          a.wide {{ grid-column: 1 / -1; max-width: 60rem }}\n\
+         nav ul {{ display: flex; flex-wrap: wrap; gap: .25rem 1.5rem; padding: 0; list-style: none }}\n\
+         h2 {{ margin: 3rem 0 .5rem }}\n\
          code {{ font-size: .85em; background: #e7ecf0; padding: .1em .3em; border-radius: 3px }}\n\
          </style>\n<h1>relievo {version}</h1>\n\
          <p>Made on {adapter}. The heights are the same bits on every device: the same commands with \
-         <code>--backend cpu</code> give the same hashes.</p>\n{figures}</html>\n",
+         <code>--backend cpu</code> give the same hashes.</p>\n<nav><ul>\n{contents}</ul></nav>\n{figures}</html>\n",
         version = env!("CARGO_PKG_VERSION"),
     )
 }

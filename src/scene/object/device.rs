@@ -46,9 +46,9 @@ impl Object {
                 let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
                 self.chunks = character.chunks(gpu, layouts, first)?;
             }
-            Kind::Mesh(_) | Kind::Terrain(_) => {
-                self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
-            }
+            Kind::Mesh(_) => self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity),
+            // It does not grow.
+            Kind::Terrain(_) => {}
         }
         Ok(())
     }
@@ -60,7 +60,8 @@ impl Object {
         let drawn = match &self.kind {
             Kind::Terrain(terrain) => {
                 terrain.check_can_be_rebuilt()?;
-                terrain::made(gpu, layouts, &terrain.source).await?.2
+                let chunks = terrain::made(gpu, layouts, &terrain.source).await?.2.0;
+                return Ok(OnDevice { chunks, character: None });
             }
             Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, (merged, looks))?,
             Kind::Mesh(MeshOnHost::Relief(relief)) => {

@@ -129,7 +129,8 @@ fn stage_params(staged: &mut Staged, chunk: &Chunk, object: u32) -> Result<(), E
     for drawable in &chunk.drawables {
         if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
             let (first_instance, last) = (chunk.range.first, geometry.last);
-            let params = MeshParams { first_instance, clusters: *clusters, object, last };
+            let first_slot = chunk.slots.start as u32;
+            let params = MeshParams { first_instance, clusters: *clusters, object, last, first_slot };
             staged.uniform(&geometry.params, &params)?;
         }
     }

@@ -3,10 +3,11 @@
 use super::source::{Origin, TerrainSource, check_fields, check_once, check_patches};
 use super::{Terrain, extremes, placed};
 use crate::gpu::{Buffer, Gpu, Uniform};
+use crate::scene::chunk::Chunk;
 use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::instances::Instances;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::mesh::{Drawn, NOTHING};
+use crate::scene::mesh::NOTHING;
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::terrain::config::{Config, HEIGHT_ONE};
@@ -21,64 +22,70 @@ use crate::{Error, InputError};
 /// The samples around each patch that the scene generates: shading reads one.
 const MARGIN: u32 = 1;
 
-/// Makes terrain: what a scene keeps of it, its patches as instances, and how it is drawn.
+/// Makes terrain: what a scene keeps of it, its patches as instances, and how they are drawn, in a chunk for each part of the
+/// heights that one binding holds.
 pub(in crate::scene) async fn made(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     source: &TerrainSource,
-) -> Result<(Terrain, Instances, Drawn), Error> {
+) -> Result<(Terrain, Instances, (Vec<Chunk>, Vec<SceneDraw>)), Error> {
     let TerrainSource { patches, textures, .. } = source;
     let config = source.config();
-    let fields = match &source.origin {
+    let parts = match &source.origin {
         Origin::Recipe(recipe) => generated(gpu, recipe, patches).await?,
         Origin::Fields { config, fields } => {
             check_fields(config, fields)?;
             check_patches(config, fields, patches)?;
-            fields.clone()
+            vec![fields.clone()]
         }
     };
     let textures = match textures {
         Some(textures) => textures.clone(),
         None => Texture::of_zones(&config.zones)?,
     };
+    let zones = Materials::new(gpu, &config.zones, &textures)?;
     let mut ground = Ground::new(config)?;
-    let mut instances = Instances::new(fields.count as usize);
-    let margin = (fields.width - config.patch_size) / 2;
-    for ((at, patch), heights) in patches.iter().enumerate().zip(&fields.read(gpu).await?) {
-        ground.insert(*patch, heights, margin)?;
-        let (placement, sphere) = placed(config, (at, *patch), extremes(heights))?;
-        instances.spawn(&placement, &sphere);
+    let mut instances = Instances::new(parts.iter().map(|part| part.count as usize).sum());
+    let (mut chunks, mut first) = (Vec::new(), 0);
+    for part in &parts {
+        let slots = first..first + part.count as usize;
+        let shown = &patches[first.min(patches.len())..slots.end.min(patches.len())];
+        let margin = (part.width - config.patch_size) / 2;
+        for ((at, patch), heights) in (first..).zip(shown).zip(&part.read(gpu).await?) {
+            ground.insert(*patch, heights, margin)?;
+            let (placement, sphere) = placed(config, (at, *patch), extremes(heights))?;
+            instances.spawn(&placement, &sphere);
+        }
+        let drawable = drawable((gpu, layouts), (source, &zones), part, (first, shown))?;
+        first = slots.end;
+        chunks.push(Chunk::new(slots, vec![drawable]));
     }
-    let (drawable, draws) = drawable((gpu, layouts), source, &fields, &textures)?;
+    let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
+    let edge = config.patch_size - 1;
+    draws[0].indices = 6 * edge * edge;
     let (edge, spacing) = (config.edge_length(), config.terrain_scale);
     let terrain = Terrain { ground, edge, spacing, source: source.clone() };
-    Ok((terrain, instances, (vec![drawable], draws)))
+    Ok((terrain, instances, (chunks, draws)))
 }
 
-/// Generates the heights of a recipe, which one binding must hold.
-async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<Fields, Error> {
+/// Generates the heights of a recipe.
+async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
     if patches.is_empty() {
         return Err(InputError::new("patches", "none", "must be at least one").into());
     }
     check_once(patches)?;
     let generator = Generator::new(gpu, recipe.clone())?;
-    let mut parts = generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await?;
-    if parts.len() > 1 {
-        let bound =
-            format!("must be at most {}, which one binding holds: add several terrains", parts[0].count);
-        return Err(InputError::new("patches.len", patches.len(), bound).into());
-    }
-    Ok(parts.remove(0))
+    generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await
 }
 
+/// How the patches of one part are drawn; `first` is the number of the first of them.
 fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
-    source: &TerrainSource,
+    (source, zones): (&TerrainSource, &Materials),
     fields: &Fields,
-    textures: &[Texture],
-) -> Result<(Drawable, Vec<SceneDraw>), Error> {
+    (first, shown): (usize, &[[i32; 2]]),
+) -> Result<Drawable, Error> {
     let config = source.config();
-    let zones = Materials::new(gpu, &config.zones, textures)?;
     let size = config.patch_size;
     let params = TerrainParams {
         in_width: fields.width,
@@ -88,24 +95,20 @@ fn drawable(
         tiling: (config.tiles_per_patch() / f64::from(size - 1)) as f32,
         zone_count: zones.zone_count,
         additive: source.shading.weights.code(),
+        first_patch: first as u32,
     };
     let patches = Buffer::new(gpu, "patches", fields.count.max(1) as usize)?;
-    if !source.patches.is_empty() {
-        patches.write(gpu, &listed(config, &source.patches))?;
+    if !shown.is_empty() {
+        patches.write(gpu, &listed(config, shown))?;
     }
-    let indices = patch_indices(size);
-    let draw = SceneDraw { indices: indices.len() as u32, ..NOTHING };
     let geometry = TerrainGeometry {
         params: Uniform::new(gpu, "terrain", &params)?,
         heights: fields.heights.clone(),
         patches,
-        indices: Buffer::from_slice(gpu, "triangles of a patch", &indices)?,
-        zones,
+        indices: Buffer::from_slice(gpu, "triangles of a patch", &patch_indices(size))?,
+        zones: zones.clone(),
     };
-    let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
-    draws[0] = draw;
-    let terrain = TerrainDrawable::new(gpu, layouts, geometry, source.style)?;
-    Ok((Drawable::Terrain(terrain), draws))
+    Ok(Drawable::Terrain(TerrainDrawable::new(gpu, layouts, geometry, source.style)?))
 }
 
 /// Patches as shaders see them, the first with the first window.

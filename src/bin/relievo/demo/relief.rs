@@ -14,17 +14,17 @@ const ENTRIES: &[Entry] = &[
     ),
     entry(
         "relief_close_plain",
-        "Close up, textured only (B figure 5.11)",
+        "Close up, textured only",
         "--builtin bricks --method plain --tile 0.3 --angle 60",
     ),
     entry(
         "relief_close_parallax",
-        "Close up, parallax with the square in the middle of the relief (B figure 5.11)",
+        "Close up, parallax with the square in the middle of the relief",
         "--builtin bricks --method parallax --bias -0.05 --tile 0.3 --angle 60",
     ),
     entry(
         "relief_close_relief",
-        "Close up, relief: linear, then binary search (B figure 5.11)",
+        "Close up, relief: linear, then binary search",
         "--builtin bricks --method relief --tile 0.3 --angle 60",
     ),
     entry(
@@ -34,7 +34,7 @@ const ENTRIES: &[Entry] = &[
     ),
     entry(
         "relief_posts_lost",
-        "Thin posts, and ten linear steps that walk past them (B figure 3.6)",
+        "Thin posts, and ten linear steps that walk past them",
         "--builtin posts --texels 256 --method relief --steps 10 --tile 0.5",
     ),
     entry(

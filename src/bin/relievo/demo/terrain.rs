@@ -31,7 +31,7 @@ const fn valley(name: &'static str, title: &'static str, config: &'static str) -
 const ENTRIES: &[Configured] = &[
     plain(
         "textured",
-        "A patch from B's own three parameters: four zones, blended by height (B figure 3.17)",
+        "A patch from three parameters: size, height and a seed; four zones of ground, blended by height",
         "",
         r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#,
     ),
@@ -49,31 +49,31 @@ const ENTRIES: &[Configured] = &[
     ),
     plain(
         "wireframe",
-        "The mesh that is drawn, straight from the heights (B figure 3.15)",
+        "The mesh that is drawn, straight from the heights",
         "--wireframe",
         r#"{"patchSize": 65, "scaleFactor": 12.0, "seed": "wire"}"#,
     ),
     plain(
         "step_1",
-        "One subdivision (B figure 3.14)",
+        "After one subdivision",
         "--wireframe",
         r#"{"patchSize": 3, "scaleFactor": 12.0, "seed": "wire", "terrainScale": 32}"#,
     ),
     plain(
         "step_2",
-        "Two: every second sample is one of the first",
+        "After two subdivisions: every second sample is one of the first",
         "--wireframe",
         r#"{"patchSize": 5, "scaleFactor": 12.0, "seed": "wire", "terrainScale": 16}"#,
     ),
     plain(
         "step_5",
-        "Five",
+        "After five subdivisions",
         "--wireframe",
         r#"{"patchSize": 33, "scaleFactor": 12.0, "seed": "wire", "terrainScale": 2}"#,
     ),
     valley(
         "valley_1",
-        "A valley injected by a sixteenth of its heights, seed one (B figure 3.18)",
+        "A valley injected by a sixteenth of its heights, seed one",
         r#"{"patchSize": 129, "scaleFactor": 24.0, "seed": "one"}"#,
     ),
     valley(
@@ -88,7 +88,7 @@ const ENTRIES: &[Configured] = &[
     ),
     plain(
         "additive",
-        "B's additive zone weights, as they are: overlaps glow, gaps go dark",
+        "Zone weights that are added and not normalized: overlaps glow, gaps go dark",
         "--weights additive",
         r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#,
     ),
@@ -100,7 +100,7 @@ const ENTRIES: &[Configured] = &[
     ),
     plain(
         "blend",
-        "B's border mode for comparison: patches by themselves, 32 samples of transition",
+        "The other way to join patches, for comparison: each by itself, with 32 samples of transition",
         "--patches 2x2",
         r#"{"patchSize": 129, "scaleFactor": 40.0, "seed": "blend", "border": {"blend": 32}}"#,
     ),

@@ -49,7 +49,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];
     let count = buffers.clusters();
-    let params = MeshParams { first_instance: 64, clusters: count as u32, object: 1, last: 0 };
+    let params = MeshParams { first_instance: 64, clusters: count as u32, object: 1, last: 0, first_slot: 0 };
     let mut pages = clusters.vertices.clone();
     pages.resize(64 * count, Vertex::default());
     let pages: Vec<Vertex> = pages.chunks(64).rev().flatten().copied().collect();

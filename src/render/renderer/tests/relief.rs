@@ -87,7 +87,7 @@ fn mesh_of(
         color: [1.0; 3],
     };
     let up = "uploaded";
-    let params = MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0 };
+    let params = MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0 };
     let uv: Vec<_> = square.vertices.iter().map(|vertex| vertex.uv).collect();
     let vertices: Vec<_> = square.vertices.iter().map(vertex).collect();
     let geometry = MeshGeometry {

@@ -63,7 +63,7 @@ fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided:
         params: Uniform::new(
             gpu,
             "mesh",
-            &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0 },
+            &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0 },
         )
         .expect(up),
         last: 0,

@@ -54,6 +54,7 @@ impl Land {
             tiling: (tiles / f64::from(size - 1)) as f32,
             zone_count: zones.zone_count,
             additive: Shading::default().weights.code(),
+            first_patch: 0,
         };
         let patch = |(window, patch): (u32, [i32; 2])| TerrainPatch {
             origin: patch.map(|at| at * (size as i32 - 1)),
