@@ -45,7 +45,7 @@ impl Stage {
         let boxes = world.scene.add_mesh(&boxes, 4).expect("added");
         let others = world.scene.add_mesh(&others, 2).expect("added");
         let towards = SUN.normalize();
-        let at = |place: Vec3| Placement::at(place.into());
+        let at = |place: Vec3| Placement::at(place);
         let solids = [
             (at(Vec3::new(1.0, 0.0, -5.0) + 25.0 * towards).turned(0.4).scaled(3.0), false),
             (at(Vec3::new(4.0, 5.0, 0.0)).turned(0.7).scaled(1.2), false),
@@ -108,14 +108,14 @@ impl Stage {
     /// The triangles of the nine patches.
     fn add_ground(&self, occluders: &mut Occluders) {
         let config = Config::new(33, 6.0, "embed").expect("valid");
-        let step = config.edge_length() / 32.0;
+        let step = config.terrain_scale;
         let place = |x: i32, z: i32| {
             let [x, z] = [x, z].map(|at| f64::from(at) * step);
             let ground = self.world.scene.ground(self.world.land, x, z).expect("terrain").expect("inside");
             DVec3::new(x, ground.height, z)
         };
-        for x in -32..64 {
-            for z in -32..64 {
+        for x in -32..63 {
+            for z in -32..63 {
                 let [north, south, north_east, south_east] =
                     [place(x, z), place(x, z + 1), place(x + 1, z), place(x + 1, z + 1)];
                 occluders.add([north, south, north_east], [self.world.land.number(), 0]);
