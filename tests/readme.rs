@@ -15,10 +15,9 @@ use relievo::animation::{bounds, keyframe_cursor, local_to_model, sample};
 use relievo::asset::Light;
 use relievo::asset::{Affine, Model};
 use relievo::gpu::{Buffer, Gpu, shaders};
-use relievo::render::TerrainScene;
 use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, SunShadow};
 use relievo::samples::creature;
-use relievo::scene::{Scene, View};
+use relievo::scene::{Scene, TerrainSource, View};
 use relievo::scene_file::SceneFile;
 use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
 use relievo::skinning::{Blend, Extent, add_levels, level_errors, poses_of};
@@ -182,17 +181,19 @@ fn every_example_is_named() {
 #[allow(dead_code, reason = "it is compiled, not run")]
 fn embedding(
     (device, queue): (&wgpu::Device, &wgpu::Queue),
-    (patches, origin): (Vec<[i32; 2]>, [i32; 2]),
+    patches: Vec<[i32; 2]>,
     mut encoder: wgpu::CommandEncoder,
-    mut scene: TerrainScene,
+    mut scene: Scene,
 ) -> Result<(), Error> {
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
     let config = Config::new(257, 40.0, "any text")?;
     let pass = HeightPass::new(&gpu, Offset::Signed, None)?;
     let batch = HeightBatch::new(&gpu, &pass, &config, [64, 1], 0)?;
+    let land = TerrainSource::from_fields(config, batch.fields()[0].clone(), &[]);
+    let land = scene.add_terrain(&land)?;
     batch.set(&gpu, &patches, &Features::default())?;
     batch.record(&mut encoder);
-    scene.add(&gpu, &config, &batch.fields()[0], &patches, origin)?;
+    scene.set_patches(land, &patches, [-80.0, 80.0])?;
     Ok(())
 }
 

@@ -3,11 +3,39 @@
 use image::RgbaImage;
 
 use super::format::TargetFormat;
-use super::target::{COLOR_FORMAT, DEPTH_FORMAT, read_texture};
+use super::target::{COLOR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, read_texture};
+#[cfg(not(target_arch = "wasm32"))]
+use super::{layer::Layer, renderer::Renderer};
 use crate::gpu::{Gpu, GpuError};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::scene::{Camera, Quality, Scene};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::surface::LinearImage;
 use crate::{Error, InputError};
 
 /// Colour and depth of a picture, with 1 or 4 samples a pixel.
+///
+/// # Examples
+///
+/// The shortest way to a picture of a scene:
+///
+/// ```
+/// use glam::DVec3;
+/// use relievo::gpu::{Gpu, Options};
+/// use relievo::render::Offscreen;
+/// use relievo::scene::{Camera, Scene, TerrainSource};
+/// use relievo::terrain::config::Config;
+///
+/// let gpu = Gpu::headless(&Options::default())?;
+/// let mut scene = Scene::new(&gpu)?;
+/// scene.add_terrain(&TerrainSource::new(Config::new(33, 6.0, "any text")?))?;
+/// let target = Offscreen::new(&gpu, [96, 64], true, 1, false)?;
+/// let camera = Camera::framing(DVec3::new(0.0, -6.0, 0.0), DVec3::new(32.0, 6.0, 32.0), target.size());
+/// target.draw(&mut scene, camera, [0.36, 0.55, 0.80])?;
+/// let picture = target.read(&gpu)?;
+/// assert_eq!(picture.dimensions(), (96, 64));
+/// # Ok::<(), relievo::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Offscreen {
     format: TargetFormat,
@@ -36,7 +64,29 @@ impl Offscreen {
             false => TargetFormat::depth_only(DEPTH_FORMAT),
         };
         let format = format.with_samples(samples);
-        let format = if is_reversed { format.reversed() } else { format };
+        Self::of(gpu, size, if is_reversed { format.reversed() } else { format })
+    }
+
+    /// A target of `size` pixels in linear light, `Rgba32Float`, whose values depend on no driver's rounding or encoding; with
+    /// `Depth32Float` that grows with distance, and one sample a pixel.
+    ///
+    /// # Errors
+    /// As [`Offscreen::new`].
+    pub fn linear(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
+        Self::of(gpu, size, TargetFormat::new(LINEAR_FORMAT))
+    }
+
+    /// Whether the device has targets of so many pixels, whose colours in this format fit a binding, through which they are
+    /// read.
+    pub fn fits(gpu: &Gpu, size: [u32; 2], color: wgpu::TextureFormat) -> bool {
+        let most = gpu.device().limits().max_texture_dimension_2d;
+        let [width, height] = size.map(u64::from);
+        let texel = color.block_copy_size(None).map_or(u64::MAX, u64::from);
+        size.iter().all(|edge| (1..=most).contains(edge))
+            && texel.saturating_mul(width * height) <= gpu.max_binding()
+    }
+
+    fn of(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, Error> {
         format.validate()?;
         let most = gpu.device().limits().max_texture_dimension_2d;
         if size.iter().any(|edge| !(1..=most).contains(edge)) {
@@ -44,9 +94,11 @@ impl Offscreen {
             return Err(InputError::new("size", value, format!("must be 1 to {most} pixels each way")).into());
         }
         let texture = |format, samples: u32| texture(gpu, size, format, samples);
+        let of_color = format.color.iter().flatten().map(|color| color.format).next();
+        let samples = format.samples;
         let (color, resolved, depth) = gpu.scoped(|| {
-            let color = has_color.then(|| texture(COLOR_FORMAT, samples));
-            let resolved = (has_color && samples > 1).then(|| texture(COLOR_FORMAT, 1));
+            let color = of_color.map(|color| texture(color, samples));
+            let resolved = of_color.filter(|_| samples > 1).map(|color| texture(color, 1));
             (color, resolved, texture(DEPTH_FORMAT, samples))
         })?;
         Ok(Self { format, size, color, resolved, depth })
@@ -101,10 +153,34 @@ impl Offscreen {
         draw(&mut pass)
     }
 
+    /// Draws one frame of a scene through a camera, in full detail, over a linear `background`: compiles what the scene needs,
+    /// records a view and its colours, and waits. A program that draws more than one frame keeps a
+    /// [`View`](crate::scene::View) and a [`Renderer`].
+    ///
+    /// # Errors
+    /// [`InputError`] for a target without colour, and as [`View::set`](crate::scene::View::set), [`Scene::record`] and
+    /// [`Renderer::draw`]; [`GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn draw(&self, scene: &mut Scene, camera: Camera, background: [f32; 3]) -> Result<(), Error> {
+        let gpu = scene.gpu().clone();
+        let mut renderer = Renderer::new(&gpu, &self.format)?;
+        renderer.prepare(scene)?;
+        let mut view = scene.view(Quality { pixels: 0.0 })?;
+        view.set(camera)?;
+        let mut recorded = Ok(());
+        gpu.run("draw", |encoder| {
+            recorded = scene.record(encoder, &mut [&mut view]).and_then(|()| {
+                let draw = |pass: &mut wgpu::RenderPass<'_>| renderer.draw(pass, scene, &view, Layer::Color);
+                Ok(self.record(encoder, background, draw)?)
+            });
+        })?;
+        recorded
+    }
+
     /// Reads the colours: sRGB, row by row. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour; [`GpuError`].
+    /// [`InputError`] for a target without colour, or of another one than sRGB; [`GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         gpu.block_on(self.read_async(gpu))
@@ -113,15 +189,40 @@ impl Offscreen {
     /// As `Offscreen::read`, but completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour; [`GpuError`].
+    /// [`InputError`] for a target without colour, or of another one than sRGB; [`GpuError`].
     pub async fn read_async(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
-        let Some(color) = self.resolved.as_ref().or(self.color.as_ref()) else {
-            return Err(InputError::new("format.color", "none", "must be there to be read").into());
-        };
-        let pixels = read_texture(gpu, color, wgpu::TextureAspect::All, 4).await?;
+        let pixels = self.read_color(gpu, COLOR_FORMAT).await?;
         let reason = "the image that was read back has the wrong size".to_owned();
         let image = RgbaImage::from_raw(self.size[0], self.size[1], pixels);
         image.ok_or_else(|| GpuError::Internal { reason }.into())
+    }
+
+    /// Reads the colours of a target in linear light ([`Offscreen::linear`]), without their alpha. Waits for the device.
+    ///
+    /// # Errors
+    /// [`InputError`] for another target; [`GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn read_linear(&self, gpu: &Gpu) -> Result<LinearImage, Error> {
+        let bytes = gpu.block_on(self.read_color(gpu, LINEAR_FORMAT))?;
+        let pixels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
+        Ok(LinearImage {
+            size: self.size,
+            pixels: pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect(),
+        })
+    }
+
+    /// Reads the bytes of the colours, which must have this format.
+    async fn read_color(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Vec<u8>, Error> {
+        let Some(color) = self.resolved.as_ref().or(self.color.as_ref()) else {
+            return Err(InputError::new("format.color", "none", "must be there to be read").into());
+        };
+        if color.format() != format {
+            let bound = format!("must be {format:?} to be read like this");
+            let value = format!("{:?}", color.format());
+            return Err(InputError::new("format.color[0].format", value, bound).into());
+        }
+        let texel = format.block_copy_size(None).unwrap_or(4);
+        Ok(read_texture(gpu, color, wgpu::TextureAspect::All, texel).await?)
     }
 
     /// Reads the depths, 0 to 1, row by row. Waits for the device.

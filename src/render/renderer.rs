@@ -214,7 +214,8 @@ impl Renderer {
             match object.drawable {
                 Drawable::Mesh(mesh) => self.draw_mesh(pass, view, &object, mesh, layer),
                 Drawable::Terrain(terrain) => {
-                    let pipeline = self.pipeline(layer, Kind::Terrain, false, view);
+                    let kind = Kind::Terrain { style: terrain.style };
+                    let pipeline = self.pipeline(layer, kind, false, view);
                     let (Some(ground), Some(pipeline)) = (object.ground, pipeline) else {
                         continue;
                     };
@@ -296,7 +297,7 @@ impl Renderer {
 fn kinds_of(drawable: &Drawable) -> impl Iterator<Item = Kind> {
     let (parts, terrain) = match drawable {
         Drawable::Mesh(mesh) => (mesh.parts.as_slice(), None),
-        Drawable::Terrain(_) => (&[][..], Some(Kind::Terrain)),
+        Drawable::Terrain(terrain) => (&[][..], Some(Kind::Terrain { style: terrain.style })),
     };
     parts.iter().map(Kind::of).chain(terrain)
 }

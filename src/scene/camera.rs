@@ -4,6 +4,7 @@ use glam::camera::rh::proj::directx;
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
 use crate::InputError;
+use crate::scene::placement::Placement;
 use crate::skinning::picture::is_mirrored;
 
 /// The direction of depth in clip space.
@@ -87,6 +88,35 @@ impl Camera {
             cell: [0; 3],
             view_from_world: glam::camera::rh::view::look_at_mat4(eye, eye + forward, up),
             clip_from_view,
+            viewport,
+            depth: Depth::Forward,
+        }
+    }
+
+    /// A perspective camera that sees a box along the axes of the world from the south at a low angle, as large as the picture
+    /// allows. `low` and `high` are opposite corners in world units from the origin of the world, wherever that is;
+    /// `viewport` is width and height in pixels.
+    pub fn framing(low: DVec3, high: DVec3, viewport: [u32; 2]) -> Self {
+        let (center, extent) = ((low + high) / 2.0, (high - low).max(DVec3::splat(1e-3)));
+        let field_of_view: f32 = 0.7;
+        // The circle around the box's footprint fills the height of the picture, since the view from above
+        // foreshortens it.
+        let radius = extent.length() / 2.0;
+        let distance = 0.72 * radius / f64::from(field_of_view / 2.0).sin();
+        let eye = center + distance * DVec3::new(-0.30, 0.52, 0.80).normalize();
+        // The near edge takes more of the picture than the far edge, so the target is shifted.
+        let target = center + radius * DVec3::new(-0.03, -0.10, 0.05);
+        let Placement { cell, at: eye, .. } = Placement::at_world(eye);
+        let forward = (target
+            - (DVec3::from(cell.map(f64::from)) * f64::from(Placement::CELL) + eye.as_dvec3()))
+        .normalize_or(DVec3::NEG_Z)
+        .as_vec3();
+        let aspect = viewport[0] as f32 / viewport[1].max(1) as f32;
+        let [near, far] = [distance / 1000.0, 2.0 * distance + 2.0 * radius].map(|plane| plane as f32);
+        Self {
+            cell,
+            view_from_world: glam::camera::rh::view::look_to_mat4(eye, forward, Vec3::Y),
+            clip_from_view: directx::perspective(field_of_view, aspect, near, far),
             viewport,
             depth: Depth::Forward,
         }
@@ -182,6 +212,26 @@ mod tests {
             depth(0.5),
             depth(40.0)
         );
+    }
+
+    #[test]
+    fn a_framed_box_is_in_the_picture_and_fills_it() {
+        let corner = |at: usize| DVec3::new((at & 1) as f64, (at >> 1 & 1) as f64, (at >> 2 & 1) as f64);
+        for origin in [DVec3::ZERO, DVec3::new(-3e6, 500.0, 7e5)] {
+            for size in [DVec3::new(128.0, 30.0, 128.0), DVec3::new(4000.0, 900.0, 4000.0)] {
+                let camera = Camera::framing(origin, origin + size, [1280, 720]);
+                camera.validate().expect("a camera");
+                let cell = DVec3::from(camera.cell.map(f64::from)) * 256.0;
+                let places = (0..8).map(|at| {
+                    let place = (origin + size * corner(at) - cell).as_vec3();
+                    camera.clip_from_world().project_point3(place)
+                });
+                let [low, high] = places
+                    .fold([Vec3::MAX, Vec3::MIN], |[low, high], place| [low.min(place), high.max(place)]);
+                assert!(low.min_element() > -1.0 && high.max_element() < 1.0, "{low} {high}");
+                assert!(high.y - low.y > 1.4 && low.z > 0.0, "{low} {high}");
+            }
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, Uniform};
 use crate::lod::{LodObject, SceneDraw};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{PartMaterials, ReliefMaterial};
+use crate::scene::options::TerrainStyle;
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::pages::PageBuffers;
@@ -172,6 +173,8 @@ pub(crate) struct TerrainDrawable {
     pub geometry: TerrainGeometry,
     /// Bind group 2; bind group 1 belongs to the view ([`SceneLayouts::ground`]).
     pub group: Group,
+    /// How it looks.
+    pub style: TerrainStyle,
 }
 
 impl TerrainDrawable {
@@ -179,7 +182,12 @@ impl TerrainDrawable {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn new(gpu: &Gpu, layouts: &SceneLayouts, geometry: TerrainGeometry) -> Result<Self, GpuError> {
+    pub fn new(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        geometry: TerrainGeometry,
+        style: TerrainStyle,
+    ) -> Result<Self, GpuError> {
         let group = scene_terrain::Group2 {
             terrain: &geometry.params,
             heights: geometry.heights.slice(),
@@ -188,7 +196,7 @@ impl TerrainDrawable {
             textures: &geometry.zones.view(),
             texture_sampler: &geometry.zones.sampler,
         };
-        Ok(Self { group: group.bind(gpu, &layouts.terrain)?, geometry })
+        Ok(Self { group: group.bind(gpu, &layouts.terrain)?, geometry, style })
     }
 }
 
@@ -270,7 +278,7 @@ mod tests {
     fn a_patch_has_the_diagonals_of_its_strips() {
         assert_eq!(patch_indices(2), [0, 2, 1, 1, 2, 3]);
         let size = 5;
-        // A strip for each row of cells, as `wgsl/render/terrain.wgsl` draws it.
+        // A strip for each row of cells.
         let strip = |row: u32| {
             let corner = move |index: u32| (row + (index & 1)) * size + (index >> 1);
             (0..2 * size - 2).map(move |at| [0, 1, 2].map(|next| corner(at + next)))
@@ -284,6 +292,13 @@ mod tests {
         let found: Vec<_> =
             indices.chunks(3).map(|corners| sorted([corners[0], corners[1], corners[2]])).collect();
         assert_eq!(found, expected);
+        // A vertex has one corner in all triangles, as `vertex_wired` of `wgsl/render/scene_terrain.wgsl` says.
+        let corner = |vertex: u32| (vertex % size + 2 * (vertex / size)) % 3;
+        assert!(indices.chunks(3).all(|corners| {
+            let mut own = [0, 1, 2].map(|at| corner(corners[at]));
+            own.sort_unstable();
+            own == [0, 1, 2]
+        }));
         // Seen from above, where y runs down the page, counter-clockwise triangles have a positive product here.
         let place = |vertex: u32| [vertex % size, vertex / size].map(|at| at as i32);
         for corners in indices.chunks(3) {

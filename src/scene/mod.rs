@@ -8,7 +8,7 @@
 //!
 //! In a browser, which forbids to wait and tells errors late, use the forms whose names end in `_async`, and
 //! [`Scene::health`] once a frame. The other forms do the same work, but their errors come with a later call;
-//! `Scene::add_terrain`, which waits, has the `_async` form alone.
+//! `Scene::add_terrain` and `Scene::read_ground`, which wait, have the `_async` form alone.
 
 mod attach;
 mod camera;
@@ -17,6 +17,7 @@ mod chunk;
 pub(crate) mod drawable;
 mod drive;
 mod frame;
+mod ground;
 mod handles;
 mod instances;
 mod layers;
@@ -53,13 +54,13 @@ mod watch;
 pub use camera::{Camera, Depth};
 pub use drive::Poses;
 pub use handles::{InstanceId, ObjectId};
-pub use options::{CharacterOptions, LayerMask, RootOptions};
+pub use options::{CharacterOptions, LayerMask, RootOptions, TerrainStyle};
 pub use pick::Bounds;
 pub use placement::{ClipTime, Placement, Play};
 pub use poses::PoseBuffers;
 pub use quality::{Quality, Shares};
 pub use ray::{Hit, Ray};
-pub use relief::Relief;
+pub use relief::{Relief, ReliefSource};
 pub use statistics::{
     CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
 };

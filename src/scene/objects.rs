@@ -4,20 +4,21 @@ use crate::asset::Model;
 use crate::gpu::Upload as _;
 use crate::scene::Scene;
 use crate::scene::handles::{ObjectId, foreign, stale};
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::Object;
 use crate::scene::options::CharacterOptions;
 use crate::scene::relief::Relief;
 use crate::scene::terrain::TerrainSource;
-use crate::terrain::mesh::GroundPoint;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Adds terrain: generates its patches on the device, and shows them. It waits for their heights, which
-    /// [`Scene::ground`] reads.
+    /// Adds terrain: generates its patches on the device, unless it is made from fields of the caller
+    /// ([`TerrainSource::from_fields`]), and shows them. It reads their heights, by which it culls patches and which
+    /// [`Scene::ground`] answers, and waits for that.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, and for more
-    /// patches than one binding holds; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, for more
+    /// patches than one binding holds, and for fields without a margin, of another size, or fewer than patches;
+    /// [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         self.gpu.clone().block_on(self.add_terrain_async(source))
@@ -27,24 +28,10 @@ impl Scene {
     /// [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
     ///
     /// # Errors
-    /// [`InputError`] for a configuration or patches out of bounds, and for more patches than one binding holds;
-    /// [`crate::gpu::GpuError`].
+    /// As `Scene::add_terrain`.
     pub async fn add_terrain_async(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source).await?;
         self.add_checked(object).await
-    }
-
-    /// The ground of a terrain at a position of the world, `x` units east and `z` units south of its origin: height in
-    /// world units, and normal, of the triangle that is drawn there. `None` where the terrain has no patch. It is computed
-    /// on the CPU, from heights that the scene keeps there.
-    ///
-    /// # Errors
-    /// [`InputError`] for an object that is not of this scene, or no terrain.
-    pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
-        match &self.object_at(terrain)?.kind {
-            Kind::Terrain(terrain) => Ok(terrain.point_at(x, z)),
-            _ => Err(InputError::new("terrain", "a mesh or a character", "must be terrain")),
-        }
     }
 
     /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail

@@ -1,4 +1,4 @@
-//! What a character can do beyond playing one clip.
+//! What a character can do beyond playing one clip, and how terrain looks.
 
 use crate::InputError;
 use crate::animation::RootMotion;
@@ -62,4 +62,14 @@ impl RootOptions<'_> {
         model.clips = clips;
         Ok(motions)
     }
+}
+
+/// How terrain looks in colour. In other layers it makes no difference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum TerrainStyle {
+    /// Textures of the zones, blended by height.
+    #[default]
+    Textured,
+    /// The edges of the triangles that are drawn, lit, on dark ground that no light reaches.
+    Wireframe,
 }

@@ -14,12 +14,16 @@ impl Scene {
     /// [`Renderer::rebuild`](crate::render::Renderer::rebuild). The next frame is that of a scene that was
     /// [refreshed](Scene::refresh). If it fails, the scene is as it was.
     ///
+    /// What lies in buffers and textures of the caller cannot be brought back: terrain made from fields
+    /// ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields)) and reliefs made from textures
+    /// ([`Relief::of_maps`](crate::scene::Relief::of_maps)) must be removed before.
+    ///
     /// The scene keeps what it needs on the host: meshes with their images, clips, and the recipes of terrain, whose patches are
     /// generated anew. It takes as long as adding the objects did, less what is computed for characters once
     /// (bounds of motion), and compiles what the new device has not compiled.
     ///
     /// # Errors
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`](crate::InputError) for terrain and reliefs that lie in the caller's buffers; [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
         gpu.block_on(self.rebuild_async(gpu))

@@ -17,7 +17,7 @@ use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::March;
 use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::{Address, Material, ReliefMaps, ReliefOptions};
+use crate::surface::{Address, Green, Material, ReliefMaps, ReliefOptions};
 use crate::{Error, InputError};
 
 /// A mesh that carries a relief, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
@@ -29,22 +29,40 @@ use crate::{Error, InputError};
 pub struct Relief {
     /// The mesh, in the model's space.
     pub mesh: SurfaceMesh,
-    /// The heights.
-    pub heights: HeightMap,
-    /// The colours.
-    pub albedo: image::RgbaImage,
-    /// Normals in tangent space, if [`ReliefOptions::normal_map`] asks for them.
-    pub normals: Option<image::RgbaImage>,
-    /// What lies beyond the edges of the maps.
-    pub address: Address,
-    /// The method, shadows and silhouette.
+    /// Heights, colours and normals.
+    pub maps: ReliefSource,
+    /// The method, shadows and silhouette. Textures are made for one method.
     pub options: ReliefOptions,
     /// Depth, plane and the width of shadows. Its light is not used: a scene has one light.
     pub material: Material,
-    /// How rays are marched.
+    /// How rays are marched, and what lies beyond the edges of the maps.
     pub march: March,
     /// Whether both sides of the mesh are seen.
     pub double_sided: bool,
+}
+
+/// The maps of a [`Relief`].
+#[derive(Debug, Clone)]
+pub enum ReliefSource {
+    /// Images on the host. Each object uploads them, and computes the acceleration map of its method.
+    Images {
+        /// The heights.
+        heights: HeightMap,
+        /// The colours, sRGB.
+        albedo: image::RgbaImage,
+        /// Normals in tangent space, if [`ReliefOptions::normal_map`] asks for them.
+        normals: Option<image::RgbaImage>,
+    },
+    /// Textures on the device, which any number of objects and the caller share: heights that the caller computed there,
+    /// or colours in linear half floats ([`ColorTexture::linear`]), of which no driver decodes sRGB.
+    Textures {
+        /// The heights and the acceleration map of a method.
+        textures: SurfaceTextures,
+        /// The colours.
+        albedo: ColorTexture,
+        /// Normals in tangent space, if [`ReliefOptions::normal_map`] asks for them.
+        normals: Option<ColorTexture>,
+    },
 }
 
 impl Relief {
@@ -58,16 +76,53 @@ impl Relief {
     /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief. Where
     /// heights are largest, the relief touches the mesh; elsewhere it lies behind it.
     pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
+        Self::of(mesh, ReliefSource::Images { heights, albedo, normals: None })
+    }
+
+    /// A mesh with textures of the caller, which it shares, drawn by the method for which they were made, with normals from the
+    /// heights and with the depth of the relief. The address mode is that of the textures.
+    pub fn of_maps(mesh: SurfaceMesh, maps: ReliefMaps<'_>) -> Self {
+        let ReliefMaps { textures, albedo, normals } = maps;
+        let (method, address) = (textures.method, textures.address);
+        let (textures, albedo, normals) = (textures.clone(), albedo.clone(), normals.cloned());
+        let made = Self::of(mesh, ReliefSource::Textures { textures, albedo, normals });
+        let options = ReliefOptions { method, ..made.options };
+        Self { options, march: March { address, ..made.march }, ..made }
+    }
+
+    fn of(mesh: SurfaceMesh, maps: ReliefSource) -> Self {
         Self {
             mesh,
-            heights,
-            albedo,
-            normals: None,
-            address: Address::Wrap,
+            maps,
             options: ReliefOptions { depth: true, ..ReliefOptions::default() },
             material: Material::default(),
             march: March::default(),
             double_sided: false,
+        }
+    }
+
+    /// The same with normals from an image, whose green channel points in this direction, and not from the heights. Textures
+    /// on the device stay as they are.
+    #[must_use]
+    pub fn with_normals(mut self, image: image::RgbaImage, green: Green) -> Self {
+        if let ReliefSource::Images { normals, .. } = &mut self.maps {
+            *normals = Some(image);
+            self.options.normal_map = Some(green);
+        }
+        self
+    }
+
+    /// Whether it can be made again on another device.
+    ///
+    /// # Errors
+    /// [`InputError`] for textures, which were on the device that was lost.
+    pub(super) fn check_can_be_rebuilt(&self) -> Result<(), InputError> {
+        match &self.maps {
+            ReliefSource::Images { .. } => Ok(()),
+            ReliefSource::Textures { .. } => {
+                let bound = "must be removed before, and added again with textures on the new device";
+                Err(InputError::new("relief.maps", "textures on the lost device", bound))
+            }
         }
     }
 }
@@ -115,14 +170,6 @@ pub(super) fn drawn(
 }
 
 fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<ReliefMaterial, Error> {
-    let wraps = relief.address == Address::Wrap;
-    let textures = SurfaceTextures::new(gpu, &relief.heights, relief.options.method, relief.address)?;
-    let albedo = ColorTexture::new(gpu, &Mips::of_color(relief.albedo.clone()), wraps)?;
-    let normals = match &relief.normals {
-        Some(normals) => Some(ColorTexture::new(gpu, &Mips::of_data(normals.clone()), wraps)?),
-        None => None,
-    };
-    let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: normals.as_ref() };
     let corners = || relief.mesh.vertices.iter().map(|vertex| Vec2::from(vertex.uv));
     let low = corners().fold(Vec2::MAX, Vec2::min);
     let high = corners().fold(Vec2::MIN, Vec2::max);
@@ -133,7 +180,21 @@ fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<Relief
         world: length_of_uv(&relief.mesh)?,
         color: [1.0; 3],
     };
-    ReliefMaterial::new(gpu, layouts, maps, relief.options, &look)
+    let bound = |textures: &SurfaceTextures, albedo: &ColorTexture, normals: Option<&ColorTexture>| {
+        let maps = ReliefMaps { textures, albedo, normals };
+        ReliefMaterial::new(gpu, layouts, maps, relief.options, &look)
+    };
+    match &relief.maps {
+        ReliefSource::Textures { textures, albedo, normals } => bound(textures, albedo, normals.as_ref()),
+        ReliefSource::Images { heights, albedo, normals } => {
+            let (address, method) = (relief.march.address, relief.options.method);
+            let texture = |mips: Mips| ColorTexture::new(gpu, &mips, address == Address::Wrap);
+            let textures = SurfaceTextures::new(gpu, heights, method, address)?;
+            let albedo = texture(Mips::of_color(albedo.clone()))?;
+            let normals = normals.clone().map(|normals| texture(Mips::of_data(normals))).transpose()?;
+            bound(&textures, &albedo, normals.as_ref())
+        }
+    }
 }
 
 /// The length of a unit of uv in the model's units: the square root of the ratio of all areas.

@@ -176,12 +176,14 @@ impl Files<'_> {
         };
         let normals = relief.normals.as_ref().map(|source| self.colors(&at("normal"), source)).transpose()?;
         let made = Relief::new(mesh, heights, albedo);
-        let normal_map = normals.is_some().then_some(Green::Up);
-        let options =
-            ReliefOptions { method: relief.method, shadow: relief.shadow, normal_map, ..made.options };
+        let made = match normals {
+            Some(normals) => made.with_normals(normals, Green::Up),
+            None => made,
+        };
+        let options = ReliefOptions { method: relief.method, shadow: relief.shadow, ..made.options };
         let material = Material { scale: relief.scale, ..made.material };
         let double_sided = rest.meshes.iter().any(|mesh| mesh.double_sided);
-        Ok(Relief { normals, options, material, double_sided, ..made })
+        Ok(Relief { options, material, double_sided, ..made })
     }
 
     /// The heights of a relief, and the colours that belong to them.

@@ -2,7 +2,7 @@
 
 use crate::InputError;
 
-/// A vertex in the layout of the relief pass.
+/// A vertex of a mesh that carries a relief.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]

@@ -1,4 +1,4 @@
-//! A picture of a square of relief: the CPU reference of `wgsl/render/relief.wgsl` under a parallel projection.
+//! A picture of a square of relief: the CPU reference of `wgsl/render/scene_relief.wgsl` under a parallel projection.
 
 use glam::Vec3;
 use rayon::prelude::*;

@@ -87,9 +87,8 @@ impl Ground {
         self.point_from([0, 0], x, z)
     }
 
-    /// As [`Ground::point_at`], with position 0 at the first sample of patch `origin`, as in a
-    /// `render::TerrainScene`. A viewer far from patch (0, 0) chooses an origin nearby: positions near 0 are
-    /// precise, however far away the origin is.
+    /// As [`Ground::point_at`], with position 0 at the first sample of patch `origin`. A viewer far from patch (0, 0)
+    /// chooses an origin nearby: positions near 0 are precise, however far away the origin is.
     pub fn point_from(&self, origin: [i32; 2], x: f64, z: f64) -> Option<GroundPoint> {
         let columns = self.cells(origin[0], x)?;
         let rows = self.cells(origin[1], z)?;

@@ -122,8 +122,8 @@ fn the_manifest_tells_types_defaults_offsets_and_limits() {
     let layout = &sample["structs"].as_array().expect("a list")[0];
     assert_eq!(layout["name"], "SampleParams");
     assert_eq!(layout["members"][4], json!({ "name": "layers", "offset": 16, "type": "u32" }));
-    let vertex = &shader("render/relief")["entry_points"][0];
-    assert_eq!(vertex["inputs"][2], json!({ "location": 2, "name": "tangent", "type": "vec4<f32>" }));
+    let vertex = &shader("render/scene_terrain")["entry_points"][0];
+    assert_eq!(vertex["inputs"][0], json!({ "location": 0, "name": "instance", "type": "u32" }));
     let limit = json!([{ "name": "maxStorageBuffersPerShaderStage", "needed": 20 }]);
     assert_eq!(shader("animation/decide")["limits"], limit);
     assert_eq!(sample["limits"], json!([]));

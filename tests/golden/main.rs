@@ -17,7 +17,6 @@ mod ground;
 mod levels;
 mod materials;
 mod mirrored;
-mod scene;
 mod shadows;
 mod skinned;
 mod tiling;

@@ -1,11 +1,11 @@
 //! Zone textures repeat every `textureTile` world units, across patches and wherever the origin is.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use image::RgbaImage;
+use relievo::asset::Light;
 use relievo::gpu::Gpu;
-use relievo::render::target::COLOR_FORMAT;
-use relievo::render::{Camera, Materials, Style, Target, TerrainRenderer};
-use relievo::terrain::blend::Shading;
+use relievo::render::Offscreen;
+use relievo::scene::{Camera, Placement, Scene, TerrainSource};
 use relievo::terrain::config::BuiltIn;
 use relievo::terrain::config::Config;
 use relievo::terrain::fields::Fields;
@@ -36,22 +36,17 @@ fn drawn(gpu: &Gpu, tile: Option<f64>, first: [i32; 2]) -> RgbaImage {
         Config { terrain_scale: 2.0, texture_tile: tile, ..Config::new(SIZE, 0.0, "").expect("valid") };
     let config = Config { zones: config.zones[..1].to_vec(), ..config };
     let fields = Fields::new(gpu, "flat", SIZE + 2, 2).expect("allocated");
-    let materials = Materials::new(gpu, &config.zones, &[quarters()]).expect("uploaded");
-    let renderer = TerrainRenderer::new(gpu, COLOR_FORMAT, Style::Textured).expect("compiled");
-    let shading = Shading { ambient: 1.0, ..Shading::default() };
-    let mut scene = renderer.scene(gpu, &materials, &shading).expect("bound");
     let patches = [first, [first[0] + 1, first[1]]];
-    scene.add(gpu, &config, &fields, &patches, first).expect("added");
-    let camera = Camera {
-        eye: Vec3::new(32.0, 16.0, 16.0),
-        target: Vec3::new(32.0, 0.0, 16.0),
-        field_of_view: std::f32::consts::FRAC_PI_2,
-        near: 1.0,
-        far: 100.0,
-    };
-    scene.set_camera(gpu, &camera, 1.0).expect("a camera");
-    let target = Target::new(gpu, [EDGE, EDGE]).expect("allocated");
-    target.draw(gpu, [0.0, 0.0, 1.0], |pass| scene.draw(pass)).expect("drawn");
+    let [x, z] = first.map(|index| 32.0 * f64::from(index));
+    let source = TerrainSource::from_fields(config, fields, &patches).with_textures(vec![quarters()]);
+    let mut scene = Scene::new(gpu).expect("compiled");
+    scene.set_light(Light { ambient: 1.0, ..Light::default() }).expect("valid");
+    scene.add_terrain(&source).expect("added");
+    let Placement { cell, at: eye, .. } = Placement::at_world(DVec3::new(x + 32.0, 16.0, z + 16.0));
+    let field_of_view = std::f32::consts::FRAC_PI_2;
+    let camera = Camera::looking_at(eye, eye - 16.0 * Vec3::Y, field_of_view, [1.0, 100.0], [EDGE; 2]);
+    let target = Offscreen::new(gpu, [EDGE; 2], true, 1, false).expect("allocated");
+    target.draw(&mut scene, Camera { cell, ..camera }, [0.0, 0.0, 1.0]).expect("drawn");
     target.read(gpu).expect("read")
 }
 

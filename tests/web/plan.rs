@@ -12,8 +12,6 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("animation/decide", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
     ("animation/gate", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
     ("lod/list", "STAGE", &[0.0, 1.0, 2.0]),
-    ("render/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
-    ("render/relief", "SHADOW", &[0.0, 1.0, 2.0]),
     ("render/scene_relief", "relievo_METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("render/scene_relief", "relievo_SHADOW", &[0.0, 1.0, 2.0]),
     ("surface/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
@@ -98,10 +96,11 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
         .map(|entry| json!({ "label": label(entry), "constants": constants, "compute": entry["name"] }))
         .collect();
     for vertex in of_stage("vertex") {
-        let strip = if shader == "render/terrain" { "triangle-strip" } else { "triangle-list" };
         // Entries of such names take the vertices of one.
         let kind = |entry: &Value| {
-            ["_plain", "_bumpy", "_whole", "_moving"].into_iter().find(|end| name_of(entry).ends_with(end))
+            ["_plain", "_bumpy", "_whole", "_moving", "_wired"]
+                .into_iter()
+                .find(|end| name_of(entry).ends_with(end))
         };
         let fitting = of_stage("fragment").into_iter().filter(|fragment| kind(vertex) == kind(fragment));
         all.extend(fitting.map(|fragment| {
@@ -109,7 +108,7 @@ fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
                 "targets": targets(&name_of(fragment)),
                 "vertex": vertex["name"],
                 "fragment": fragment["name"],
-                "topology": strip,
+                "topology": "triangle-list",
                 "buffers": buffers(vertex),
             });
             json!({ "label": label(fragment), "constants": constants, "render": render })

@@ -100,6 +100,27 @@ fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32)
     return MovingVertex(out.clip, scene_place(out.clip), scene_place(last));
 }
 
+// A vertex of a wireframe.
+struct WiredVertex {
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) height: f32,
+    @location(3) position: vec3<f32>,
+    @location(4) @interpolate(flat) instance: u32,
+    // 1 at one corner of each triangle, 0 at the others.
+    @location(5) corner: vec3<f32>,
+}
+
+@vertex
+fn vertex_wired(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> WiredVertex {
+    let out = placed(vertex, instance);
+    // All triangles of a patch give a vertex the same corner.
+    var corner = vec3<f32>(0.0);
+    corner[(vertex % terrain.size + 2u * (vertex / terrain.size)) % 3u] = 1.0;
+    return WiredVertex(out.clip, out.normal, out.uv, out.height, out.position, out.instance, corner);
+}
+
 fn placed(vertex: u32, instance: u32) -> WholeVertex {
     let patch_of = patches[instance];
     let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
@@ -145,20 +166,38 @@ fn fragment(in: Vertex) -> @location(0) vec4<f32> {
 }
 
 fn whole_surface(in: WholeVertex) -> Surface {
+    return colored_surface(in, zones_colored(in.uv, in.height));
+}
+
+fn colored_surface(in: WholeVertex, color: vec3<f32>) -> Surface {
     let normal = normalize(in.normal);
     return Surface(
-        in.position, normal, normal, in.uv, zones_colored(in.uv, in.height), 1.0, 1.0, vec4<f32>(1.0), 0u,
-        ground.object, in.instance, in.clip.xy);
+        in.position, normal, normal, in.uv, color, 1.0, 1.0, vec4<f32>(1.0), 0u, ground.object, in.instance, in.clip.xy);
+}
+
+// A surface in the shadow of the sun, if the scene has one.
+fn in_shadow(lit: Surface) -> Surface {
+    var shadowed = lit;
+    if SHADOWED {
+        shadowed.sunlit = scene_sunlit(lit.position, lit.geometric_normal);
+    }
+    return shadowed;
+}
+
+// The edges of triangles, by the crate's or the caller's shading, on ground that no light reaches.
+@fragment
+fn shaded_wired(in: WiredVertex) -> @location(0) vec4<f32> {
+    let edge = in.corner / max(fwidth(in.corner), vec3<f32>(1e-6));
+    let near = clamp(1.2 - min(edge.x, min(edge.y, edge.z)), 0.0, 1.0);
+    let vertex = WholeVertex(in.clip, in.normal, in.uv, in.height, in.position, in.instance);
+    let line = scene_shaded(in_shadow(colored_surface(vertex, vec3<f32>(0.35, 0.75, 0.5))));
+    return mix(vec4<f32>(0.01, 0.014, 0.02, 1.0), line, near);
 }
 
 // Colour by the caller's shading, or in the shadow of the sun.
 @fragment
 fn shaded_whole(in: WholeVertex) -> @location(0) vec4<f32> {
-    var surface = whole_surface(in);
-    if SHADOWED {
-        surface.sunlit = scene_sunlit(surface.position, surface.geometric_normal);
-    }
-    return scene_shaded(surface);
+    return scene_shaded(in_shadow(whole_surface(in)));
 }
 
 @fragment

@@ -1,5 +1,7 @@
 //! `relievo terrain`: heights, colour maps and views of patches of terrain.
 
+mod look;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -8,8 +10,7 @@ use clap::Args;
 use image::RgbaImage;
 use relievo::files::Staged;
 use relievo::gpu::Gpu;
-use relievo::render::picture::framing;
-use relievo::render::{Picture, Style};
+use relievo::scene::TerrainStyle;
 use relievo::terrain::blend::{Shading, WeightMode};
 use relievo::terrain::color_maps::ColorMaps;
 use relievo::terrain::config::Config;
@@ -33,6 +34,7 @@ use crate::arguments::{one_of, pair};
 use crate::memory;
 use crate::output::say;
 use crate::progress::bar;
+use look::Look;
 
 const FEATURE_MODES: [(&str, FeatureMode); 2] =
     [("keep", FeatureMode::Keep), ("additive", FeatureMode::Additive)];
@@ -259,7 +261,7 @@ impl Terrain {
         made.seconds.generate = start.elapsed().as_secs_f64();
         let start = Instant::now();
         made.maps = maps.on_device(&gpu, &parts)?;
-        made.view = Some(self.view(&gpu, plan, &parts, &made.windows)?);
+        made.view = Some(self.look(plan).picture(&gpu, &parts, &made.windows)?);
         made.seconds.render = start.elapsed().as_secs_f64();
         Ok(made)
     }
@@ -268,7 +270,7 @@ impl Terrain {
     fn draw_on_host(&self, plan: &Plan, context: &Context, made: &mut Made) -> Result<(), Error> {
         let drawn = context.gpu().and_then(|gpu| {
             let parts = Fields::of_windows(&gpu, plan.recipe.config.patch_size + 2, &made.windows)?;
-            Ok((self.view(&gpu, plan, &parts, &made.windows)?, gpu))
+            Ok((self.look(plan).picture(&gpu, &parts, &made.windows)?, gpu))
         });
         match drawn {
             Err(Error::Gpu(error)) => made.notes.push(format!("terrain.png was not made: {error}")),
@@ -280,23 +282,12 @@ impl Terrain {
         Ok(())
     }
 
-    fn view(
-        &self,
-        gpu: &Gpu,
-        plan: &Plan,
-        parts: &[Fields],
-        windows: &[Vec<i32>],
-    ) -> Result<RgbaImage, Error> {
-        let config = &plan.recipe.config;
-        let picture = Picture {
-            config,
-            textures: &plan.textures,
-            shading: plan.shading,
-            style: if self.wireframe { Style::Wireframe } else { Style::Textured },
-            camera: framing(config, plan.grid.size, windows.iter().flatten()),
-            size: plan.size,
-        };
-        picture.draw(gpu, parts, &plan.patches)
+    /// How terrain.png is drawn.
+    fn look<'a>(&self, plan: &'a Plan) -> Look<'a> {
+        let Plan { recipe, grid, patches, size, shading, textures } = plan;
+        let style = if self.wireframe { TerrainStyle::Wireframe } else { TerrainStyle::Textured };
+        let (config, shading) = (&recipe.config, *shading);
+        Look { config, grid: grid.size, patches, size: *size, shading, textures, style }
     }
 
     fn write(&self, plan: &Plan, made: &Made, mut staged: Staged) -> Result<(), Error> {

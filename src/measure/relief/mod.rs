@@ -2,6 +2,7 @@
 //! cost of every method against the exact intersection.
 
 mod compare;
+pub(crate) mod square;
 mod tracer;
 
 use std::time::Instant;

@@ -3,9 +3,11 @@
 use image::RgbaImage;
 
 use super::ReliefSquare;
+use super::square::camera;
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
-use crate::render::SquarePicture;
+use crate::render::Offscreen;
+use crate::render::target::LINEAR_FORMAT;
 use crate::surface::picture::Scene;
 use crate::surface::relief::ReliefPass;
 use crate::surface::relief::reference::Surface;
@@ -88,22 +90,11 @@ impl Device {
     }
 
     fn picture(&self, square: &ReliefSquare, background: [f32; 3], finer: u32) -> Result<RgbaImage, Error> {
-        let available = self.gpu.device().limits().max_texture_dimension_2d;
-        let size = square.view.size;
-        let bytes = 4 * u64::from(finer * finer) * size.iter().map(|edge| u64::from(*edge)).product::<u64>();
-        let fits = size.iter().all(|edge| finer * edge <= available) && bytes <= self.gpu.max_binding();
-        let finer = if fits { finer } else { 1 };
-        let picture = SquarePicture {
-            textures: &self.textures,
-            albedo: &square.albedo,
-            normals: square.normals.as_ref(),
-            green: square.green,
-            shadow: square.shadow,
-            silhouette: square.silhouette,
-            material: square.material,
-            march: square.march,
-            view: square.view.scaled(finer),
-        };
-        Ok(picture.draw(&self.gpu, background)?.reduced(finer).encoded())
+        let size = square.view.scaled(finer).size;
+        let finer = if Offscreen::fits(&self.gpu, size, LINEAR_FORMAT) { finer } else { 1 };
+        let view = square.view.scaled(finer);
+        let target = Offscreen::linear(&self.gpu, view.size)?;
+        target.draw(&mut square.scene(&self.gpu, &self.textures)?, camera(&view), background)?;
+        Ok(target.read_linear(&self.gpu)?.reduced(finer).encoded())
     }
 }

@@ -7,6 +7,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::render::format::TargetFormat;
 use crate::render::layer::Layer;
 use crate::render::shading::{PREFIX, Shading};
+use crate::scene::TerrainStyle;
 use crate::scene::drawable::{MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Alike;
@@ -25,7 +26,7 @@ pub(super) enum Kind {
     /// A mesh with relief.
     Relief { double_sided: bool, options: ReliefOptions },
     /// Patches of terrain, seen from both sides.
-    Terrain,
+    Terrain { style: TerrainStyle },
 }
 
 impl Kind {
@@ -56,7 +57,7 @@ impl Kind {
                 Self::Mesh { surface, normal_mapped, alike }
             }
             Self::Relief { options, .. } => Self::Relief { double_sided: true, options },
-            Self::Terrain => Self::Terrain,
+            Self::Terrain { style } => Self::Terrain { style },
         }
     }
 
@@ -75,7 +76,9 @@ impl Kind {
                 let normal_map = options.normal_map.filter(|_| has_normals);
                 Self::Relief { double_sided, options: ReliefOptions { shadow, normal_map, ..options } }
             }
-            Self::Terrain => Self::Terrain,
+            Self::Terrain { style } => {
+                Self::Terrain { style: if is_lit { style } else { TerrainStyle::Textured } }
+            }
         }
     }
 
@@ -84,7 +87,7 @@ impl Kind {
         match self {
             Self::Mesh { surface, .. } => surface.double_sided,
             Self::Relief { double_sided, .. } => double_sided,
-            Self::Terrain => true,
+            Self::Terrain { .. } => true,
         }
     }
 }
@@ -136,7 +139,7 @@ impl PipelineKey {
         let groups = match self.kind {
             Kind::Mesh { .. } => layouts.of_mesh(),
             Kind::Relief { .. } => layouts.of_relief(),
-            Kind::Terrain => layouts.of_terrain(),
+            Kind::Terrain { .. } => layouts.of_terrain(),
         };
         let own = shading.and_then(|shading| shading.layout.as_ref());
         let groups: Vec<_> = groups.into_iter().chain(own).map(Some).collect();

@@ -5,6 +5,7 @@ use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
 use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN, Shader};
 use crate::render::format::TargetFormat;
 use crate::render::layer::Layer;
+use crate::scene::TerrainStyle;
 use crate::scene::drawable::SurfaceKind;
 use crate::surface::{Green, ReliefOptions};
 
@@ -64,9 +65,12 @@ impl Program {
                 }),
                 constants: relief_constants(&options, [format.is_reversed(), shadowed]).list(),
             },
-            Kind::Terrain => {
+            Kind::Terrain { style } => {
                 let (vertex, fragment) = match layer {
                     Layer::Depth => ("vertex", depth_opaque),
+                    Layer::Color if style == TerrainStyle::Wireframe => {
+                        ("vertex_wired", Some("shaded_wired"))
+                    }
                     Layer::Color | Layer::Transparent if is_whole => ("vertex_whole", Some("shaded_whole")),
                     Layer::Color | Layer::Transparent => ("vertex", Some("fragment")),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),

@@ -58,9 +58,15 @@ impl Object {
         let none = Looks { materials: Vec::new(), images: Vec::new() };
         let looks = self.looks.as_ref().unwrap_or(&none);
         let drawn = match &self.kind {
-            Kind::Terrain(terrain) => terrain::generated(gpu, layouts, &terrain.source).await?.2,
+            Kind::Terrain(terrain) => {
+                terrain.check_can_be_rebuilt()?;
+                terrain::made(gpu, layouts, &terrain.source).await?.2
+            }
             Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, (merged, looks))?,
-            Kind::Mesh(MeshOnHost::Relief(relief)) => relief::drawn(gpu, layouts, relief)?.1,
+            Kind::Mesh(MeshOnHost::Relief(relief)) => {
+                relief.check_can_be_rebuilt()?;
+                relief::drawn(gpu, layouts, relief)?.1
+            }
             Kind::Character(character) => {
                 let (shared, runtimes) = character.on(gpu)?;
                 let first = character.drawables_of((gpu, layouts), looks, &runtimes)?;

@@ -125,7 +125,7 @@ impl Object {
         layouts: &SceneLayouts,
         source: &TerrainSource,
     ) -> Result<Self, Error> {
-        let (terrain, instances, drawn) = terrain::generated(gpu, layouts, source).await?;
+        let (terrain, instances, drawn) = terrain::made(gpu, layouts, source).await?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
         let drawn = whole(&instances, drawn);
         Ok(Self::new(Kind::Terrain(Box::new(terrain)), (instances, sphere), (vec![0.0], 1.0), drawn))

@@ -1,22 +1,24 @@
 //! Benchmark cases of `surface/relief`: each method, on lists of rays and in the fragment pass, against `plain`
 //! and against the same number of bare texel loads.
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec3};
 
-use crate::Error;
+use crate::asset::Light;
 use crate::gpu::{Buffer, Gpu};
 use crate::harness::{Backend, Bench, Contender};
-use crate::render::relief::{ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, ReliefScene};
-use crate::render::{ColorTexture, Target, target::COLOR_FORMAT};
+use crate::render::{Layer, Offscreen, Renderer};
 use crate::samples::BuiltInMap;
-use crate::surface::Material;
+use crate::scene::{Camera, Depth, Placement, Quality, Relief, Scene, View};
 use crate::surface::bench::{bare_loads, rays};
+use crate::surface::color::ColorTexture;
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::mesh::SurfaceMesh;
 use crate::surface::mips::Mips;
 use crate::surface::relief::reference::Surface;
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::relief::{Hit, March, Method, Ray, ReliefPass};
+use crate::surface::{Material, ReliefMaps, ReliefOptions};
+use crate::{Error, InputError};
 
 /// Texels along an edge of the map.
 const TEXELS: u32 = 512;
@@ -29,8 +31,8 @@ const ANGLE: f32 = 60.0;
 
 /// Measures cobbles at 60° with a relief depth of 0.1. The first cases trace lists of 1024² rays: `copy` makes
 /// as many texel loads per ray as the method does (the case's name says how many), and nothing else. Further
-/// cases draw 1024² pixels by the fragment pass: `limit` draws `plain` in the same way; the reference marches
-/// but does not shade.
+/// cases draw 1024² pixels of a scene, which was recorded before: `limit` draws `plain` in the same way; the
+/// reference marches but does not shade.
 ///
 /// All kernels come before all pictures, because lavapipe's timestamps around compute work are too short once a
 /// picture has been drawn.
@@ -45,18 +47,15 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
     let albedo = ColorTexture::new(gpu, &albedo, true)?;
-    let target = Target::new(gpu, [EDGE, EDGE])?;
-    let plain = scene(gpu, &map, &albedo, Method::Plain)?;
+    let target = Offscreen::new(gpu, [EDGE, EDGE], true, 1, false)?;
+    let plain = Drawing::new(gpu, &target, (&map, &albedo), Method::Plain)?;
     let (rays, march) = (rays(EDGE, towards()), March::default());
     for method in Method::ALL {
-        let scene = scene(gpu, &map, &albedo, method)?;
+        let drawing = Drawing::new(gpu, &target, (&map, &albedo), method)?;
         let surface = Surface::new(&map, method, Address::Wrap);
-        let draw = |scene: &ReliefScene, encoder: &mut wgpu::CommandEncoder| {
-            target.record(encoder, [0.0; 3], |pass| scene.draw(pass));
-        };
         let contenders = vec![
-            Contender::recorded(Backend::Gpu, |encoder| draw(&scene, encoder)),
-            Contender::recorded(Backend::Limit, |encoder| draw(&plain, encoder)),
+            Contender::recorded(Backend::Gpu, |encoder| drawing.record(encoder, &target)),
+            Contender::recorded(Backend::Limit, |encoder| plain.record(encoder, &target)),
             Contender::host(Backend::ReferenceParallel, || {
                 drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
             }),
@@ -101,18 +100,80 @@ fn textures(gpu: &Gpu, map: &HeightMap, method: Method) -> Result<SurfaceTexture
     SurfaceTextures::new(gpu, map, method, Address::Wrap)
 }
 
-/// The square, which fills the target.
-fn scene(gpu: &Gpu, map: &HeightMap, albedo: &ColorTexture, method: Method) -> Result<ReliefScene, Error> {
-    let options = ReliefOptions { method, ..ReliefOptions::default() };
-    let textures = textures(gpu, map, method)?;
-    let maps = ReliefMaps { textures: &textures, albedo, normals: None };
-    let renderer = ReliefRenderer::new(gpu, COLOR_FORMAT, options)?;
-    let mesh = SurfaceMesh::square(1.0);
-    let mut scene = renderer.scene(gpu, &mesh, maps, &Material::default(), &March::default(), 1.0)?;
-    let clip_from_world = Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(2.0, 2.0, 1.0));
+/// A scene of the square, which fills the target, recorded through a view.
+struct Drawing {
+    scene: Scene,
+    view: View,
+    renderer: Renderer,
+}
+
+impl Drawing {
+    fn new(
+        gpu: &Gpu,
+        target: &Offscreen,
+        (map, albedo): (&HeightMap, &ColorTexture),
+        method: Method,
+    ) -> Result<Self, Error> {
+        let textures = textures(gpu, map, method)?;
+        let maps = ReliefMaps { textures: &textures, albedo, normals: None };
+        let options = ReliefOptions { method, ..ReliefOptions::default() };
+        let relief = Relief { options, ..Relief::of_maps(SurfaceMesh::square(1.0), maps) };
+        let Material { light, ambient, .. } = relief.material;
+        let mut scene = Scene::new(gpu)?;
+        scene.set_light(Light { direction: light.into(), color: Vec3::ONE, ambient })?;
+        let square = scene.add_relief(&relief, 1)?;
+        scene.spawn(square, Placement::default())?;
+        let mut renderer = Renderer::new(gpu, target.format())?;
+        renderer.prepare(&scene)?;
+        let mut view = scene.view(Quality { pixels: 0.0 })?;
+        view.set(camera())?;
+        let mut recorded = Ok(());
+        gpu.run("record", |encoder| recorded = scene.record(encoder, &mut [&mut view]))?;
+        recorded?;
+        let drawing = Self { scene, view, renderer };
+        let mut drawn = Ok(());
+        gpu.run("draw", |encoder| drawn = drawing.draw(encoder, target))?;
+        drawn?;
+        Ok(drawing)
+    }
+
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, target: &Offscreen) -> Result<(), InputError> {
+        target
+            .record(encoder, [0.0; 3], |pass| self.renderer.draw(pass, &self.scene, &self.view, Layer::Color))
+    }
+
+    /// Draws again what has been drawn without an error.
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, target: &Offscreen) {
+        drop(self.draw(encoder, target));
+    }
+}
+
+/// A parallel camera, aslant: the square fills the picture, and rays come from [`towards`].
+fn camera() -> Camera {
     let [x, y, z] = towards();
-    scene.set_camera(gpu, ReliefCamera { clip_from_world, eye: Vec4::new(x, -y, z, 0.0) })?;
-    Ok(scene)
+    // Across the picture nothing changes along the rays.
+    let slant = Mat4::from_cols_array(&[
+        1.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+        0.0,
+        0.0,
+        -x / z,
+        y / z,
+        1.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+    ]);
+    let clip_from_view =
+        Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(2.0, 2.0, -0.25)) * slant;
+    let view_from_world = Mat4::IDENTITY;
+    Camera { cell: [0; 3], view_from_world, clip_from_view, viewport: [EDGE; 2], depth: Depth::Forward }
 }
 
 /// The unit vector towards the eye, tangent space.

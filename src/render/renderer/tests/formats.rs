@@ -10,6 +10,7 @@ use crate::asset::material::Alpha;
 use crate::render::renderer::pipelines::{Kind, PipelineKey};
 use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
+use crate::scene::TerrainStyle;
 use crate::scene::drawable::SurfaceKind;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Alike;
@@ -39,7 +40,8 @@ fn kinds() -> Vec<Kind> {
             options: ReliefOptions { method, shadow, normal_map, silhouette: set, depth: set, mip: set },
         })
     });
-    meshes.chain(reliefs).chain([Kind::Terrain]).collect()
+    let styles = [TerrainStyle::Textured, TerrainStyle::Wireframe];
+    meshes.chain(reliefs).chain(styles.map(|style| Kind::Terrain { style })).collect()
 }
 
 fn formats() -> Vec<TargetFormat> {

@@ -11,6 +11,7 @@ use crate::asset::transform::rows;
 use crate::gpu::{Gpu, Group};
 use crate::render::Layer;
 use crate::render::TargetFormat;
+use crate::scene::TerrainStyle;
 use crate::scene::drawable::Drawable;
 use crate::scene::layouts::SceneLayouts;
 use crate::surface::{Method, ReliefOptions};
@@ -66,7 +67,7 @@ fn terrain_passes_behind_its_prepass() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let land = Land::new(&gpu);
-    let (drawable, indices) = land.drawable(&gpu, &layouts);
+    let (drawable, indices) = land.drawable(&gpu, &layouts, TerrainStyle::Textured);
     let ground = land.ground(&gpu, &layouts, [5, 9]);
     let stage = land.stage(&gpu, &layouts, indices);
     assert_eq!(changed(&gpu, &drawable, &stage, Some(&ground)), [0, 0]);

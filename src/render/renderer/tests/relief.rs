@@ -1,13 +1,12 @@
-//! Reliefs look as the renderer of reliefs draws them, at any scale of the instance.
+//! Reliefs look the same as a larger mesh and as a larger instance.
 
 use glam::{Mat4, Vec3};
 
-use super::stage::{Canvas, FORMAT, Stage, differing, drawn, gpu, through, view};
+use super::stage::{FORMAT, Stage, differing, drawn, gpu, through, view};
 use crate::asset::Light;
-use crate::asset::transform::rows;
+use crate::asset::transform::{AFFINE_IDENTITY, rows};
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::render::Layer;
-use crate::render::{ColorTexture, ReliefCamera, ReliefMaps, ReliefOptions, ReliefRenderer, TargetFormat};
+use crate::render::{Layer, TargetFormat};
 use crate::samples::maps::BuiltInMap;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
@@ -16,7 +15,10 @@ use crate::shared::render::scene_vertex::MeshParams;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::vertex::Vertex;
 use crate::surface::mips::Mips;
-use crate::surface::{Address, March, Material, Method, Shadow, SurfaceMesh, SurfaceTextures};
+use crate::surface::{
+    Address, ColorTexture, March, Material, Method, ReliefMaps, ReliefOptions, Shadow, SurfaceMesh,
+    SurfaceTextures,
+};
 
 const TILES: f32 = 2.0;
 
@@ -60,7 +62,18 @@ pub fn square(
     options: ReliefOptions,
     plane: f32,
 ) -> Drawable {
-    let square = SurfaceMesh::square(TILES);
+    let mesh = SurfaceMesh::square(TILES);
+    mesh_of(gpu, layouts, (maps, options), (&mesh, 1.0 / TILES), plane)
+}
+
+/// A mesh with a length of a uv unit in the model's units.
+fn mesh_of(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    (maps, options): (&Maps, ReliefOptions),
+    (square, world): (&SurfaceMesh, f32),
+    plane: f32,
+) -> Drawable {
     let vertex = |vertex: &crate::surface::SurfaceVertex| Vertex {
         position: vertex.position,
         normal: vertex.normal,
@@ -70,7 +83,7 @@ pub fn square(
         material: material(plane),
         march: March::default(),
         range: [[0.0; 2], [TILES; 2]],
-        world: 1.0 / TILES,
+        world,
         color: [1.0; 3],
     };
     let up = "uploaded";
@@ -99,8 +112,8 @@ pub fn place(scale: Vec3) -> Mat4 {
     Mat4::from_rotation_x(-0.7) * Mat4::from_scale(scale)
 }
 
-/// The picture of the renderer of reliefs, whose world is the square's own space.
-fn expected(gpu: &Gpu, maps: &Maps, options: ReliefOptions, view: &SceneView, scale: f32) -> Vec<[u8; 4]> {
+/// The square in the world, as large and where the instance stands.
+fn placed(scale: f32) -> SurfaceMesh {
     let into = place(Vec3::ONE);
     let mut mesh = SurfaceMesh::square(TILES);
     for vertex in &mut mesh.vertices {
@@ -109,16 +122,11 @@ fn expected(gpu: &Gpu, maps: &Maps, options: ReliefOptions, view: &SceneView, sc
         vertex.normal = into.transform_vector3(normal).into();
         vertex.tangent = into.transform_vector3(tangent).extend(vertex.tangent[3]).into();
     }
-    let renderer = ReliefRenderer::new(gpu, FORMAT, options).expect("compiled");
-    let (material, march) = (material(1.0), March::default());
-    let mut scene = renderer.scene(gpu, &mesh, maps.maps(), &material, &march, scale / TILES).expect("bound");
-    let camera = ReliefCamera { clip_from_world: view.clip_from_world, eye: view.eye };
-    scene.set_camera(gpu, camera).expect("set");
-    Canvas::new(gpu, &TargetFormat::new(FORMAT)).draw(gpu, |pass| scene.draw(pass))
+    mesh
 }
 
 #[test]
-fn reliefs_look_as_the_renderer_of_reliefs_draws_them() {
+fn a_scaled_instance_is_a_larger_mesh() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let format = TargetFormat::new(FORMAT);
@@ -130,18 +138,20 @@ fn reliefs_look_as_the_renderer_of_reliefs_draws_them() {
         let maps = Maps::new(&gpu, method);
         let options = ReliefOptions { method, shadow, silhouette: depth, depth, ..ReliefOptions::default() };
         let seen = view(Vec3::new(0.3, 0.9, 1.6), false);
-        let expected = expected(&gpu, &maps, options, &seen, scale);
+        let large = mesh_of(&gpu, &layouts, (&maps, options), (&placed(scale), scale / TILES), 1.0);
+        let stage = Stage::new(&gpu, &layouts, seen, &[AFFINE_IDENTITY], &[[0, 6]]);
+        let expected = drawn(&gpu, &format, &large, &stage, None, &[Layer::Color]);
         let square = square(&gpu, &layouts, &maps, options, 1.0);
-        let drawn = |scale: Vec3| {
+        let look = |scale: Vec3| {
             let placement = rows(&place(scale).to_cols_array());
             let stage = Stage::new(&gpu, &layouts, seen, &[placement], &[[0, 6]]);
             drawn(&gpu, &format, &square, &stage, None, &[Layer::Color])
         };
-        let found = drawn(Vec3::splat(scale));
+        let found = look(Vec3::splat(scale));
         let wrong = differing(&found, &expected, 2);
         // A ray that passes an edge of a stone may round to either side of it.
         assert!(wrong <= 20, "{method:?}: {wrong} pixels");
-        assert!(differing(&drawn(Vec3::splat(1.1 * scale)), &expected, 2) > 1000);
+        assert!(differing(&look(Vec3::splat(1.1 * scale)), &expected, 2) > 1000);
     }
 }
 

@@ -1,20 +1,21 @@
-//! Terrain looks as the renderer of terrain draws it, wherever its samples are counted from.
+//! Terrain looks the same wherever its samples are counted from.
 
-use glam::{IVec2, Mat4, Vec3};
+use glam::{DVec3, IVec2, Mat4, Vec3};
 
-use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, through};
+use super::stage::{FORMAT, SIZE, Stage, differing, drawn, gpu, through};
 use crate::asset::transform::AFFINE_IDENTITY;
 use crate::gpu::{Buffer, Gpu, Group, Uniform};
-use crate::render::Layer;
-use crate::render::{Camera, Materials, Style, TargetFormat, TerrainRenderer};
+use crate::render::{Layer, TargetFormat};
 use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::{Camera, Placement, TerrainStyle};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch, TerrainView};
 use crate::shared::render::scene_view::SceneView;
 use crate::terrain::blend::Shading;
 use crate::terrain::config::{Config, HEIGHT_ONE};
 use crate::terrain::fields::Fields;
 use crate::terrain::generator::Generator;
+use crate::terrain::materials::Materials;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::texture::Texture;
 
@@ -41,7 +42,7 @@ impl Land {
     }
 
     /// The terrain as an object.
-    pub fn drawable(&self, gpu: &Gpu, layouts: &SceneLayouts) -> (Drawable, u32) {
+    pub fn drawable(&self, gpu: &Gpu, layouts: &SceneLayouts, style: TerrainStyle) -> (Drawable, u32) {
         let Config { patch_size: size, terrain_scale, .. } = self.config;
         let tiles = self.config.tiles_per_patch();
         let zones = self.zones(gpu);
@@ -69,7 +70,7 @@ impl Land {
             indices: Buffer::from_slice(gpu, "indices", &indices).expect("uploaded"),
             zones,
         };
-        let terrain = TerrainDrawable::new(gpu, layouts, geometry).expect("bound");
+        let terrain = TerrainDrawable::new(gpu, layouts, geometry, style).expect("bound");
         (Drawable::Terrain(terrain), indices.len() as u32)
     }
 
@@ -81,18 +82,20 @@ impl Land {
         layouts.ground(gpu, &Uniform::new(gpu, "ground", &ground).expect("uploaded")).expect("bound")
     }
 
-    pub fn camera(&self) -> Camera {
-        let edge = (2.0 * f64::from(self.config.patch_size - 1) * self.config.terrain_scale) as f32;
-        Camera::framing(Vec3::ZERO, Vec3::new(edge, 0.2 * edge, edge))
+    /// The width of the land, in world units.
+    fn edge(&self) -> f64 {
+        2.0 * f64::from(self.config.patch_size - 1) * self.config.terrain_scale
     }
 
-    /// The view of that camera, in the light of terrain.
+    /// A view of the whole land, in the light of maps. All of it lies in the camera's cell and below.
     pub fn view(&self) -> SceneView {
-        let camera = self.camera();
-        let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+        let high = DVec3::new(self.edge(), 0.2 * self.edge(), self.edge());
+        let framed = Camera::framing(DVec3::ZERO, high, SIZE);
+        let shift = glam::IVec3::from(framed.cell).as_vec3() * -Placement::CELL;
+        let clip_from_world = framed.clip_from_world() * Mat4::from_translation(shift);
         let shading = Shading::default();
         let light = Vec3::from(shading.light).extend(shading.ambient);
-        SceneView { light, ..through(camera.clip_from_world(aspect).expect("valid"), camera.eye.extend(1.0)) }
+        SceneView { light, ..through(clip_from_world, (framed.eye() - shift).extend(1.0)) }
     }
 
     pub fn stage(&self, gpu: &Gpu, layouts: &SceneLayouts, indices: u32) -> Stage {
@@ -100,44 +103,34 @@ impl Land {
     }
 }
 
+/// Positions are counted from any sample, and rounding moves edges by a fraction of a pixel; the other diagonal is told from
+/// this one.
 #[test]
-fn terrain_looks_as_the_renderer_of_terrain_draws_it() {
+fn terrain_looks_the_same_from_any_sample() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let land = Land::new(&gpu);
-    let renderer = TerrainRenderer::new(&gpu, FORMAT, Style::Textured).expect("compiled");
-    let mut scene = renderer.scene(&gpu, &land.zones(&gpu), &Shading::default()).expect("bound");
-    scene.add(&gpu, &land.config, &land.fields, &PATCHES, [0, 0]).expect("added");
-    scene.set_camera(&gpu, &land.camera(), SIZE[0] as f32 / SIZE[1] as f32).expect("set");
     let format = TargetFormat::new(FORMAT);
-    let expected = Canvas::new(&gpu, &format).draw(&gpu, |pass| scene.draw(pass));
-    let (drawable, indices) = land.drawable(&gpu, &layouts);
+    let (drawable, indices) = land.drawable(&gpu, &layouts, TerrainStyle::Textured);
     let stage = land.stage(&gpu, &layouts, indices);
-    let from = |base| {
+    let from = |drawable: &Drawable, base| {
         let ground = land.ground(&gpu, &layouts, base);
-        drawn(&gpu, &format, &drawable, &stage, Some(&ground), &[Layer::Color])
+        drawn(&gpu, &format, drawable, &stage, Some(&ground), &[Layer::Color])
     };
-    // Of surfaces as near, that renderer shows the first, and this one the last.
-    let found = from([0, 0]);
-    assert!(differing(&found, &expected, 1) <= 8, "{} pixels", differing(&found, &expected, 1));
-    // Rounding moves edges by a fraction of a pixel.
-    let elsewhere = from([13, -7]);
+    let expected = from(&drawable, [0, 0]);
+    let elsewhere = from(&drawable, [13, -7]);
     assert!(differing(&elsewhere, &expected, 2) < 40, "{}", differing(&elsewhere, &expected, 2));
     let covered = expected.iter().filter(|pixel| **pixel != [0; 4]).count();
     assert!(covered > 5000, "{covered} pixels");
-    // The other diagonal is told from this one.
     let Drawable::Terrain(mut turned) = drawable else { panic!("a terrain") };
-    let size = land.config.patch_size;
-    let cells = patch_indices(size);
+    let cells = patch_indices(land.config.patch_size);
     let other = cells.chunks(6).flat_map(|cell| {
         let [a, b, c, d] = [cell[0], cell[1], cell[2], cell[5]];
         [a, b, d, a, d, c]
     });
     turned.geometry.indices =
         Buffer::from_slice(&gpu, "indices", &other.collect::<Vec<_>>()).expect("uploaded");
-    let ground = land.ground(&gpu, &layouts, [0, 0]);
-    let turned = Drawable::Terrain(turned);
-    let wrong = drawn(&gpu, &format, &turned, &stage, Some(&ground), &[Layer::Color]);
+    let wrong = from(&Drawable::Terrain(turned), [0, 0]);
     assert!(differing(&wrong, &expected, 1) > 200, "{}", differing(&wrong, &expected, 1));
 }
 
@@ -147,8 +140,8 @@ fn no_crack_opens_between_patches_far_from_the_origin() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let land = Land::new(&gpu);
-    let (drawable, indices) = land.drawable(&gpu, &layouts);
-    let edge = (2.0 * f64::from(land.config.patch_size - 1) * land.config.terrain_scale) as f32;
+    let (drawable, indices) = land.drawable(&gpu, &layouts, TerrainStyle::Textured);
+    let edge = land.edge() as f32;
     // Straight down on the middle, where four patches meet, at a place that f32 cannot hold exactly.
     let eye = Vec3::new(0.5 * edge, 0.6 * edge, 0.5 * edge);
     let look = glam::camera::rh::view::look_at_mat4(eye, eye - Vec3::Y, Vec3::NEG_Z);
