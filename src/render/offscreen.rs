@@ -104,7 +104,7 @@ impl Offscreen {
         Ok(Self { format, size, color, resolved, depth })
     }
 
-    /// The format, for a [`Renderer`](super::Renderer).
+    /// The format, for a [`Renderer`].
     pub fn format(&self) -> &TargetFormat {
         &self.format
     }

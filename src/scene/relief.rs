@@ -57,11 +57,11 @@ pub enum ReliefSource {
     /// or colours in linear half floats ([`ColorTexture::linear`]), of which no driver decodes sRGB.
     Textures {
         /// The heights and the acceleration map of a method.
-        textures: SurfaceTextures,
+        textures: Box<SurfaceTextures>,
         /// The colours.
-        albedo: ColorTexture,
+        albedo: Box<ColorTexture>,
         /// Normals in tangent space, if [`ReliefOptions::normal_map`] asks for them.
-        normals: Option<ColorTexture>,
+        normals: Option<Box<ColorTexture>>,
     },
 }
 
@@ -84,8 +84,12 @@ impl Relief {
     pub fn of_maps(mesh: SurfaceMesh, maps: ReliefMaps<'_>) -> Self {
         let ReliefMaps { textures, albedo, normals } = maps;
         let (method, address) = (textures.method, textures.address);
-        let (textures, albedo, normals) = (textures.clone(), albedo.clone(), normals.cloned());
-        let made = Self::of(mesh, ReliefSource::Textures { textures, albedo, normals });
+        let source = ReliefSource::Textures {
+            textures: Box::new(textures.clone()),
+            albedo: Box::new(albedo.clone()),
+            normals: normals.cloned().map(Box::new),
+        };
+        let made = Self::of(mesh, source);
         let options = ReliefOptions { method, ..made.options };
         Self { options, march: March { address, ..made.march }, ..made }
     }
@@ -185,7 +189,7 @@ fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<Relief
         ReliefMaterial::new(gpu, layouts, maps, relief.options, &look)
     };
     match &relief.maps {
-        ReliefSource::Textures { textures, albedo, normals } => bound(textures, albedo, normals.as_ref()),
+        ReliefSource::Textures { textures, albedo, normals } => bound(textures, albedo, normals.as_deref()),
         ReliefSource::Images { heights, albedo, normals } => {
             let (address, method) = (relief.march.address, relief.options.method);
             let texture = |mips: Mips| ColorTexture::new(gpu, &mips, address == Address::Wrap);
