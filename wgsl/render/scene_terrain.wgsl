@@ -178,24 +178,29 @@ fn colored_surface(in: WholeVertex, color: vec3<f32>) -> Surface {
         terrain.first_patch + in.instance, in.clip.xy);
 }
 
+// A surface in the shadow of the sun, if the scene has one.
+fn in_shadow(lit: Surface) -> Surface {
+    var shadowed = lit;
+    if SHADOWED {
+        shadowed.sunlit = scene_sunlit(lit.position, lit.geometric_normal);
+    }
+    return shadowed;
+}
+
 // The edges of triangles, by the crate's or the caller's shading, on ground that no light reaches.
 @fragment
 fn shaded_wired(in: WiredVertex) -> @location(0) vec4<f32> {
     let edge = in.corner / max(fwidth(in.corner), vec3<f32>(1e-6));
     let near = clamp(1.2 - min(edge.x, min(edge.y, edge.z)), 0.0, 1.0);
     let vertex = WholeVertex(in.clip, in.normal, in.uv, in.height, in.position, in.instance);
-    let line = scene_shaded(colored_surface(vertex, vec3<f32>(0.35, 0.75, 0.5)));
+    let line = scene_shaded(in_shadow(colored_surface(vertex, vec3<f32>(0.35, 0.75, 0.5))));
     return mix(vec4<f32>(0.01, 0.014, 0.02, 1.0), line, near);
 }
 
 // Colour by the caller's shading, or in the shadow of the sun.
 @fragment
 fn shaded_whole(in: WholeVertex) -> @location(0) vec4<f32> {
-    var surface = whole_surface(in);
-    if SHADOWED {
-        surface.sunlit = scene_sunlit(surface.position, surface.geometric_normal);
-    }
-    return scene_shaded(surface);
+    return scene_shaded(in_shadow(whole_surface(in)));
 }
 
 @fragment

@@ -73,10 +73,10 @@ impl ViewLists {
             arguments: &arguments,
         };
         let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
-        let singles = singles(gpu, layout, single, (&decisions, &arguments))?;
         let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances], map)?;
         let terrain = (0..terrains).map(|_| ground(gpu, layouts)).collect::<Result<_, GpuError>>()?;
         Ok(Self {
+            singles: singles(gpu, layout, single, (&decisions, &arguments))?,
             version: layout.version,
             lists,
             arguments,
@@ -84,7 +84,6 @@ impl ViewLists {
             group,
             map: map.cloned(),
             terrain,
-            singles,
             order: Vec::new(),
             select,
             list,

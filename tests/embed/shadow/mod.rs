@@ -118,8 +118,8 @@ fn shadows_are_where_the_hosts_rays_say() {
         for (at, Tally { lit, dark, edge, wrong }) in found.into_iter().enumerate() {
             // Texels on the edges of triangles may belong to either.
             assert!(1000 * wrong <= 2 * (lit + dark), "{at}: {wrong} of {lit} lit and {dark} dark");
-            assert!(lit >= 40 && (dark >= 40 || !all_cast), "{at}: {lit} lit, {dark} dark");
-            assert!(3 * edge <= 2 * (lit + dark), "{at}: {edge} at edges of {lit} and {dark}");
+            assert!(lit >= 40 && (dark >= 20 || !all_cast), "{at}: {lit} lit, {dark} dark");
+            assert!(3 * edge <= lit + dark, "{at}: {edge} at edges of {lit} and {dark}");
         }
         // The comparison sees what is wrong: another sun, and casters that are not there.
         let mut other = Occluders::new((SUN + Vec3::new(0.1, 0.0, 0.0)).as_dvec3());
