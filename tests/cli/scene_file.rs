@@ -222,7 +222,7 @@ fn surfaces_have_normals_colors_and_numbers() {
     let folder = Folder::new();
     let wall = |x: i32| json!({"at": [x, -5, 0], "scale": [8, 20, 2]});
     let scene = json!({
-        "meshes": [{"file": "builtin:wall", "instances": [wall(-8), wall(8)]}],
+        "meshes": [{"file": "builtin:wall", "instances": [wall(-16), wall(16)]}],
         "camera": {"at": [0, 1, 5.5], "look": [0, 1, 0]},
     });
     let run = folder.run(&scene.to_string(), &["--layer", "surface", "--size", "40x32"]);

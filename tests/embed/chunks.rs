@@ -332,7 +332,7 @@ fn terrain_beyond_a_binding_is_drawn_in_chunks() {
         let config = Config::new(65, 12.0, "chunks").expect("valid");
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
         let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
-        let camera = Camera::looking_at(Vec3::new(20.0, 180.0, 300.0), Vec3::ZERO, 0.8, [1.0, 4000.0], SIZE);
+        let camera = Camera::looking_at(Vec3::new(20.0, 180.0, -300.0), Vec3::ZERO, 0.8, [1.0, 4000.0], SIZE);
         view.set(camera).expect("a camera");
         let frame = Frame::plain(gpu, SIZE);
         let renderer = frame.renderer(gpu, &scene);
