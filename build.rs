@@ -361,9 +361,13 @@ mod shaders {
                         "BindingKind::StorageReadWrite"
                     }
                     (AddressSpace::Storage { .. }, _) => "BindingKind::StorageRead",
+                    (_, TypeInner::Image { class: naga::ImageClass::Depth { .. }, .. }) => {
+                        "BindingKind::DepthTexture"
+                    }
                     (_, TypeInner::Image { arrayed: true, .. }) => "BindingKind::TextureArray",
                     (_, TypeInner::Image { .. }) if self.is_sampled(handle) => "BindingKind::Texture",
                     (_, TypeInner::Image { .. }) => "BindingKind::LoadedTexture",
+                    (_, TypeInner::Sampler { comparison: true }) => "BindingKind::ComparisonSampler",
                     (_, TypeInner::Sampler { .. }) => "BindingKind::Sampler",
                     (space, _) => panic!(
                         "{}: binding {:?} in {space:?}: teach build.rs this kind",

@@ -15,9 +15,9 @@ use relievo::animation::{bounds, keyframe_cursor, local_to_model, sample};
 use relievo::asset::Light;
 use relievo::asset::{Affine, Model};
 use relievo::gpu::{Buffer, Gpu, shaders};
-use relievo::render::{Albedo, Character, ColorTexture, CrowdScene};
+use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, SunShadow};
 use relievo::samples::creature;
-use relievo::scene::{Scene, TerrainSource};
+use relievo::scene::{Scene, TerrainSource, View};
 use relievo::scene_file::SceneFile;
 use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
 use relievo::skinning::{Blend, Extent, add_levels, level_errors, poses_of};
@@ -194,6 +194,16 @@ fn embedding(
     batch.set(&gpu, &patches, &Features::default())?;
     batch.record(&mut encoder);
     scene.set_patches(land, &patches, [-80.0, 80.0])?;
+    Ok(())
+}
+
+/// Compiles the README's example of a shadow, with the variables that it leaves out.
+#[allow(dead_code, reason = "it is compiled, not run")]
+fn shadow((mut scene, mut eye): (Scene, View), mut encoder: wgpu::CommandEncoder) -> Result<(), Error> {
+    let mut shadow = SunShadow::new(&mut scene, 2048)?;
+    shadow.fit(&scene, &mut [&mut eye], 120.0)?;
+    scene.record(&mut encoder, &mut [&mut eye, shadow.view()])?;
+    shadow.draw(&mut encoder, &scene)?;
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use relievo::gpu::Gpu;
-use relievo::render::{Layer, Renderer, TargetFormat};
+use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::samples::{creature, maps::BuiltInMap};
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Relief, Scene, TerrainSource, View};
 use relievo::terrain::config::Config;
@@ -32,6 +32,7 @@ pub struct World {
     scene: Scene,
     renderer: Renderer,
     view: View,
+    shadow: SunShadow,
     land: ObjectId,
     walkers: Vec<InstanceId>,
 }
@@ -74,12 +75,13 @@ impl World {
             scene.spawn(wall, place.turned(0.2 * at as f32).scaled(8.0))?;
         }
 
+        let shadow = SunShadow::new(&mut scene, 4096)?; // texels along an edge
         // Pipelines for the program's targets are compiled here; drawing compiles none.
         let mut renderer = Renderer::new(&gpu, &TargetFormat::new(color).with_samples(SAMPLES))?;
         renderer.prepare(&scene)?;
         let view = scene.view(Default::default())?; // at most a pixel off
         scene.set_statistics(true)?; // for the title
-        Ok(Self { scene, renderer, view, land, walkers })
+        Ok(Self { scene, renderer, view, shadow, land, walkers })
     }
 
     /// What there is, and what of it the view saw some frames ago.
@@ -91,7 +93,8 @@ impl World {
         format!("{characters} characters, {instances} instances and {triangles} triangles in view")
     }
 
-    /// Moves the characters, advances the time, and records what the device does before anything is drawn.
+    /// Moves the characters, advances the time, and records what the device does before anything is drawn, and the map of
+    /// the shadow.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -109,7 +112,9 @@ impl World {
         // The viewport counts physical pixels, and so does the view's quality.
         let camera = Camera::looking_at(position, position + eye.ahead(), 0.9, [0.2, 1500.0], size);
         self.view.set(camera)?;
-        Ok(self.scene.record(encoder, &mut [&mut self.view])?)
+        self.shadow.fit(&self.scene, &mut [&mut self.view], 120.0)?; // units ahead of the eye
+        self.scene.record(encoder, &mut [&mut self.view, self.shadow.view()])?;
+        Ok(self.shadow.draw(encoder, &self.scene)?)
     }
 
     /// Draws it in the program's own pass.

@@ -183,6 +183,11 @@ fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
         view_dimension,
         multisampled: false,
     };
+    let depth_texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Depth,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
     let visibility = (binding.stages.iter())
         .map(|stage| match stage {
             Stage::Vertex => wgpu::ShaderStages::VERTEX,
@@ -197,7 +202,9 @@ fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
         BindingKind::TextureArray => texture(true, wgpu::TextureViewDimension::D2Array),
         BindingKind::Texture => texture(true, wgpu::TextureViewDimension::D2),
         BindingKind::LoadedTexture => texture(false, wgpu::TextureViewDimension::D2),
+        BindingKind::DepthTexture => depth_texture,
         BindingKind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        BindingKind::ComparisonSampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
     };
     wgpu::BindGroupLayoutEntry { binding: binding.binding, visibility, ty, count: None }
 }

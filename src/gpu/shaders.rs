@@ -53,8 +53,12 @@ pub enum BindingKind {
     Texture,
     /// A float texture, 2-D, of which the shader only loads texels: any float format.
     LoadedTexture,
+    /// A depth texture, 2-D.
+    DepthTexture,
     /// A filtering sampler.
     Sampler,
+    /// A sampler that compares depths.
+    ComparisonSampler,
 }
 
 /// A resource that a shader uses.

@@ -20,6 +20,7 @@ pub mod posed;
 mod renderer;
 mod shading;
 pub mod skinned;
+mod sun_shadow;
 pub mod target;
 
 pub use albedo::Albedo;
@@ -30,6 +31,7 @@ pub use layer::Layer;
 pub use offscreen::Offscreen;
 pub use renderer::{Renderer, ScenePass};
 pub use skinned::{SkinnedInstances, SkinnedRenderer, SkinnedScene};
+pub use sun_shadow::SunShadow;
 pub use target::Target;
 
 pub use crate::surface::ColorTexture;

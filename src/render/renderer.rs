@@ -1,5 +1,6 @@
 //! Draws a scene through a view into the caller's render pass or render bundle.
 
+mod check;
 mod pipelines;
 mod programs;
 mod rebuild;
@@ -60,6 +61,8 @@ pub struct Renderer {
     layouts: SceneLayouts,
     /// The caller's shading, if it is not the crate's.
     shading: Option<Shading>,
+    /// Whether it draws what casts shadows: both sides of all triangles.
+    casts: bool,
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
 }
 
@@ -74,7 +77,12 @@ impl Renderer {
         format.check_on(gpu.device())?;
         let layouts = SceneLayouts::new(gpu)?;
         let (gpu, format) = (gpu.clone(), format.clone());
-        Ok(Self { gpu, format, layouts, shading: None, pipelines: HashMap::new() })
+        Ok(Self { gpu, format, layouts, shading: None, casts: false, pipelines: HashMap::new() })
+    }
+
+    /// The same renderer for maps of shadows, where triangles stop light from both sides, and nothing compiled.
+    pub(super) fn casting(self) -> Self {
+        Self { casts: true, pipelines: HashMap::new(), ..self }
     }
 
     /// The same renderer with the caller's shading in every pipeline of colour, and nothing compiled.
@@ -84,7 +92,7 @@ impl Renderer {
     /// structs, constants and private variables, and resources in bind group 3, whose layout is `layout`, visible to the
     /// fragment stage; before [`Renderer::draw`] the caller sets that group. Calls come from uniform control flow. The
     /// text must not discard, and none of its names may begin with `relievo_`. Of WebGPU's default limits for the fragment
-    /// stage, the crate's pipelines use up to 2 storage buffers, 4 uniform buffers, 4 textures and 1 sampler.
+    /// stage, the crate's pipelines use up to 2 storage buffers, 4 uniform buffers, 5 textures and 3 samplers.
     ///
     /// These are the two structs and the crate's own function:
     ///
@@ -108,17 +116,18 @@ impl Renderer {
         &self.format
     }
 
-    /// Compiles the pipelines that these objects need and that are not there yet.
+    /// Compiles the pipelines that these objects need, in the shadow of a sun or without, and that are not there yet.
     pub(crate) fn prepare_objects<'a>(
         &mut self,
         objects: impl Iterator<Item = &'a Drawable>,
+        is_shadowed: bool,
     ) -> Result<(), Error> {
         let kinds: Vec<Kind> = objects.flat_map(kinds_of).collect();
         let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
             for kind in kinds.iter().filter(|kind| kind.is_in(layer)) {
                 for is_flipped in [false, true] {
-                    self.compile(PipelineKey::new(layer, *kind, is_flipped))?;
+                    self.compile(self.key(layer, *kind, is_flipped, is_shadowed))?;
                 }
             }
         }
@@ -126,14 +135,14 @@ impl Renderer {
     }
 
     /// Compiles every pipeline that the objects of a scene need and that is not there yet: drawing never compiles. Call it
-    /// again after objects were added. Instances that are spawned, objects that grow, and cameras that change need no new
+    /// again after objects were added, or a [`SunShadow`](super::SunShadow). Instances that are spawned, objects that grow, and cameras that change need no new
     /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
     ///
     /// # Errors
     /// [`InputError`] for a scene on another device of the same [`wgpu::Instance`]; what the driver's compiler reports.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         self.check_device(scene)?;
-        self.prepare_objects(scene.drawables())
+        self.prepare_objects(scene.drawables(), scene.is_shadowed())
     }
 
     /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
@@ -179,14 +188,6 @@ impl Renderer {
         self.draw_objects(pass, &drawn, objects.iter().copied(), layer)
     }
 
-    /// wgpu does not tell devices of different instances from each other.
-    fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
-        match scene.gpu().device() == self.gpu.device() {
-            true => Ok(()),
-            false => Err(InputError::new("scene", "of another device", "must be of the renderer's device")),
-        }
-    }
-
     fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {
         if !self.pipelines.contains_key(&key) {
             let pipeline = key.pipeline(&self.gpu, &self.format, &self.layouts, self.shading.as_ref())?;
@@ -213,9 +214,9 @@ impl Renderer {
             match object.drawable {
                 Drawable::Mesh(mesh) => self.draw_mesh(pass, view, &object, mesh, layer),
                 Drawable::Terrain(terrain) => {
-                    let (Some(ground), Some(pipeline)) =
-                        (object.ground, self.pipeline(layer, Kind::Terrain { style: terrain.style }, false))
-                    else {
+                    let kind = Kind::Terrain { style: terrain.style };
+                    let pipeline = self.pipeline(layer, kind, false, view);
+                    let (Some(ground), Some(pipeline)) = (object.ground, pipeline) else {
                         continue;
                     };
                     pass.set_pipeline(pipeline);
@@ -239,7 +240,7 @@ impl Renderer {
         pass.set_bind_group(0, view.group);
         for DrawnSingle { mesh, part, draw, instance, is_mirrored } in &singles.parts {
             let is_flipped = *is_mirrored != view.mirrors;
-            let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped) else {
+            let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped, view) else {
                 continue;
             };
             pass.set_pipeline(pipeline);
@@ -253,39 +254,19 @@ impl Renderer {
         }
     }
 
-    /// Whether a layer of these objects can be drawn in a view.
-    fn check<'a>(
-        &self,
-        view: &DrawnView<'_>,
-        objects: impl Iterator<Item = DrawnObject<'a>>,
-        layer: Layer,
-    ) -> Result<(), InputError> {
-        if !self.format.layers().any(|known| known == layer) {
-            let bound = "must be a layer for which the renderer's format has an attachment";
-            return Err(InputError::new("layer", format!("{layer:?}"), bound));
-        }
-        if self.format.depth.is_some() && view.reversed != self.format.is_reversed() {
-            let direction = |reversed| if reversed { "reversed" } else { "forward" };
-            let bound =
-                format!("must be {}, as the renderer's format says", direction(self.format.is_reversed()));
-            return Err(InputError::new("view.camera.depth", direction(view.reversed), bound));
-        }
-        if layer == Layer::Velocity && !view.keeps_last {
-            let bound = "must keep the last frame: Scene::keep_last_frame";
-            return Err(InputError::new("scene", "does not keep the last frame", bound));
-        }
-        for (at, object) in objects.enumerate() {
-            let is_ready = |kind| self.pipeline(layer, kind, false).is_some();
-            if !kinds_of(object.drawable).filter(|kind| kind.is_in(layer)).all(is_ready) {
-                let bound = "must be prepared for this renderer after the object was added";
-                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
-            }
-        }
-        Ok(())
+    fn key(&self, layer: Layer, kind: Kind, is_flipped: bool, is_shadowed: bool) -> PipelineKey {
+        let kind = if self.casts { kind.two_sided() } else { kind };
+        PipelineKey::new(layer, kind, is_flipped).shadowed(is_shadowed)
     }
 
-    fn pipeline(&self, layer: Layer, kind: Kind, is_flipped: bool) -> Option<&wgpu::RenderPipeline> {
-        self.pipelines.get(&PipelineKey::new(layer, kind, is_flipped))
+    fn pipeline(
+        &self,
+        layer: Layer,
+        kind: Kind,
+        is_flipped: bool,
+        view: &DrawnView<'_>,
+    ) -> Option<&wgpu::RenderPipeline> {
+        self.pipelines.get(&self.key(layer, kind, is_flipped, view.is_shadowed))
     }
 
     fn draw_mesh<'a>(
@@ -302,7 +283,7 @@ impl Renderer {
             pass.set_bind_group(2, part.materials.group());
             for is_mirrored in [false, true] {
                 let is_flipped = is_mirrored != view.mirrors;
-                let pipeline = self.pipeline(layer, Kind::of(part), is_flipped);
+                let pipeline = self.pipeline(layer, Kind::of(part), is_flipped, view);
                 let is_listed = object.sides[usize::from(is_mirrored)];
                 let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
                 pass.set_pipeline(pipeline);

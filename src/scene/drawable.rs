@@ -266,6 +266,8 @@ pub(crate) struct DrawnView<'a> {
     pub reversed: bool,
     /// Whether the scene keeps its last frame.
     pub keeps_last: bool,
+    /// Whether surfaces are looked up in the map of a sun's shadow.
+    pub is_shadowed: bool,
 }
 
 #[cfg(test)]

@@ -211,6 +211,7 @@ impl Scene {
             mirrors: recorded.mirrors,
             reversed: recorded.reversed,
             keeps_last: self.keeps_last,
+            is_shadowed: self.is_shadowed,
         };
         let mut terrains = 0;
         let mut objects = Vec::new();

@@ -17,7 +17,48 @@ pub(crate) struct SceneLayouts {
     pub relief: Layouts,
     /// Of terrain.
     pub terrain: Layouts,
+    /// What views without a shadow bind.
+    shadow: ShadowBindings,
 }
+
+/// The sampler of sun shadows, and a map for views that have none.
+#[derive(Debug, Clone)]
+struct ShadowBindings {
+    sampler: wgpu::Sampler,
+    nothing: wgpu::TextureView,
+}
+
+impl ShadowBindings {
+    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        gpu.scoped(|| Self {
+            sampler: gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("sun shadow"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                compare: Some(wgpu::CompareFunction::LessEqual),
+                ..Default::default()
+            }),
+            nothing: shadow_map(gpu, 1).create_view(&wgpu::TextureViewDescriptor::default()),
+        })
+    }
+}
+
+/// A map of `size` × `size` texels for the shadow of the sun.
+pub(crate) fn shadow_map(gpu: &Gpu, size: u32) -> wgpu::Texture {
+    gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("sun shadow"),
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: SHADOW_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
+}
+
+/// The format of the maps of shadows.
+pub(crate) const SHADOW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 impl SceneLayouts {
     /// Creates the layouts.
@@ -29,11 +70,12 @@ impl SceneLayouts {
             mesh: scene_mesh::layouts(gpu)?,
             relief: scene_relief::layouts(gpu)?,
             terrain: scene_terrain::layouts(gpu)?,
+            shadow: ShadowBindings::new(gpu)?,
         })
     }
 
-    /// Group 0: a view, its `rows` (three for each instance of the scene), and all instances of the scene, as they are and as
-    /// they were in the last frame.
+    /// Group 0: a view, its `rows` (three for each instance of the scene), all instances of the scene, as they are and as
+    /// they were in the last frame, and the map of its shadow, if it has one.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -43,9 +85,16 @@ impl SceneLayouts {
         view: &Uniform<SceneView>,
         rows: &Buffer<[f32; 4]>,
         [instances, last]: [&Buffer<SceneInstance>; 2],
+        shadow_map: Option<&wgpu::TextureView>,
     ) -> Result<Group, GpuError> {
-        let (instances, last_instances) = (instances.slice(), last.slice());
-        let group = scene_mesh::Group { view, rows: rows.slice(), instances, last_instances };
+        let group = scene_mesh::Group {
+            view,
+            rows: rows.slice(),
+            instances: instances.slice(),
+            last_instances: last.slice(),
+            shadow_map: shadow_map.unwrap_or(&self.shadow.nothing),
+            shadow_sampler: &self.shadow.sampler,
+        };
         group.bind(gpu, &self.mesh)
     }
 

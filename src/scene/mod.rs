@@ -66,6 +66,7 @@ pub use statistics::{
 };
 pub use terrain::TerrainSource;
 pub use view::View;
+pub(crate) use view::ViewShadow;
 pub use watch::{WatchedBone, WatchedBones};
 
 use crate::asset::Light;
@@ -130,6 +131,8 @@ pub struct Scene {
     step: f32,
     /// Whether the last frame's placements and vertices are kept.
     keeps_last: bool,
+    /// Whether surfaces are looked up in the map of a sun's shadow.
+    is_shadowed: bool,
     /// Number of frames that were recorded.
     frames: u64,
     layout: Option<Layout>,
@@ -184,6 +187,7 @@ impl Scene {
             now: 0.0,
             step: 0.0,
             keeps_last: false,
+            is_shadowed: false,
             frames: 0,
             layout: None,
             layouts: 0,
@@ -232,6 +236,23 @@ impl Scene {
         light.validate()?;
         self.light = light;
         Ok(())
+    }
+
+    /// The light of everything.
+    pub fn light(&self) -> Light {
+        self.light
+    }
+
+    /// Lets renderers look surfaces up in the map of a sun's shadow from their next [`prepare`] on.
+    ///
+    /// [`prepare`]: crate::render::Renderer::prepare
+    pub(crate) fn set_shadowed(&mut self) {
+        self.is_shadowed = true;
+    }
+
+    /// Whether surfaces are looked up in the map of a sun's shadow.
+    pub(crate) fn is_shadowed(&self) -> bool {
+        self.is_shadowed
     }
 
     /// Sets how the permitted displacement of characters is divided, from the next recording on.

@@ -18,7 +18,7 @@
 //! | `terrain` | `config`, which is a configuration of [`Config`](crate::terrain::config::Config), and `patches`: a list of columns and rows; by default `[[0, 0]]` |
 //! | `meshes` | a list of models that do not move by themselves |
 //! | `characters` | a list of animated models |
-//! | `light` | `direction` towards the light, `color`, `ambient` 0 to 1 |
+//! | `light` | `direction` towards the light, `color`, `ambient` 0 to 1, `shadow`: whether it casts one, or an object with the `size` of its map in texels (2048) and its `range` ahead of the camera in world units (100) |
 //! | `camera` | `at` and `look`, or a `path`: a list of moments with `time`, `at`, `look` and optionally `fov`, between which the camera moves smoothly. `fov` is the vertical field of view (0.8), `near` the near plane (0.1), `far` the far plane (at infinity) |
 //! | `quality` | `pixels`, by how many anything may be off (1) |
 //! | `background` | red, green and blue |
@@ -80,5 +80,5 @@ pub use camera::CameraPath;
 pub use load::LoadedScene;
 #[cfg(not(target_arch = "wasm32"))]
 pub use player::{FrameTimes, Player, Rendering};
-pub use spec::SceneFile;
+pub use spec::{SceneFile, SunOptions};
 pub use world::{World, WorldKind, WorldObject};

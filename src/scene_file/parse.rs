@@ -7,7 +7,7 @@ use super::entries::{ObjectEntry, Spot, TerrainEntry};
 use super::json::{At, Fields, Json};
 use super::limits::COORDINATE;
 use super::parse_object::{character, mesh};
-use super::spec::SceneFile;
+use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
 use crate::scene::Quality;
@@ -52,10 +52,12 @@ impl SceneFile {
             let all = fields.maybe(name, |list| list.list(0, MAX_OBJECTS))?.unwrap_or_default();
             all.iter().map(read).collect::<Result<Vec<_>, InputError>>()
         };
+        let (sun, shadow) = fields.maybe("light", |at| light(&at))?.unwrap_or_default();
         let scene = Self {
             terrain: fields.maybe("terrain", |at| terrain(&at))?,
             objects: [objects("meshes", mesh)?, objects("characters", character)?].concat(),
-            light: fields.maybe("light", |at| light(&at))?.unwrap_or_default(),
+            light: sun,
+            shadow,
             camera: camera(&fields.need("camera", "where the scene is seen from")?)?,
             quality: fields.maybe("quality", |at| quality(&at))?.unwrap_or_default(),
             background: fields.maybe("background", |at| color(&at, 1.0))?.unwrap_or(BACKGROUND),
@@ -65,7 +67,20 @@ impl SceneFile {
             return Err(InputError::new("scene", "empty", bound));
         }
         scene.check_grounds()?;
+        scene.check_shadow()?;
         Ok(scene)
+    }
+
+    /// Shadows end beyond the camera's near plane.
+    fn check_shadow(&self) -> Result<(), InputError> {
+        match self.shadow {
+            Some(SunOptions { range, .. }) if f64::from(range) <= 1.001 * self.camera.near => {
+                let bound =
+                    format!("must be beyond the camera's near = {}, by a thousandth", self.camera.near);
+                Err(InputError::new("light.shadow.range", range, bound))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What stands on the ground needs some.
@@ -136,7 +151,8 @@ pub(super) fn below(path: &str, whole: &str, error: InputError) -> InputError {
     InputError { path: inner, ..error }
 }
 
-fn light(at: &At<'_>) -> Result<Light, InputError> {
+/// The light, and the shadow that it casts, if it does.
+fn light(at: &At<'_>) -> Result<(Light, Option<SunOptions>), InputError> {
     let fields = at.fields(&["direction", "color", "ambient", "shadow"])?;
     let mut light = Light::default();
     if let Some(direction) = fields.get("direction") {
@@ -151,10 +167,25 @@ fn light(at: &At<'_>) -> Result<Light, InputError> {
     if let Some(ambient) = fields.maybe("ambient", |at| at.number(0.0, 1.0))? {
         light.ambient = ambient as f32;
     }
-    match fields.get("shadow") {
-        Some(shadow) if shadow.flag()? => Err(shadow.error("must be false: the sun casts no shadows yet")),
-        _ => Ok(light),
+    Ok((light, fields.maybe("shadow", |at| shadow(&at))?.flatten()))
+}
+
+/// True, false, or what the shadow has.
+fn shadow(at: &At<'_>) -> Result<Option<SunOptions>, InputError> {
+    let SunOptions { mut size, mut range } = SunOptions::default();
+    if !at.value().is_object() {
+        let bound = "must be true, false, or an object with size and range";
+        return Ok(at.flag().map_err(|_| at.error(bound))?.then_some(SunOptions { size, range }));
     }
+    let fields = at.fields(&["size", "range"])?;
+    if let Some(texels) = fields.maybe("size", |at| at.whole(16, 8192))? {
+        // The bounds are those of the type.
+        size = texels as u32;
+    }
+    if let Some(units) = fields.maybe("range", |at| at.number(1e-3, 1e6))? {
+        range = units as f32;
+    }
+    Ok(Some(SunOptions { size, range }))
 }
 
 /// Linear red, green and blue.

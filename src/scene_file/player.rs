@@ -5,9 +5,10 @@ use std::time::Instant;
 use image::RgbaImage;
 
 use super::camera::columns;
+use super::spec::SunOptions;
 use super::world::World;
 use crate::gpu::Gpu;
-use crate::render::{Layer, Offscreen, Renderer};
+use crate::render::{Layer, Offscreen, Renderer, SunShadow};
 use crate::scene::{Camera, Depth, Quality, View};
 use crate::{Error, InputError};
 
@@ -71,7 +72,7 @@ impl Rendering {
 pub struct FrameTimes {
     /// Milliseconds from the recording of the scene's compute work until the device has done it.
     pub compute: f64,
-    /// Milliseconds from the recording of the draws until the device has done them.
+    /// Milliseconds from the recording of the draws, of a shadow's map too, until the device has done them.
     pub draw: f64,
 }
 
@@ -84,6 +85,8 @@ pub struct Player {
     target: Offscreen,
     renderer: Renderer,
     views: Vec<View>,
+    /// The shadow of the light with its range, if it casts one.
+    shadow: Option<(SunShadow, f32)>,
 }
 
 impl Player {
@@ -91,16 +94,20 @@ impl Player {
     ///
     /// # Errors
     /// [`InputError`] as [`Rendering::validate`], and for a size beyond the device's limit; [`crate::gpu::GpuError`].
-    pub fn new(world: World, rendering: Rendering) -> Result<Self, Error> {
+    pub fn new(mut world: World, rendering: Rendering) -> Result<Self, Error> {
         rendering.validate()?;
         let gpu = world.scene.gpu().clone();
         let Rendering { size, samples, depth, layer, is_split, quality } = rendering;
         let target = Offscreen::new(&gpu, size, layer != Layer::Depth, samples, depth == Depth::Reversed)?;
+        let shadow = match world.shadow.filter(|_| layer != Layer::Depth) {
+            Some(SunOptions { size, range }) => Some((SunShadow::new(&mut world.scene, size)?, range)),
+            None => None,
+        };
         let mut renderer = Renderer::new(&gpu, target.format())?;
         renderer.prepare(&world.scene)?;
         let views = (0..1 + usize::from(is_split)).map(|_| world.scene.view(quality));
         let views = views.collect::<Result<_, _>>()?;
-        Ok(Self { gpu, world, rendering, target, renderer, views })
+        Ok(Self { gpu, world, rendering, target, renderer, views, shadow })
     }
 
     /// The world.
@@ -148,11 +155,18 @@ impl Player {
         let start = Instant::now();
         let mut encoder = self.gpu.encoder("scene");
         let mut views: Vec<&mut View> = self.views.iter_mut().collect();
+        if let Some((shadow, range)) = &mut self.shadow {
+            shadow.fit(&self.world.scene, &mut views, *range)?;
+            views.push(shadow.view());
+        }
         self.world.scene.record(&mut encoder, &mut views)?;
         self.finish(encoder)?;
         let compute = milliseconds(start);
         let start = Instant::now();
         let mut encoder = self.gpu.encoder("picture");
+        if let Some((shadow, _)) = &self.shadow {
+            shadow.draw(&mut encoder, &self.world.scene)?;
+        }
         self.target.record(&mut encoder, self.world.background, |pass| self.draw(pass, &halves))?;
         self.finish(encoder)?;
         Ok(FrameTimes { compute, draw: milliseconds(start) })

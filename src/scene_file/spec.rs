@@ -16,9 +16,26 @@ pub struct SceneFile {
     /// Those of `meshes`, then those of `characters`.
     pub(super) objects: Vec<ObjectEntry>,
     pub(super) light: Light,
+    pub(super) shadow: Option<SunOptions>,
     pub(super) camera: CameraPath,
     pub(super) quality: Quality,
     pub(super) background: [f32; 3],
+}
+
+/// The shadow of the sun in a scene file, as [`SunShadow`](crate::render::SunShadow) takes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SunOptions {
+    /// Texels along an edge of the map, 16 to 8192.
+    pub size: u32,
+    /// World units ahead of the camera up to which surfaces lie in shadow, beyond its near plane.
+    pub range: f32,
+}
+
+impl Default for SunOptions {
+    /// 2048 texels, 100 units.
+    fn default() -> Self {
+        Self { size: 2048, range: 100.0 }
+    }
 }
 
 impl SceneFile {
@@ -40,6 +57,11 @@ impl SceneFile {
     /// The light.
     pub fn light(&self) -> Light {
         self.light
+    }
+
+    /// The shadow of the light, if it casts one.
+    pub fn shadow(&self) -> Option<SunOptions> {
+        self.shadow
     }
 
     /// The files that the scene names, relative to its own, in ascending order, each once. A browser can fetch them before

@@ -9,6 +9,7 @@ use super::entries::{EntryKind, ObjectEntry, PlayEntry, Spot};
 use super::load::{Loaded, LoadedScene};
 use super::parse_object::upright;
 use super::scatter::{self, Drawn};
+use super::spec::SunOptions;
 use crate::asset::Model;
 use crate::gpu::Gpu;
 use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource};
@@ -25,6 +26,8 @@ pub struct World {
     pub camera: CameraPath,
     /// How fine the scene is drawn.
     pub quality: Quality,
+    /// The shadow of the light, if it casts one.
+    pub shadow: Option<SunOptions>,
     /// The colour behind everything: linear red, green and blue.
     pub background: [f32; 3],
 }
@@ -99,7 +102,7 @@ impl LoadedScene {
             objects.push(found);
         }
         let (camera, quality, background) = (file.camera.clone(), file.quality, file.background);
-        Ok(World { scene, objects, camera, quality, background })
+        Ok(World { scene, objects, camera, quality, shadow: file.shadow, background })
     }
 
     fn spawn(

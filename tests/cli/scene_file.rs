@@ -78,7 +78,7 @@ pub fn good() -> Value {
             "instances": [{"on": [8, 8], "clip": 1}, {"on": [18, 8]}],
             "scatter": {"count": 2, "seed": "crowd", "area": [[2, 2], [20, 12]], "scale": [1, 2]},
         }],
-        "light": {"direction": [1, 2, 1], "ambient": 0.3, "shadow": false},
+        "light": {"direction": [1, 2, 1], "ambient": 0.3, "shadow": {"size": 512, "range": 60}},
         "camera": {"path": [
             {"time": 0, "at": [10, 8, 30], "look": [10, 0, 8]},
             {"time": 0.1, "at": [14, 9, 28], "look": [10, 0, 8], "fov": 1},

@@ -24,6 +24,7 @@ mod rays;
 mod rebuild;
 mod reliefs;
 mod shading;
+mod shadow;
 mod sides;
 mod solids;
 mod surfaces;

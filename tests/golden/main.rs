@@ -17,6 +17,7 @@ mod ground;
 mod levels;
 mod materials;
 mod mirrored;
+mod shadows;
 mod skinned;
 mod tiling;
 

@@ -182,6 +182,8 @@ fn layout_entry(binding: &Value) -> Value {
         Some("texture") => ("texture", json!({ "sampleType": "float" })),
         Some("texture-array") => ("texture", json!({ "sampleType": "float", "viewDimension": "2d-array" })),
         Some("loaded-texture") => ("texture", json!({ "sampleType": "unfilterable-float" })),
+        Some("depth-texture") => ("texture", json!({ "sampleType": "depth" })),
+        Some("comparison-sampler") => ("sampler", json!({ "type": "comparison" })),
         Some("sampler") => ("sampler", json!({ "type": "filtering" })),
         other => panic!("teach the test the binding {other:?}"),
     };

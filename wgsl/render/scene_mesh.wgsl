@@ -2,6 +2,7 @@
 // pattern, as each vertex's material says.
 import package::wgsl::render::scene_motion::last_position;
 import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
 import package::wgsl::render::scene_vertex::{PlacedVertex, instances, mesh, placed_vertex};
 import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::surface::dither::surface_dither_threshold;
@@ -292,10 +293,13 @@ fn depth_cut_out(in: Vertex) {
     }
 }
 
-// Colour by the caller's shading.
+// Colour by the caller's shading, or in the shadow of the sun.
 @fragment
 fn shaded_whole(in: WholeVertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4<f32> {
     var surface = whole_surface(in, is_front);
+    if SHADOWED {
+        surface.sunlit = scene_sunlit(surface.position, surface.geometric_normal);
+    }
     let is_out = is_whole_cut(surface.alpha, in);
     surface.alpha = blended_alpha(surface.alpha);
     let color = scene_shaded(surface);

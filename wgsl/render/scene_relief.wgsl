@@ -2,6 +2,7 @@
 // self-shadow, silhouettes and the depth of the relief.
 import package::wgsl::render::scene_motion::rows_to_last;
 import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
 import package::wgsl::render::scene_vertex::{instances, mesh, placed_vertex};
 import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface_targets, scene_velocity, view};
 import package::wgsl::skinning::rows::{Rows, placed_position};
@@ -28,6 +29,9 @@ override CHOOSE_MIP: bool = false;
 override OWN_DEPTH: bool = false;
 // Whether depth falls with distance, from 1 at the near plane.
 override REVERSED: bool = false;
+
+// The smallest cosine of the angle between the light and the normal of the polygon, for the way out of the volume.
+const LEAST_COSINE: f32 = 0.05;
 
 // A relief, besides its maps.
 struct ReliefParams {
@@ -177,7 +181,19 @@ fn surface_of(in: Vertex, found: Traced, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> 
 }
 
 fn shaded(in: Vertex, found: Traced, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> vec4<f32> {
-    return scene_shaded(surface_of(in, found, uv_dx, uv_dy));
+    var seen = surface_of(in, found, uv_dx, uv_dy);
+    if SHADOWED {
+        seen.sunlit *= scene_sunlit(above(in, found), found.frame.normal);
+    }
+    return scene_shaded(seen);
+}
+
+// Where the ray from a hit towards the sun leaves the volume of the relief. The relief's own shadow ends there, and that of
+// everything else begins.
+fn above(in: Vertex, found: Traced) -> vec3<f32> {
+    let cosine = dot(found.frame.normal, view.light.xyz);
+    let deep = (1.0 - found.hit.height) * relief.scale * in.world;
+    return found.position + view.light.xyz * select(0.0, deep / max(cosine, LEAST_COSINE), cosine > 0.0);
 }
 
 @fragment

@@ -1,6 +1,7 @@
 // Draws patches of terrain of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8): an indexed patch for
 // each visible one, zone textures blended by height, a directional light.
 import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
 import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
@@ -174,20 +175,29 @@ fn colored_surface(in: WholeVertex, color: vec3<f32>) -> Surface {
         in.position, normal, normal, in.uv, color, 1.0, 1.0, vec4<f32>(1.0), 0u, ground.object, in.instance, in.clip.xy);
 }
 
+// A surface in the shadow of the sun, if the scene has one.
+fn in_shadow(lit: Surface) -> Surface {
+    var shadowed = lit;
+    if SHADOWED {
+        shadowed.sunlit = scene_sunlit(lit.position, lit.geometric_normal);
+    }
+    return shadowed;
+}
+
 // The edges of triangles, by the crate's or the caller's shading, on ground that no light reaches.
 @fragment
 fn shaded_wired(in: WiredVertex) -> @location(0) vec4<f32> {
     let edge = in.corner / max(fwidth(in.corner), vec3<f32>(1e-6));
     let near = clamp(1.2 - min(edge.x, min(edge.y, edge.z)), 0.0, 1.0);
     let vertex = WholeVertex(in.clip, in.normal, in.uv, in.height, in.position, in.instance);
-    let line = scene_shaded(colored_surface(vertex, vec3<f32>(0.35, 0.75, 0.5)));
+    let line = scene_shaded(in_shadow(colored_surface(vertex, vec3<f32>(0.35, 0.75, 0.5))));
     return mix(vec4<f32>(0.01, 0.014, 0.02, 1.0), line, near);
 }
 
-// Colour by the caller's shading.
+// Colour by the caller's shading, or in the shadow of the sun.
 @fragment
 fn shaded_whole(in: WholeVertex) -> @location(0) vec4<f32> {
-    return scene_shaded(whole_surface(in));
+    return scene_shaded(in_shadow(whole_surface(in)));
 }
 
 @fragment

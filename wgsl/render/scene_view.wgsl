@@ -17,6 +17,11 @@ struct SceneView {
     side: f32,
     // The cell to whose corner positions are relative.
     cell: vec3<i32>,
+    // World units that a texel of the sun's map covers.
+    shadow_texel: f32,
+    // From positions relative to the corner of the cell to places in the sun's map: the rows of u, v and depth. All are 0 where
+    // the view has no shadow.
+    shadow_rows: array<vec4<f32>, 3>,
 }
 
 @group(0) @binding(0) var<uniform> view: SceneView;

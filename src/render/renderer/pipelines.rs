@@ -49,6 +49,18 @@ impl Kind {
         is_blended == (layer == Layer::Transparent)
     }
 
+    /// The same with both sides of triangles.
+    pub fn two_sided(self) -> Self {
+        match self {
+            Self::Mesh { surface, normal_mapped, alike } => {
+                let surface = SurfaceKind { double_sided: true, ..surface };
+                Self::Mesh { surface, normal_mapped, alike }
+            }
+            Self::Relief { options, .. } => Self::Relief { double_sided: true, options },
+            Self::Terrain { style } => Self::Terrain { style },
+        }
+    }
+
     /// The same without what has no influence on a layer.
     fn in_layer(self, layer: Layer) -> Self {
         let is_lit = layer.is_shaded();
@@ -87,13 +99,28 @@ pub(super) struct PipelineKey {
     kind: Kind,
     /// Whether triangles seen from outside run clockwise on the screen.
     is_flipped: bool,
+    /// Whether surfaces are looked up in the map of a sun's shadow.
+    is_shadowed: bool,
 }
 
 impl PipelineKey {
     /// The key, with what makes no difference set to one value.
     pub fn new(layer: Layer, kind: Kind, is_flipped: bool) -> Self {
         let kind = kind.in_layer(layer);
-        Self { layer, kind, is_flipped: is_flipped && !kind.is_double_sided() }
+        Self { layer, kind, is_flipped: is_flipped && !kind.is_double_sided(), is_shadowed: false }
+    }
+
+    /// The same in the shadow of a sun, if its layer is shaded, or without.
+    pub fn shadowed(self, is_shadowed: bool) -> Self {
+        let is_shadowed = is_shadowed && self.layer.is_shaded();
+        let kind = match self.kind {
+            // There is one program with the positions that shadows need.
+            Kind::Mesh { surface, normal_mapped, .. } if is_shadowed => {
+                Kind::Mesh { surface, normal_mapped, alike: None }
+            }
+            kind => kind,
+        };
+        Self { kind, is_shadowed, ..self }
     }
 
     /// Compiles it, with the caller's shading if there is any.
@@ -108,7 +135,7 @@ impl PipelineKey {
         shading: Option<&Shading>,
     ) -> Result<wgpu::RenderPipeline, GpuError> {
         let shading = shading.filter(|_| self.layer.is_shaded());
-        let program = Program::new(self.layer, self.kind, format, shading.is_some());
+        let program = Program::new(self.layer, self.kind, format, [shading.is_some(), self.is_shadowed]);
         let groups = match self.kind {
             Kind::Mesh { .. } => layouts.of_mesh(),
             Kind::Relief { .. } => layouts.of_relief(),

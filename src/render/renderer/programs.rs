@@ -1,7 +1,7 @@
 //! The shaders, entry points and constants of pipelines.
 
 use super::pipelines::Kind;
-use crate::gpu::bindings::render::{scene_mesh, scene_relief};
+use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
 use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN, Shader};
 use crate::render::format::TargetFormat;
 use crate::render::layer::Layer;
@@ -19,8 +19,10 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// The program of a layer of a kind of surface. With `is_shaded` the caller shades.
-    pub fn new(layer: Layer, kind: Kind, format: &TargetFormat, is_shaded: bool) -> Self {
+    /// The program of a layer of a kind of surface. With `is_shaded` the caller shades, and with `shadowed` surfaces lie in
+    /// the shadow of a sun.
+    pub fn new(layer: Layer, kind: Kind, format: &TargetFormat, [is_shaded, shadowed]: [bool; 2]) -> Self {
+        let is_whole = is_shaded || shadowed;
         // A pipeline without a fragment stage fits no pass with colours.
         let depth_opaque = (!format.color.is_empty()).then_some("depth_opaque");
         match kind {
@@ -28,7 +30,7 @@ impl Program {
                 let (vertex, fragment) = match layer {
                     Layer::Depth if surface.cut_out => ("vertex", Some("depth_cut_out")),
                     Layer::Depth => ("vertex", depth_opaque),
-                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color | Layer::Transparent if is_whole => ("vertex_whole", Some("shaded_whole")),
                     Layer::Color if alike.is_some() => ("vertex_plain", Some("opaque_plain")),
                     Layer::Color | Layer::Transparent => own_color(surface, normal_mapped),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
@@ -45,6 +47,7 @@ impl Program {
                     cut_out,
                     blended,
                     normal_mapped,
+                    shadowed,
                 };
                 Self { shader: &RENDER_SCENE_MESH, vertex, fragment, constants: constants.list() }
             }
@@ -60,7 +63,7 @@ impl Program {
                     Layer::Measure => "measure",
                     Layer::Velocity => "velocity_moving",
                 }),
-                constants: relief_constants(&options, format.is_reversed()).list(),
+                constants: relief_constants(&options, [format.is_reversed(), shadowed]).list(),
             },
             Kind::Terrain { style } => {
                 let (vertex, fragment) = match layer {
@@ -68,13 +71,14 @@ impl Program {
                     Layer::Color if style == TerrainStyle::Wireframe => {
                         ("vertex_wired", Some("shaded_wired"))
                     }
-                    Layer::Color | Layer::Transparent if is_shaded => ("vertex_whole", Some("shaded_whole")),
+                    Layer::Color | Layer::Transparent if is_whole => ("vertex_whole", Some("shaded_whole")),
                     Layer::Color | Layer::Transparent => ("vertex", Some("fragment")),
                     Layer::Surface => ("vertex_whole", Some("surface_whole")),
                     Layer::Measure => ("vertex_whole", Some("measure_whole")),
                     Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
                 };
-                Self { shader: &RENDER_SCENE_TERRAIN, vertex, fragment, constants: Vec::new() }
+                let constants = scene_terrain::Constants { shadowed }.list();
+                Self { shader: &RENDER_SCENE_TERRAIN, vertex, fragment, constants }
             }
         }
     }
@@ -90,7 +94,7 @@ fn own_color(surface: SurfaceKind, normal_mapped: bool) -> (&'static str, Option
     }
 }
 
-fn relief_constants(options: &ReliefOptions, reversed: bool) -> scene_relief::Constants {
+fn relief_constants(options: &ReliefOptions, [reversed, shadowed]: [bool; 2]) -> scene_relief::Constants {
     scene_relief::Constants {
         method: options.method.code(),
         shadow: options.shadow as u32,
@@ -100,5 +104,6 @@ fn relief_constants(options: &ReliefOptions, reversed: bool) -> scene_relief::Co
         choose_mip: options.chooses_mip(),
         own_depth: options.depth,
         reversed,
+        shadowed,
     }
 }

@@ -18,6 +18,7 @@ impl Renderer {
         }
         let mut fresh = Self::new(gpu, &self.format)?;
         fresh.shading.clone_from(&self.shading);
+        fresh.casts = self.casts;
         self.pipelines.keys().try_for_each(|key| fresh.compile(*key))?;
         *self = fresh;
         Ok(())

@@ -26,6 +26,8 @@ pub(crate) struct ViewLists {
     pub rows: Buffer<[f32; 4]>,
     /// Bind group 0.
     pub group: Group,
+    /// The map of the sun's shadow in it.
+    map: Option<wgpu::TextureView>,
     /// For each terrain, in the order of the objects, where its samples lie, and bind group 1.
     pub terrain: Vec<(Uniform<TerrainView>, Group)>,
     /// The draws of instances that are drawn one by one, if there are any.
@@ -43,7 +45,7 @@ impl ViewLists {
         layout: &Layout,
         (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
         (select, list, single): (&SelectPass, &ListPass, &SinglePass),
-        (layouts, terrains): (&SceneLayouts, usize),
+        (layouts, terrains, map): (&SceneLayouts, usize, Option<&wgpu::TextureView>),
     ) -> Result<Self, Error> {
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
@@ -71,22 +73,40 @@ impl ViewLists {
             arguments: &arguments,
         };
         let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
-        let singles = singles(gpu, layout, single, (&decisions, &arguments))?;
-        let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances])?;
+        let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances], map)?;
         let terrain = (0..terrains).map(|_| ground(gpu, layouts)).collect::<Result<_, GpuError>>()?;
         Ok(Self {
+            singles: singles(gpu, layout, single, (&decisions, &arguments))?,
             version: layout.version,
             lists,
             arguments,
             rows,
             group,
+            map: map.cloned(),
             terrain,
-            singles,
             order: Vec::new(),
             select,
             list,
             attached: AttachedJobs::default(),
         })
+    }
+}
+
+impl ViewLists {
+    /// Binds another map of the sun's shadow, unless it is bound.
+    pub(super) fn bind_map(
+        &mut self,
+        gpu: &Gpu,
+        layout: &Layout,
+        (layouts, drawn): (&SceneLayouts, &Uniform<SceneView>),
+        map: Option<&wgpu::TextureView>,
+    ) -> Result<(), GpuError> {
+        if self.map.as_ref() != map {
+            let instances = [&layout.instances, &layout.last_instances];
+            self.group = layouts.view(gpu, drawn, &self.rows, instances, map)?;
+            self.map = map.cloned();
+        }
+        Ok(())
     }
 }
 

@@ -4,6 +4,7 @@ mod attached;
 mod counted;
 pub(crate) mod lists;
 mod rebuild;
+mod shadow;
 mod uniforms;
 
 use glam::IVec3;
@@ -28,6 +29,7 @@ use crate::scene::terrain::SeenTerrain;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
+pub(crate) use shadow::ViewShadow;
 use uniforms::{lod_camera, terrain_view};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
@@ -87,6 +89,8 @@ pub struct View {
     lod_cameras: Vec<Camera>,
     mask: u16,
     casters: bool,
+    /// The shadow in which it shows the scene.
+    shadow: Option<ViewShadow>,
     select: Uniform<SelectView>,
     drawn: Uniform<SceneView>,
     recorded: Option<Recorded>,
@@ -123,6 +127,7 @@ impl View {
             lod_cameras: Vec::new(),
             mask: u16::MAX,
             casters: false,
+            shadow: None,
             select,
             drawn,
             recorded: None,
@@ -210,10 +215,17 @@ impl View {
         gpu: &Gpu,
         layout: &Layout,
         passes: (&SelectPass, &ListPass, &SinglePass),
-        groups: (&SceneLayouts, usize),
+        (layouts, terrains): (&SceneLayouts, usize),
     ) -> Result<(), Error> {
-        if self.lists.as_ref().is_none_or(|lists| lists.version != layout.version) {
-            self.lists = Some(ViewLists::new(gpu, layout, (&self.select, &self.drawn), passes, groups)?);
+        let map = self.shadow.as_ref().map(|shadow| &shadow.map);
+        match &mut self.lists {
+            Some(lists) if lists.version == layout.version => {
+                lists.bind_map(gpu, layout, (layouts, &self.drawn), map)?;
+            }
+            lists => {
+                let groups = (layouts, terrains, map);
+                *lists = Some(ViewLists::new(gpu, layout, (&self.select, &self.drawn), passes, groups)?);
+            }
         }
         Ok(())
     }
@@ -247,7 +259,11 @@ impl View {
         staged.uniform(&self.select, &view)?;
         staged.uniform(
             &self.drawn,
-            &SceneView::new([&camera, &last.unwrap_or(camera)], &view.cameras[0], light),
+            &SceneView::new(
+                [&camera, &last.unwrap_or(camera)],
+                &view.cameras[0],
+                (light, self.shadow.as_ref()),
+            ),
         )?;
         let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
         for ((uniform, _), seen) in terrain.zip(terrains) {

@@ -7,7 +7,8 @@ use crate::{Error, InputError};
 
 impl View {
     /// Creates everything that the view has on the device again, after its scene was rebuilt on another one
-    /// ([`Scene::rebuild_async`]). Cameras, quality and mask stay.
+    /// ([`Scene::rebuild_async`]). Cameras, quality and mask stay; a shadow of
+    /// the sun is to be fitted again.
     ///
     /// # Errors
     /// [`InputError`] for another scene; [`crate::gpu::GpuError`].
@@ -19,11 +20,13 @@ impl View {
         let Self { device, select, drawn, .. } = fresh;
         (self.device, self.select, self.drawn) = (device, select, drawn);
         (self.lists, self.counts, self.recorded) = (None, None, None);
+        // Its map was of the lost device.
+        self.shadow = None;
         Ok(())
     }
 
     /// Refuses a view that is not of a scene on its present device; `path` names the view.
-    pub(in crate::scene) fn check(&self, scene: &Scene, path: &str) -> Result<(), InputError> {
+    pub(crate) fn check(&self, scene: &Scene, path: &str) -> Result<(), InputError> {
         if !self.is_of(scene.objects.scene()) {
             return Err(foreign(path));
         }

@@ -8,24 +8,31 @@ use crate::lod::{LodCamera, SelectView, VIEW_CAMERAS};
 use crate::scene::camera::{Camera, Depth};
 use crate::scene::placement::Placement;
 use crate::scene::terrain::SeenTerrain;
+use crate::scene::view::ViewShadow;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 
 impl SceneView {
-    /// The view of a camera, and of the last frame's.
-    pub(super) fn new([camera, last]: [&Camera; 2], own: &LodCamera, light: &Light) -> Self {
+    /// The view of a camera, and of the last frame's, under a light and in its shadow.
+    pub(super) fn new(
+        [camera, last]: [&Camera; 2],
+        own: &LodCamera,
+        (light, shadow): (&Light, Option<&ViewShadow>),
+    ) -> Self {
         let eye = match own.perspective > 0.0 {
             true => camera.eye().extend(1.0),
             false => (-camera.ahead()).extend(0.0),
         };
         Self {
             clip_from_world: camera.clip_from_world(),
-            last_clip_from_world: clip_from_cell(last, camera.cell),
+            last_clip_from_world: last_clip_from_world(last, camera.cell),
             eye,
             light: light.direction.normalize().extend(light.ambient),
             light_color: light.color,
             side: if camera.is_mirrored() { -1.0 } else { 1.0 },
             cell: IVec3::from(camera.cell),
+            shadow_texel: shadow.map_or(0.0, |shadow| shadow.texel),
+            shadow_rows: shadow.map_or([Vec4::ZERO; 3], |shadow| shadow.rows(camera.cell)),
         }
     }
 
@@ -40,18 +47,25 @@ impl SceneView {
             light_color: Vec3::ONE,
             side: 1.0,
             cell: IVec3::ZERO,
+            shadow_texel: 0.0,
+            shadow_rows: [Vec4::ZERO; 3],
         }
     }
 }
 
-/// The matrix from positions relative to the corner of a cell to a camera's clip space.
-fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> Mat4 {
-    if camera.cell == cell {
-        return camera.clip_from_world();
+/// The matrix from positions relative to the corner of a cell to the last frame's clip space.
+fn last_clip_from_world(last: &Camera, cell: [i32; 3]) -> Mat4 {
+    match last.cell == cell {
+        true => last.clip_from_world(),
+        false => clip_from_cell(last, cell).as_mat4(),
     }
+}
+
+/// The matrix from positions relative to the corner of a cell to a camera's clip space.
+pub(super) fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> DMat4 {
     let cells = [0, 1, 2].map(|axis| f64::from(cell[axis]) - f64::from(camera.cell[axis]));
     let moved = DMat4::from_translation(DVec3::from(cells) * f64::from(Placement::CELL));
-    (camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4() * moved).as_mat4()
+    camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4() * moved
 }
 
 /// Where the samples of a terrain lie in a view: counted from the one nearest to the eye.

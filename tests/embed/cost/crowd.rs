@@ -5,13 +5,15 @@ use std::rc::Rc;
 use glam::Vec3;
 use relievo::animation::Projection;
 use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::asset::Model;
+use relievo::asset::material::Alpha;
+use relievo::asset::{Light, Model};
 use relievo::gpu::Gpu;
-use relievo::render::{Layer, Renderer};
+use relievo::render::{Layer, Renderer, SunShadow};
 use relievo::scene::{Camera, Placement, Play, Quality, Scene, View};
 use relievo::skinning::{add_levels, poses_of};
 
 use crate::frame::Frame;
+use crate::rays::{cube, model, plain};
 
 /// Number of characters in a row, and of rows.
 const ROW: usize = 10;
@@ -24,6 +26,9 @@ pub const SIZE: [u32; 2] = [1920, 1080];
 
 /// The vertical field of view.
 const FIELD_OF_VIEW: f32 = std::f32::consts::FRAC_PI_3;
+
+/// Units ahead of the camera that lie in shadow: all of the crowd.
+const SHADOWED: f32 = 60.0;
 
 /// Seconds between frames.
 pub const STEP: f32 = 1.0 / 60.0;
@@ -92,6 +97,8 @@ pub struct Staged {
     views: Vec<View>,
     /// Where it draws, if it does.
     target: Option<(Rc<Frame>, Renderer)>,
+    /// The shadow of the sun on what the first view shows, if there is one.
+    shadow: Option<SunShadow>,
     step: f32,
 }
 
@@ -106,7 +113,8 @@ impl Staged {
             let play = Play { start: -f64::from(crowd.start(at)), ..Play::new("0") };
             scene.play(instance, &play).expect("the clip");
         }
-        let mut staged = Self { gpu: gpu.clone(), scene, views: Vec::new(), target: None, step: STEP };
+        let mut staged =
+            Self { gpu: gpu.clone(), scene, views: Vec::new(), target: None, shadow: None, step: STEP };
         staged.add_view(crowd.camera(SIZE, 0.0), pixels);
         staged
     }
@@ -135,6 +143,21 @@ impl Staged {
         self
     }
 
+    /// With the shadow of a sun behind the camera, and a plate that lies in it.
+    pub fn in_shadow(mut self, size: Option<u32>, crowd: &Crowd) -> Self {
+        self.scene
+            .set_light(Light { direction: Vec3::new(-0.5, 0.7, 0.4), ..Light::default() })
+            .expect("a light");
+        let plate = model(&cube(), plain([0.5; 4], Alpha::Opaque), false);
+        let plate = self.scene.add_mesh(&plate, 1).expect("added");
+        let (low, high) = (crowd.places[0], crowd.places[COUNT - 1]);
+        let width = 2.0 * (high - low).abs().max_element();
+        let middle = Placement { at: (low + high) / 2.0 - Vec3::Y * width, ..Placement::default() };
+        self.scene.spawn(plate, middle.scaled(width)).expect("room");
+        self.shadow = size.map(|size| SunShadow::new(&mut self.scene, size).expect("a shadow"));
+        self
+    }
+
     /// Drawing its first view into a target.
     pub fn drawing(mut self, target: &Rc<Frame>) -> Self {
         let renderer = target.renderer(&self.gpu, &self.scene);
@@ -149,7 +172,14 @@ impl Staged {
         }
         let mut encoder = self.gpu.encoder("frame");
         let mut views: Vec<&mut View> = self.views.iter_mut().collect();
+        if let Some(shadow) = &mut self.shadow {
+            shadow.fit(&self.scene, &mut views, SHADOWED).expect("fitted");
+            views.push(shadow.view());
+        }
         self.scene.record(&mut encoder, &mut views).expect("recorded");
+        if let Some(shadow) = &self.shadow {
+            shadow.draw(&mut encoder, &self.scene).expect("drawn");
+        }
         if let Some((target, renderer)) = &self.target {
             target.pass(&mut encoder, |pass| {
                 renderer.draw(pass, &self.scene, &self.views[0], Layer::Color).expect("drawn");

@@ -98,6 +98,26 @@ fn a_second_view_costs_little() {
     assert!(ratio <= 1.3, "{ratio}");
 }
 
+/// The shadow of the sun on a crowd and what it stands on.
+#[test]
+#[ignore = "measures"]
+fn a_shadow_of_the_sun_costs_less_than_the_frame() {
+    let gpu = device();
+    let target = Rc::new(Frame::plain(&gpu, SIZE));
+    let crowd = Crowd::new(creature(), 100.0);
+    let program = |name: &str, size: Option<u32>| {
+        staged(name, Staged::new(&gpu, &crowd, 1.0).in_shadow(size, &crowd).drawing(&target))
+    };
+    let mut all = [
+        program("without a shadow", None),
+        program("2048 texels", Some(2048)),
+        program("4096 texels", Some(4096)),
+    ];
+    take_turns(&mut all);
+    println!("{}", table("whole frames", &all));
+    assert!(all[1].against(&all[0])[1] < 2.0, "{:?}", all[1].against(&all[0]));
+}
+
 /// A scene costs what a program costs that is wired by hand for one camera, and level of detail saves as much in it.
 #[test]
 #[ignore = "measures"]

@@ -80,8 +80,10 @@ fn every_kind_of_pipeline_compiles_for_every_format() {
             });
             for kind in kinds {
                 let key = PipelineKey::new(layer, kind, true);
-                let pipeline = key.pipeline(&gpu, &format, &renderer.layouts, None);
-                assert!(pipeline.is_ok(), "{format:?} {layer:?} {kind:?}: {:?}", pipeline.err());
+                for key in [key, key.shadowed(true)] {
+                    let pipeline = key.pipeline(&gpu, &format, &renderer.layouts, None);
+                    assert!(pipeline.is_ok(), "{format:?} {key:?}: {:?}", pipeline.err());
+                }
             }
         }
     }

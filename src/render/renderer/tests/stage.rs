@@ -44,6 +44,8 @@ pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
         light_color: light.color,
         side: if is_mirrored(&clip_from_world) { -1.0 } else { 1.0 },
         cell: glam::IVec3::ZERO,
+        shadow_texel: 0.0,
+        shadow_rows: [Vec4::ZERO; 3],
     }
 }
 
@@ -87,6 +89,7 @@ impl Stage {
             &Uniform::new(gpu, "view", &view).expect(up),
             &Buffer::from_slice(gpu, "rows", &rows).expect(up),
             [&instances, &instances],
+            None,
         );
         let z = view.clip_from_world.row(2);
         Self {
@@ -108,6 +111,7 @@ impl Stage {
             mirrors: self.view.side < 0.0,
             reversed: self.reversed,
             keeps_last: true,
+            is_shadowed: false,
         }
     }
 
@@ -144,7 +148,7 @@ fn listed(lod: &LodObject, placements: &[Affine], parts: &[[u32; 2]]) -> (Vec<u3
 /// A renderer with the pipelines of one object.
 pub fn renderer(gpu: &Gpu, format: &TargetFormat, drawable: &Drawable) -> Renderer {
     let mut renderer = Renderer::new(gpu, format).expect("a format");
-    renderer.prepare_objects([drawable].into_iter()).expect("compiled");
+    renderer.prepare_objects([drawable].into_iter(), false).expect("compiled");
     renderer
 }
 

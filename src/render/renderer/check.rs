@@ -1,0 +1,49 @@
+//! Whether a renderer can draw what it is given.
+
+use super::{Renderer, kinds_of};
+use crate::InputError;
+use crate::render::layer::Layer;
+use crate::scene::Scene;
+use crate::scene::drawable::{DrawnObject, DrawnView};
+
+impl Renderer {
+    /// wgpu does not tell devices of different instances from each other.
+    pub(super) fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
+        match scene.gpu().device() == self.gpu.device() {
+            true => Ok(()),
+            false => Err(InputError::new("scene", "of another device", "must be of the renderer's device")),
+        }
+    }
+
+    /// Whether a layer of these objects can be drawn in a view.
+    pub(super) fn check<'a>(
+        &self,
+        view: &DrawnView<'_>,
+        objects: impl Iterator<Item = DrawnObject<'a>>,
+        layer: Layer,
+    ) -> Result<(), InputError> {
+        if !self.format.layers().any(|known| known == layer) {
+            let bound = "must be a layer for which the renderer's format has an attachment";
+            return Err(InputError::new("layer", format!("{layer:?}"), bound));
+        }
+        if self.format.depth.is_some() && view.reversed != self.format.is_reversed() {
+            let direction = |reversed| if reversed { "reversed" } else { "forward" };
+            let bound =
+                format!("must be {}, as the renderer's format says", direction(self.format.is_reversed()));
+            return Err(InputError::new("view.camera.depth", direction(view.reversed), bound));
+        }
+        if layer == Layer::Velocity && !view.keeps_last {
+            let bound = "must keep the last frame: Scene::keep_last_frame";
+            return Err(InputError::new("scene", "does not keep the last frame", bound));
+        }
+        for (at, object) in objects.enumerate() {
+            let is_ready = |kind| self.pipeline(layer, kind, false, view).is_some();
+            if !kinds_of(object.drawable).filter(|kind| kind.is_in(layer)).all(is_ready) {
+                let bound =
+                    "must be prepared for this renderer after the object, or a sun's shadow, was added";
+                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
+            }
+        }
+        Ok(())
+    }
+}
