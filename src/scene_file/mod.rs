@@ -1,5 +1,5 @@
-//! Scenes as files: JSON that names terrain, models, reliefs, a light and a camera. `relievo scene` and the demo draw such
-//! files, and a program may do the same.
+//! Scenes as files: JSON that names terrain, models, reliefs, a light and a camera. `relievo scene`, the demo and the golden
+//! tests draw such files, and a program may do the same.
 //!
 //! [`SceneFile::from_json`] checks a text. [`SceneFile::load`] reads what it names, through a function of the caller's, so
 //! that it works without a file system. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it (and

@@ -15,6 +15,7 @@ mod figure;
 mod gltf;
 mod ground;
 mod materials;
+mod scene_file;
 mod shadows;
 mod skinned;
 mod stage;
