@@ -4,7 +4,7 @@
 //! `cargo run --example relief`
 
 use relievo::gpu::{Gpu, Options, shaders::MODULES};
-use relievo::render::{Target, target::COLOR_FORMAT, target::DEPTH_FORMAT};
+use relievo::render::{Offscreen, target::COLOR_FORMAT, target::DEPTH_FORMAT};
 use relievo::samples::BuiltInMap;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::{Address, Method};
@@ -51,12 +51,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     let (pipeline, group) = pipeline(gpu.device(), &shader, &textures);
 
-    let target = Target::new(&gpu, [640, 400])?;
-    target.draw(&gpu, [0.0; 3], |pass| {
+    let target = Offscreen::new(&gpu, [640, 400], true, 1, false)?;
+    let mut encoder = gpu.encoder("wall");
+    target.record(&mut encoder, [0.0; 3], |pass| {
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
+        Ok(())
     })?;
+    gpu.queue().submit([encoder.finish()]);
     target.read(&gpu)?.save("relief.png")?;
     println!("relief.png, on {}", gpu.adapter());
     Ok(())

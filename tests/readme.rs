@@ -8,19 +8,18 @@ mod harness;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use glam::{Mat4, Vec3};
 use harness::relievo;
-use relievo::animation::{ModelMatrices, Projection};
+use relievo::animation::ModelMatrices;
 use relievo::animation::{bounds, keyframe_cursor, local_to_model, sample};
-use relievo::asset::Light;
-use relievo::asset::{Affine, Model};
-use relievo::gpu::{Buffer, Gpu, shaders};
-use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, SunShadow};
+use relievo::asset::Model;
+use relievo::gpu::{Gpu, shaders};
+use relievo::render::SunShadow;
 use relievo::samples::creature;
 use relievo::scene::{Scene, TerrainSource, View};
 use relievo::scene_file::SceneFile;
 use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
-use relievo::skinning::{Blend, Extent, add_levels, level_errors, poses_of};
+use relievo::skinning::frame::SkinFrame;
+use relievo::skinning::{Blend, InstanceLod};
 use relievo::skinning::{morph, morph_weights, palette, skin};
 use relievo::surface::{cone_map, tangent};
 use relievo::terrain::config::{Config, Offset};
@@ -207,28 +206,18 @@ fn shadow((mut scene, mut eye): (Scene, View), mut encoder: wgpu::CommandEncoder
     Ok(())
 }
 
-/// Compiles the README's example of characters, with the variables that it leaves out.
+/// Compiles the README's example of skinning, with the variables that it leaves out.
 #[allow(dead_code, reason = "it is compiled, not run")]
-fn characters(
-    (gpu, mut encoder, mut render_pass): (Gpu, wgpu::CommandEncoder, wgpu::RenderPass<'_>),
-    (mut fox, run, plain): (Model, usize, ColorTexture),
-    (matrices, placements, blend): (&ModelMatrices, &Buffer<Affine>, Blend),
-    (projection, clip_from_world, eye): (Projection, Mat4, Vec3),
+fn skinning(
+    (gpu, mut encoder): (Gpu, wgpu::CommandEncoder),
+    (fox, matrices): (Model, &ModelMatrices),
+    lods: &[InstanceLod],
 ) -> Result<(), Error> {
-    let color_format = relievo::render::target::COLOR_FORMAT;
-    let plain: Albedo = plain.into();
-    let mut crowd = CrowdScene::new(&gpu, color_format, Light::default())?;
-    let poses = poses_of(&fox.clips[run])?;
-    add_levels(&mut fox, &[run], poses)?;
-    let albedos = Albedo::of_meshes(&gpu, &fox, &plain, ColorTexture::new)?;
-    let extent = Extent::of_model(&fox, &[run], poses)?;
-    let fade_range = extent.fade_range(&projection, 0.25);
-    let levels = &extent.level_ranges(&projection, 0.25, level_errors(&fox.meshes));
-    let foxes = Character { model: &fox, matrices, placements, fade_range, levels, blend, albedos: &albedos };
-    crowd.add(&gpu, &foxes)?;
-    crowd.set_camera(&gpu, clip_from_world, eye)?;
-    crowd.record(&mut encoder);
-    crowd.draw(&mut render_pass);
+    let skin = SkinFrame::new(&gpu, &fox, 0, matrices, 1000, Blend::Linear)?;
+    skin.crowd.instance_lods.write(&gpu, lods)?;
+    skin.record_updated_bones(&mut encoder);
+    let (vertices, triangles) = (&skin.skinned, &skin.mesh.indices);
+    assert!(!vertices.is_empty() && !triangles.is_empty());
     Ok(())
 }
 

@@ -132,7 +132,7 @@ pub(crate) fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
 }
 
 /// Compiles a shader.
-pub(crate) fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
+fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
     gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(shader.name),
         source: wgpu::ShaderSource::Wgsl(shader.source.into()),
@@ -140,11 +140,7 @@ pub(crate) fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
 }
 
 /// A pipeline layout of all groups.
-pub(crate) fn pipeline_layout(
-    gpu: &Gpu,
-    shader: &Shader,
-    layouts: &[wgpu::BindGroupLayout],
-) -> wgpu::PipelineLayout {
+fn pipeline_layout(gpu: &Gpu, shader: &Shader, layouts: &[wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
     gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(shader.name),
         bind_group_layouts: &layouts.iter().map(Some).collect::<Vec<_>>(),
@@ -156,7 +152,7 @@ pub(crate) fn pipeline_layout(
 ///
 /// # Errors
 /// [`GpuError::Validation`] when the device's limits do not permit them.
-pub(crate) fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
+fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
     let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
     gpu.scoped(|| {
         (0..groups)

@@ -37,7 +37,7 @@ pub use buffer::{Buffer, Uniform};
 pub(crate) use job::Step;
 pub use job::{IndirectJob, Job, compute_pass};
 pub use kernel::{Group, Kernel};
-pub(crate) use kernel::{Layouts, layouts, module, pipeline_layout, rows_of_workgroups};
+pub(crate) use kernel::{Layouts, rows_of_workgroups};
 pub use memory::Memory;
 pub use readback_ring::ReadbackRing;
 #[cfg(not(target_arch = "wasm32"))]
@@ -46,8 +46,7 @@ pub(crate) use tuning::Tuning;
 pub use upload::{Staged, StagingRing, Upload};
 
 use errors::Errors;
-use shared::Shared;
-pub(crate) use shared::{Drawing, Program};
+use shared::{Program, Shared};
 
 /// A device and its queue, with the properties of the adapter that relievo uses. Clones share the device and
 /// the pipelines compiled on it.
@@ -60,11 +59,7 @@ pub struct Gpu {
     errors: Errors,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
-    pub(crate) render_pipelines: Arc<Shared<Drawing, RenderPipeline>>,
 }
-
-/// A render pipeline with its bind group layouts.
-pub(crate) type RenderPipeline = (wgpu::RenderPipeline, Vec<wgpu::BindGroupLayout>);
 
 impl Gpu {
     /// Opens a device of its own, without a window, with WebGPU's default limits. Storage bindings may be
@@ -109,8 +104,8 @@ impl Gpu {
 
     fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
         let (summary, tuning) = (AdapterSummary::of(info), Tuning::of(info));
-        let (errors, memory, kernels, render_pipelines) = Default::default();
-        Self { device, queue, summary, tuning, errors, memory, kernels, render_pipelines }
+        let (errors, memory, kernels) = Default::default();
+        Self { device, queue, summary, tuning, errors, memory, kernels }
     }
 
     /// The wgpu device.

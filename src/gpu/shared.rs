@@ -50,18 +50,6 @@ impl Program {
     }
 }
 
-/// What a render pipeline is compiled from. Its vertex entry and the layout of its vertices are the shader's.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(crate) struct Drawing {
-    pub program: Program,
-    /// The fragment entry.
-    pub fragment: &'static str,
-    pub color: wgpu::TextureFormat,
-    pub topology: wgpu::PrimitiveTopology,
-    /// Triangles that are left out.
-    pub cull: Option<wgpu::Face>,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::cpu::Cpu;
 use super::device::Device;
-use super::drawing::{Animation, Drawing, Variant, check_frames};
+use super::drawing::{Drawing, DrawnModel, FrameCost, Parts, check_frames};
 use super::errors::{Errors, Jump};
 use super::gates::GateMode;
 use super::options::{DrawnOptions, Layout, LodOptions, MeshDetail, SkinningDetail, Subject};
@@ -14,7 +14,6 @@ use super::play::{Found, StageTimes, play};
 use super::progress::{Listener, Steps};
 use super::setting::Setting;
 use super::stage::{Stage, animated_bones, mean_omega};
-use super::vertices::FrameCost;
 use crate::Error;
 use crate::animation::Gate;
 use crate::gpu::{Gpu, TimedBy};
@@ -90,21 +89,19 @@ pub struct AnimationRow {
     pub drawn: Option<DrawnRow>,
 }
 
-/// A drawn crowd at one distance: with the gate, and in full.
+/// A crowd at one distance as a scene draws it: within the permitted pixels, and in full detail.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct DrawnRow {
     /// The clock that took the times of the frames that are drawn.
     pub drawn_timed_by: TimedBy,
-    /// Costs and vertex errors with the gate.
+    /// Costs and displacements within the permitted pixels.
     #[serde(flatten)]
     pub gated: FrameCost,
-    /// As [`FrameCost::nanoseconds_per_vertex`], for the same crowd without a gate, fully skinned.
-    pub full_nanoseconds_per_vertex: f64,
-    /// As [`FrameCost::frame_nanoseconds`], for the crowd without a gate.
+    /// As [`FrameCost::frame_nanoseconds`], in full detail.
     pub full_frame_nanoseconds: f64,
-    /// As [`FrameCost::compute_nanoseconds`], for the crowd without a gate.
+    /// As [`FrameCost::compute_nanoseconds`], in full detail.
     pub full_compute_nanoseconds: f64,
-    /// As [`FrameCost::draw_nanoseconds`], for the crowd without a gate.
+    /// As [`FrameCost::draw_nanoseconds`], in full detail.
     pub full_draw_nanoseconds: f64,
 }
 
@@ -123,18 +120,17 @@ pub fn animation(
     listener: Listener<'_>,
 ) -> Result<AnimationReport, Error> {
     options.validate()?;
-    let stage = Stage::new(subject, &options.crowd, None, listener)?;
+    let stage = Stage::new(subject, &options.crowd, false)?;
     measured(gpu, &stage, options, listener)
 }
 
-/// As [`animation`] on the device, but draws both crowds with their meshes and times each frame with its
-/// drawing. Each distance comes with a picture of the last frame under the gate: 1920 × 1080 pixels, with
-/// materials (clay of two colours where a mesh has none).
-/// mesh has none).
+/// As [`animation`] on the device with a gate that bounds the error of every vertex; and draws the crowd by two scenes, within
+/// the permitted pixels and in full detail, and times their frames. Each distance comes with a picture of the last frame within
+/// these pixels: 1920 × 1080 pixels, with materials (clay of two colours where a mesh has none).
 ///
 /// # Errors
-/// As [`animation`]; [`InputError`](crate::InputError) for fewer than 5 frames, a clip of more than an hour, and a model
-/// without meshes.
+/// As [`animation`]; [`InputError`](crate::InputError) for a gate that is neither [`GateMode::Off`] nor
+/// [`GateMode::Bounded`], for fewer than 4 frames, a clip of more than an hour, and a model without meshes.
 pub fn drawn(
     gpu: &Gpu,
     subject: Subject<'_>,
@@ -144,19 +140,18 @@ pub fn drawn(
 ) -> Result<(AnimationReport, Vec<RgbaImage>), Error> {
     options.validate()?;
     drawn.validate()?;
-    let variants = [Variant::FULL, Variant { animation: Animation::Gated, ..Variant::of(drawn) }];
-    check_frames(&options.crowd, variants.len())?;
-    let stage = Stage::new(subject, &options.crowd, Some(drawn), listener)?;
+    let parts = [Parts::NONE, Parts::new(&options.gate, drawn)?];
+    check_frames(&options.crowd)?;
+    let model = DrawnModel::new(subject, drawn.mesh, listener)?;
+    let stage = Stage::new(subject, &options.crowd, true)?;
     let mut report = measured(Some(gpu), &stage, options, listener)?;
     (report.skinning, report.mesh) = (Some(drawn.skinning), Some(drawn.mesh));
-    let gate = stage.gate(&options.gate)?;
     let steps = steps(options, "drawing", listener);
     let mut pictures = Vec::with_capacity(report.distances.len());
     for row in &mut report.distances {
         let placements = stage.placements(row.distance);
-        let lods = stage.lods(&placements, &gate, options.gate.pixels());
-        let mut drawing = Drawing::new(gpu, &stage, &placements, (&gate, &lods), &variants)?;
-        let costs = drawing.run(|| steps.step())?;
+        let mut drawing = Drawing::new(gpu, &stage, &model, &placements, &parts)?;
+        let costs = drawing.run(1, || steps.step())?;
         row.drawn = Some(drawn_row(Drawing::timed_by(gpu)?, costs[0], costs[1]));
         pictures.push(drawing.picture(1)?);
     }
@@ -167,7 +162,6 @@ fn drawn_row(drawn_timed_by: TimedBy, full: FrameCost, gated: FrameCost) -> Draw
     DrawnRow {
         drawn_timed_by,
         gated,
-        full_nanoseconds_per_vertex: full.nanoseconds_per_vertex,
         full_frame_nanoseconds: full.frame_nanoseconds,
         full_compute_nanoseconds: full.compute_nanoseconds,
         full_draw_nanoseconds: full.draw_nanoseconds,

@@ -5,8 +5,8 @@
 //! | call | what is compared | where |
 //! |---|---|---|
 //! | [`animation()`] | a gated crowd with the same crowd in full, at several distances (A section 13): bones that were interpolated and concatenated, nanoseconds by stage, errors of points around each bone | GPU or CPU |
-//! | [`drawn`] | the same crowds with their meshes on screen: whole frames, errors of every vertex | GPU |
-//! | [`scene()`] | whole frames without level of detail; with it in animation, in skinning (A section 8.4), and in both; and in the meshes too | GPU |
+//! | [`drawn`] | the same, and the crowd as a scene draws it, within some pixels and in full detail: whole frames, displacements | GPU |
+//! | [`scene()`] | whole frames of a scene without level of detail; with it in animation, in skinning (A section 8.4), and in both; and in the meshes too | GPU |
 //! | [`pareto()`] | every gate at many settings: errors against the number of bones interpolated, and the gates' curves with each other | CPU |
 //!
 //! [`DisplacementMeter`] measures frames of the caller's own [`Scene`](crate::scene::Scene): how many pixels what a view
@@ -68,10 +68,10 @@ mod scene;
 mod setting;
 mod stage;
 mod tally;
-mod vertices;
 
 pub use animation::{AnimationReport, AnimationRow, DrawnRow, animation, drawn};
 pub use displacement::{Displacement, DisplacementMeter};
+pub use drawing::FrameCost;
 pub use dump::CharacterDump;
 pub use errors::{Errors, Jump};
 pub use flip::mean_flip;
@@ -88,4 +88,3 @@ pub use play::StageTimes;
 pub use progress::{Listener, Progress};
 pub use scene::{Cheaper, SceneReport, SceneRow, scene};
 pub use setting::Setting;
-pub use vertices::FrameCost;

@@ -149,17 +149,9 @@ impl LodOptions {
 pub enum SkinningDetail {
     /// All influences of each vertex.
     Full,
-    /// Only the strongest influences.
-    Truncate {
-        /// Number of influences, 1 to 4.
-        max_influences: u32,
-    },
-    /// Fades: all influences up to the first distance of the [`range`](CrowdOptions::range), one from the
-    /// second on.
-    Fade,
-    /// Fades only as far as no vertex is further off than a number of pixels.
+    /// They fade only as far as that takes no vertex further away than a number of pixels.
     Bounded {
-        /// The largest error of a vertex in pixels, in 0..=1e6.
+        /// The number of pixels, in 0..=1e6.
         pixels: f32,
     },
 }
@@ -171,17 +163,18 @@ pub enum MeshDetail {
     Full,
     /// The coarsest level of detail whose surface is no further off than a number of pixels.
     Bounded {
-        /// The largest error of the surface in pixels, in 0..=1e6.
+        /// The number of pixels, in 0..=1e6.
         pixels: f32,
     },
 }
 
-/// How a crowd is skinned and drawn.
+/// How a crowd is skinned and drawn. Its scene permits the sum of these pixels and those of the gate, and divides them by
+/// [`Shares`](crate::scene::Shares) in proportion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawnOptions {
-    /// The influences that vertices follow. Default: those that keep the error below half a pixel.
+    /// The influences that vertices follow. Default: those that half a pixel permits.
     pub skinning: SkinningDetail,
-    /// The triangles that meshes have. Default: those that keep the error below half a pixel.
+    /// The triangles that meshes have. Default: those that half a pixel permits.
     pub mesh: MeshDetail,
 }
 
@@ -196,14 +189,10 @@ impl DrawnOptions {
     /// Checks both options.
     ///
     /// # Errors
-    /// [`InputError`] for pixels or a number of influences out of their ranges.
+    /// [`InputError`] for pixels out of their range.
     pub fn validate(&self) -> Result<(), InputError> {
-        match self.skinning {
-            SkinningDetail::Truncate { max_influences } => {
-                crate::skinning::instance_lod::InstanceLod::truncate(max_influences).map(drop)?;
-            }
-            SkinningDetail::Bounded { pixels } => check("skinning.pixels", pixels.into(), 0.0..=1e6)?,
-            SkinningDetail::Full | SkinningDetail::Fade => {}
+        if let SkinningDetail::Bounded { pixels } = self.skinning {
+            check("skinning.pixels", pixels.into(), 0.0..=1e6)?;
         }
         match self.mesh {
             MeshDetail::Bounded { pixels } => check("mesh.pixels", pixels.into(), 0.0..=1e6),
@@ -248,8 +237,6 @@ impl fmt::Display for SkinningDetail {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Full => f.write_str("full"),
-            Self::Truncate { max_influences } => write!(f, "truncate:{max_influences}"),
-            Self::Fade => f.write_str("fade"),
             Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
         }
     }

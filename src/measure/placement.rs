@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use super::options::{CrowdOptions, Layout};
 use crate::animation::Projection;
 use crate::animation::gate::reference::scramble;
-use crate::asset::Affine;
+use crate::scene;
 
 /// The placements of all instances.
 pub(crate) struct Placements {
@@ -60,10 +60,10 @@ impl Placements {
         Placement { origin: self.origins[instance], turn: self.turns[instance], projection }
     }
 
-    /// The transforms from the model's space to a world whose z axis points towards the camera.
-    pub(crate) fn transforms(&self) -> Vec<Affine> {
+    /// The placements in a scene whose camera is at the origin and looks along −Z.
+    pub(crate) fn in_scene(&self) -> Vec<scene::Placement> {
         let place = |([x, y, z], [sine, cosine]): (&[f32; 3], &[f32; 2])| {
-            [[*cosine, 0.0, *sine, *x], [0.0, 1.0, 0.0, *y], [-sine, 0.0, *cosine, -z]]
+            scene::Placement::at([*x, *y, -z]).turned(sine.atan2(*cosine))
         };
         self.origins.iter().zip(&self.turns).map(place).collect()
     }

@@ -5,16 +5,14 @@ use image::RgbaImage;
 use serde::Serialize;
 
 use super::animation::steps;
-use super::drawing::{Animation, Drawing, Variant, check_frames};
+use super::drawing::{Drawing, DrawnModel, FrameCost, Parts, check_frames};
 use super::gates::GateMode;
 use super::levels::LevelReport;
 use super::options::{DrawnOptions, Layout, LodOptions, MeshDetail, SkinningDetail, Subject};
 use super::progress::Listener;
 use super::setting::Setting;
-use super::stage::{Stage, mean_omega};
-use super::vertices::FrameCost;
+use super::stage::Stage;
 use crate::Error;
-use crate::asset::Mesh;
 use crate::gpu::{Gpu, TimedBy};
 
 /// What level of detail saves of whole frames, by distance.
@@ -34,15 +32,10 @@ pub struct SceneReport {
     pub gate: GateMode,
     /// The influences that vertices follow.
     pub skinning: SkinningDetail,
-    /// For each mesh, the distances in units at which its fade begins and at which it is rigid; `None` if it
-    /// never fades.
-    pub fade: Vec<Option<[f32; 2]>>,
-    /// For each mesh, the largest distance by which the complete fade moves a vertex, in metres of the model.
-    pub stray_metres: Vec<f32>,
     /// The triangles that meshes have.
     pub mesh: MeshDetail,
-    /// For each mesh, those of its levels of detail that are used.
-    pub levels: Vec<Vec<LevelReport>>,
+    /// The levels of detail of the character, itself included.
+    pub levels: Vec<LevelReport>,
     /// Number of instances.
     pub instances: usize,
     /// How the instances are placed.
@@ -67,8 +60,6 @@ pub struct SceneRow {
     pub distance: f32,
     /// Size on screen of the nearest instance's largest extent, in pixels.
     pub tall_pixels: f32,
-    /// The mean of Ω over the instances, 0 to 1.
-    pub mean_omega: f64,
     /// Without level of detail: all bones, influences and triangles.
     pub off: FrameCost,
     /// With the gate, which chooses the bones that are sampled.
@@ -115,13 +106,12 @@ impl SceneRow {
         [&self.off, &self.animation, &self.skinning, &self.both].into_iter().chain(&self.all)
     }
 
-    fn new(stage: &Stage<'_>, distance: f32, mean_omega: f64, costs: &[FrameCost]) -> Self {
+    fn new(stage: &Stage<'_>, distance: f32, costs: &[FrameCost]) -> Self {
         let [off, animation, skinning, both] = std::array::from_fn(|variant| costs[variant]);
         let all = costs.get(4).copied();
         Self {
             distance,
             tall_pixels: stage.options.size * stage.projection.focal_pixels / distance,
-            mean_omega,
             off,
             animation,
             skinning,
@@ -133,15 +123,16 @@ impl SceneRow {
     }
 }
 
-/// Draws a crowd at each distance in four or five ways, and times whole frames. Each distance comes with a picture of
-/// the last frame of the last way, 1920 × 1080 pixels.
+/// Draws a crowd at each distance in four or five ways, each a scene with its own pixels and shares, and times whole frames.
+/// Each distance comes with a picture of the last frame of the last way, 1920 × 1080 pixels.
 ///
 /// The times are medians. The ways take turns, so that other load of the machine affects all of them alike. The camera
 /// does not move.
 ///
 /// # Errors
-/// [`InputError`](crate::InputError) for options out of their ranges, fewer than 11 frames, a clip that the
-/// model lacks or that lasts more than an hour, and a model without meshes; errors of the device.
+/// [`InputError`](crate::InputError) for options out of their ranges, a gate that is neither [`GateMode::Off`] nor
+/// [`GateMode::Bounded`], fewer than 4 frames, a clip that the model lacks or that lasts more than an hour, and a model
+/// without meshes; errors of the device.
 pub fn scene(
     gpu: &Gpu,
     subject: Subject<'_>,
@@ -151,51 +142,44 @@ pub fn scene(
 ) -> Result<(SceneReport, Vec<RgbaImage>), Error> {
     options.validate()?;
     drawn.validate()?;
-    check_frames(&options.crowd, SceneRow::NAMES.len())?;
-    let stage = Stage::new(subject, &options.crowd, Some(drawn), listener)?;
-    let gate = stage.gate(&options.gate)?;
-    let variants = variants(drawn);
+    let ways = ways(&Parts::new(&options.gate, drawn)?, drawn);
+    check_frames(&options.crowd)?;
+    let model = DrawnModel::new(subject, drawn.mesh, listener)?;
+    let stage = Stage::new(subject, &options.crowd, true)?;
     let steps = steps(options, "scene", listener);
     let (mut rows, mut pictures) = (Vec::new(), Vec::new());
     for distance in &options.distances {
         let placements = stage.placements(*distance);
-        let lods = stage.lods(&placements, &gate, options.gate.pixels());
-        let mut drawing = Drawing::new(gpu, &stage, &placements, (&gate, &lods), &variants)?;
-        let costs = drawing.run(|| steps.step())?;
-        pictures.push(drawing.picture(variants.len() - 1)?);
-        rows.push(SceneRow::new(&stage, *distance, mean_omega(&lods), &costs));
+        let mut drawing = Drawing::new(gpu, &stage, &model, &placements, &ways)?;
+        let costs = drawing.run(0, || steps.step())?;
+        pictures.push(drawing.picture(ways.len() - 1)?);
+        rows.push(SceneRow::new(&stage, *distance, &costs));
     }
-    Ok((report(gpu, &stage, options, drawn, rows)?, pictures))
+    Ok((report(gpu, &stage, (options, drawn), model.levels, rows)?, pictures))
 }
 
-/// The variants in the order of [`SceneRow::NAMES`].
-fn variants(drawn: &DrawnOptions) -> Vec<Variant> {
-    let all = Variant { animation: Animation::Gated, ..Variant::of(drawn) };
-    let mut variants = vec![
-        Variant::FULL,
-        Variant { animation: Animation::Gated, ..Variant::FULL },
-        Variant { skinning: drawn.skinning, ..Variant::FULL },
-        Variant { mesh: MeshDetail::Full, ..all },
+/// The ways to draw in the order of [`SceneRow::NAMES`].
+fn ways(all: &Parts, drawn: &DrawnOptions) -> Vec<Parts> {
+    let Parts { bones, influences, .. } = *all;
+    let mut ways = vec![
+        Parts::NONE,
+        Parts { bones, ..Parts::NONE },
+        Parts { influences, ..Parts::NONE },
+        Parts { mesh: 0.0, ..*all },
     ];
     if drawn.mesh != MeshDetail::Full {
-        variants.push(all);
+        ways.push(*all);
     }
-    variants
+    ways
 }
 
 fn report(
     gpu: &Gpu,
     stage: &Stage<'_>,
-    options: &LodOptions,
-    drawn: &DrawnOptions,
+    (options, drawn): (&LodOptions, &DrawnOptions),
+    levels: Vec<LevelReport>,
     distances: Vec<SceneRow>,
 ) -> Result<SceneReport, Error> {
-    let units = |metres: f32| metres / stage.metres_a_unit;
-    let fade = |mesh| stage.fade(drawn.skinning, mesh).map(|range| [range.start, range.end].map(units));
-    let levels = |(at, mesh): (usize, &Mesh)| {
-        let own = stage.levelled.as_ref().map_or(&[][..], |levelled| &levelled.own[at]);
-        LevelReport::of_mesh(mesh, own, &stage.level_begins(drawn.mesh, at), stage.metres_a_unit)
-    };
     Ok(SceneReport {
         adapter: gpu.adapter().name.clone(),
         driver: gpu.adapter().driver.clone(),
@@ -204,10 +188,8 @@ fn report(
         clip: stage.clip.name().to_owned(),
         gate: options.gate,
         skinning: drawn.skinning,
-        fade: (0..stage.extents.len()).map(fade).collect(),
-        stray_metres: stage.extents.iter().map(|extent| extent.stray).collect(),
         mesh: drawn.mesh,
-        levels: stage.model(drawn.mesh).meshes.iter().enumerate().map(levels).collect(),
+        levels,
         instances: options.crowd.instances,
         layout: options.crowd.layout,
         seed: options.crowd.seed,

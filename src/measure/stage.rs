@@ -1,18 +1,15 @@
 //! A crowd before a camera, with the tables that all gates need.
 
 use super::gates::{GateMode, Source};
-use super::levels::Levelled;
-use super::options::{CrowdOptions, DrawnOptions, MeshDetail, NEAR, SkinningDetail, Subject};
+use super::options::{CrowdOptions, NEAR, Subject};
 use super::placement::{Placements, chance};
-use super::progress::{Listener, during};
 use crate::InputError;
 use crate::animation::instance::{Instance, Wrap};
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::lod::OMEGA_ONE;
 use crate::animation::order::Order;
 use crate::animation::{ClipSet, Gate, Lod, Projection, Sampling};
-use crate::asset::{Affine, Clip, Model, bone_radii};
-use crate::skinning::{Extent, FadeRange, poses_of};
+use crate::asset::{Affine, Clip, bone_radii};
 
 /// Height of the picture, in pixels.
 pub(crate) const LINES: u32 = 1080;
@@ -35,21 +32,16 @@ pub(crate) struct Stage<'a> {
     pub instances: Vec<Instance>,
     pub metres_a_unit: f32,
     pub projection: Projection,
-    /// The motion of each mesh in the clip, if the crowd is drawn.
-    pub extents: Vec<Extent>,
-    /// The model with levels of detail, if the crowd is drawn with them.
-    pub levelled: Option<Levelled>,
     /// The height above its origin of the middle of the model at rest, in metres.
     middle: f32,
 }
 
 impl<'a> Stage<'a> {
-    /// Prepares the crowd; its meshes too if it is drawn.
+    /// Prepares the crowd. If it is drawn, gates bound the error of every vertex.
     pub(crate) fn new(
         subject: Subject<'a>,
         options: &'a CrowdOptions,
-        drawn: Option<&DrawnOptions>,
-        listener: Listener<'_>,
+        is_drawn: bool,
     ) -> Result<Self, InputError> {
         let (clip, skeleton) = (subject.clip()?, &subject.model.skeleton);
         let set = ClipSet::new(&[clip])?;
@@ -64,7 +56,7 @@ impl<'a> Stage<'a> {
         let starts = (0..options.instances as u32).map(|at| clip.duration() * chance(options.seed, at, 0));
         // Rounded up, so that the radius reaches all the points.
         let radii: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
-        let meshes = if drawn.is_some() { &subject.model.meshes[..] } else { &[] };
+        let meshes = if is_drawn { &subject.model.meshes[..] } else { &[] };
         let vertices = bone_radii(skeleton.len(), &subject.model.skins, meshes);
         let watched = radii.iter().zip(&vertices).map(|(bone, vertex)| bone.max(*vertex)).collect();
         Ok(Self {
@@ -75,21 +67,11 @@ impl<'a> Stage<'a> {
             instances: starts.map(|start| Instance::new(0, Wrap::Loop, start, 1.0)).collect(),
             metres_a_unit,
             projection: Projection::new(LINES, FIELD_OF_VIEW, NEAR * metres_a_unit),
-            extents: extents(subject, clip, meshes.len(), listener)?,
-            levelled: levelled(subject, clip, drawn, listener)?,
             middle: ((low[1] + high[1]) / 2.0) as f32,
             subject,
             clip,
             options,
         })
-    }
-
-    /// The model with levels of detail if the meshes are bounded, else the original.
-    pub(crate) fn model(&self, mesh: MeshDetail) -> &Model {
-        match (mesh, &self.levelled) {
-            (MeshDetail::Bounded { .. }, Some(levelled)) => &levelled.model,
-            _ => self.subject.model,
-        }
     }
 
     /// Makes a gate for the clip.
@@ -135,32 +117,6 @@ impl<'a> Stage<'a> {
         };
         placements.origins.iter().map(lod).collect()
     }
-
-    /// The distances in metres at which a mesh begins to fade and at which it is rigid; `None` if it never
-    /// fades.
-    pub(crate) fn fade(&self, skinning: SkinningDetail, mesh: usize) -> Option<FadeRange> {
-        let range = self.options.range;
-        match skinning {
-            SkinningDetail::Full | SkinningDetail::Truncate { .. } => None,
-            SkinningDetail::Fade => {
-                let [start, end] = [range.min, range.max].map(|units| units * self.metres_a_unit);
-                Some(FadeRange { start, end })
-            }
-            SkinningDetail::Bounded { pixels } => {
-                Some(self.extents[mesh].fade_range(&self.projection, pixels))
-            }
-        }
-    }
-
-    /// The distances in metres from which on a mesh is drawn at levels 1, 2 … of the character.
-    pub(crate) fn level_begins(&self, detail: MeshDetail, mesh: usize) -> Vec<f32> {
-        match (detail, &self.levelled) {
-            (MeshDetail::Bounded { pixels }, Some(levelled)) => {
-                self.extents[mesh].level_ranges(&self.projection, pixels, levelled.errors.iter().copied())
-            }
-            _ => Vec::new(),
-        }
-    }
 }
 
 /// The mean of Ω over instances.
@@ -171,37 +127,6 @@ pub(crate) fn mean_omega(lods: &[Lod]) -> f64 {
 /// Number of bones of an instance that its clip moves.
 pub(crate) fn animated_bones(gate: &Gate) -> usize {
     gate.animated_bones().count(0)
-}
-
-/// The motion of the first `meshes` meshes in the clip.
-fn extents(
-    subject: Subject<'_>,
-    clip: &Clip,
-    meshes: usize,
-    listener: Listener<'_>,
-) -> Result<Vec<Extent>, InputError> {
-    if meshes == 0 {
-        return Ok(Vec::new());
-    }
-    let poses = poses_of(clip)?;
-    let extent = |mesh| Extent::new(subject.model, mesh, &[subject.clip], poses);
-    during(listener, "measuring", || (0..meshes).map(extent).collect())
-}
-
-/// The model with levels of detail, if the crowd is drawn with them.
-fn levelled(
-    subject: Subject<'_>,
-    clip: &Clip,
-    drawn: Option<&DrawnOptions>,
-    listener: Listener<'_>,
-) -> Result<Option<Levelled>, InputError> {
-    match drawn.map(|drawn| drawn.mesh) {
-        Some(MeshDetail::Bounded { .. }) => {
-            let poses = poses_of(clip)?;
-            during(listener, "simplifying", || Levelled::new(subject.model, subject.clip, poses)).map(Some)
-        }
-        Some(MeshDetail::Full) | None => Ok(None),
-    }
 }
 
 /// The corners of a box around all bones, each taken as a sphere around its origin.

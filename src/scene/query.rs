@@ -155,14 +155,18 @@ mod drawn {
             Ok(all)
         }
 
-        /// The vertices that are drawn of an instance, for each of its merged meshes: those of its pages in the mesh's own
-        /// order if it is a character, those without a page `None`; and those that all instances share, slot by slot, if
-        /// it is a mesh. Waits for the device.
-        pub(crate) fn drawn_vertices(&self, instance: InstanceId) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
-            let InstanceId { object, index, .. } = self.existing(instance)?;
+        /// The vertices that are drawn of instances of an object, instance by instance, for each of its merged meshes: those
+        /// of their pages in the mesh's own order if it is a character, those without a page `None`; and those that all
+        /// instances share, slot by slot and once for all of them, if it is a mesh. Waits for the device.
+        pub(crate) fn drawn_vertices(
+            &self,
+            object: ObjectId,
+            instances: &[InstanceId],
+        ) -> Result<Vec<Vec<Vec<Option<Vertex>>>>, Error> {
             let object = self.object_at(object)?;
             if let Kind::Character(character) = &object.kind {
-                return character.skinned(&self.gpu, index);
+                let indices: Vec<u32> = instances.iter().map(|instance| instance.index).collect();
+                return character.skinned(&self.gpu, &indices);
             }
             let meshes = object.drawables().filter_map(|drawable| match drawable {
                 Drawable::Mesh(mesh) => Some(mesh),
@@ -170,7 +174,7 @@ mod drawn {
             });
             let vertices = |mesh: &MeshDrawable| mesh.geometry.vertices.read_blocking(&self.gpu);
             let all = meshes.map(|mesh| Ok(vertices(mesh)?.into_iter().map(Some).collect()));
-            all.collect()
+            Ok(vec![all.collect::<Result<_, Error>>()?])
         }
     }
 }

@@ -1,8 +1,9 @@
-//! A model that does not move: its meshes at rest, baked into the model's space, so that drawing them needs no
-//! skinning.
+//! A model that does not move: its meshes at rest, or as they stand at some moment, baked into the model's space, so that
+//! drawing them needs no skinning.
 
 use super::pose::{Moment, Pose};
 use super::posed::check_range;
+use super::vertex::Vertex;
 use crate::InputError;
 use crate::asset::skeleton::Bone;
 use crate::asset::{Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
@@ -17,25 +18,49 @@ use crate::asset::{Influence, Influences, Mesh, Model, Skeleton, Skin, Transform
 /// [`InputError`] for a mesh or a skin that does not match the model, and for vertices outside the range of
 /// coordinates, as large scales produce.
 pub fn at_rest(model: &Model) -> Result<Model, InputError> {
+    let vertices = (0..model.meshes.len()).map(|mesh| resting(model, mesh));
+    still(model, &vertices.collect::<Result<Vec<_>, _>>()?)
+}
+
+/// The vertices of a mesh at rest.
+fn resting(model: &Model, index: usize) -> Result<Vec<Vertex>, InputError> {
+    let mesh = &model.meshes[index];
+    mesh.validate(&model.skins)?;
+    model.skins[mesh.skin].validate(&model.skeleton)?;
+    Ok(Pose::new(model, mesh, Moment::Rest).vertices(mesh))
+}
+
+/// The model as it stands with these vertices, those of each mesh in its own order: it does not move, and is otherwise as
+/// that of [`at_rest`]. A scene draws it as a static mesh, however the vertices were computed.
+///
+/// # Errors
+/// [`InputError`] for another number of meshes or vertices than the model has, and for vertices outside the range of
+/// coordinates.
+pub fn still(model: &Model, vertices: &[Vec<Vertex>]) -> Result<Model, InputError> {
+    if vertices.len() != model.meshes.len() {
+        let bound = format!("must be {}, one list for each mesh", model.meshes.len());
+        return Err(InputError::new("vertices.len", vertices.len(), bound));
+    }
     let bone = Bone { name: "model".to_owned(), parent: None, rest: Transform::IDENTITY };
     let identity = glam::Mat4::IDENTITY.to_cols_array();
+    let meshes = model.meshes.iter().zip(vertices).enumerate();
     Ok(Model {
         skeleton: Skeleton::of_joints(vec![bone])?,
         skins: vec![Skin { name: "model".to_owned(), bones: vec![0], inverse_binds: vec![identity] }],
         clips: Vec::new(),
-        meshes: (0..model.meshes.len()).map(|mesh| baked(model, mesh)).collect::<Result<_, _>>()?,
+        meshes: meshes.map(|(at, (mesh, own))| baked(mesh, at, own)).collect::<Result<_, _>>()?,
         skinned: 0,
         materials: model.materials.clone(),
         images: model.images.clone(),
     })
 }
 
-fn baked(model: &Model, index: usize) -> Result<Mesh, InputError> {
-    let mesh = &model.meshes[index];
-    mesh.validate(&model.skins)?;
-    model.skins[mesh.skin].validate(&model.skeleton)?;
-    let vertices = Pose::new(model, mesh, Moment::Rest).vertices(mesh);
-    check_range(index, &vertices)?;
+fn baked(mesh: &Mesh, index: usize, vertices: &[Vertex]) -> Result<Mesh, InputError> {
+    if vertices.len() != mesh.vertices() {
+        let bound = format!("must be {}, as many as the mesh has", mesh.vertices());
+        return Err(InputError::new(format!("vertices[{index}].len"), vertices.len(), bound));
+    }
+    check_range(index, vertices)?;
     let one = || vec![Influence { bone: 0, weight: 1.0 }];
     Ok(Mesh {
         name: mesh.name.clone(),

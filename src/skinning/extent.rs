@@ -48,8 +48,8 @@ impl Extent {
         Ok(Self { center, radius: radius(model, mesh, &moments, center), stray: STRAY_MARGIN * all.stray })
     }
 
-    /// The extent of all meshes of a model as [`CrowdScene`](crate::render::CrowdScene) draws them. The
-    /// sphere's center is that of [`BoundingSphere::in_clips`], from which a scene measures distances; the
+    /// The extent of all meshes of a model, which share their levels and their fade. The
+    /// sphere's center is that of [`BoundingSphere::in_clips`], from which [`lod`](super::lod) measures distances; the
     /// sphere contains the vertices of all meshes, and `stray` is the largest of all. Otherwise as
     /// [`Extent::new`].
     ///

@@ -35,7 +35,7 @@ pub mod skin;
 pub(crate) mod verify;
 pub mod vertex;
 
-pub use at_rest::at_rest;
+pub use at_rest::{at_rest, still};
 pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
 pub use extent::Extent;

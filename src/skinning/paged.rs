@@ -157,19 +157,32 @@ impl PagedSkin {
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu, instance: usize) -> Result<Vec<Option<Vertex>>, Error> {
-        if instance >= self.crowd.instances {
+        Ok(self.read_each(gpu, &[instance])?.swap_remove(0))
+    }
+
+    /// As [`PagedSkin::read`], of several instances at once.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn read_each(
+        &self,
+        gpu: &Gpu,
+        instances: &[usize],
+    ) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
+        if let Some(instance) = instances.iter().find(|instance| **instance >= self.crowd.instances) {
             let bound = format!("must be below {}", self.crowd.instances);
             return Err(InputError::new("instance", instance, bound).into());
         }
         let PageBuffers { table, skinned, .. } = &self.paging.pages;
         let (table, skinned) = (table.read_blocking(gpu)?, skinned.read_blocking(gpu)?);
-        let own = &table[instance * self.mesh.clusters()..];
-        let vertex = |place: usize| {
-            let page = own[place / super::clusters::CLUSTER] as usize;
-            skinned.get(super::clusters::CLUSTER * page + place % super::clusters::CLUSTER).copied()
+        let of_instance = |instance: &usize| {
+            let own = &table[instance * self.mesh.clusters()..];
+            let vertex = |place: usize| {
+                let page = own[place / super::clusters::CLUSTER] as usize;
+                skinned.get(super::clusters::CLUSTER * page + place % super::clusters::CLUSTER).copied()
+            };
+            let placed: Vec<_> = (0..self.mesh.vertices.len()).map(vertex).collect();
+            self.clusters.in_mesh_order(&placed)
         };
-        let placed: Vec<_> = (0..self.mesh.vertices.len()).map(vertex).collect();
-        Ok(self.clusters.in_mesh_order(&placed))
+        Ok(instances.iter().map(of_instance).collect())
     }
 
     /// Workgroups along x, y and z of the dispatch that skins, the number of clusters that it skins, and a counter.

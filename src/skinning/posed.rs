@@ -1,9 +1,11 @@
-//! Computes the vertices of a whole model at one time of a clip on the host, and draws a picture of them, for
-//! the command line; `render::posed` does the same on the device.
+//! Computes the vertices of a whole model at one time of a clip, on the host or on the device, and draws a picture of them on
+//! the host; `render::portrait` draws the same by a scene.
 
 use image::RgbaImage;
 
 use super::InstanceLod;
+#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+use super::frame::SkinFrame;
 use super::morph::reference::morph;
 use super::palette::reference::palette_for;
 use super::picture::framing;
@@ -83,8 +85,29 @@ impl PosedModel<'_> {
         Ok(skinned)
     }
 
+    /// Skins every mesh on the device. Returns the vertices of each mesh in its own order, in the model's space; they equal
+    /// those of [`PosedModel::on_host`] within rounding. Waits for the device.
+    ///
+    /// # Errors
+    /// [`InputError`] for vertices outside the range of `f32`, as large scales produce; [`crate::gpu::GpuError`].
+    #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+    pub fn on_device(&self, gpu: &crate::gpu::Gpu) -> Result<Vec<Vec<Vertex>>, crate::Error> {
+        let model = self.model;
+        let bones = crate::animation::pose::posed(gpu, &model.skeleton, &model.clips[self.clip], self.time)?;
+        let skinned = |mesh: usize| {
+            let frame = SkinFrame::new(gpu, model, mesh, bones.model_matrices(), 1, self.blend)?;
+            frame.crowd.instance_lods.write(gpu, &[self.instance_lod])?;
+            frame.crowd.weights.write(gpu, &self.weights(&model.meshes[mesh]))?;
+            gpu.run("skin", |encoder| frame.record_all(encoder))?;
+            let vertices = frame.read(gpu, 0)?;
+            check_range(mesh, &vertices)?;
+            Ok(vertices)
+        };
+        (0..model.meshes.len()).map(skinned).collect()
+    }
+
     /// The weights of a mesh's morph targets at the time.
-    pub(crate) fn weights(&self, mesh: &Mesh) -> Vec<f32> {
+    fn weights(&self, mesh: &Mesh) -> Vec<f32> {
         mesh.weights_at(self.clip, self.time)
     }
 }

@@ -106,16 +106,26 @@ fn the_device_measures_as_the_cpu_does_and_draws() {
     let (report, pictures) = drawn(&gpu, subject(&model), &options, &quarter, &|_| ()).expect("measured");
     let row = report.distances[0].drawn.expect("it is drawn");
     // The bound is the sum of the gate's pixels and a quarter pixel each for influences and triangles.
-    assert!(row.gated.vertex_error.max_pixels <= 1.5 + ROUNDING, "{row:?}");
+    assert_eq!(row.gated.pixels, 1.5);
+    assert!(row.gated.displacement.largest <= 1.5 && row.gated.displacement.largest > 0.05, "{row:?}");
+    assert!(row.gated.displacement.jump <= 3.0 && row.gated.displacement.missing == 0, "{row:?}");
     assert!(row.gated.frame_nanoseconds > 0.0 && row.full_frame_nanoseconds > 0.0);
     assert_eq!((pictures.len(), pictures[0].dimensions()), (1, (1920, 1080)));
     assert!(pictures[0].pixels().any(|pixel| pixel != pictures[0].get_pixel(0, 0)));
     let (report, _) = scene(&gpu, subject(&model), &options, &quarter, &|_| ()).expect("measured");
     let row = report.distances[0];
-    assert_eq!(row.off.vertex_error.max_pixels, 0.0);
-    assert!(row.animation.vertex_error.max_pixels <= 1.0 + ROUNDING, "{row:?}");
-    assert!(row.skinning.vertex_error.max_pixels <= 0.25 + ROUNDING, "{row:?}");
-    assert!(row.all.expect("with levels").vertex_error.max_pixels <= 1.5 + ROUNDING, "{row:?}");
+    let all = row.all.expect("with levels");
+    for (way, pixels) in
+        [(row.off, 0.0), (row.animation, 1.0), (row.skinning, 0.25), (row.both, 1.25), (all, 1.5)]
+    {
+        assert!(way.displacement.largest <= pixels + ROUNDING, "{way:?}");
+    }
+    assert!(row.animation.displacement.largest > ROUNDING && row.off.bones > row.animation.bones, "{row:?}");
+    assert!(all.triangle_fraction < 1.0 && row.both.triangle_fraction == 1.0, "{row:?}");
+    // A scene has no gate of another kind.
+    let other = LodOptions { gate: GateMode::Uniform, ..options };
+    assert_eq!(refused(scene(&gpu, subject(&model), &other, &quarter, &|_| ())), "gate");
+    assert_eq!(refused(drawn(&gpu, subject(&model), &other, &quarter, &|_| ())), "gate");
 }
 
 #[test]
@@ -158,7 +168,7 @@ fn options_out_of_their_bounds_are_refused() {
     assert_eq!(refused(animation(None, missing, &of_options, &|_| ())), "subject.clip");
     let tall = ParetoOptions { tall_pixels: 0.0, ..ParetoOptions::default() };
     assert_eq!(refused(pareto(subject(&model), &tall, &|_| ())), "tall_pixels");
-    let few = LodOptions { crowd: CrowdOptions { frames: 4, ..of_options.crowd }, ..of_options };
+    let few = LodOptions { crowd: CrowdOptions { frames: 3, ..of_options.crowd }, ..of_options };
     let full = DrawnOptions { skinning: SkinningDetail::Full, mesh: MeshDetail::Full };
     assert_eq!(refused(drawn(&gpu(), subject(&model), &few, &full, &|_| ())), "frames");
 }

@@ -1,147 +1,122 @@
-//! Several characters in one picture, near and far: seen, faded, skinned and drawn together.
+//! Several characters in one picture, near and far: seen, as fine as the view needs, skinned and drawn together.
 
-use glam::{Vec3, camera};
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::order::Order;
-use relievo::animation::sample::reference::sample;
-use relievo::animation::{ModelMatrices, UpdatedBones};
-use relievo::asset::Light;
+use glam::{Vec3, camera::rh};
 use relievo::asset::Model;
-use relievo::asset::keyframe::RotationPath;
-use relievo::asset::transform::Affine;
-use relievo::gpu::{Buffer, Gpu};
-use relievo::render::target::LINEAR_FORMAT;
-use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
+use relievo::gpu::Gpu;
 use relievo::samples::creature;
-use relievo::skinning::FadeRange;
-use relievo::skinning::lod::placed;
-use relievo::skinning::vertex::Blend;
-use relievo::surface::linear_image::LinearImage;
+use relievo::scene::{ObjectId, Placement, Play, Quality, Scene, View};
+use relievo::skinning::{add_levels, poses_of};
 
 use crate::figure::figure;
 use crate::harness::{Tolerance, check_golden, gpu};
-use crate::skinned::{SKY, checks};
+use crate::stage::{camera, checkered, picture};
 
-/// Number of instances of each character, in rows away from the eye; the first row is behind it.
-const COUNT: usize = 20;
+const SIZE: [u32; 2] = [176, 112];
 
-struct Instances {
-    matrices: ModelMatrices,
-    placements: Buffer<Affine>,
+/// Adds instances of a character at these places, each at its own time in its clip. Nothing moves.
+fn add(scene: &mut Scene, model: &Model, places: &[(Vec3, f32)]) -> ObjectId {
+    let object = scene.add_character(model, places.len()).expect("added");
+    for (index, (at, turn)) in places.iter().enumerate() {
+        let instance = scene.spawn(object, Placement::at(*at).turned(*turn)).expect("room");
+        let start = f64::from((index as f32 * 0.618).fract() * model.clips[0].duration());
+        scene.play(instance, &Play { start: -start, ..Play::new("0") }).expect("the clip");
+    }
+    object
 }
 
-impl Instances {
-    /// A crowd in which each instance has its own clip time; with `gated`, under a gate that updates no
-    /// instance.
-    fn new(gpu: &Gpu, model: &Model, aside: f32, gated: bool) -> Self {
-        let clip = &model.clips[0];
-        let pose = |index: usize| {
-            let time = (index as f32 * 0.618).fract() * clip.duration();
-            local_to_model(&model.skeleton, &sample(clip, time, RotationPath::Slerp))
-        };
-        let place = |index: usize| {
-            let z = [18.0, 2.0, -3.0, -9.0, -18.0][index / 4];
-            let at = Vec3::new((index % 4) as f32 * 2.2 - 3.9 + aside, 0.0, z);
-            placed(at, 0.4 * index as f32, 1.0)
-        };
-        let models: Vec<Affine> = (0..COUNT).flat_map(pose).collect();
-        let places: Vec<Affine> = (0..COUNT).map(place).collect();
-        let matrices =
-            ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &models).expect("uploaded"));
-        let words = COUNT * Order::new(&model.skeleton).words();
-        let updated = UpdatedBones::new(gpu, words).expect("allocated");
-        Self {
-            matrices: if gated { matrices.with_updated_bones(&updated) } else { matrices },
-            placements: Buffer::from_slice(gpu, "placements", &places).expect("uploaded"),
-        }
-    }
+fn view(scene: &Scene, target: Vec3, pixels: f32) -> View {
+    let look = rh::view::look_at_mat4(Vec3::new(-1.0, 2.6, 7.0), target, Vec3::Y);
+    let projection = rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0);
+    let mut view = scene.view(Quality { pixels }).expect("a view");
+    view.set(camera(look, projection, SIZE)).expect("a camera");
+    view
+}
 
-    fn character<'a>(&'a self, model: &'a Model, albedos: &'a [Albedo], blend: Blend) -> Character<'a> {
-        let Self { matrices, placements } = self;
-        Character {
-            model,
-            matrices,
-            placements,
-            fade_range: FadeRange { start: 5.0, end: 25.0 },
-            levels: &[],
-            blend,
-            albedos,
-        }
+/// The numbers of instances of an object that the last frame drew, level by level, and of clusters that it skinned.
+fn counted(scene: &mut Scene, view: &mut View, object: ObjectId) -> (Vec<u32>, u32) {
+    let seen = view.statistics().expect("arrived").clone();
+    let levels = seen.objects.iter().find(|own| own.object == object).expect("counted").levels.clone();
+    let own = scene.statistics().expect("arrived").characters.clone();
+    let own = own.iter().find(|own| own.object == object).expect("counted");
+    (levels.iter().map(|level| level.instances).collect(), own.clusters)
+}
+
+fn check(name: &str, picture: &image::RgbaImage) {
+    if let Err(error) = check_golden(name, picture, Tolerance::IMAGE) {
+        panic!("{error}");
     }
+}
+
+fn levelled(model: Model) -> Model {
+    let mut model = checkered(model);
+    let poses = poses_of(&model.clips[0]).expect("short");
+    add_levels(&mut model, &[0], poses.min(16)).expect("valid");
+    model
+}
+
+/// Records a frame without drawing.
+fn record(gpu: &Gpu, scene: &mut Scene, view: &mut View) {
+    gpu.run("frame", |encoder| scene.record(encoder, &mut [view]).expect("recorded")).expect("run");
 }
 
 #[test]
 fn creatures_and_figures_in_one_picture() {
     let gpu = gpu();
-    let all = [creature().expect("valid"), figure()];
-    let mut crowd = CrowdScene::new(&gpu, LINEAR_FORMAT, Light::default()).expect("compiled");
-    for ((model, aside), blend) in all.iter().zip([0.0, 1.1]).zip([Blend::Linear, Blend::DualQuaternion]) {
-        let albedos = Albedo::of_meshes(&gpu, model, &checks(&gpu), ColorTexture::linear).expect("uploaded");
-        let instances = Instances::new(&gpu, model, aside, blend == Blend::Linear);
-        let none = instances.character(model, &[], blend);
-        assert!(crowd.add(&gpu, &none).expect_err("refused").to_string().contains("albedos.len = 0"));
-        crowd.add(&gpu, &instances.character(model, &albedos, blend)).expect("prepared");
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    scene.set_statistics(true).expect("room");
+    let all = [levelled(creature().expect("valid")), levelled(figure())];
+    let objects = [0, 1].map(|character: usize| {
+        let place = |index: usize| {
+            // The first row is behind the eye.
+            let z = [18.0, 2.0, -3.0, -9.0, -18.0][index / 4];
+            let x = (index % 4) as f32 * 2.2 - 3.9 + 1.1 * character as f32;
+            (Vec3::new(x, 0.0, z), 0.4 * index as f32)
+        };
+        add(&mut scene, &all[character], &(0..20).map(place).collect::<Vec<_>>())
+    });
+    let mut view = view(&scene, Vec3::new(0.5, 0.6, -4.0), 1.0);
+    let found = picture(&gpu, &mut scene, &mut view);
+    for object in objects {
+        let (levels, clusters) = counted(&mut scene, &mut view, object);
+        let seen: u32 = levels.iter().sum();
+        assert!((10..17).contains(&seen) && clusters > 0, "{levels:?}, {clusters}");
     }
-    let size = [176, 112].map(|edge| 2 * edge);
-    let eye = Vec3::new(-1.0, 2.6, 7.0);
-    let look = camera::rh::view::look_at_mat4(eye, Vec3::new(0.5, 0.6, -4.0), Vec3::Y);
-    let clip_from_world = camera::rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0) * look;
-    crowd.set_camera(&gpu, clip_from_world, eye).expect("set");
-    let target = Target::linear(&gpu, size).expect("allocated");
-    // The whole frame is one submission with one render pass.
-    gpu.run("frame", |encoder| {
-        crowd.record(encoder);
-        target.record(encoder, SKY, |pass| crowd.draw(pass));
-    })
-    .expect("run");
+    // Far creatures are coarser than near ones.
+    let (levels, _) = counted(&mut scene, &mut view, objects[0]);
+    assert!(levels.iter().filter(|instances| **instances > 0).count() > 2, "{levels:?}");
+    // No instance moves and the camera stays: once all bones are where they belong, no creature is skinned again. The figures
+    // in front turn so far in a frame that their bones are always sampled.
+    (0..3).for_each(|_| record(&gpu, &mut scene, &mut view));
+    assert_eq!(counted(&mut scene, &mut view, objects[0]).1, 0);
+    check("skin_characters", &found);
+}
 
-    for (character, meshes) in crowd.characters().iter().zip([1, 4]) {
-        assert_eq!((character.frames.len(), character.scenes.len()), (meshes, meshes));
-        let counts = |scene: &relievo::render::SkinnedScene| {
-            let words = scene.arguments.read_blocking(&gpu).expect("read");
-            let [indices, instances, ref rest @ ..] = words[..] else { panic!("ten words") };
-            // No instance is mirrored.
-            assert!(indices > 0 && *rest == [0, 0, 0, indices, 0, 0, 0, 0]);
-            instances as usize
-        };
-        let seen = counts(&character.scenes[0]);
-        assert!((10..17).contains(&seen), "{seen} of {COUNT}");
-        let mut drawn = character.drawn.read_blocking(&gpu).expect("read")[..seen].to_vec();
-        drawn.sort_unstable();
-        drawn.dedup();
-        assert!(
-            drawn.len() == seen && drawn.iter().all(|index| (4..COUNT as u32).contains(index)),
-            "{drawn:?}"
-        );
-        // All meshes of a character fade alike, and are drawn at the same instances.
-        let fades = |frame: &relievo::skinning::frame::SkinFrame| {
-            frame
-                .crowd
-                .instance_lods
-                .read_blocking(&gpu)
-                .expect("read")
-                .iter()
-                .map(|r| r.influence_fade)
-                .collect::<Vec<_>>()
-        };
-        let first = fades(&character.frames[0]);
-        assert!([9, 13, 17].iter().all(|index| drawn.contains(index)), "{drawn:?}");
-        assert!(first[17] > 0.7 && first[9] < first[13] && first[13] < first[17], "{first:?}");
-        for (frame, scene) in character.frames.iter().zip(&character.scenes) {
-            assert_eq!((fades(frame), counts(scene)), (first.clone(), seen));
-        }
-    }
-    // No instance moves and visibility does not change: nothing is skinned again.
-    let skinned = || {
-        let frames = &crowd.characters()[0].frames;
-        frames[0].active.dispatched.read_blocking(&gpu).expect("read")[3]
+/// Creatures in rows away from the eye, and some behind it, within half a pixel: what is seen is skinned, the near ones in full
+/// detail, and one that moves is the only one to be skinned again.
+#[test]
+fn a_crowd_near_and_far() {
+    let gpu = gpu();
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    scene.set_statistics(true).expect("room");
+    let model = levelled(creature().expect("valid"));
+    let place = |index: usize| {
+        let (row, column) = (index / 6, index % 6);
+        let z = [9.0, 3.0, 0.0, -5.0, -12.0, -22.0][row];
+        (Vec3::new(column as f32 * 1.5 - 3.75 + 0.3 * row as f32, 0.0, z), 0.5 * index as f32)
     };
-    assert!(skinned() > 0);
-    gpu.run("frame", |encoder| crowd.record(encoder)).expect("run");
-    assert_eq!(skinned(), 0);
-    target.draw(&gpu, SKY, |pass| crowd.draw(pass)).expect("drawn");
-    let picture = LinearImage { size, pixels: target.read_linear(&gpu).expect("read") };
-    if let Err(error) = check_golden("skin_characters", &picture.reduced(2).encoded(), Tolerance::IMAGE) {
-        panic!("{error}");
-    }
+    let crowd = add(&mut scene, &model, &(0..36).map(place).collect::<Vec<_>>());
+    let mut view = view(&scene, Vec3::new(0.5, 0.4, -4.0), 0.5);
+    let found = picture(&gpu, &mut scene, &mut view);
+    let (levels, clusters) = counted(&mut scene, &mut view, crowd);
+    let (seen, each) = (levels.iter().sum::<u32>(), model.meshes[0].positions.len().div_ceil(64) as u32);
+    assert!((12..34).contains(&seen) && (1..seen).contains(&levels[0]), "{levels:?}");
+    assert!(clusters >= levels[0] * each && clusters < seen * each, "{clusters} of {seen} times {each}");
+    (0..3).for_each(|_| record(&gpu, &mut scene, &mut view));
+    assert_eq!(counted(&mut scene, &mut view, crowd).1, 0);
+    let one = scene.instances(crowd).expect("there")[14];
+    scene.play(one, &Play { start: -0.3, ..Play::new("0") }).expect("the clip");
+    record(&gpu, &mut scene, &mut view);
+    let (_, again) = counted(&mut scene, &mut view, crowd);
+    assert!(again > 0 && again <= each, "{again} of {each}");
+    check("skin_crowd", &found);
 }

@@ -74,6 +74,7 @@ fn seen() -> Seen {
 #[test]
 fn the_picture_shows_the_triangles_that_the_cpu_answers() {
     let Seen { points, scene, land, ground, whole, corner } = seen();
+    let is_coarse = scene.gpu().adapter().name.contains("SwiftShader");
     let (mut inside, mut worst, mut worst_bilinear, mut apart) = (0, 0.0_f64, 0.0_f64, 0.0_f64);
     for point in &points {
         // Rounding may move points on the outer edge of the patches out of them.
@@ -92,8 +93,10 @@ fn the_picture_shows_the_triangles_that_the_cpu_answers() {
     );
     assert!(inside > 45_000 && inside + 500 > points.len(), "{inside} of {}", points.len());
     assert!(apart < 1e-6, "the scene's own ground is {apart} off");
-    // Slopes here are below 60 (12 units of height on a quarter), and rasterizers move vertices by up to 2⁻⁹
-    // pixels of 0.03 units each way; depth in f32 adds z² / near · 2⁻²⁴ for every rounding.
-    assert!(worst < 5e-3, "{worst}");
-    assert!(worst_bilinear > 0.1, "a bilinear surface would pass: {worst_bilinear}");
+    // Slopes here are below 60 (12 units of height on a quarter). A rasterizer with `bits` below the pixel moves vertices by
+    // half a step of 2^-bits pixels of 0.03 units each way; Vulkan asks for 4 bits, which SwiftShader has, others have 8.
+    // Depth in f32 adds z² / near · 2⁻²⁴ for every rounding.
+    let bound = if is_coarse { 0.08 } else { 5e-3 };
+    assert!(worst < bound, "{worst}");
+    assert!(worst_bilinear > 0.5, "a bilinear surface would pass: {worst_bilinear}");
 }

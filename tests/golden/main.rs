@@ -14,11 +14,10 @@ mod figure;
 #[path = "../animation/scene.rs"]
 mod gltf;
 mod ground;
-mod levels;
 mod materials;
-mod mirrored;
 mod shadows;
 mod skinned;
+mod stage;
 mod tiling;
 
 use harness::{Tolerance, check_golden, relievo};

@@ -1,62 +1,47 @@
-//! Materials of glTF: textures, colours, holes and translucency, on the device and in the reference.
+//! Materials of glTF: textures, colours, holes and translucency, by a scene and in the reference.
 
-use image::RgbaImage;
-use relievo::animation::ModelMatrices;
 use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::Light;
 use relievo::asset::keyframe::RotationPath;
-use relievo::asset::transform::{AFFINE_IDENTITY, Affine};
-use relievo::gpu::Buffer;
-use relievo::render::target::LINEAR_FORMAT;
-use relievo::render::{Albedo, Character, ColorTexture, CrowdScene, Target};
-use relievo::skinning::instance_lod::{FadeRange, InstanceLod};
+use relievo::asset::transform::Affine;
+use relievo::scene::{Placement, Play, Quality, Scene};
+use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::picture::framing;
 use relievo::skinning::picture::texture::Surface;
-use relievo::skinning::picture::{Part, Scene};
+use relievo::skinning::picture::{self, Part, framing_camera};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::{Blend, Vertex};
-use relievo::surface::linear_image::LinearImage;
 
 use crate::figure::figure;
 use crate::harness::{Difference, Tolerance, check_golden, gpu};
-use crate::skinned::{SKY, checks};
+use crate::stage::{self, SKY, camera};
 
-const SIZE: [u32; 2] = [2 * 160; 2];
+const SIZE: [u32; 2] = [160; 2];
+
+/// The time in the clip.
+const SECONDS: f32 = 0.8;
 
 #[test]
 fn a_figure_in_its_materials() {
     let (gpu, model) = (gpu(), figure());
     let models: Vec<Affine> =
-        local_to_model(&model.skeleton, &sample(&model.clips[0], 0.8, RotationPath::Slerp));
+        local_to_model(&model.skeleton, &sample(&model.clips[0], SECONDS, RotationPath::Slerp));
     let vertices = |mesh: &relievo::asset::Mesh| -> Vec<Vertex> {
         let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
         skin(&morph(mesh, &[]), &mesh.influences, &palette, InstanceLod::FULL)
     };
     let skinned: Vec<_> = model.meshes.iter().map(vertices).collect();
-    let clip_from_model = framing(skinned.iter().flatten());
+    let [view_from_world, clip_from_view] = framing_camera(skinned.iter().flatten());
 
-    let albedos = Albedo::of_meshes(&gpu, &model, &checks(&gpu), ColorTexture::linear).expect("uploaded");
-    let mut crowd = CrowdScene::new(&gpu, LINEAR_FORMAT, Light::default()).expect("compiled");
-    let matrices = Buffer::from_slice(&gpu, "model matrices", &models).expect("uploaded");
-    let character = Character {
-        model: &model,
-        matrices: &ModelMatrices::new(&matrices),
-        placements: &Buffer::from_slice(&gpu, "placements", &[AFFINE_IDENTITY]).expect("uploaded"),
-        fade_range: FadeRange { start: 1e3, end: 2e3 },
-        levels: &[],
-        blend: Blend::Linear,
-        albedos: &albedos,
-    };
-    crowd.add(&gpu, &character).expect("prepared");
-    crowd.set_camera(&gpu, clip_from_model, glam::Vec3::ZERO).expect("set");
-    let target = Target::linear(&gpu, SIZE).expect("allocated");
-    gpu.run("skin", |encoder| crowd.record(encoder)).expect("run");
-    target.draw(&gpu, SKY, |pass| crowd.draw(pass)).expect("drawn");
-    let picture = LinearImage { size: SIZE, pixels: target.read_linear(&gpu).expect("read") };
-    let picture: RgbaImage = picture.reduced(2).encoded();
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let object = scene.add_character(&model, 1).expect("added");
+    let instance = scene.spawn(object, Placement::default()).expect("room");
+    scene.play(instance, &Play { start: -f64::from(SECONDS), ..Play::new("0") }).expect("the clip");
+    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    view.set(camera(view_from_world, clip_from_view, SIZE)).expect("a camera");
+    let found = stage::picture(&gpu, &mut scene, &mut view);
 
     let surfaces: Vec<_> = (model.meshes.iter())
         .map(|mesh| Surface::of(&model, model.material(mesh).expect("fits").expect("has one")))
@@ -64,12 +49,27 @@ fn a_figure_in_its_materials() {
     let parts: Vec<_> = (model.meshes.iter().zip(&skinned).zip(&surfaces))
         .map(|((mesh, vertices), surface)| Part { mesh, level: 0, vertices, surface })
         .collect();
-    let scene = Scene { clip_from_model, light: Light::default(), size: SIZE };
-    let reference = scene.draw(&parts, SKY.map(|light| light as f32)).reduced(2).encoded();
-    let difference = Difference::of(&picture, &reference, Tolerance::IMAGE.levels);
+    let reference = picture::Scene {
+        clip_from_model: clip_from_view * view_from_world,
+        light: Light::default(),
+        size: SIZE.map(|edge| 2 * edge),
+    };
+    let reference = reference.draw(&parts, SKY).reduced(2).encoded();
+    let difference = Difference::of(&found, &reference, Tolerance::IMAGE.levels);
+    println!("{difference:?}");
     assert!(difference.within(Tolerance::IMAGE), "{difference:?}");
+    // Materials make the picture: without them the comparison fails.
+    let plain = Surface::plain([1.0; 3]);
+    let parts: Vec<_> = parts.iter().map(|part| Part { surface: &plain, ..*part }).collect();
+    let scene = picture::Scene {
+        clip_from_model: clip_from_view * view_from_world,
+        light: Light::default(),
+        size: SIZE.map(|edge| 2 * edge),
+    };
+    let plain = scene.draw(&parts, SKY).reduced(2).encoded();
+    assert!(!Difference::of(&found, &plain, Tolerance::IMAGE.levels).within(Tolerance::IMAGE));
 
-    if let Err(error) = check_golden("skin_materials", &picture, Tolerance::IMAGE) {
+    if let Err(error) = check_golden("skin_materials", &found, Tolerance::IMAGE) {
         panic!("{error}");
     }
 }

@@ -47,19 +47,20 @@ use plan::Plan;
 /// the errors in metres and pixels, and cost.png, interpolations.png and error.png, which plot these values against
 /// distance. docs/reports.md in the repository describes every field of the JSON files.
 ///
-/// With --image (GPU only), the command also writes DIR/crowd_<distance>.png: the last frame of the gated crowd,
-/// textured and lit, 1920 × 1080 pixels; meshes without a material are clay of two colours. A compute pass skins
-/// those clusters of 64 vertices that follow a bone that moved, and the picture is drawn from its output. Instances
-/// out of view are not skinned. Morph targets move in every frame, whatever the gate decides. The gate bounds the
-/// error of every vertex. report.json also has the times of skinning, of drawing and of whole frames, with and
-/// without the gate, and the errors of vertices.
+/// With --image (GPU only), the command also draws the crowd as a scene, and writes DIR/crowd_<distance>.png: its last
+/// frame, textured and lit, 1920 × 1080 pixels; meshes without a material are clay of two colours. A scene permits a
+/// number of pixels by which anything may be off: the sum of those of --gate bounded, --skinning bounded:PIXELS and
+/// --mesh bounded:PIXELS, which it divides among bones, influences and triangles in proportion. Other gates are
+/// measured without a picture. report.json also has the times of computing, of drawing and of whole frames, within
+/// these pixels and in full detail, what was drawn, and how far it lies from its place.
 ///
-/// A crowd that is drawn needs a clip of at most an hour, which is sampled 60 times a second.
+/// A crowd that is drawn needs a clip of at most an hour, which is sampled 60 times a second, and at least 4 frames.
 ///
-/// With --scene, the command instead times the whole frame at each distance in five ways that differ in nothing
-/// else: "off" (all bones, influences and triangles), "animation" (the gate), "skinning" (--skinning), "both" of
-/// these, and "all" (both, and --mesh unless it is full). It writes DIR/scene.json; scene.png plots the time of a
-/// frame against distance; crowd_<distance>.png shows the last way.
+/// With --scene (GPU only), the command instead times the whole frame at each distance in five ways, each a scene of
+/// its own, that differ in nothing else: "off" (all bones, influences and triangles), "animation" (the pixels of
+/// --gate), "skinning" (those of --skinning), "both" of these, and "all" (both, and those of --mesh unless it is
+/// full). It writes DIR/scene.json; scene.png plots the time of a frame against distance; crowd_<distance>.png shows
+/// the last way.
 ///
 /// With --pareto, the command instead compares error against cost for every gate, at one distance (--tall), on the
 /// CPU. All instances stand at one place, each turned by another angle. It writes pareto_max.png, pareto_rms.png
@@ -92,7 +93,8 @@ pub struct Crowd {
     /// For budget: the largest number of bones to interpolate in a frame, over the whole crowd.
     #[arg(long, value_name = "N")]
     budget: Option<u32>,
-    /// For bounded: the largest error that may show, in pixels.
+    /// For bounded: the largest error that may show, in pixels. With --image and --scene, those of --skinning and --mesh
+    /// add to it.
     #[arg(long, value_name = "EPS", default_value_t = 1.0, allow_hyphen_values = true)]
     pixels: f32,
     /// For skip-period: weights of the priorities, as for `relievo priorities`.
@@ -125,20 +127,19 @@ pub struct Crowd {
     /// For --pareto: the size on screen of the model's largest extent, in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 100.0, allow_hyphen_values = true)]
     tall: f32,
-    /// Draws the crowd, and times the whole frame.
+    /// Draws the crowd as a scene, and times the whole frame. The gate must be off or bounded.
     #[arg(long, conflicts_with = "pareto")]
     image: bool,
-    /// Draws the crowd with and without level of detail in animation, skinning and meshes.
+    /// Draws the crowd as scenes with and without level of detail in animation, skinning and meshes. The gate must be
+    /// off or bounded.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
-    /// The influences that vertices follow: all; the K strongest; all, fading to one over --range; or all,
-    /// fading only as far as no vertex is more than PIXELS off. These pixels add to the gate's own --pixels.
-    /// Default: full; with --scene bounded:0.5.
-    #[arg(long, value_name = "full|truncate:K|fade|bounded:PIXELS")]
+    /// The influences that vertices follow: all; or as few as take no vertex more than PIXELS away. Default: full; with
+    /// --scene bounded:0.5.
+    #[arg(long, value_name = "full|bounded:PIXELS")]
     skinning: Option<String>,
-    /// The triangles of the meshes: all; or as few as keep every vertex within PIXELS of the surface that is
-    /// drawn. These pixels add to those of --skinning and of the gate. Default: full; with --scene
-    /// bounded:0.5.
+    /// The triangles of the meshes: all; or as few as keep the surface within PIXELS of its place. Default: full; with
+    /// --scene bounded:0.5.
     #[arg(long, value_name = "full|bounded:PIXELS")]
     mesh: Option<String>,
     /// The folder to write to.

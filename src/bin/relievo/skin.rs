@@ -7,7 +7,7 @@ use clap::Args;
 use image::RgbaImage;
 use relievo::asset::Model;
 use relievo::files::Staged;
-use relievo::render::posed;
+use relievo::render::portrait;
 use relievo::skinning::export::write_obj;
 use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::vertex::{Blend, Vertex};
@@ -117,7 +117,11 @@ impl Skin {
         let blend = if self.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
         let moment = PosedModel { model: &model, clip, time, instance_lod, blend };
         let (vertices, picture) = match self.backend.gpu(context)? {
-            Some(gpu) => posed::on_device(&gpu, &moment, &PORTRAIT)?,
+            Some(gpu) => {
+                let vertices = moment.on_device(&gpu)?;
+                let picture = portrait(&gpu, &model, &vertices, &PORTRAIT)?;
+                (vertices, picture)
+            }
             None => moment.on_host(&PORTRAIT)?,
         };
         Ok(Made { model, vertices, picture })

@@ -24,7 +24,7 @@ use crate::asset::{Affine, Model};
 use crate::lod::OBJECT_LEVELS;
 use crate::scene::query::DrawnInstance;
 use crate::scene::{Camera, InstanceId, ObjectId, Placement, Scene, View};
-use crate::{Error, InputError};
+use crate::{Error, InputError, skinning};
 use eye::{Eye, is_inside};
 use surface::{Primitive, Sample, Surface, Watched};
 use tree::Tree;
@@ -48,20 +48,24 @@ pub struct Displacement {
     pub left_out: u64,
     /// Number of samples of instances that the view does not draw.
     pub missing: u64,
-    /// Number of instances that are drawn, level by level.
+    /// Number of instances that are drawn, level by level, also of those that the meter leaves out.
     pub levels: [u64; OBJECT_LEVELS as usize],
 }
 
 /// Measures the displacement of meshes and characters of a scene, frame by frame.
-#[derive(Default)]
 pub struct DisplacementMeter {
     watched: Vec<Watched>,
+    /// The most instances of an object that are measured in a frame.
+    most: usize,
     /// The offsets of partners of vertices in the last frame, in pixels.
     last: HashMap<Vertex, DVec2>,
 }
 
 /// A vertex of an instance: of which merged mesh, and its index in it.
 type Vertex = (InstanceId, usize, u32);
+
+/// What was found in the samples of an instance, with the index of the merged mesh.
+type FoundInMeshes = Vec<(usize, Found)>;
 
 /// What was found in some samples.
 #[derive(Default)]
@@ -82,10 +86,22 @@ struct Side<'a> {
     clip: &'a DMat4,
 }
 
+impl Default for DisplacementMeter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl DisplacementMeter {
-    /// A meter that watches nothing.
+    /// A meter that watches nothing yet, and measures all instances of what it will watch.
     pub fn new() -> Self {
-        Self::default()
+        Self::of_at_most(usize::MAX)
+    }
+
+    /// A meter that watches nothing yet. In each frame it measures at most so many instances of an object, at least one: each
+    /// so-manieth of those that the view may show, in the order of [`Scene::instances`], beginning with the first.
+    pub fn of_at_most(instances: usize) -> Self {
+        Self { watched: Vec::new(), most: instances.max(1), last: HashMap::new() }
     }
 
     /// Watches an object of a scene, which was added as this model: a mesh or a character.
@@ -95,6 +111,11 @@ impl DisplacementMeter {
     pub fn watch(&mut self, scene: &Scene, object: ObjectId, model: &Model) -> Result<(), InputError> {
         self.watched.push(Watched::new(scene, object, model)?);
         Ok(())
+    }
+
+    /// Forgets the frame that was measured last, as if the next one were the first: its jump is 0.
+    pub fn forget_last(&mut self) {
+        self.last.clear();
     }
 
     /// Measures what a view shows of the objects that are watched, in the last frame that was recorded. It must be
@@ -110,13 +131,16 @@ impl DisplacementMeter {
         let mut frame = Displacement::none(view.quality().pixels);
         let mut offsets = HashMap::new();
         for watched in &mut self.watched {
-            for instance in scene.drawn_instances(view, watched.object)? {
-                if let Some((list, _)) = instance.drawn {
-                    watched.read_list(scene, view, list)?;
-                    frame.levels[list as usize / 2] += 1;
-                }
-                let all = instance_found(scene, watched, &instance, camera, &eye)?;
-                for (mesh, found) in all {
+            let all = scene.drawn_instances(view, watched.object)?;
+            let lists = all.iter().filter_map(|instance| instance.drawn);
+            lists.for_each(|(list, _)| frame.levels[list as usize / 2] += 1);
+            let each = all.len().div_ceil(self.most).max(1);
+            let measured: Vec<_> = all.into_iter().step_by(each).collect();
+            for (list, _) in measured.iter().filter_map(|instance| instance.drawn) {
+                watched.read_list(scene, view, list)?;
+            }
+            for (instance, found) in found_of(scene, watched, &measured, (camera, &eye))? {
+                for (mesh, found) in found {
                     frame.add(&found, instance.drawn.is_some());
                     let vertex = |(vertex, offset)| ((instance.instance, mesh, vertex), offset);
                     offsets.extend(found.offsets.into_iter().map(vertex));
@@ -168,14 +192,35 @@ impl Displacement {
     }
 }
 
+/// The number of instances whose vertices are read at once.
+const READ: usize = 64;
+
+/// What is found in the samples of each instance.
+fn found_of<'a>(
+    scene: &Scene,
+    watched: &Watched,
+    instances: &'a [DrawnInstance],
+    seen: (&Camera, &Eye),
+) -> Result<Vec<(&'a DrawnInstance, FoundInMeshes)>, Error> {
+    let mut all = Vec::with_capacity(instances.len());
+    for part in instances.chunks(READ) {
+        let vertices = watched.vertices(scene, part)?;
+        for (at, instance) in part.iter().enumerate() {
+            // The instances of a static mesh share their vertices.
+            let own = vertices.get(at).or(vertices.first()).map_or(&[][..], Vec::as_slice);
+            all.push((instance, instance_found(scene, watched, (instance, own), seen)?));
+        }
+    }
+    Ok(all)
+}
+
 /// What is found in the samples of an instance: for each primitive, its merged mesh and both directions.
 fn instance_found(
     scene: &Scene,
     watched: &Watched,
-    DrawnInstance { instance, drawn }: &DrawnInstance,
-    camera: &Camera,
-    eye: &Eye,
-) -> Result<Vec<(usize, Found)>, Error> {
+    (DrawnInstance { instance, drawn }, vertices): (&DrawnInstance, &[Vec<Option<skinning::Vertex>>]),
+    (camera, eye): (&Camera, &Eye),
+) -> Result<FoundInMeshes, Error> {
     let placed = placed(&scene.placement(*instance)?, camera.cell);
     let right = transformed(&watched.posed(scene.clip_time(*instance)?), &placed);
     let Some((list, rows)) = drawn else {
@@ -184,7 +229,7 @@ fn instance_found(
         };
         return Ok(watched.primitives.par_iter().map(missing).collect());
     };
-    let shown = transformed(&watched.drawn(scene, *instance, *list)?, &matrix(rows));
+    let shown = transformed(&watched.drawn(vertices, *list)?, &matrix(rows));
     let nothing = Surface::default();
     let both = |Primitive { mesh, full, lists, .. }: &Primitive| {
         let coarse = lists[*list as usize].as_ref().unwrap_or(&nothing);
@@ -212,8 +257,11 @@ impl<'a> Side<'a> {
     /// The partner of a sample of the other side.
     fn partner(&self, sample: &Sample, point: DVec3) -> Option<DVec3> {
         match sample {
-            Sample::Vertex(vertex) if self.surface.has(*vertex) => Some(self.points[*vertex as usize]),
-            _ => self.tree.as_ref().map(|tree| tree.nearest(point)),
+            Sample::Vertex(vertex) if self.surface.has(sample) => Some(self.points[*vertex as usize]),
+            _ => {
+                let same = self.surface.has(sample).then(|| sample.position(self.points));
+                self.tree.as_ref().map(|tree| tree.nearest(point, same))
+            }
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::animation;
 use crate::asset::{Mesh, Model};
 use crate::lod::OBJECT_LISTS;
 use crate::scene::mesh::{at_rest_merged, moving_merged};
-use crate::scene::{ClipTime, InstanceId, ObjectId, Scene, View};
+use crate::scene::query::DrawnInstance;
+use crate::scene::{ClipTime, ObjectId, Scene, View};
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::Merged;
 use crate::skinning::morph::reference::morph;
@@ -85,6 +86,17 @@ impl Watched {
         Ok(())
     }
 
+    /// The vertices that are drawn of some instances, mesh by mesh, `None` for those without a page: a list for each instance
+    /// of a character, and one for all instances of a mesh.
+    pub fn vertices(
+        &self,
+        scene: &Scene,
+        instances: &[DrawnInstance],
+    ) -> Result<Vec<Vec<Vec<Option<Vertex>>>>, Error> {
+        let handles: Vec<_> = instances.iter().map(|instance| instance.instance).collect();
+        scene.drawn_vertices(self.object, &handles)
+    }
+
     /// The positions of all vertices at full detail in the model's space, mesh by mesh, by the CPU references.
     pub fn posed(&self, time: Option<ClipTime>) -> Vec<Vec<DVec3>> {
         let model = &self.merged.model;
@@ -101,15 +113,14 @@ impl Watched {
         model.meshes.iter().map(skinned).collect()
     }
 
-    /// The positions of the vertices that are drawn of an instance of a list, in the model's space, mesh by mesh. Vertices
-    /// that are not drawn are not numbers.
-    pub fn drawn(&self, scene: &Scene, instance: InstanceId, list: u32) -> Result<Vec<Vec<DVec3>>, Error> {
-        let mut skinned = scene.drawn_vertices(instance)?;
-        if !self.is_character {
-            for (clusters, vertices) in self.clusters.iter().zip(&mut skinned) {
-                *vertices = clusters.in_mesh_order(vertices);
-            }
-        }
+    /// The positions of the vertices that are drawn of an instance of a list, in the model's space, mesh by mesh; `skinned` are
+    /// those that the scene tells. Vertices that are not drawn are not numbers.
+    pub fn drawn(&self, skinned: &[Vec<Option<Vertex>>], list: u32) -> Result<Vec<Vec<DVec3>>, Error> {
+        let in_order = |(clusters, vertices): (&Clusters, &Vec<Option<Vertex>>)| match self.is_character {
+            true => vertices.clone(),
+            false => clusters.in_mesh_order(vertices),
+        };
+        let skinned: Vec<_> = self.clusters.iter().zip(skinned).map(in_order).collect();
         for Primitive { mesh, lists, .. } in &self.primitives {
             let mut drawn = lists[list as usize].iter().flat_map(|surface| surface.triangles.as_flattened());
             if let Some(vertex) = drawn.find(|vertex| skinned[*mesh][**vertex as usize].is_none()) {
@@ -159,9 +170,9 @@ impl Surface {
         Self { triangles, samples }
     }
 
-    /// Whether a triangle uses a vertex.
-    pub fn has(&self, vertex: u32) -> bool {
-        self.samples.binary_search(&Sample::Vertex(vertex)).is_ok()
+    /// Whether a triangle has a vertex, an edge or a corner set.
+    pub fn has(&self, sample: &Sample) -> bool {
+        self.samples.binary_search(sample).is_ok()
     }
 
     /// The triangles between points.
@@ -191,7 +202,8 @@ mod tests {
     fn a_square_has_eleven_samples() {
         let square = Surface::new(vec![[0, 1, 2], [2, 1, 3]]);
         assert_eq!(square.samples.len(), 4 + 5 + 2);
-        assert!(square.has(3) && !square.has(4));
+        assert!(square.has(&Sample::Vertex(3)) && !square.has(&Sample::Vertex(4)));
+        assert!(square.has(&Sample::Edge([1, 2])) && !square.has(&Sample::Edge([0, 3])));
         let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE].map(|point| 6.0 * point);
         assert_eq!(Sample::Edge([1, 2]).position(&points), DVec3::new(3.0, 3.0, 0.0));
         assert_eq!(Sample::Triangle([0, 1, 2]).position(&points), DVec3::new(2.0, 2.0, 0.0));

@@ -31,9 +31,10 @@ impl Tree {
         Self { nodes, triangles }
     }
 
-    /// The point on any triangle that is nearest to `point`.
-    pub fn nearest(&self, point: DVec3) -> DVec3 {
-        let mut best = (f64::INFINITY, point);
+    /// The point on any triangle that is nearest to `point`. `known` is one that lies on a triangle, if any is known; the nearer
+    /// it is, the less is searched.
+    pub fn nearest(&self, point: DVec3, known: Option<DVec3>) -> DVec3 {
+        let mut best = known.map_or((f64::INFINITY, point), |known| (known.distance_squared(point), known));
         self.visit(0, point, &mut best);
         best.1
     }
@@ -118,9 +119,12 @@ mod tests {
             let least = (triangles.iter())
                 .map(|corners| precise_nearest_on_triangle(point, *corners).distance(point))
                 .fold(f64::INFINITY, f64::min);
-            assert_eq!(tree.nearest(point).distance(point), least, "{at}");
+            assert_eq!(tree.nearest(point, None).distance(point), least, "{at}");
+            let known = triangles[at % 97].iter().sum::<DVec3>() / 3.0;
+            assert_eq!(tree.nearest(point, Some(known)).distance(point), least, "{at}");
         }
         let one = Tree::new(vec![[DVec3::X; 3]]);
-        assert_eq!(one.nearest(DVec3::ZERO), DVec3::X);
+        assert_eq!(one.nearest(DVec3::ZERO, None), DVec3::X);
+        assert_eq!(one.nearest(DVec3::ZERO, Some(DVec3::X)), DVec3::X);
     }
 }

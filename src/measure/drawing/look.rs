@@ -1,27 +1,31 @@
-//! One variant of a drawn crowd with its own vertices, and its measurements.
+//! One way to draw a crowd: a scene with its own share of the permitted pixels, and its measurements.
 
-use super::{Animation, SKY, Variant};
+use super::cost::FrameCost;
+use super::parts::Parts;
+use super::subject::DrawnModel;
 use crate::Error;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError};
+use crate::lod::OBJECT_LEVELS;
+use crate::measure::displacement::{Displacement, DisplacementMeter};
+use crate::measure::frames::DrawnLevel;
 use crate::measure::play::middle;
-use crate::measure::vertices::{FrameCost, VertexMeter};
-use crate::render::skinned::SkinnedScene;
-use crate::render::target::Target;
-use crate::skinning::frame::SkinFrame;
-use crate::skinning::instance_lod::InstanceLod;
-use crate::skinning::lod::LodJob;
-use crate::skinning::morph_weights::MorphWeightsJob;
+use crate::measure::stage::Stage;
+use crate::render::{Layer, Renderer};
+use crate::scene::{Camera, ObjectId, Play, Scene, View};
 
-/// A variant of animation and skinning, its own vertices, and its measurements so far.
+/// The most instances whose displacement is measured in a frame.
+const MEASURED: usize = 16;
+
+/// A scene with a crowd, and its measurements so far.
 pub(super) struct Look {
-    pub variant: Variant,
-    pub meshes: Vec<Drawable>,
+    pub scene: Scene,
+    /// Whether bones keep old poses, so that what a frame does depends on those before.
+    pub is_gated: bool,
+    view: View,
+    crowd: ObjectId,
+    meter: DisplacementMeter,
     pub times: Times,
-    pub errors: VertexMeter,
-    /// Number of clusters that were skinned, and of all clusters.
-    clusters: [u64; 2],
-    /// Number of triangles that were drawn, and of all triangles.
-    triangles: [u64; 2],
+    counted: Counted,
 }
 
 /// Times in nanoseconds, one per timed frame.
@@ -30,98 +34,103 @@ pub(super) struct Times {
     pub frame: Vec<f64>,
     pub compute: Vec<f64>,
     pub draw: Vec<f64>,
-    pub skin: Vec<f64>,
 }
 
-/// A mesh of one look.
-pub(super) struct Drawable {
-    pub skin: SkinFrame,
-    /// For each vertex of the mesh, its index among the vertices of an instance.
-    pub slots: Vec<u32>,
-    pub lod: LodJob,
-    pub weights: MorphWeightsJob,
-    pub scene: SkinnedScene,
+/// Sums over the frames that were measured.
+#[derive(Default)]
+struct Counted {
+    frames: u64,
+    bones: u64,
+    clusters: u64,
+    triangles: u64,
+    /// Of the last frame.
+    levels: [DrawnLevel; OBJECT_LEVELS as usize],
+    displacement: Option<Displacement>,
 }
 
 impl Look {
-    pub(super) fn new(variant: Variant, meshes: Vec<Drawable>) -> Self {
-        Self {
-            variant,
-            meshes,
-            times: Times::default(),
-            errors: VertexMeter::default(),
-            clusters: [0; 2],
-            triangles: [0; 2],
-        }
-    }
-
-    /// Records the skinning: palettes, the choice of clusters, and vertices.
-    pub(super) fn skin(&self, encoder: &mut wgpu::CommandEncoder) {
-        for mesh in &self.meshes {
-            match self.variant.animation {
-                Animation::Gated => mesh.skin.record_updated_bones(encoder),
-                Animation::Full => mesh.skin.record_all(encoder),
-            }
-        }
-    }
-
-    /// Records the decisions before skinning: visibility and fade of each instance, and the weights of its
-    /// morph targets.
-    pub(super) fn decide(&self, encoder: &mut wgpu::CommandEncoder) {
-        for mesh in &self.meshes {
-            mesh.lod.record(encoder);
-            mesh.weights.record(encoder);
-        }
-    }
-
-    /// Records the decisions and the skinning.
-    pub(super) fn compute(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.decide(encoder);
-        self.skin(encoder);
-    }
-
-    pub(super) fn draw(&self, target: &Target, encoder: &mut wgpu::CommandEncoder) {
-        target.record(encoder, SKY, |pass| self.meshes.iter().for_each(|mesh| mesh.scene.draw(pass)));
-    }
-
-    /// Reads back how many clusters and triangles of a mesh a frame used, and adds them up.
-    pub(super) fn count(
-        &mut self,
+    /// A scene of the crowd of a stage before a camera.
+    pub(super) fn new(
         gpu: &Gpu,
-        mesh: usize,
-        instance_lods: &[InstanceLod],
-    ) -> Result<(), Error> {
-        let skin = &self.meshes[mesh].skin;
-        let seen = instance_lods.iter().filter(|instance_lod| instance_lod.max_influences > 0);
-        let levels = seen.map(|instance_lod| skin.clusters.level(instance_lod.mesh_lod));
-        let clusters = match self.variant.animation {
-            Animation::Full => levels.clone().map(|level| level.clusters).sum(),
-            Animation::Gated => skin.active.dispatched.read_blocking(gpu)?[3],
-        };
-        let drawn: u64 = levels.map(|level| u64::from(level.indices)).sum();
-        let (all, full) = (skin.crowd.instances as u64, skin.clusters.level(0));
-        let [clusters, triangles] =
-            [[clusters.into(), all * u64::from(full.clusters)], [drawn, all * u64::from(full.indices)]];
-        for (sums, found) in [(&mut self.clusters, clusters), (&mut self.triangles, triangles)] {
-            *sums = [sums[0] + found[0], sums[1] + found[1]];
+        stage: &Stage<'_>,
+        drawn: &DrawnModel,
+        (placements, camera): (&[crate::scene::Placement], Camera),
+        parts: Parts,
+    ) -> Result<Self, Error> {
+        let (quality, shares) = parts.quality();
+        let mut scene = Scene::new(gpu)?;
+        let crowd = scene.add_character(&drawn.model, placements.len())?;
+        scene.set_shares(shares)?;
+        for (placement, instance) in placements.iter().zip(&stage.instances) {
+            let spawned = scene.spawn(crowd, *placement)?;
+            scene.play(spawned, &Play { start: -f64::from(instance.start), ..Play::new("0") })?;
         }
+        let mut view = scene.view(quality)?;
+        view.set(camera)?;
+        let mut meter = DisplacementMeter::of_at_most(MEASURED);
+        meter.watch(&scene, crowd, &drawn.model)?;
+        let (is_gated, times, counted) = (parts.bones > 0.0, Times::default(), Counted::default());
+        Ok(Self { scene, is_gated, view, crowd, meter, times, counted })
+    }
+
+    /// Records all that precedes the drawing.
+    pub(super) fn compute(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<(), Error> {
+        self.scene.record(encoder, &mut [&mut self.view])
+    }
+
+    pub(super) fn draw(
+        &self,
+        renderer: &Renderer,
+        pass: &mut wgpu::RenderPass<'_>,
+    ) -> Result<(), crate::InputError> {
+        renderer.draw(pass, &self.scene, &self.view, Layer::Color)?;
+        renderer.draw(pass, &self.scene, &self.view, Layer::Transparent)
+    }
+
+    /// Reads back what the last frame did, which was counted, and measures it; the change of displacements since the frame
+    /// before too unless it begins a pair.
+    pub(super) fn measure(&mut self, begins: bool) -> Result<(), Error> {
+        let frame = self.scene.frames().wrapping_sub(1);
+        let late = || GpuError::Internal { reason: format!("the counts of frame {frame} have not arrived") };
+        let scene = self.scene.statistics().filter(|all| all.frame == frame).ok_or_else(late)?;
+        let own = scene.characters.iter().find(|own| own.object == self.crowd).copied().ok_or_else(late)?;
+        let seen = self.view.statistics().filter(|all| all.frame == frame).ok_or_else(late)?;
+        let counted = &mut self.counted;
+        counted.frames += 1;
+        counted.bones += u64::from(own.bones);
+        counted.clusters += u64::from(own.clusters);
+        counted.levels = Default::default();
+        let levels = seen.objects.iter().filter(|object| object.object == self.crowd);
+        for (sum, level) in counted.levels.iter_mut().zip(levels.flat_map(|object| &object.levels)) {
+            *sum = DrawnLevel { instances: level.instances.into(), triangles: level.triangles };
+            counted.triangles += level.triangles;
+        }
+        if begins {
+            self.meter.forget_last();
+        }
+        let found = self.meter.measure(&self.scene, &self.view)?;
+        counted.displacement = Some(counted.displacement.map_or(found, |all| all.and(found)));
         Ok(())
     }
 
-    pub(super) fn cost(&self) -> FrameCost {
-        let vertices: usize = self.meshes.iter().map(|mesh| mesh.skin.skinned.len()).sum();
-        let Times { frame, compute, draw, skin } = &self.times;
-        let [frame, compute, draw, skin] =
-            [frame, compute, draw, skin].map(|times| middle(times.clone()).unwrap_or(0.0));
-        let fraction = |[some, all]: [u64; 2]| some as f64 / all.max(1) as f64;
+    pub(super) fn cost(&self, drawn: &DrawnModel, instances: usize) -> FrameCost {
+        let Times { frame, compute, draw } = &self.times;
+        let [frame, compute, draw] = [frame, compute, draw].map(|times| middle(times.clone()).unwrap_or(0.0));
+        let Counted { frames, bones, clusters, triangles, levels, displacement } = &self.counted;
+        let mean = |sum: &u64| *sum as f64 / (*frames).max(1) as f64;
+        let fraction = |sum: &u64, each: u64| mean(sum) / (instances as u64 * each).max(1) as f64;
+        let pixels = self.view.quality().pixels;
         FrameCost {
+            pixels,
             frame_nanoseconds: frame,
             compute_nanoseconds: compute,
             draw_nanoseconds: draw,
-            nanoseconds_per_vertex: skin / vertices as f64,
-            skinned_fraction: fraction(self.clusters),
-            triangle_fraction: fraction(self.triangles),
-            vertex_error: self.errors.errors(),
+            bones: mean(bones),
+            clusters: mean(clusters),
+            skinned_fraction: fraction(clusters, drawn.clusters),
+            triangle_fraction: fraction(triangles, drawn.triangles()),
+            levels: *levels,
+            displacement: displacement.unwrap_or_else(|| Displacement::none(pixels)),
         }
     }
 }

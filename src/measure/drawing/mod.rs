@@ -1,138 +1,131 @@
-//! Draws a crowd with its skin in several variants ("looks") that show the same frames, and measures the time
-//! of each and how far its vertices lie from those of full animation and full skinning.
+//! Draws a crowd by scenes that differ in nothing but their level of detail ("looks"), and measures what the frames of each
+//! cost and how far what is drawn lies from its place.
 
+mod cost;
 mod look;
-mod world;
+mod parts;
+mod subject;
 
+pub use cost::FrameCost;
+pub(crate) use parts::Parts;
+pub(crate) use subject::DrawnModel;
+
+use glam::Vec3;
 use image::RgbaImage;
 
-use super::device::Device;
-use super::gates::frame;
-use super::options::{CrowdOptions, DrawnOptions, MeshDetail, SkinningDetail};
+use super::options::CrowdOptions;
 use super::placement::Placements;
-use super::stage::{LINES, Stage};
-use super::vertices::{FrameCost, Seen, Skinned};
-use crate::animation::{Gate, Lod};
+use super::stage::{FIELD_OF_VIEW, LINES, Stage};
 use crate::gpu::{Gpu, TimedBy, Timer};
-use crate::render::target::Target;
+use crate::render::{Offscreen, Renderer};
+use crate::scene::Camera;
 use crate::{Error, InputError};
 use look::Look;
-use world::World;
 
 /// Largest number of frames of a run that are timed.
-const TIMED: u32 = 45;
+const TIMED: u32 = 40;
+
+/// Number of pairs of successive frames that are measured in a long run.
+const PAIRS: u32 = 2;
+
+/// The smallest number of frames: one that is timed as a whole, one in its parts, and a pair that is measured.
+const LEAST_FRAMES: u32 = 4;
 
 /// Colour of the background, in linear light.
-const SKY: [f64; 3] = [0.02, 0.025, 0.03];
-
-/// Width and height of the picture, as a ratio.
-const ASPECT: [u32; 2] = [16, 9];
+const SKY: [f32; 3] = [0.02, 0.025, 0.03];
 
 /// Width and height of the picture, in pixels.
-const PICTURE: [u32; 2] = [LINES * ASPECT[0] / ASPECT[1], LINES];
+const PICTURE: [u32; 2] = [LINES * 16 / 9, LINES];
 
-/// Which of the two crowds animates a look.
+/// What a frame is played for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Animation {
-    /// The crowd under the gate; clusters with a bone that moved are skinned.
-    Gated,
-    /// The crowd in full; all bones are sampled and all clusters are skinned.
-    Full,
+enum Aim {
+    /// To let drivers compile, in the first frame.
+    First,
+    /// Only to come to the next, by looks whose frames depend on those before.
+    Nothing,
+    /// The time of all that is recorded, with the drawing.
+    Whole,
+    /// The times of what precedes the drawing, and of the drawing.
+    Parts,
+    /// Counts and displacements, in a frame that begins a pair of such frames or ends it.
+    Measures { begins: bool },
 }
 
-/// How a crowd is animated, skinned and drawn.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Variant {
-    pub animation: Animation,
-    pub skinning: SkinningDetail,
-    pub mesh: MeshDetail,
-}
-
-impl Variant {
-    /// The variant without level of detail.
-    pub(crate) const FULL: Self =
-        Self { animation: Animation::Full, skinning: SkinningDetail::Full, mesh: MeshDetail::Full };
-
-    /// The variant that draws by these options, with all bones animated.
-    pub(crate) fn of(drawn: &DrawnOptions) -> Self {
-        Self { skinning: drawn.skinning, mesh: drawn.mesh, ..Self::FULL }
+impl Aim {
+    /// The aim of frame `number` of `frames`. The first is not counted among these.
+    fn of(number: u32, frames: u32) -> Self {
+        let block = (frames / PAIRS).max(LEAST_FRAMES);
+        let every = frames.div_ceil(TIMED);
+        let Some(at) = number.checked_sub(1).map(|number| number % block) else { return Self::First };
+        // A block that does not come to its end has no pair.
+        let is_whole = number - 1 - at + block <= frames;
+        match at {
+            _ if is_whole && at + 2 >= block => Self::Measures { begins: at + 2 == block },
+            _ if !at.is_multiple_of(every) => Self::Nothing,
+            _ if (at / every).is_multiple_of(2) => Self::Whole,
+            _ => Self::Parts,
+        }
     }
 }
 
-/// Number of turns in which each variant is timed once as a whole and once in its parts, and once all of them
-/// in their skinning.
-fn turns(variants: usize) -> usize {
-    2 * variants + 1
-}
-
-/// Refuses a number of frames that is too small to take each time of each variant once.
-pub(crate) fn check_frames(options: &CrowdOptions, variants: usize) -> Result<(), InputError> {
-    let least = turns(variants);
-    if options.frames as usize >= least {
+/// Refuses a number of frames that is too small to take each time and each measurement once.
+pub(crate) fn check_frames(options: &CrowdOptions) -> Result<(), InputError> {
+    if options.frames >= LEAST_FRAMES {
         return Ok(());
     }
-    let bound = format!("must be at least {least}, as the crowd is drawn");
+    let bound = format!("must be at least {LEAST_FRAMES}, as the crowd is drawn");
     Err(InputError::new("frames", options.frames, bound))
 }
 
-/// Looks at one crowd. All looks are compared with the first.
+/// Looks at one crowd.
 pub(crate) struct Drawing<'a> {
     gpu: &'a Gpu,
-    stage: &'a Stage<'a>,
-    placements: &'a Placements,
-    device: Device,
+    options: &'a CrowdOptions,
+    drawn: &'a DrawnModel,
     timer: Timer,
-    target: Target,
+    target: Offscreen,
+    renderer: Renderer,
     looks: Vec<Look>,
 }
 
 impl<'a> Drawing<'a> {
-    /// Makes a look for each of `variants`.
+    /// Makes a look for each of `parts`.
     pub(crate) fn new(
         gpu: &'a Gpu,
         stage: &'a Stage<'a>,
-        placements: &'a Placements,
-        (gate, lods): (&Gate, &[Lod]),
-        variants: &[Variant],
+        drawn: &'a DrawnModel,
+        placements: &Placements,
+        parts: &[Parts],
     ) -> Result<Self, Error> {
-        let device = Device::new(gpu, stage, gate, lods)?;
-        let world = World::new(gpu, stage, placements)?;
-        let looks = variants.iter().map(|variant| world.look(&device, *variant)).collect::<Result<_, _>>()?;
-        Ok(Self {
-            looks,
-            target: Target::new(gpu, PICTURE)?,
-            timer: Timer::for_drawing(gpu)?,
-            gpu,
-            stage,
-            placements,
-            device,
-        })
+        let target = Offscreen::new(gpu, PICTURE, true, 1, false)?;
+        let mut renderer = Renderer::new(gpu, target.format())?;
+        let (places, camera) = (placements.in_scene(), camera(stage, placements));
+        let look = |parts: &Parts| Look::new(gpu, stage, drawn, (&places, camera), *parts);
+        let looks = parts.iter().map(look).collect::<Result<Vec<_>, Error>>()?;
+        looks.iter().try_for_each(|look| renderer.prepare(&look.scene))?;
+        let timer = Timer::for_drawing(gpu)?;
+        Ok(Self { gpu, options: stage.options, drawn, timer, target, renderer, looks })
     }
 
-    /// Plays all frames, and returns the cost of each look. Calls `step` after each frame.
-    pub(crate) fn run(&mut self, step: impl Fn()) -> Result<Vec<FrameCost>, Error> {
-        let CrowdOptions { frames, rate, .. } = *self.stage.options;
-        let mut timed = 0..;
+    /// Plays all frames, and returns the cost of each look; those before `measured` are timed alone. Calls `step` after each
+    /// frame.
+    pub(crate) fn run(&mut self, measured: usize, step: impl Fn()) -> Result<Vec<FrameCost>, Error> {
+        let CrowdOptions { frames, rate, .. } = *self.options;
+        let seconds = rate.recip() as f32;
         for number in 0..=frames {
-            self.device.set(number)?;
-            let (_, elapsed) = frame(number, rate);
-            for mesh in self.looks.iter().flat_map(|look| &look.meshes) {
-                mesh.weights.set(self.gpu, elapsed)?;
-            }
-            if number > 0 && number % frames.div_ceil(TIMED) == 0 {
-                let turn = timed.next().unwrap_or(0) % turns(self.looks.len());
-                self.play_timed(turn)?;
-                self.compare()?;
-            } else {
-                self.gpu.run("frame", |encoder| {
-                    self.device.gated.frame.record(encoder);
-                    let gated = |look: &&Look| look.variant.animation == Animation::Gated;
-                    self.looks.iter().filter(gated).for_each(|look| look.compute(encoder));
-                })?;
+            let aim = Aim::of(number, frames);
+            // Looks take turns, and each begins as often as any other.
+            for turn in 0..self.looks.len() {
+                let look = (number as usize + turn) % self.looks.len();
+                self.looks[look].scene.advance(if number > 0 { seconds } else { 0.0 })?;
+                let is_left = look < measured && matches!(aim, Aim::Measures { .. });
+                self.play(look, if is_left { Aim::Nothing } else { aim })?;
             }
             step();
         }
-        Ok(self.looks.iter().map(Look::cost).collect())
+        let instances = self.options.instances;
+        Ok(self.looks.iter().map(|look| look.cost(self.drawn, instances)).collect())
     }
 
     /// The clock that takes the times.
@@ -142,99 +135,99 @@ impl<'a> Drawing<'a> {
 
     /// Draws the last frame of a look.
     pub(crate) fn picture(&self, look: usize) -> Result<RgbaImage, Error> {
-        let look = &self.looks[look];
-        self.target.draw(self.gpu, SKY, |pass| look.meshes.iter().for_each(|mesh| mesh.scene.draw(pass)))?;
-        Ok(self.target.read(self.gpu)?)
+        let (target, renderer, look) = (&self.target, &self.renderer, &self.looks[look]);
+        run(self.gpu, |encoder| draw(target, renderer, look, encoder))?;
+        target.read(self.gpu)
     }
 
-    /// Plays a frame of all looks. The gated crowd can advance only once per frame, so looks take turns: each
-    /// turn times one look, as a whole or with its compute and its drawing apart. The last turn times the
-    /// skinning of every look.
-    fn play_timed(&mut self, turn: usize) -> Result<(), Error> {
-        let chosen = (turn < 2 * self.looks.len()).then_some(turn / 2);
-        for animation in [Animation::Gated, Animation::Full] {
-            if chosen.is_none_or(|chosen| self.looks[chosen].variant.animation != animation) {
-                self.gpu.run("animation", |encoder| self.device.record(animation, encoder))?;
+    /// Plays a frame of a look.
+    fn play(&mut self, look: usize, aim: Aim) -> Result<(), Error> {
+        let Self { gpu, timer, target, renderer, looks, .. } = self;
+        let look = &mut looks[look];
+        match aim {
+            Aim::First => run(gpu, |encoder| {
+                look.compute(encoder)?;
+                draw(target, renderer, look, encoder)
+            }),
+            Aim::Nothing if !look.is_gated => Ok(()),
+            Aim::Nothing => run(gpu, |encoder| look.compute(encoder)),
+            Aim::Whole => {
+                let frame = timed(gpu, timer, |encoder| {
+                    look.compute(encoder)?;
+                    draw(target, renderer, look, encoder)
+                })?;
+                look.times.frame.push(frame);
+                Ok(())
+            }
+            Aim::Parts => {
+                let compute = timed(gpu, timer, |encoder| look.compute(encoder))?;
+                let draw = timed(gpu, timer, |encoder| draw(target, renderer, look, encoder))?;
+                look.times.compute.push(compute);
+                look.times.draw.push(draw);
+                Ok(())
+            }
+            Aim::Measures { begins } => {
+                look.scene.set_statistics(true)?;
+                run(gpu, |encoder| look.compute(encoder))?;
+                look.measure(begins)?;
+                look.scene.set_statistics(false)
             }
         }
-        if let Some(chosen) = chosen {
-            self.time_look(chosen, turn.is_multiple_of(2))?;
-        }
-        let Self { gpu, timer, looks, .. } = self;
-        for (index, look) in looks.iter_mut().enumerate() {
-            match chosen {
-                None => {
-                    gpu.run("decisions", |encoder| look.decide(encoder))?;
-                    let skin = timer.measure(gpu, |encoder| look.skin(encoder))?.nanoseconds;
-                    look.times.skin.push(skin);
-                }
-                Some(chosen) if chosen == index => {}
-                Some(_) => gpu.run("skinning", |encoder| look.compute(encoder))?,
-            }
-        }
-        Ok(())
-    }
-
-    /// Times a look's frame with its animation, as a whole or as compute and drawing.
-    fn time_look(&mut self, chosen: usize, is_whole: bool) -> Result<(), Error> {
-        let Self { gpu, timer, target, device, looks, .. } = self;
-        let look = &looks[chosen];
-        let compute = |encoder: &mut wgpu::CommandEncoder| {
-            device.record(look.variant.animation, encoder);
-            look.compute(encoder);
-        };
-        let draw = |encoder: &mut wgpu::CommandEncoder| look.draw(target, encoder);
-        let timed = |record: &dyn Fn(&mut wgpu::CommandEncoder)| -> Result<f64, Error> {
-            Ok(timer.measure(gpu, record)?.nanoseconds)
-        };
-        if is_whole {
-            let frame = timed(&|encoder| {
-                compute(encoder);
-                draw(encoder);
-            })?;
-            looks[chosen].times.frame.push(frame);
-        } else {
-            let [compute, draw] = [timed(&compute)?, timed(&draw)?];
-            looks[chosen].times.compute.push(compute);
-            looks[chosen].times.draw.push(draw);
-        }
-        Ok(())
-    }
-
-    /// Reads all looks back, and compares them with the first.
-    fn compare(&mut self) -> Result<(), Error> {
-        let Self { gpu, stage, placements, looks, .. } = self;
-        for mesh in 0..stage.subject.model.meshes.len() {
-            let first = &looks[0].meshes[mesh];
-            let fresh = first.skin.skinned.read_blocking(gpu)?;
-            let slots = first.slots.clone();
-            let fresh = Skinned { vertices: &fresh, slots: &slots };
-            for look in looks.iter_mut() {
-                let drawn = &look.meshes[mesh];
-                let own = drawn.skin.skinned.read_blocking(gpu)?;
-                let stale = Skinned { vertices: &own, slots: &drawn.slots };
-                let instance_lods = drawn.skin.crowd.instance_lods.read_blocking(gpu)?;
-                let levelled = stage.levelled.as_ref().filter(|_| look.variant.mesh != MeshDetail::Full);
-                let levels = levelled.map(|levelled| (&levelled.levels[mesh], &levelled.own[mesh][..]));
-                look.errors.add(
-                    (placements, stage.projection),
-                    Seen { instance_lods: &instance_lods, levels },
-                    stale,
-                    fresh,
-                );
-                look.count(gpu, mesh, &instance_lods)?;
-            }
-        }
-        Ok(())
     }
 }
 
-impl Device {
-    /// Records the animation of a frame of one of the crowds.
-    fn record(&self, animation: Animation, encoder: &mut wgpu::CommandEncoder) {
-        match animation {
-            Animation::Gated => self.gated.frame.record(encoder),
-            Animation::Full => self.full.record(encoder),
+/// Records the drawing of a look.
+fn draw(
+    target: &Offscreen,
+    renderer: &Renderer,
+    look: &Look,
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), Error> {
+    Ok(target.record(encoder, SKY, |pass| look.draw(renderer, pass))?)
+}
+
+/// Records, submits and waits.
+fn run(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), Error>) -> Result<(), Error> {
+    let mut recorded = Ok(());
+    gpu.run("frame", |encoder| recorded = record(encoder))?;
+    recorded
+}
+
+/// As [`run`], and returns how many nanoseconds it took.
+fn timed(
+    gpu: &Gpu,
+    timer: &Timer,
+    record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), Error>,
+) -> Result<f64, Error> {
+    let mut recorded = Ok(());
+    let time = timer.measure(gpu, |encoder| recorded = record(encoder))?;
+    recorded?;
+    Ok(time.nanoseconds)
+}
+
+/// The camera of a crowd, at the origin: it looks along −Z and sees all of it.
+fn camera(stage: &Stage<'_>, placements: &Placements) -> Camera {
+    let deepest = placements.origins.iter().map(|origin| origin[2]).fold(0.0, f32::max);
+    let far = 2.0 * deepest + 4.0 * stage.options.size * stage.metres_a_unit;
+    Camera::looking_at(Vec3::ZERO, Vec3::NEG_Z, FIELD_OF_VIEW, [stage.projection.near, far], PICTURE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_aim_comes_about() {
+        for frames in [4, 5, 11, 60, 240, 1000] {
+            let aims: Vec<Aim> = (0..=frames).map(|number| Aim::of(number, frames)).collect();
+            let count = |aim: Aim| aims.iter().filter(|other| **other == aim).count();
+            let timed = count(Aim::Whole) + count(Aim::Parts);
+            assert!((2..=TIMED as usize + 2).contains(&timed), "{frames}: {timed}");
+            assert!(count(Aim::Whole).abs_diff(count(Aim::Parts)) <= PAIRS as usize + 1, "{frames}");
+            assert!(count(Aim::Parts) > 0 && aims[0] == Aim::First, "{frames}");
+            let pair = [true, false].map(|begins| Aim::Measures { begins });
+            let pairs = aims.windows(2).filter(|two| **two == pair).count();
+            assert!(pairs > 0 && pair.map(count) == [pairs; 2], "{frames}: {pairs}");
         }
     }
 }

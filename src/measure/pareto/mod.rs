@@ -83,7 +83,7 @@ pub fn pareto(
     listener: Listener<'_>,
 ) -> Result<ParetoReport, Error> {
     options.validate()?;
-    let stage = Stage::new(subject, &options.crowd, None, listener)?;
+    let stage = Stage::new(subject, &options.crowd, false)?;
     let off = stage.gate(&GateMode::Off)?;
     let animated_bones = animated_bones(&off);
     let points = points(&stage, options, &off, listener)?;

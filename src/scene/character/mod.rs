@@ -1,29 +1,25 @@
 //! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
 
+mod drawn;
 mod driven;
 mod layers;
+#[cfg(feature = "verify")]
+mod measured;
+mod played;
 mod posed;
 mod provide;
 mod runtime;
 
-use std::ops::Range;
-
-use crate::animation::{BoundTable, ClipSet, Frame, Gate, RootMotion, RotationPath};
-#[cfg(feature = "verify")]
-use crate::asset::Affine;
+use crate::Error;
+use crate::animation::{BoundTable, ClipSet, Gate, RootMotion, RotationPath};
 use crate::asset::mesh::bone_radii;
 use crate::gpu::{Gpu, Staged, Upload as _};
-use crate::lod::SceneDraw;
 use crate::lod::assign::AssignPass;
-use crate::scene::chunk::{Chunk, common};
-use crate::scene::drawable::Drawable;
+use crate::scene::chunk::Chunk;
 use crate::scene::instances::Changed;
 use crate::scene::layout::{Layout, error_vectors};
-use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::Looks;
 use crate::scene::mesh;
 use crate::scene::options::{CharacterOptions, bone_of};
-use crate::scene::placement::Play;
 use crate::scene::playing::Playing;
 use crate::scene::quality::Shares;
 use crate::scene::stage::Stage;
@@ -31,18 +27,11 @@ use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::merged::Merged;
-use crate::skinning::paged::PagedSkin;
-#[cfg(feature = "verify")]
-use crate::skinning::vertex::Vertex;
 use crate::skinning::{Extent, poses_of};
-use crate::{Error, InputError};
 use driven::Driven;
 use layers::{CharacterLayer, Reach};
 pub(super) use provide::{Provided, Replaced};
 pub(super) use runtime::{Runtime, Shared};
-
-/// The time in seconds after which starts are counted from a later moment, because `f32` seconds lose precision.
-const EPOCH: f64 = 128.0;
 
 /// A character and all of its instances.
 #[derive(Debug)]
@@ -175,123 +164,6 @@ impl Character {
         mesh::errors(&self.merged)
     }
 
-    /// Binds the pages of all chunks, after some were replaced.
-    pub fn rebind(&self, gpu: &Gpu, layouts: &SceneLayouts, chunks: &mut [Chunk]) -> Result<(), Error> {
-        for (chunk, runtime) in chunks.iter_mut().zip(&self.runtimes) {
-            for (drawable, skin) in chunk.drawables.iter_mut().zip(&runtime.skins) {
-                if let Drawable::Mesh(mesh) = drawable {
-                    *mesh = mesh.with_pages(gpu, layouts, skin.pages())?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// The chunks of its instances. What is drawn of them differs in the pages; `first` has the meshes and materials.
-    pub fn chunks(&self, gpu: &Gpu, layouts: &SceneLayouts, first: &[Drawable]) -> Result<Vec<Chunk>, Error> {
-        Self::chunks_of((gpu, layouts), first, &self.runtimes)
-    }
-
-    /// As [`Character::chunks`], of these.
-    pub fn chunks_of(
-        (gpu, layouts): (&Gpu, &SceneLayouts),
-        first: &[Drawable],
-        runtimes: &[Runtime],
-    ) -> Result<Vec<Chunk>, Error> {
-        let chunk = |runtime: &Runtime| {
-            let drawable = |(drawable, skin): (&Drawable, &PagedSkin)| match drawable {
-                Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.beside(gpu, layouts, skin.pages())?)),
-                Drawable::Terrain(_) => Ok(drawable.clone()),
-            };
-            let drawables = first.iter().zip(&runtime.skins).map(drawable);
-            Ok(Chunk::new(runtime.slots.clone(), drawables.collect::<Result<_, Error>>()?))
-        };
-        runtimes.iter().map(chunk).collect()
-    }
-
-    /// What is drawn of the first chunk: each mesh, from the vertices of each instance.
-    pub fn drawables(
-        &self,
-        gpu: &Gpu,
-        layouts: &SceneLayouts,
-        looks: &Looks,
-    ) -> Result<Vec<Drawable>, Error> {
-        self.drawables_of((gpu, layouts), looks, &self.runtimes)
-    }
-
-    /// As [`Character::drawables`], of these chunks.
-    pub fn drawables_of(
-        &self,
-        (gpu, layouts): (&Gpu, &SceneLayouts),
-        looks: &Looks,
-        runtimes: &[Runtime],
-    ) -> Result<Vec<Drawable>, Error> {
-        let drawable = |(index, skin): (usize, &PagedSkin)| {
-            let mesh = (&skin.mesh, &*skin.clusters);
-            mesh::drawable((gpu, layouts), (&self.merged, looks), index, mesh, Some(skin.pages()))
-        };
-        runtimes
-            .first()
-            .map_or(Ok(Vec::new()), |runtime| runtime.skins.iter().enumerate().map(drawable).collect())
-    }
-
-    /// The draws of all parts of a chunk.
-    pub fn draws(&self) -> Vec<SceneDraw> {
-        let skins = self.runtimes.first().into_iter().flat_map(|runtime| runtime.skins.iter().enumerate());
-        skins.flat_map(|(index, skin)| mesh::part_draws(&self.merged, index, &skin.mesh)).collect()
-    }
-
-    /// Sets what an instance plays, and returns a sphere around it.
-    pub fn play(&mut self, index: u32, play: &Play<'_>) -> Result<BoundingSphere, InputError> {
-        play.validate()?;
-        let clip = self.clip(play.clip)?;
-        self.plays[index as usize] =
-            Playing { clip: clip as u32, wrap: play.wrap, start: play.start, rate: play.rate };
-        self.changed.add(index, self.plays.len());
-        Ok(self.sphere_of(index))
-    }
-
-    /// Sets that an instance plays the first clip, and returns a sphere around it.
-    pub fn play_first(&mut self, index: u32) -> BoundingSphere {
-        self.plays[index as usize] = Playing::REST;
-        self.changed.add(index, self.plays.len());
-        self.clear_layers(index);
-        self.spheres[0]
-    }
-
-    fn clip(&self, name: &str) -> Result<usize, InputError> {
-        let clip = self
-            .merged
-            .model
-            .clip(name)
-            .map_err(|error| InputError { path: "play.clip".to_owned(), ..error })?;
-        Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
-    }
-
-    /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
-    #[cfg(feature = "verify")]
-    pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
-        let bones = self.merged.model.skeleton.len();
-        let mut all = Vec::with_capacity(bones * self.plays.len());
-        for runtime in &self.runtimes {
-            all.extend(
-                runtime.frame.model_matrices().read_blocking(gpu)?.drain(..bones * runtime.slots.len()),
-            );
-        }
-        Ok((all, bones))
-    }
-
-    /// The skinned vertices of an instance, mesh by mesh.
-    #[cfg(feature = "verify")]
-    pub fn skinned(&self, gpu: &Gpu, index: u32) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
-        let index = index as usize;
-        let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index));
-        let skins = runtime
-            .into_iter()
-            .flat_map(|runtime| runtime.skins.iter().map(|skin| skin.read(gpu, index - runtime.slots.start)));
-        skins.collect()
-    }
-
     /// Prepares the assignment of levels for a layout, unless it is prepared. `mesh_fraction` is the fraction of the allowed
     /// displacement that levels of detail use.
     pub fn fit(
@@ -324,39 +196,6 @@ impl Character {
     pub fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
         for (params, values, _) in self.runtimes.iter().flat_map(|runtime| &runtime.assign) {
             staged.uniform(params, &AssignParams { mesh_fraction: fraction, ..*values })?;
-        }
-        Ok(())
-    }
-
-    /// Stages the time, and what instances play.
-    pub fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
-        if (now - self.epoch).abs() > EPOCH {
-            self.epoch = now;
-            self.changed.all(self.plays.len());
-            self.layers.iter_mut().for_each(|layer| layer.changed.all(self.plays.len()));
-        }
-        for [from, to] in self.changed.take(self.plays.len()) {
-            self.stage_plays(staged, &(from..to))?;
-        }
-        self.stage_layers(staged, now)?;
-        let elapsed = (now - self.epoch) as f32;
-        for runtime in &self.runtimes {
-            runtime.frame.set_through(staged, frame, elapsed)?;
-            for weights in &runtime.weights {
-                weights.set_through(staged, elapsed)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn stage_plays(&self, staged: &mut Staged, run: &Range<usize>) -> Result<(), Error> {
-        let clips = &self.merged.model.clips;
-        let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
-        for Runtime { slots, crowd, .. } in &self.runtimes {
-            let Some(own) = common(run, slots) else { continue };
-            let plays = self.plays[own.clone()].iter();
-            let plays = plays.map(|play| play.on_device(duration(play), self.epoch));
-            staged.elements(&crowd.instances, own.start - slots.start, &plays.collect::<Vec<_>>())?;
         }
         Ok(())
     }

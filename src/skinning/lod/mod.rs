@@ -24,8 +24,6 @@ pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{LodBuffers, LodJob, LodPass};
-#[cfg(feature = "gpu")]
-pub(crate) use pass::{draws_at, numbers_at};
 
 /// The view of a crowd, and its fade and levels.
 #[derive(Debug, Clone, Copy, PartialEq)]

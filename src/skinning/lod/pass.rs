@@ -62,8 +62,9 @@ pub struct LodBuffers<'a> {
     pub instance_lods: &'a Buffer<InstanceLod>,
     /// Written: for each level of the view the list of instances that are seen, all together [`list_words`] words.
     pub drawn: &'a Buffer<u32>,
-    /// Written in part: of the ten arguments of each level ([`crate::render::SkinnedScene::arguments`]), the second,
-    /// which is the number of instances in its list, and the seventh, which is the length of the list up to its last
+    /// Written in part: two indirect indexed draws for each level, of five words each; the first is to show instances that are
+    /// not mirrored, or all if both sides are seen, and the second those that are. Written are the second word, which
+    /// is the number of instances in the level's list, and the seventh, which is the length of the list up to its last
     /// mirrored instance.
     pub arguments: &'a Buffer<u32>,
 }

@@ -22,23 +22,30 @@ pub fn is_mirrored(clip: &Mat4) -> bool {
 /// A matrix from the model's space to clip space that puts all of these vertices in the middle of a square
 /// picture, seen from +Z, slightly from the left and from above.
 pub fn framing<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> Mat4 {
+    let [view_from_model, clip_from_view] = framing_camera(vertices);
+    clip_from_view * view_from_model
+}
+
+/// The camera of [`framing`]: the matrix from the model's space to the camera's, and the projection.
+pub fn framing_camera<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) -> [Mat4; 2] {
     let positions = vertices.map(|vertex| Vec3::from(vertex.position));
-    let wide = around(positions.clone());
-    let seen = positions.map(|position| wide.project_point3(position).truncate());
+    let [view, wide] = around(positions.clone());
+    let clip = wide * view;
+    let seen = positions.map(|position| clip.project_point3(position).truncate());
     let (low, high) =
         seen.fold((Vec2::MAX, Vec2::MIN), |(low, high), position| (low.min(position), high.max(position)));
     if !low.cmple(high).all() {
-        return wide;
+        return [view, wide];
     }
     // The contents are centered and fill nine tenths.
     let zoom = 1.8 / (high - low).max_element().max(1e-3);
     let middle = low.midpoint(high) * zoom;
     let crop = Mat4::from_translation(-middle.extend(0.0)) * Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
-    crop * wide
+    [view, crop * wide]
 }
 
-/// A camera that sees a sphere around the points.
-fn around(positions: impl Iterator<Item = Vec3>) -> Mat4 {
+/// A camera that sees a sphere around the points: the matrix to its space, and the projection.
+fn around(positions: impl Iterator<Item = Vec3>) -> [Mat4; 2] {
     let (low, high) = positions
         .fold((Vec3::MAX, Vec3::MIN), |(low, high), position| (low.min(position), high.max(position)));
     let (low, high) = if low.cmple(high).all() { (low, high) } else { (Vec3::ZERO, Vec3::ONE) };
@@ -49,7 +56,8 @@ fn around(positions: impl Iterator<Item = Vec3>) -> Mat4 {
     let eye = center + distance * Vec3::new(-0.45, 0.2, 1.0).normalize();
     let view = camera::rh::view::look_at_mat4(eye, center, Vec3::Y);
     let near = distance - 1.01 * radius;
-    camera::rh::proj::directx::perspective(field_of_view, 1.0, near, distance + 1.01 * radius) * view
+    let far = distance + 1.01 * radius;
+    [view, camera::rh::proj::directx::perspective(field_of_view, 1.0, near, far)]
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Pictures of skinned meshes without a GPU: the CPU reference of `wgsl/render/skinned.wgsl`, for one instance.
+//! Pictures of skinned meshes without a GPU: the CPU reference of `wgsl/render/scene_mesh.wgsl`, for one instance without normal
+//! maps.
 
 use glam::{Mat4, Vec3, Vec4};
 

@@ -36,8 +36,6 @@ pub const STEP: f32 = 1.0 / 60.0;
 /// A model with levels of detail for its first clip, and where its instances stand.
 pub struct Crowd {
     pub model: Model,
-    /// Poses of the clip, 60 a second.
-    pub poses: usize,
     /// The positions of the instances before a camera at the origin that looks along −Z.
     pub places: Vec<Vec3>,
     pub projection: Projection,
@@ -47,8 +45,8 @@ pub struct Crowd {
 impl Crowd {
     /// The nearest instances are `tall` pixels tall.
     pub fn new(mut model: Model, tall: f32) -> Self {
-        let poses = poses_of(&model.clips[0]).expect("a short clip");
         if model.meshes.iter().all(|mesh| mesh.levels.is_empty()) {
+            let poses = poses_of(&model.clips[0]).expect("a short clip");
             add_levels(&mut model, &[0], poses).expect("valid");
         }
         let [low, high] = corners(&model);
@@ -62,7 +60,7 @@ impl Crowd {
             Vec3::new(column - (ROW - 1) as f32 * size / 4.0, -middle, -front - row)
         };
         let places: Vec<Vec3> = (0..COUNT).map(place).collect();
-        Self { model, poses, places, projection, far: 2.0 * front + 14.0 * size }
+        Self { model, places, projection, far: 2.0 * front + 14.0 * size }
     }
 
     /// The camera, turned about the vertical axis.

@@ -2,27 +2,18 @@
 
 use relievo::InputError;
 use relievo::measure::{MeshDetail, SkinningDetail};
-use relievo::skinning::instance_lod::InstanceLod;
 
 /// Parses `--skinning`: the influences that vertices follow.
 pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
-    let refused = || InputError::new("skinning", text, "must be full, truncate:K, fade or bounded:PIXELS");
-    if let Some(pixels) = bounded("skinning", text) {
-        return Ok(SkinningDetail::Bounded { pixels: pixels? });
+    if text == "fade" || text.starts_with("truncate:") {
+        let bound =
+            "must be full or bounded:PIXELS, as a scene skins; `relievo skin --influences` has the others";
+        return Err(InputError::new("skinning", text, bound));
     }
-    match text.split_once(':') {
+    match bounded("skinning", text) {
+        Some(pixels) => Ok(SkinningDetail::Bounded { pixels: pixels? }),
         None if text == "full" => Ok(SkinningDetail::Full),
-        None if text == "fade" => Ok(SkinningDetail::Fade),
-        Some(("truncate", most)) => {
-            let instance_lod =
-                InstanceLod::truncate(most.parse().map_err(|_| refused())?).map_err(|error| {
-                    InputError::new("skinning", text, format!("{} {}", error.path, error.bound))
-                })?;
-            let max_influences = instance_lod.max_influences;
-            let is_full = instance_lod == InstanceLod::FULL;
-            Ok(if is_full { SkinningDetail::Full } else { SkinningDetail::Truncate { max_influences } })
-        }
-        _ => Err(refused()),
+        None => Err(InputError::new("skinning", text, "must be full or bounded:PIXELS")),
     }
 }
 
@@ -48,14 +39,12 @@ mod tests {
 
     #[test]
     fn names_are_read_as_they_are_written() {
-        for name in ["full", "fade", "truncate:2", "bounded:0.25"] {
-            assert_eq!(skinning(name).expect("valid").to_string(), name);
-        }
         for name in ["full", "bounded:0.25"] {
+            assert_eq!(skinning(name).expect("valid").to_string(), name);
             assert_eq!(mesh(name).expect("valid").to_string(), name);
         }
-        for name in ["", "truncate", "truncate:0", "truncate:x", "fade:1", "half"] {
-            assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");
+        for name in ["fade", "truncate:2", "truncate:x"] {
+            assert!(skinning(name).expect_err("refused").bound.contains("relievo skin"), "{name}");
         }
         for name in ["", "bounded", "bounded:-1", "bounded:NaN", "bounded:x", "half", "full:1"] {
             assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");

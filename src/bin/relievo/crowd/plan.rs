@@ -1,5 +1,6 @@
 //! Converts and checks the arguments of `relievo crowd` before a model is read.
 
+use clap::ValueEnum as _;
 use relievo::animation::Range;
 use relievo::animation::priority::Weights;
 use relievo::asset::Model;
@@ -88,6 +89,14 @@ fn gate(a: &Crowd) -> Result<GateMode, InputError> {
 }
 
 fn drawn(a: &Crowd) -> Result<DrawnOptions, InputError> {
+    match a.gate {
+        Some(gate) if a.is_drawn() && !matches!(gate, Gate::Off | Gate::Bounded) => {
+            let name = gate.to_possible_value().map_or_else(String::new, |name| name.get_name().to_owned());
+            let bound = "must be off or bounded with --image and --scene, which draw a scene; leave them out to measure it";
+            return Err(InputError::new("gate", name, bound));
+        }
+        _ => {}
+    }
     if a.is_drawn() && a.backend == Backend::Cpu {
         return Err(InputError::new("backend", "cpu", "must be gpu, as the crowd is drawn"));
     }

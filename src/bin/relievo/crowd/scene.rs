@@ -36,8 +36,8 @@ pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
 fn lines(report: &SceneReport) -> String {
     let mut text = format!(
         "{} × {} bones and {} vertices in {:?}; gate {}, skinning {}, mesh {}; {}; {} frames at {} Hz; times by {}.\n\n\
-         | distance | tall px | Ω | LOD | frame ms | computed ms | drawn ms | skinning ns/vertex | skinned | triangles | \
-         error rms, max px |\n|---:|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|\n",
+         | distance | tall px | LOD | within px | frame ms | computed ms | drawn ms | bones | skinned | triangles | \
+         displacement px | jump px |\n|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
         report.instances,
         report.bones,
         report.vertices,
@@ -54,18 +54,18 @@ fn lines(report: &SceneReport) -> String {
         for (name, look) in SceneRow::NAMES.iter().zip(row.costs()) {
             writeln!(
                 text,
-                "| {} | {:.0} | {:.3} | {name} | {:.2} | {:.2} | {:.2} | {:.3} | {:.1} % | {:.1} % | {:.3}, {:.3} |",
+                "| {} | {:.0} | {name} | {} | {:.2} | {:.2} | {:.2} | {:.0} | {:.1} % | {:.1} % | {:.3} | {:.3} |",
                 row.distance,
                 row.tall_pixels,
-                row.mean_omega,
+                look.pixels,
                 look.frame_nanoseconds / 1e6,
                 look.compute_nanoseconds / 1e6,
                 look.draw_nanoseconds / 1e6,
-                look.nanoseconds_per_vertex,
+                look.bones,
                 100.0 * look.skinned_fraction,
                 100.0 * look.triangle_fraction,
-                look.vertex_error.rms_pixels,
-                look.vertex_error.max_pixels,
+                look.displacement.largest,
+                look.displacement.jump,
             )
             .expect("a string");
         }

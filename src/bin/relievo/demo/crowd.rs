@@ -9,7 +9,7 @@ use crate::crowd::Crowd;
 
 const PICTURE: Entry = entry(
     "crowd",
-    "A hundred creatures, each at its own moment, in one indirect draw",
+    "A hundred creatures, each at its own moment, drawn by a scene",
     "--model builtin --clip walk --gate bounded --image --instances 100 --spacing 0.6 --distance 600 --frames 8",
 );
 

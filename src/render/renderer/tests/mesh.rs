@@ -1,23 +1,24 @@
-//! Meshes look as the renderer of skinned meshes draws them: textured, cut out, mirrored, from both sides.
+//! Meshes look as the CPU reference draws them: textured, cut out, mirrored, from both sides.
 
 use glam::{Mat4, Vec3};
 use image::{Rgba, RgbaImage};
 
-use super::stage::{FORMAT, Stage, differing, drawn, gpu, through, view};
+use super::stage::{FORMAT, SIZE, Stage, differing, drawn, gpu, through, view};
 use crate::asset::material::{Alpha, Material, Sampling, Texture};
 use crate::asset::transform::{Affine, rows};
-use crate::asset::{Light, Model};
+use crate::asset::{Light, Mesh, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::render::Layer;
-use crate::render::{Albedo, ColorTexture, SkinnedInstances, SkinnedRenderer, TargetFormat};
+use crate::render::{Layer, TargetFormat};
 use crate::samples::creature::creature;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::buffers::MeshBuffers;
-use crate::skinning::vertex::Vertex;
-use crate::surface::mips::Mips;
+use crate::skinning::picture::texture::Surface;
+use crate::skinning::picture::{self, Part};
+use crate::skinning::skin::reference::transformed;
+use crate::skinning::vertex::{Vertex, vertices_of};
 
 /// The creature with a texture of colours and of every alpha.
 pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
@@ -93,28 +94,32 @@ pub fn placements() -> [Affine; 3] {
     [at(-1.2, Vec3::ONE), at(0.0, Vec3::new(1.0, 1.0, -1.0)), at(1.2, Vec3::new(-0.8, 1.1, 1.0))]
 }
 
-/// The picture of the renderer of skinned meshes.
-fn expected(gpu: &Gpu, model: &Model, clip_from_world: Mat4) -> Vec<[u8; 4]> {
-    let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
-    let white = Mips::of_color(RgbaImage::from_pixel(1, 1, Rgba([255; 4])));
-    let white = ColorTexture::new(gpu, &white, true).expect("uploaded").into();
-    let albedos = Albedo::of_meshes(gpu, model, &white, ColorTexture::new).expect("uploaded");
-    let instances = SkinnedInstances {
-        mesh: &buffers,
-        skinned: &Buffer::from_slice(gpu, "skinned", &clusters.vertices.repeat(3)).expect("uploaded"),
-        placements: &Buffer::from_slice(gpu, "placements", &placements()).expect("uploaded"),
-        drawn: &Buffer::from_slice(gpu, "drawn", &[0, 1, 2]).expect("uploaded"),
-        albedo: &albedos[0],
-        light: Light::default(),
-    };
-    let renderer = SkinnedRenderer::new(gpu, FORMAT).expect("compiled");
-    let mut scene = renderer.scene(gpu, &instances).expect("bound");
-    scene.set_camera(gpu, clip_from_world).expect("set");
-    super::stage::Canvas::new(gpu, &TargetFormat::new(FORMAT)).draw(gpu, |pass| scene.draw(pass))
+/// The host's picture of the same instances. A mirrored placement turns triangles inside out, so their corners are exchanged.
+fn expected(model: &Model, clip_from_world: Mat4) -> Vec<[u8; 4]> {
+    let mesh = &model.meshes[0];
+    let vertices = vertices_of(mesh);
+    let placed = placements().map(|place| {
+        let [x, y, z] = place.map(|row| Vec3::from_slice(&row));
+        let mut mesh = Mesh::clone(mesh);
+        if x.dot(y.cross(z)) < 0.0 {
+            mesh.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(0, 2));
+        }
+        (mesh, vertices.iter().map(|vertex| transformed(vertex, &place)).collect::<Vec<_>>())
+    });
+    let surface = Surface::of(model, &model.materials[0]);
+    let parts: Vec<_> =
+        placed.iter().map(|(mesh, vertices)| Part { mesh, level: 0, vertices, surface: &surface }).collect();
+    let scene = picture::Scene { clip_from_model: clip_from_world, light: Light::default(), size: SIZE };
+    let found = scene.draw(&parts, [-1.0; 3]);
+    let pixels = found.pixels.iter().zip(found.encoded().pixels().copied().collect::<Vec<_>>());
+    pixels.map(|(light, pixel)| if *light == [-1.0; 3] { [0; 4] } else { pixel.0 }).collect()
 }
 
+/// The levels of 255 by which filters and the light may round differently.
+const LEVELS: u8 = 3;
+
 #[test]
-fn meshes_look_as_the_renderer_of_skinned_meshes_draws_them() {
+fn meshes_look_as_the_reference_draws_them() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let seen = view(Vec3::new(0.4, 0.8, 4.5), false);
@@ -125,14 +130,15 @@ fn meshes_look_as_the_renderer_of_skinned_meshes_draws_them() {
         let model = painted(alpha, double_sided);
         let (drawable, indices) = mesh(&gpu, &layouts, &model, 3);
         for view in [seen, mirror] {
-            let expected = expected(&gpu, &model, view.clip_from_world);
+            let expected = expected(&model, view.clip_from_world);
             let stage = Stage::new(&gpu, &layouts, view, &placements(), &[[0, indices]]);
             let found = drawn(&gpu, &TargetFormat::new(FORMAT), &drawable, &stage, None, &[Layer::Color]);
-            // Of surfaces as near, that renderer shows the first, and this one the last.
-            let others = differing(&found, &expected, 1);
-            assert!(others <= 8, "{alpha:?} {double_sided} {}: {others} pixels", view.side);
             let covered = found.iter().filter(|pixel| **pixel != [0; 4]).count();
             assert!(covered > 500, "{covered} pixels");
+            // Rasterizers disagree about pixels on edges of triangles and of holes, which are many here.
+            let others = differing(&found, &expected, LEVELS);
+            println!("{alpha:?} {double_sided} {}: {others} of {covered} pixels", view.side);
+            assert!(25 * others <= covered, "{alpha:?} {double_sided} {}: {others} of {covered}", view.side);
             // A view that keeps the side of the other mirrors the wrong instances.
             let wrong = Stage::new(
                 &gpu,
@@ -142,7 +148,8 @@ fn meshes_look_as_the_renderer_of_skinned_meshes_draws_them() {
                 &[[0, indices]],
             );
             let wrong = drawn(&gpu, &TargetFormat::new(FORMAT), &drawable, &wrong, None, &[Layer::Color]);
-            assert!(differing(&wrong, &expected, 1) > 100, "{alpha:?} {double_sided} {}", view.side);
+            let wrong = differing(&wrong, &expected, LEVELS);
+            assert!(10 * wrong > covered, "{alpha:?} {double_sided} {}: {wrong} of {covered}", view.side);
         }
     }
 }

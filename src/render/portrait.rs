@@ -1,0 +1,80 @@
+//! Square pictures of a model as it stands, drawn by a scene.
+
+use image::RgbaImage;
+
+use super::Offscreen;
+use crate::asset::material::{Alpha, Material, Texture};
+use crate::asset::{Mesh, Model};
+use crate::gpu::Gpu;
+use crate::scene::{Camera, Depth, Placement, Scene};
+use crate::skinning::picture::framing_camera;
+use crate::skinning::{Portrait, Vertex, still};
+use crate::{Error, InputError};
+
+/// Draws the meshes of a model, with these vertices of each, in the middle of a picture: a scene of static meshes in full
+/// detail under the default light. [`PosedModel::on_host`](crate::skinning::PosedModel::on_host) draws the same without a
+/// device, within rounding. Waits for the device.
+///
+/// # Errors
+/// [`InputError`] for another number of meshes or vertices than the model has, for vertices outside the range of coordinates,
+/// for a material or an image that the model lacks, and for a picture without a pixel or a sample;
+/// [`crate::gpu::GpuError`].
+pub fn portrait(
+    gpu: &Gpu,
+    model: &Model,
+    vertices: &[Vec<Vertex>],
+    portrait: &Portrait,
+) -> Result<RgbaImage, Error> {
+    for (path, number) in [("portrait.edge", portrait.edge), ("portrait.finer", portrait.finer)] {
+        if number == 0 {
+            return Err(InputError::new(path, number, "must be at least 1").into());
+        }
+    }
+    let size = [portrait.finer.saturating_mul(portrait.edge); 2];
+    let target = Offscreen::linear(gpu, size)?;
+    let mut scene = Scene::new(gpu)?;
+    let standing = still(model, vertices)?;
+    // Each mesh is an object, so that no texture shares its size with another.
+    for mesh in standing.meshes.iter().filter(|mesh| !mesh.indices.is_empty()) {
+        let object = scene.add_mesh(&alone(&standing, mesh, portrait)?, 1)?;
+        scene.spawn(object, Placement::default())?;
+    }
+    let [view_from_world, clip_from_view] = framing_camera(vertices.iter().flatten());
+    let depth = Depth::Forward;
+    let camera = Camera { cell: [0; 3], view_from_world, clip_from_view, viewport: size, depth };
+    target.draw(&mut scene, camera, portrait.background)?;
+    Ok(target.read_linear(gpu)?.reduced(portrait.finer).encoded())
+}
+
+/// The model of one mesh. Its material has no normal map, as on the host, and what is blended is dithered, since the picture
+/// has one layer. A mesh without a material is clay.
+fn alone(model: &Model, mesh: &Mesh, portrait: &Portrait) -> Result<Model, InputError> {
+    let [r, g, b] = portrait.clay;
+    let clay = Material {
+        name: "clay".to_owned(),
+        color: [r, g, b, 1.0],
+        texture: None,
+        normal: None,
+        normal_scale: 1.0,
+        alpha: Alpha::Opaque,
+    };
+    let mut material = model.material(mesh)?.cloned().unwrap_or(clay);
+    let mut images = Vec::new();
+    if let Some(texture) = &mut material.texture {
+        images.push(model.images[texture.image].clone());
+        *texture = Texture { image: 0, ..*texture };
+    }
+    material.normal = None;
+    if material.alpha == Alpha::Blended {
+        material.alpha = Alpha::Dithered;
+    }
+    Ok(Model {
+        skeleton: model.skeleton.clone(),
+        skins: model.skins.clone(),
+        clips: Vec::new(),
+        meshes: vec![Mesh { material: Some(0), ..mesh.clone() }],
+        skinned: 0,
+        materials: vec![material],
+        images,
+    })
+}

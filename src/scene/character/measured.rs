@@ -1,0 +1,38 @@
+//! What a frame left of a character on the device, read back for measurements.
+
+use super::Character;
+use crate::Error;
+use crate::asset::Affine;
+use crate::gpu::Gpu;
+use crate::skinning::vertex::Vertex;
+
+impl Character {
+    /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
+    pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
+        let bones = self.merged.model.skeleton.len();
+        let mut all = Vec::with_capacity(bones * self.plays.len());
+        for runtime in &self.runtimes {
+            all.extend(
+                runtime.frame.model_matrices().read_blocking(gpu)?.drain(..bones * runtime.slots.len()),
+            );
+        }
+        Ok((all, bones))
+    }
+
+    /// The skinned vertices of some instances: for each, in the order of `indices`, mesh by mesh.
+    pub fn skinned(&self, gpu: &Gpu, indices: &[u32]) -> Result<Vec<Vec<Vec<Option<Vertex>>>>, Error> {
+        let mut all: Vec<Vec<Vec<Option<Vertex>>>> = vec![Vec::new(); indices.len()];
+        for runtime in &self.runtimes {
+            let own = (0..indices.len()).filter(|at| runtime.slots.contains(&(indices[*at] as usize)));
+            let own: Vec<usize> = own.collect();
+            let slots = own.iter().map(|at| indices[*at] as usize - runtime.slots.start);
+            let slots: Vec<usize> = slots.collect();
+            for skin in runtime.skins.iter().filter(|_| !own.is_empty()) {
+                for (at, vertices) in own.iter().zip(skin.read_each(gpu, &slots)?) {
+                    all[*at].push(vertices);
+                }
+            }
+        }
+        Ok(all)
+    }
+}
