@@ -84,6 +84,40 @@ fn frames_are_counted() {
     assert!(world.scene.statistics().is_none() && all.statistics().is_none());
 }
 
+/// Bones are sampled and clusters are skinned once a frame for all views: two views of the same characters, one fine and one
+/// coarse, take what the fine one takes alone, frame by frame.
+#[test]
+fn two_views_take_what_the_finer_takes() {
+    let gpu = device();
+    let of = |qualities: &[f32]| {
+        let mut world = World::new(&gpu, 10);
+        world.scene.set_statistics(true).expect("room");
+        let mut views: Vec<View> = qualities.iter().map(|pixels| world.view(*pixels)).collect();
+        for view in &mut views {
+            view.set(afar()).expect("a camera");
+        }
+        let frames = (0..12).map(|_| {
+            submit(&mut world.scene, &mut views.iter_mut().collect::<Vec<_>>());
+            gpu.wait().expect("done");
+            world.scene.advance(1.0 / 60.0).expect("finite");
+            let counted = world.scene.statistics().expect("arrived");
+            let [characters] = counted.characters[..] else { panic!("one character") };
+            (counted.frame, characters.bones, characters.clusters)
+        });
+        frames.collect::<Vec<_>>()
+    };
+    let (fine, coarse) = (of(&[0.05]), of(&[1.0]));
+    println!("frame, bones, clusters: fine {fine:?}, coarse {coarse:?}");
+    let sums = |frames: &[(u64, u32, u32)]| {
+        frames.iter().fold([0; 2], |[bones, clusters], frame| [bones + frame.1, clusters + frame.2])
+    };
+    let ([bones, clusters], [fewer, less]) = (sums(&fine), sums(&coarse));
+    assert!(fewer < bones && less < clusters && fewer > 0, "{fewer} of {bones} bones, {less} of {clusters}");
+    for both in [[0.05, 1.0], [1.0, 0.05], [0.05, 0.05]] {
+        assert_eq!(of(&both), fine, "{both:?}");
+    }
+}
+
 /// Many frames in a row are neither waited for nor lost for good: the last that has arrived is told, and dropped encoders
 /// do no harm.
 #[test]

@@ -31,6 +31,12 @@ pub fn devices<const COUNT: usize>() -> [Gpu; COUNT] {
     })
 }
 
+/// What every colour but the first is cleared to; half floats hold it exactly.
+pub const OTHER: wgpu::Color = wgpu::Color { r: 0.25, g: 0.5, b: 0.75, a: 0.125 };
+
+/// What stencils are cleared to: a value that neither 0, a replacement, nor a step up or down from 0 gives.
+pub const STENCIL: u8 = 0x5a;
+
 /// A target of the program, and how it is cleared.
 pub struct Frame {
     pub format: TargetFormat,
@@ -44,7 +50,7 @@ pub struct Frame {
 
 fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let reads = samples == 1 && format.has_color_aspect();
+    let reads = samples == 1 && (format.has_color_aspect() || format.has_stencil_aspect());
     gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some("the program's target"),
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -87,16 +93,16 @@ impl Frame {
         let others: Vec<_> = self.others.iter().map(|other| other.as_ref().map(view)).collect();
         let depth = self.depth.as_ref().map(view);
         let sky = wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 };
-        let attachment = |view, resolve_target| {
+        let attachment = |view, resolve_target, clear| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
                 depth_slice: None,
                 resolve_target,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(sky), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
             })
         };
-        let mut attachments = vec![attachment(&color, resolved.as_ref())];
-        attachments.extend(others.iter().map(|view| view.as_ref().and_then(|view| attachment(view, None))));
+        let mut attachments = vec![attachment(&color, resolved.as_ref(), sky)];
+        attachments.extend(others.iter().map(|view| attachment(view.as_ref()?, None, OTHER)));
         let is_reversed = self.format.depth.as_ref().is_some_and(|depth: &DepthFormat| depth.reversed);
         let has_stencil = self.depth.as_ref().is_some_and(|depth| depth.format().has_stencil_aspect());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -109,7 +115,7 @@ impl Frame {
                     store: wgpu::StoreOp::Store,
                 }),
                 stencil_ops: has_stencil.then_some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0),
+                    load: wgpu::LoadOp::Clear(u32::from(STENCIL)),
                     store: wgpu::StoreOp::Store,
                 }),
             }),
@@ -133,29 +139,41 @@ impl Frame {
     /// The picture.
     pub fn read(&self, gpu: &Gpu) -> RgbaImage {
         let [width, height] = self.size;
-        let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let from = self.resolved.as_ref().unwrap_or(&self.color);
+        let pixels = self.bytes(gpu, from, wgpu::TextureAspect::All);
+        RgbaImage::from_raw(width, height, pixels).expect("whole rows")
+    }
+
+    /// The bytes of the colour after the first by `at`, row by row.
+    pub fn other(&self, gpu: &Gpu, at: usize) -> Vec<u8> {
+        let other = self.others[at].as_ref().expect("an attachment");
+        self.bytes(gpu, other, wgpu::TextureAspect::All)
+    }
+
+    /// The stencil, row by row; `None` for a depth without one.
+    pub fn stencil(&self, gpu: &Gpu) -> Option<Vec<u8>> {
+        let depth = self.depth.as_ref().filter(|depth| depth.format().has_stencil_aspect())?;
+        Some(self.bytes(gpu, depth, wgpu::TextureAspect::StencilOnly))
+    }
+
+    fn bytes(&self, gpu: &Gpu, from: &wgpu::Texture, aspect: wgpu::TextureAspect) -> Vec<u8> {
+        let [width, height] = self.size;
+        let row = from.format().block_copy_size(Some(aspect)).expect("can be copied") * width;
+        let pitch = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer =
             relievo::gpu::Buffer::<u8>::new(gpu, "readback", (pitch * height) as usize).expect("room");
-        let from = self.resolved.as_ref().unwrap_or(&self.color);
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
         let run = gpu.run("readback", |encoder| {
             encoder.copy_texture_to_buffer(
-                from.as_image_copy(),
-                wgpu::TexelCopyBufferInfo {
-                    buffer: buffer.raw(),
-                    layout: wgpu::TexelCopyBufferLayout {
-                        offset: 0,
-                        bytes_per_row: Some(pitch),
-                        rows_per_image: None,
-                    },
-                },
-                wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                wgpu::TexelCopyTextureInfo { aspect, ..from.as_image_copy() },
+                wgpu::TexelCopyBufferInfo { buffer: buffer.raw(), layout },
+                from.size(),
             );
         });
         run.expect("read");
         let rows = buffer.read_blocking(gpu).expect("read");
-        let row = 4 * width as usize;
-        let pixels = rows.chunks_exact(pitch as usize).flat_map(|padded| &padded[..row]).copied().collect();
-        RgbaImage::from_raw(width, height, pixels).expect("whole rows")
+        rows.chunks_exact(pitch as usize).flat_map(|padded| &padded[..row as usize]).copied().collect()
     }
 }
 

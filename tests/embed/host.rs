@@ -73,3 +73,18 @@ pub fn nearest(triangles: &[[DVec3; 3]], at: DVec3, direction: DVec3) -> Option<
     });
     hits.reduce(|one, other| if other.0 < one.0 { other } else { one })
 }
+
+/// Random numbers.
+pub struct Draw(pub u32);
+
+impl Draw {
+    pub fn below(&mut self, range: usize) -> usize {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 16) as usize % range
+    }
+
+    /// A place in a cube around the origin with edges of two units.
+    pub fn place(&mut self) -> DVec3 {
+        DVec3::from([(); 3].map(|()| self.below(20_001) as f64 / 10_000.0 - 1.0))
+    }
+}

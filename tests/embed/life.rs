@@ -1,9 +1,11 @@
 //! Instances that come and go: handles, growth, and long lives.
 
+use relievo::render::Layer;
 use relievo::scene::{Camera, InstanceId, Placement, Play, Quality, View};
 
 use crate::frame::{Frame, device};
 use crate::harness::Difference;
+use crate::host::Draw;
 use crate::world::{SIZE, World, camera, model};
 
 /// Frames of a long life; `RELIEVO_FRAMES` asks for more.
@@ -45,28 +47,62 @@ fn scenes_move_between_threads() {
     moves::<(relievo::scene::Scene, View, relievo::render::Renderer)>();
 }
 
-/// More instances than there is room for let an object grow: the picture is that of a scene with enough room.
+/// Objects grow between frames that are recorded and not yet submitted: each frame shows what there was when it was
+/// recorded, and equals that of a scene with enough room, whose frames are submitted one by one.
 #[test]
 fn objects_grow_in_flight() {
     let gpu = device();
-    let mut small = World::empty(&gpu, 1);
-    let creature = small.scene.add_character(&model(), 1).expect("added");
-    small.scene.remove(small.creature).expect("there");
-    small.creature = creature;
-    let mut large = World::empty(&gpu, 1);
-    let frame = Frame::plain(&gpu, SIZE);
-    let mut views = [small.view(0.5), large.view(0.5)];
-    // Of 64 instances, which a block holds, the last is beyond it.
-    for at in 0..70 {
-        for world in [&mut small, &mut large] {
-            world.spawn(at % 10);
-        }
-        if at % 23 == 0 || at == 69 {
-            let renderers = [&small, &large].map(|world| frame.renderer(&gpu, &world.scene));
-            let a = frame.shot(&mut small.scene, &mut views[0], &renderers[0]);
-            let b = frame.shot(&mut large.scene, &mut views[1], &renderers[1]);
-            assert!(a == b, "after {at}");
-        }
+    let (mut small, mut large) = (World::empty(&gpu, 1), World::empty(&gpu, 200));
+    let frames = [Frame::plain(&gpu, SIZE), Frame::plain(&gpu, SIZE), Frame::plain(&gpu, SIZE)];
+    let renderers = [&small, &large].map(|world| frames[0].renderer(&gpu, &world.scene));
+    let mut views = [small.view(0.0), large.view(0.0)];
+    let (mut encoders, mut held, mut expected) = (Vec::new(), Vec::new(), Vec::new());
+    // Blocks hold 64 instances: there are one, two, and then three.
+    for (frame, count) in frames.iter().zip([60, 120, 190]) {
+        held.push(gpu.memory().now());
+        next_row(&mut small, count);
+        let mut encoder = gpu.encoder("in flight");
+        small.scene.record(&mut encoder, &mut [&mut views[0]]).expect("recorded");
+        frame.pass(&mut encoder, |pass| {
+            renderers[0].draw(pass, &small.scene, &views[0], Layer::Color).expect("drawn");
+        });
+        encoders.push(encoder);
+    }
+    assert!(held[1] < held[2] && held[2] < gpu.memory().now(), "nothing grows: {held:?}");
+    encoders.into_iter().for_each(|encoder| {
+        gpu.queue().submit([encoder.finish()]);
+    });
+    let found = frames.each_ref().map(|frame| frame.read(&gpu));
+    for count in [60, 120, 190] {
+        next_row(&mut large, count);
+        expected.push(frames[0].shot(&mut large.scene, &mut views[1], &renderers[1]));
+    }
+    for (at, (found, expected)) in found.iter().zip(&expected).enumerate() {
+        println!("frame {at}: {:?}", Difference::of(found, expected, 0));
+        assert!(found == expected, "frame {at}: another picture");
+    }
+    for at in [1, 2] {
+        let difference = Difference::of(&found[at - 1], &found[at], 3);
+        assert!(difference.outliers > 0.01, "frame {at} shows little more: {difference:?}");
+    }
+}
+
+/// Spawns creatures until there are so many, on a wall of them in front of the camera; time goes on, and one of those that
+/// are there moves.
+fn next_row(world: &mut World, count: usize) {
+    let place = |at: usize| {
+        let (column, row) = ((at % 20) as f32, (at / 20) as f32);
+        Placement::at([column - 9.5, 1.5 + 1.1 * row, -12.0 - 0.3 * row]).turned(0.7 * at as f32)
+    };
+    if let Some(first) = world.crowd.first().copied() {
+        world.scene.move_to(first, place(count).scaled(2.0)).expect("there");
+    }
+    world.scene.advance(0.25).expect("finite");
+    for at in world.crowd.len()..count {
+        let instance = world.scene.spawn(world.creature, place(at)).expect("room");
+        let play = Play { start: World::start(at), ..Play::new("walk") };
+        world.scene.play(instance, &play).expect("the clip");
+        world.crowd.push(instance);
     }
 }
 
@@ -119,16 +155,6 @@ fn a_long_life_leaves_no_trace() {
     // Without a refresh all that differs is the order in which rounding errors came.
     let difference = Difference::of(&kept, &refreshed, 1);
     assert!(difference.outliers < 0.01, "{difference:?}");
-}
-
-/// Random numbers.
-struct Draw(u32);
-
-impl Draw {
-    fn below(&mut self, range: usize) -> usize {
-        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (self.0 >> 16) as usize % range
-    }
 }
 
 /// Changes a frame of a long life: an instance comes or goes, another moves, and now and then an object comes and goes.

@@ -5,16 +5,20 @@
 mod harness;
 
 mod bones;
+mod bundles;
 mod chunks;
 #[cfg(unix)]
 mod cost;
 mod counts;
 mod frame;
+mod health;
 mod host;
 mod layers;
 mod life;
 mod materials;
 mod misuse;
+mod picked;
+mod pieces;
 mod placements;
 #[cfg(feature = "verify")]
 mod promise;

@@ -92,8 +92,7 @@ fn check(hit: &Hit, ray: &Ray) {
     assert!((hit.normal.length() - 1.0).abs() < 1e-9 && hit.normal.dot(along) < 0.0);
 }
 
-/// Rays end at their limit, see through hidden objects and masked instances, and work far from the origin and on meshes
-/// and reliefs.
+/// Rays end at their limit, see through hidden objects and masked instances, and work far from the origin.
 #[test]
 fn rays_have_limits_and_masks() {
     let gpu = device();

@@ -135,7 +135,7 @@ impl Raw {
 }
 
 /// A half float.
-fn half(bytes: [u8; 2]) -> f32 {
+pub fn half(bytes: [u8; 2]) -> f32 {
     let bits = u16::from_le_bytes(bytes);
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023) / 1024.0);
     let size = match exponent {

@@ -6,8 +6,9 @@ use relievo::render::{DepthFormat, Layer, TargetFormat};
 use relievo::scene::Camera;
 use relievo::wgpu;
 
-use crate::frame::{COLOR, Frame, device, reversed};
+use crate::frame::{COLOR, Frame, OTHER, STENCIL, device, reversed};
 use crate::harness::{Difference, Tolerance};
+use crate::raw::half;
 use crate::world::{SIZE, World, camera};
 
 /// Pictures of one adapter through different targets: all but a few pixels on edges are the same.
@@ -17,7 +18,7 @@ fn depth(format: wgpu::TextureFormat, reversed: bool) -> TargetFormat {
     TargetFormat { depth: Some(DepthFormat { format, reversed }), ..TargetFormat::new(COLOR) }
 }
 
-/// Depth with and without stencil, forward, reversed and infinite.
+/// Depth with and without stencil, forward, reversed and infinite. A stencil stays as the program cleared it.
 #[test]
 fn depth_of_every_kind_hides_the_same() {
     use wgpu::TextureFormat::{Depth16Unorm, Depth24Plus, Depth24PlusStencil8, Depth32Float};
@@ -49,6 +50,10 @@ fn depth_of_every_kind_hides_the_same() {
         let difference = Difference::of(&actual, &expected, tolerance.levels);
         println!("{name}: {difference:?}");
         assert!(difference.within(tolerance), "{name}: {difference:?}");
+        let stencil = frame.stencil(&gpu);
+        assert_eq!(stencil.is_some(), name.contains("Stencil"), "{name}");
+        let is_kept = stencil.is_none_or(|stencil| stencil.iter().all(|texel| *texel == STENCIL));
+        assert!(is_kept, "{name}: the stencil changes");
     }
 }
 
@@ -112,6 +117,16 @@ fn other_attachments_are_masked() {
     let frame = Frame::new(&gpu, format, SIZE);
     let renderer = frame.renderer(&gpu, &world.scene);
     assert!(frame.shot(&mut world.scene, &mut view, &renderer) == expected, "another picture");
+    // Signs, exponents and fractions of half floats.
+    let cleared = [(OTHER.r, 0x3400_u16), (OTHER.g, 0x3800), (OTHER.b, 0x3a00), (OTHER.a, 0x3000)];
+    let cleared = cleared.map(|(value, bits)| {
+        assert_eq!(value, f64::from(half(bits.to_le_bytes())));
+        bits.to_le_bytes()
+    });
+    let other = frame.other(&gpu, 0);
+    assert_eq!(other.len(), 8 * (SIZE[0] * SIZE[1]) as usize);
+    let changed = other.chunks_exact(8).filter(|texel| *texel != cleared.as_flattened()).count();
+    assert_eq!(changed, 0, "texels of the other attachment change");
 }
 
 /// A jittered projection, as for temporal antialiasing, moves the picture by a fraction of a pixel and changes no level.

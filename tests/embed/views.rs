@@ -120,8 +120,49 @@ fn views_are_checked() {
     assert!(path(-1.0).contains("quality.pixels") && path(f32::NAN).contains("quality.pixels"));
 }
 
-/// A shadow map of depth alone: what stands outside the eye's view casts there, at the level of detail that the eye
-/// decides, and what does not cast is left out.
+/// The light of these tests: a parallel camera around the crowd.
+fn light() -> Camera {
+    let look =
+        glam::camera::rh::view::look_at_mat4(Vec3::new(20.0, 60.0, 20.0), Vec3::new(0.0, 0.0, -6.0), Vec3::Y);
+    let project = glam::camera::rh::proj::directx::orthographic(-14.0, 14.0, -14.0, 14.0, 1.0, 200.0);
+    Camera { view_from_world: look, clip_from_view: project, ..camera([256; 2]) }
+}
+
+/// The levels of detail of the light's view are those that the eye decides, and neither its own nor always the same.
+#[test]
+fn the_eye_decides_the_levels_of_the_light() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 10);
+    world.scene.set_statistics(true).expect("room");
+    let (mut eye, mut sun) = (world.view(1.0), world.view(1.0));
+    sun.set(light()).expect("a parallel camera");
+    let looking = |distance: f32, viewport| {
+        let from = Vec3::new(0.0, 0.5, 1.0) * distance;
+        Camera::looking_at(from, Vec3::new(0.0, 2.0, -3.0), 1.0, [0.5, 900.0], viewport)
+    };
+    let (near, far) = (looking(20.0, [3840, 2560]), looking(300.0, SIZE));
+    let (mut levels, creature) = (Vec::new(), world.creature);
+    for (camera, decides) in [(near, true), (far, true), (near, false)] {
+        eye.set(camera).expect("a camera");
+        sun.set_lod_cameras(if decides { std::slice::from_ref(&camera) } else { &[] }).expect("a camera");
+        let mut encoder = gpu.encoder("levels");
+        world.scene.record(&mut encoder, &mut [&mut eye, &mut sun]).expect("recorded");
+        gpu.queue().submit([encoder.finish()]);
+        gpu.wait().expect("done");
+        let [of_eye, of_sun] = [&mut eye, &mut sun].map(|view| {
+            let objects = &view.statistics().expect("arrived").objects;
+            let found = objects.iter().find(|found| found.object == creature).expect("counted");
+            found.levels.iter().map(|level| level.instances).collect::<Vec<_>>()
+        });
+        assert_eq!(of_eye.iter().sum::<u32>(), 10, "the eye sees all: {of_eye:?}");
+        assert_eq!(of_eye == of_sun, decides, "the eye has {of_eye:?}, the light {of_sun:?}");
+        levels.push(of_sun);
+    }
+    println!("levels near, far, and of the light itself: {levels:?}");
+    assert!(levels[0] != levels[1] && levels[1] != levels[2], "the same levels: {levels:?}");
+}
+
+/// A shadow map of depth alone: what stands outside the eye's view casts there, and what does not cast is left out.
 #[test]
 fn casters_outside_the_view_are_in_the_shadow_map() {
     let gpu = device();
@@ -133,11 +174,7 @@ fn casters_outside_the_view_are_in_the_shadow_map() {
     let mut sun = world.scene.view(Quality::default()).expect("a view");
     sun.set_casters_only(true);
     sun.set_lod_cameras(&[away]).expect("cameras");
-    let look =
-        glam::camera::rh::view::look_at_mat4(Vec3::new(20.0, 60.0, 20.0), Vec3::new(0.0, 0.0, -6.0), Vec3::Y);
-    let project = glam::camera::rh::proj::directx::orthographic(-14.0, 14.0, -14.0, 14.0, 1.0, 200.0);
-    let light = Camera { view_from_world: look, clip_from_view: project, ..camera([256; 2]) };
-    sun.set(light).expect("a parallel camera");
+    sun.set(light()).expect("a parallel camera");
     let depths = |world: &mut World, eye: &mut View, sun: &mut View| {
         let map = shadow_map(&gpu, world, eye, sun);
         map.iter().filter(|depth| **depth < 1.0).count()

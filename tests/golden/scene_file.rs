@@ -4,20 +4,42 @@ use std::path::Path;
 
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
-use relievo::scene_file::{LoadedScene, Player, Rendering};
+use relievo::scene::Ray;
+use relievo::scene_file::{Player, Rendering, SceneFile, WorldKind};
+use serde_json::{Value, json};
 
-use crate::harness::{Tolerance, check_golden, gpu};
+use crate::harness::{Difference, Tolerance, check_golden, gpu};
 
 /// The pictures: a scene file, and a time in it.
-const PICTURES: &[(&str, &str, f32)] =
-    &[("scene_ruins", "ruins.json", 0.0), ("scene_far", "far.json", 0.25), ("scene_herd", "herd.json", 2.5)];
+const PICTURES: &[(&str, &str, f32)] = &[
+    ("scene_ruins", "ruins.json", 0.0),
+    ("scene_far", "far.json", 0.25),
+    ("scene_herd", "herd.json", 2.5),
+    (NEAR, "herd.json", 2.5),
+];
+
+/// The herd from so near that a creature covers more of the picture than may differ; from the file's own camera it does not.
+const NEAR: &str = "scene_herd_near";
 
 /// The size of a golden. Frames have one sample a pixel at twice that size, and are averaged.
 const SIZE: [u32; 2] = [208, 136];
 
-fn picture(file: &str, seconds: f32) -> RgbaImage {
+/// The scene of a golden: what its file says, but for the camera of the near one.
+fn scene_of(name: &str, file: &str) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes").join(file);
-    let loaded = LoadedScene::from_path(&path).expect("valid");
+    let text = std::fs::read_to_string(path).expect("there");
+    let mut scene: Value = serde_json::from_str(&text).expect("JSON");
+    if name == NEAR {
+        scene["camera"] = json!({ "near": 0.2, "at": [59.5, 6.5, 83], "look": [60, 3.6, 74] });
+    }
+    scene
+}
+
+/// A player of a scene, whose first frame at a time is drawn.
+fn player(scene: &Value, seconds: f32) -> Player {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
+    let file = SceneFile::from_json(&scene.to_string()).expect("valid");
+    let loaded = file.load(&|name| std::fs::read(folder.join(name))).expect("valid");
     let rendering = Rendering {
         size: SIZE.map(|edge| 2 * edge),
         samples: 1,
@@ -27,6 +49,10 @@ fn picture(file: &str, seconds: f32) -> RgbaImage {
     let world = loaded.build(&gpu()).expect("built");
     let mut player = Player::new(world, rendering).expect("prepared");
     player.frame(seconds).expect("drawn");
+    player
+}
+
+fn picture(player: &Player) -> RgbaImage {
     resize(&player.picture().expect("read"), SIZE[0], SIZE[1], FilterType::Triangle)
 }
 
@@ -34,9 +60,46 @@ fn picture(file: &str, seconds: f32) -> RgbaImage {
 fn scenes_of_files_equal_their_goldens() {
     let wrong: Vec<String> = (PICTURES.iter())
         .filter_map(|(name, file, seconds)| {
-            let compared = check_golden(name, &picture(file, *seconds), Tolerance::IMAGE);
+            let actual = picture(&player(&scene_of(name, file), *seconds));
+            let compared = check_golden(name, &actual, Tolerance::IMAGE);
             compared.map(|difference| println!("{name}: {difference:?}")).err()
         })
         .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// How a picture differs from a golden.
+fn difference(name: &str, actual: &RgbaImage) -> Difference {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens").join(format!("{name}.png"));
+    let golden = image::open(path).expect("a golden").into_rgba8();
+    Difference::of(actual, &golden, Tolerance::IMAGE.levels)
+}
+
+/// A creature that is missing is missed: the one in front is hidden, and nothing else is changed.
+#[test]
+fn a_creature_that_is_missing_is_seen() {
+    let mut player = player(&scene_of(NEAR, "herd.json"), 2.5);
+    let with = difference(NEAR, &picture(&player));
+    assert!(with.within(Tolerance::IMAGE), "{with:?}");
+    let ray = Ray::through(&player.camera(), [92.0, 120.0]).expect("a pixel");
+    let world = player.world_mut();
+    let hit = world.scene.pick(&ray).expect("a ray").expect("a hit");
+    let kind = world.objects.iter().find(|object| object.object == hit.object).map(|object| object.kind);
+    assert_eq!(kind, Some(WorldKind::Character));
+    world.scene.set_visibility(hit.instance, 0, true).expect("there");
+    player.frame(0.0).expect("drawn");
+    let without = difference(NEAR, &picture(&player));
+    println!("{with:?} without the creature {without:?}");
+    assert!(!without.within(Tolerance::IMAGE), "{without:?}");
+}
+
+/// Shadows that are missing are missed.
+#[test]
+fn a_shadow_that_is_missing_is_seen() {
+    let mut scene = scene_of("scene_ruins", "ruins.json");
+    let shadow = scene["light"].as_object_mut().and_then(|light| light.remove("shadow"));
+    assert!(shadow.is_some(), "the file has a shadow");
+    let difference = difference("scene_ruins", &picture(&player(&scene, 0.0)));
+    println!("without shadow: {difference:?}");
+    assert!(!difference.within(Tolerance::IMAGE), "{difference:?}");
 }

@@ -177,6 +177,9 @@ pub fn differing(a: &[[u8; 4]], b: &[[u8; 4]], levels: u8) -> usize {
     a.iter().zip(b).filter(|pair| far(*pair)).count()
 }
 
+/// What colours of [`FORMAT`]'s kind but the first are cleared to, and these texels.
+const OTHER: (wgpu::Color, [u8; 4]) = (wgpu::Color { r: 1.0, g: 0.0, b: 1.0, a: 0.0 }, [255, 0, 255, 0]);
+
 /// Attachments of a format.
 pub struct Canvas {
     colors: Vec<Option<wgpu::Texture>>,
@@ -222,12 +225,14 @@ impl Canvas {
                     view,
                     depth_slice: None,
                     resolve_target: (samples > 1 && at == 0).then_some(&resolved),
-                    ops: wgpu::Operations::default(),
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(if at == 0 { wgpu::Color::default() } else { OTHER.0 }),
+                        store: wgpu::StoreOp::Store,
+                    },
                 })
             })
             .collect();
         let depth = self.depth.as_ref().map(|(texture, depth)| (view(texture), depth));
-        let buffer = Buffer::<[u8; 4]>::new(gpu, "pixels", (SIZE[0] * SIZE[1]) as usize).expect("allocated");
         gpu.run("draw", |encoder| {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 color_attachments: &attachments,
@@ -235,21 +240,30 @@ impl Canvas {
                 ..Default::default()
             });
             draw(&mut pass);
-            drop(pass);
-            let from = if samples > 1 { Some(&self.resolved) } else { first.as_ref() };
-            if let Some(from) = from {
-                let layout = wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(4 * SIZE[0]),
-                    rows_per_image: None,
-                };
-                let to = wgpu::TexelCopyBufferInfo { buffer: buffer.raw(), layout };
-                encoder.copy_texture_to_buffer(from.as_image_copy(), to, from.size());
-            }
         })
         .expect("drawn");
-        buffer.read_blocking(gpu).expect("read")
+        let from = if samples > 1 { Some(&self.resolved) } else { first.as_ref() };
+        from.map_or_else(|| vec![[0; 4]; (SIZE[0] * SIZE[1]) as usize], |from| texels(gpu, from))
     }
+
+    /// The number of texels of another colour of four bytes that are not what it was cleared to.
+    pub fn changed(&self, gpu: &Gpu, at: usize) -> usize {
+        let color = self.colors[at].as_ref().expect("a colour");
+        texels(gpu, color).iter().filter(|texel| **texel != OTHER.1).count()
+    }
+}
+
+/// The texels of a colour of four bytes.
+fn texels(gpu: &Gpu, from: &wgpu::Texture) -> Vec<[u8; 4]> {
+    let buffer = Buffer::<[u8; 4]>::new(gpu, "pixels", (SIZE[0] * SIZE[1]) as usize).expect("allocated");
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE[0]), rows_per_image: None };
+    let run = gpu.run("read", |encoder| {
+        let to = wgpu::TexelCopyBufferInfo { buffer: buffer.raw(), layout };
+        encoder.copy_texture_to_buffer(from.as_image_copy(), to, from.size());
+    });
+    run.expect("read");
+    buffer.read_blocking(gpu).expect("read")
 }
 
 /// The attachment of a depth, cleared to the distance.
