@@ -56,11 +56,10 @@ use plan::Plan;
 ///
 /// A crowd that is drawn needs a clip of at most an hour, which is sampled 60 times a second, and at least 4 frames.
 ///
-/// With --scene (GPU only), the command instead times the whole frame at each distance in five ways, each a scene of
-/// its own, that differ in nothing else: "off" (all bones, influences and triangles), "animation" (the pixels of
-/// --gate), "skinning" (those of --skinning), "both" of these, and "all" (both, and those of --mesh unless it is
-/// full). It writes DIR/scene.json; scene.png plots the time of a frame against distance; crowd_<distance>.png shows
-/// the last way.
+/// With --scene (GPU only), the command instead times five scenes at each distance, which are equal but for their level
+/// of detail: "off" (all bones, influences and triangles), "animation" (the pixels of --gate), "skinning" (those of
+/// --skinning), "both" of these, and "all" (both, and those of --mesh unless it is full). It writes DIR/scene.json;
+/// scene.png plots the time of a frame against distance; crowd_<distance>.png shows the last of the five.
 ///
 /// With --pareto, the command instead compares error against cost for every gate, at one distance (--tall), on the
 /// CPU. All instances stand at one place, each turned by another angle. It writes pareto_max.png, pareto_rms.png
@@ -134,8 +133,8 @@ pub struct Crowd {
     /// off or bounded.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
-    /// The influences that vertices follow: all; or as few as take no vertex more than PIXELS away. Default: full; with
-    /// --scene bounded:0.5.
+    /// Influences per vertex: all; or as few as move no vertex by more than PIXELS. Default: full; with --scene
+    /// bounded:0.5.
     #[arg(long, value_name = "full|bounded:PIXELS")]
     skinning: Option<String>,
     /// The triangles of the meshes: all; or as few as keep the surface within PIXELS of its place. Default: full; with

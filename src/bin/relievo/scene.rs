@@ -61,13 +61,13 @@ pub struct Scene {
     /// Draws everything in full detail.
     #[arg(long, conflicts_with = "compare")]
     full: bool,
-    /// What is drawn; black is where nothing is. Of depth, brightness falls linearly from the nearest distance ahead of the
-    /// eye to the farthest, which report.json has as nearest and farthest. Of velocity, red is the motion to the right since
-    /// the frame before and green that downwards: half of the range is none, and the ends are the largest motion in the
-    /// frame, which report.json has as fastest, in pixels. Of surface, colours are normals (-1 to 1 in world axes);
-    /// frame_0000_albedo.png has the colours before light, and frame_0000_id.png the number of the object in red and of the
-    /// instance in green, with 16 bits.
-    #[arg(long, default_value = "color", value_parser = one_of(LAYERS))]
+    /// What is drawn. Black is where nothing is.
+    /// depth: bright near, dark far; report.json has the ends of the range as nearest and farthest.
+    /// velocity: red = to the right, green = down, since the last frame; half = still; the ends are `fastest` pixels in
+    /// report.json.
+    /// surface: normals (-1 to 1 in world axes); frame_0000_albedo.png has colours before light, and frame_0000_id.png the
+    /// numbers of object (red) and instance (green), with 16 bits.
+    #[arg(verbatim_doc_comment, long, default_value = "color", value_parser = one_of(LAYERS))]
     layer: Layer,
     /// Samples a pixel: 1 or 4. Default: 4, and 1 for other layers than color, which have one alone.
     #[arg(long, value_name = "N")]
