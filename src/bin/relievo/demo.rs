@@ -35,8 +35,11 @@ pub struct Demo {
 /// A section of the page: its anchor, its title, and what it shows.
 struct Section(&'static str, &'static str, &'static str);
 
-const SCENE: Section =
-    Section("scene", "A scene", "Everything below in one picture, with one number of pixels for the whole of it.");
+const SCENE: Section = Section(
+    "scene",
+    "A scene",
+    "Everything below in one picture, with one number of pixels for the whole of it.",
+);
 const TERRAIN: Section = Section(
     "terrain",
     "Terrain",
@@ -122,7 +125,7 @@ const fn entry(name: &'static str, title: &'static str, arguments: &'static str)
 }
 
 impl Entry {
-    /// Parses the command that draws the picture; the page does not show the arguments in `more`.
+    /// Parses the command that draws the picture, with the arguments in `more`.
     fn command<T: Args + FromArgMatches>(&self, name: &'static str, more: &[&OsStr]) -> Result<T, Error> {
         let words = ["--out", "."].iter().copied().chain(self.arguments.split_whitespace()).map(OsStr::new);
         let refused = |error: clap::Error| Error::file(self.name, error);
@@ -151,10 +154,11 @@ impl Page<'_> {
             let Entry { name, title, arguments } = entry;
             self.progress.set_message(*name);
             let (picture, note) = draw(&entry.command(command, more)?, self.context)?;
+            let shown: String = more.iter().map(|word| format!(" {}", word.to_string_lossy())).collect();
             self.staged.write_png(format!("{name}.png"), &picture)?;
             self.figures += &format!(
                 "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
-                 <figcaption>{title}.<br><code>relievo {command} {arguments} --out {name}</code><br>{note}</figcaption>\n\
+                 <figcaption>{title}.<br><code>relievo {command} {arguments}{shown} --out {name}</code><br>{note}</figcaption>\n\
                  </figure>\n"
             );
             self.count += 1;
@@ -180,7 +184,7 @@ fn html(adapter: &str, contents: &str, figures: &str) -> String {
          code {{ font-size: .85em; background: #e7ecf0; padding: .1em .3em; border-radius: 3px }}\n\
          </style>\n<h1>relievo {version}</h1>\n\
          <p>Made on {adapter}. The heights are the same bits on every device: the same commands with \
-         <code>--backend cpu</code> give the same hashes.</p>\n<nav><ul>\n{contents}</ul></nav>\n{figures}</html>\n",
+         <code>--backend cpu</code> give the same heights, bit for bit.</p>\n<nav><ul>\n{contents}</ul></nav>\n{figures}</html>\n",
         version = env!("CARGO_PKG_VERSION"),
     )
 }

@@ -75,8 +75,8 @@ pub struct Scene {
     /// The direction of depth: from 0 at the near plane, or from 1.
     #[arg(long, default_value = "forward", value_parser = one_of(DEPTHS))]
     depth: Depth,
-    /// Draws the left half and the right half by two views of one submission, as for a split screen; the picture is the
-    /// same.
+    /// Draws the left half and the right half by two views of one submission, as for a split screen. The picture is the
+    /// same but for rounding, which decides about some pixels on edges.
     #[arg(long)]
     split: bool,
     /// Also draws every frame at full detail, and reports what that costs, how far the frame is off (the largest
@@ -264,10 +264,8 @@ fn in_file(path: &Path, error: Error) -> Error {
 
 fn lines(frames: u32, is_compared: bool, summary: &FrameSummary) -> String {
     let times = summary.milliseconds;
-    let drawn = format!(
-        "{frames} frames; medians: {:.2} ms computed, {:.2} ms drawn, with waiting",
-        times.compute, times.draw
-    );
+    let count = if frames == 1 { "1 frame:".to_owned() } else { format!("{frames} frames; medians:") };
+    let drawn = format!("{count} {:.2} ms computed, {:.2} ms drawn, with waiting", times.compute, times.draw);
     if !is_compared {
         return drawn;
     }
