@@ -23,8 +23,9 @@
 //! `scene` is everything there is in a world (terrain, meshes, reliefs, characters), and views of it: what an engine
 //! embeds. Its documentation begins with the order of calls, and has a whole program. It needs the feature `gpu`.
 //!
-//! `gpu` opens a device or takes the caller's. It has typed buffers, prepared jobs, timing and errors. `render` has
-//! a camera, an off-screen target, and passes that draw in the caller's render pass. Both need the feature `gpu`.
+//! `gpu` opens a device or takes the caller's. It has typed buffers, prepared jobs, timing and errors. `render`
+//! has the renderer of scenes, which draws in the caller's render pass, shadows of the light, and an off-screen target. Both
+//! need the feature `gpu`.
 //!
 //! `scene_file` reads scenes from JSON, builds them and draws their frames; it needs the feature `gpu`.
 //!

@@ -87,7 +87,7 @@ pub struct FrameReport {
 pub struct Compared {
     /// What full detail cost.
     pub full_milliseconds: FrameTimes,
-    /// Triangles that were drawn, and those at full detail.
+    /// Triangles that were drawn.
     pub triangles: u64,
     /// Triangles at full detail.
     pub full_triangles: u64,

@@ -251,7 +251,10 @@ impl Offscreen {
         format: wgpu::TextureFormat,
     ) -> Result<Vec<u8>, Error> {
         let Some(Attachment { drawn, resolved }) = self.colors.get(index) else {
-            let path = format!("format.color[{index}]");
+            let path = match self.colors.len() {
+                0 => "format.color".to_owned(),
+                _ => format!("format.color[{index}]"),
+            };
             return Err(InputError::new(path, "none", "must be there to be read").into());
         };
         let color = resolved.as_ref().unwrap_or(drawn);

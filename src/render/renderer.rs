@@ -147,11 +147,6 @@ impl Renderer {
 
     /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
     ///
-    /// Each object takes an indirect draw for each of its parts and levels, and as many again if some of its instances are
-    /// mirrored and others are not. A render bundle shows later recordings of the view too. Make it anew after objects were
-    /// added or grew, after materials were changed, and when an object has its first mirrored instance, or its first that is
-    /// not.
-    ///
     /// # Errors
     /// As [`Renderer::prepare`].
     pub async fn prepare_async(&mut self, scene: &Scene) -> Result<(), Error> {
@@ -163,6 +158,11 @@ impl Renderer {
     /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: bind group 3,
     /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and the samples of the
     /// renderer's format, which wgpu checks.
+    ///
+    /// Each object takes an indirect draw for each of its parts and levels, and as many again if some of its instances are
+    /// mirrored and others are not. A render bundle shows later recordings of the view too. Make it anew after objects were
+    /// added or grew, after materials were changed, and when an object has its first mirrored instance, or its first that is
+    /// not.
     ///
     /// # Errors
     /// [`InputError`] for a scene on another device; a view of another scene; one that was not recorded since objects were

@@ -51,6 +51,9 @@ fn kept_bones(text: &str) -> Result<KeptBones, InputError> {
     match text.strip_suffix('%') {
         Some(percent) => {
             let percent: f32 = percent.trim().parse().map_err(|_| refused())?;
+            if !(percent > 0.0 && percent <= 100.0) {
+                return Err(InputError::new("bones", text, "must be above 0% and at most 100%"));
+            }
             Ok(KeptBones::Fraction(percent / 100.0))
         }
         None => Ok(KeptBones::Count(text.parse().map_err(|_| refused())?)),

@@ -17,8 +17,7 @@ use crate::Context;
 use crate::arguments::Backend;
 use plan::Plan;
 
-/// Plays a crowd with animation level of detail, and measures what it saves and what error it causes. This is the
-/// experiment of Abi Chakra's thesis (2008; section 13, "A" below) with an error metric, which the thesis lacks.
+/// Plays a crowd with animation level of detail, and measures what it saves and what error it causes.
 ///
 /// Every instance plays the clip from its own start time. In each frame a gate decides which bones are
 /// interpolated; the other bones keep their last local transforms. The same crowd is also evaluated in full. For
@@ -28,7 +27,7 @@ use plan::Plan;
 ///
 /// Gates (--gate):
 ///   off          every bone that the clip moves
-///   skip-period  A's rule: a bone skips one update each priority · Ω · --period seconds
+///   skip-period  the rule of Chakra (2008): a bone skips one update each priority · Ω · --period seconds
 ///   uniform      all bones of an instance, in a fraction Ω of the frames, as engines commonly do
 ///   random       a random fraction Ω of the bones
 ///   budget       at most --budget bones a frame, those that have missed most motion on screen
@@ -38,7 +37,7 @@ use plan::Plan;
 /// instance has the Ω of its own distance.
 ///
 /// Units: --size is the number of units in the largest extent of the model at rest. --range and --distance are in
-/// these units, as the 200 to 1700 of A are. The picture is 1080 pixels high with a vertical field of view of 60
+/// these units, as the 200 to 1700 of Chakra (2008) are. The picture is 1080 pixels high with a vertical field of view of 60
 /// degrees. The camera looks at the crowd's center at half its height, and is --distance units from the nearest
 /// instance, so that the whole crowd is in front of it: from the second distance of --range on, Ω is 0 for all
 /// instances.
@@ -56,11 +55,10 @@ use plan::Plan;
 ///
 /// A crowd that is drawn needs a clip of at most an hour, which is sampled 60 times a second, and at least 4 frames.
 ///
-/// With --scene (GPU only), the command instead times the whole frame at each distance in five ways, each a scene of
-/// its own, that differ in nothing else: "off" (all bones, influences and triangles), "animation" (the pixels of
-/// --gate), "skinning" (those of --skinning), "both" of these, and "all" (both, and those of --mesh unless it is
-/// full). It writes DIR/scene.json; scene.png plots the time of a frame against distance; crowd_<distance>.png shows
-/// the last way.
+/// With --scene (GPU only), the command instead times five scenes at each distance, which are equal but for their level
+/// of detail: "off" (all bones, influences and triangles), "animation" (the pixels of --gate), "skinning" (those of
+/// --skinning), "both" of these, and "all" (both, and those of --mesh unless it is full). It writes DIR/scene.json;
+/// scene.png plots the time of a frame against distance; crowd_<distance>.png shows the last of the five.
 ///
 /// With --pareto, the command instead compares error against cost for every gate, at one distance (--tall), on the
 /// CPU. All instances stand at one place, each turned by another angle. It writes pareto_max.png, pareto_rms.png
@@ -134,8 +132,8 @@ pub struct Crowd {
     /// off or bounded.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
-    /// The influences that vertices follow: all; or as few as take no vertex more than PIXELS away. Default: full; with
-    /// --scene bounded:0.5.
+    /// Influences per vertex: all; or as few as move no vertex by more than PIXELS. Default: full; with --scene
+    /// bounded:0.5.
     #[arg(long, value_name = "full|bounded:PIXELS")]
     skinning: Option<String>,
     /// The triangles of the meshes: all; or as few as keep the surface within PIXELS of its place. Default: full; with

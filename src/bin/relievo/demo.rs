@@ -32,6 +32,37 @@ pub struct Demo {
     size: String,
 }
 
+/// A section of the page: its anchor, its title, and what it shows.
+struct Section(&'static str, &'static str, &'static str);
+
+const SCENE: Section = Section(
+    "scene",
+    "A scene",
+    "Everything below in one picture, with one number of pixels for the whole of it.",
+);
+const TERRAIN: Section = Section(
+    "terrain",
+    "Terrain",
+    "Heights that are the same bits on every device, computed patch by patch from a few parameters. On the right the same \
+     ground from above.",
+);
+const SURFACE: Section = Section(
+    "surface",
+    "Surface mapping",
+    "A flat square that shows a height map: each pixel's ray is followed to where it meets the heights, by one of several \
+     methods, and the error of each is measured.",
+);
+const SKINNING: Section = Section(
+    "skinning",
+    "Skinning",
+    "Vertices that follow bones, with fewer influences and triangles where that does not show.",
+);
+const ANIMATION: Section = Section(
+    "animation",
+    "Animation level of detail",
+    "Crowds in which a bone is only interpolated where its motion would show.",
+);
+
 /// The page that is being written.
 struct Page<'a> {
     context: &'a Context,
@@ -61,38 +92,17 @@ impl Demo {
             figures: String::new(),
             count: 0,
         };
-        page.section(
-            "scene",
-            "A scene",
-            "Everything below in one picture, with one number of pixels for the whole of it.",
-        );
-        scene::draw(&mut page, &self.size)?;
-        page.section(
-            "terrain",
-            "Terrain",
-            "Heights that are the same bits on every device, computed patch by patch from a few parameters. On the right the \
-             same ground from above.",
-        );
-        terrain::draw(&mut page, &self.size)?;
-        page.section(
-            "surface",
-            "Surface mapping",
-            "A flat square that shows a height map: each pixel's ray is followed to where it meets the heights, by one of \
-             several methods, and the error of each is measured.",
-        );
-        relief::draw(&mut page, &self.size)?;
-        page.section(
-            "skinning",
-            "Skinning",
-            "Vertices that follow bones, with fewer influences and triangles where that does not show.",
-        );
-        skin::draw(&mut page)?;
-        page.section(
-            "animation",
-            "Animation level of detail",
-            "Crowds in which a bone is only interpolated where its motion would show.",
-        );
-        crowd::draw(&mut page)?;
+        let size = &self.size;
+        for (section, draw) in [
+            (SCENE, &scene::draw as &dyn Fn(&mut Page<'_>, &str) -> Result<(), Error>),
+            (TERRAIN, &terrain::draw),
+            (SURFACE, &relief::draw),
+            (SKINNING, &|page, _| skin::draw(page)),
+            (ANIMATION, &|page, _| crowd::draw(page)),
+        ] {
+            page.begin(&section);
+            draw(&mut page, size)?;
+        }
         page.progress.finish_and_clear();
         let adapter = context.gpu()?.adapter().to_string();
         page.staged.write("index.html", html(&adapter, &page.contents, &page.figures).as_bytes())?;
@@ -115,7 +125,7 @@ const fn entry(name: &'static str, title: &'static str, arguments: &'static str)
 }
 
 impl Entry {
-    /// Parses the command that draws the picture; the page does not show the arguments in `more`.
+    /// Parses the command that draws the picture, with the arguments in `more`.
     fn command<T: Args + FromArgMatches>(&self, name: &'static str, more: &[&OsStr]) -> Result<T, Error> {
         let words = ["--out", "."].iter().copied().chain(self.arguments.split_whitespace()).map(OsStr::new);
         let refused = |error: clap::Error| Error::file(self.name, error);
@@ -126,8 +136,8 @@ impl Entry {
 }
 
 impl Page<'_> {
-    /// Begins a section, with a sentence on what it shows.
-    fn section(&mut self, id: &str, title: &str, words: &str) {
+    /// Begins a section.
+    fn begin(&mut self, Section(id, title, words): &Section) {
         self.contents += &format!("<li><a href=\"#{id}\">{title}</a></li>\n");
         self.figures += &format!("<h2 id=\"{id}\">{title}</h2>\n<p>{words}</p>\n");
     }
@@ -144,10 +154,11 @@ impl Page<'_> {
             let Entry { name, title, arguments } = entry;
             self.progress.set_message(*name);
             let (picture, note) = draw(&entry.command(command, more)?, self.context)?;
+            let shown: String = more.iter().map(|word| format!(" {}", word.to_string_lossy())).collect();
             self.staged.write_png(format!("{name}.png"), &picture)?;
             self.figures += &format!(
                 "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
-                 <figcaption>{title}.<br><code>relievo {command} {arguments} --out {name}</code><br>{note}</figcaption>\n\
+                 <figcaption>{title}.<br><code>relievo {command} {arguments}{shown} --out {name}</code><br>{note}</figcaption>\n\
                  </figure>\n"
             );
             self.count += 1;
@@ -173,7 +184,7 @@ fn html(adapter: &str, contents: &str, figures: &str) -> String {
          code {{ font-size: .85em; background: #e7ecf0; padding: .1em .3em; border-radius: 3px }}\n\
          </style>\n<h1>relievo {version}</h1>\n\
          <p>Made on {adapter}. The heights are the same bits on every device: the same commands with \
-         <code>--backend cpu</code> give the same hashes.</p>\n<nav><ul>\n{contents}</ul></nav>\n{figures}</html>\n",
+         <code>--backend cpu</code> give the same heights, bit for bit.</p>\n<nav><ul>\n{contents}</ul></nav>\n{figures}</html>\n",
         version = env!("CARGO_PKG_VERSION"),
     )
 }

@@ -261,7 +261,7 @@ impl Relief {
             }
             (None, None) => {
                 let bound = "must name a height map, or else --albedo one with alpha, or --builtin a name";
-                Err(InputError::new("height", "nothing", bound).into())
+                Err(InputError::new("height", "not given", bound).into())
             }
         }
     }

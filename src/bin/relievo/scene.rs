@@ -61,13 +61,13 @@ pub struct Scene {
     /// Draws everything in full detail.
     #[arg(long, conflicts_with = "compare")]
     full: bool,
-    /// What is drawn; black is where nothing is. Of depth, brightness falls linearly from the nearest distance ahead of the
-    /// eye to the farthest, which report.json has as nearest and farthest. Of velocity, red is the motion to the right since
-    /// the frame before and green that downwards: half of the range is none, and the ends are the largest motion in the
-    /// frame, which report.json has as fastest, in pixels. Of surface, colours are normals (-1 to 1 in world axes);
-    /// frame_0000_albedo.png has the colours before light, and frame_0000_id.png the number of the object in red and of the
-    /// instance in green, with 16 bits.
-    #[arg(long, default_value = "color", value_parser = one_of(LAYERS))]
+    /// What is drawn. Black is where nothing is.
+    /// depth: bright near, dark far; report.json has the ends of the range as nearest and farthest.
+    /// velocity: red = to the right, green = down, since the last frame; half = still; the ends are `fastest` pixels in
+    /// report.json.
+    /// surface: normals (-1 to 1 in world axes); frame_0000_albedo.png has colours before light, and frame_0000_id.png the
+    /// numbers of object (red) and instance (green), with 16 bits.
+    #[arg(verbatim_doc_comment, long, default_value = "color", value_parser = one_of(LAYERS))]
     layer: Layer,
     /// Samples a pixel: 1 or 4. Default: 4, and 1 for other layers than color, which have one alone.
     #[arg(long, value_name = "N")]
@@ -75,8 +75,8 @@ pub struct Scene {
     /// The direction of depth: from 0 at the near plane, or from 1.
     #[arg(long, default_value = "forward", value_parser = one_of(DEPTHS))]
     depth: Depth,
-    /// Draws the left half and the right half by two views of one submission, as for a split screen; the picture is the
-    /// same.
+    /// Draws the left half and the right half by two views of one submission, as for a split screen. The picture is the
+    /// same but for rounding, which decides about some pixels on edges.
     #[arg(long)]
     split: bool,
     /// Also draws every frame at full detail, and reports what that costs, how far the frame is off (the largest
@@ -264,10 +264,8 @@ fn in_file(path: &Path, error: Error) -> Error {
 
 fn lines(frames: u32, is_compared: bool, summary: &FrameSummary) -> String {
     let times = summary.milliseconds;
-    let drawn = format!(
-        "{frames} frames; medians: {:.2} ms computed, {:.2} ms drawn, with waiting",
-        times.compute, times.draw
-    );
+    let count = if frames == 1 { "1 frame:".to_owned() } else { format!("{frames} frames; medians:") };
+    let drawn = format!("{count} {:.2} ms computed, {:.2} ms drawn, with waiting", times.compute, times.draw);
     if !is_compared {
         return drawn;
     }

@@ -69,11 +69,13 @@ struct Made {
     /// The vertices of each mesh.
     vertices: Vec<Vec<Vertex>>,
     picture: RgbaImage,
+    /// What became of each mesh that was coarsened.
+    notes: Vec<String>,
 }
 
 impl Skin {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let Made { model, vertices, picture } = self.made(context)?;
+        let Made { model, vertices, picture, notes } = self.made(context)?;
         let mut staged = Staged::new(&self.out)?;
         let meshes: Vec<_> =
             model.meshes.iter().zip(&vertices).map(|(mesh, vertices)| (mesh, &vertices[..])).collect();
@@ -87,6 +89,7 @@ impl Skin {
         }
         staged.write_png("skin.png", &picture)?;
         staged.publish()?;
+        notes.into_iter().try_for_each(say)?;
         Ok(ExitCode::SUCCESS)
     }
 
@@ -107,11 +110,12 @@ impl Skin {
         }
         model = self.collapse.apply(model)?;
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
+        let mut notes = Vec::new();
         if let Some(metres) = self.within {
             let coarsened = during("simplifying", || coarsen(&mut model, clip, metres))?;
             for (mesh, found) in model.meshes.iter().zip(coarsened) {
                 let (left, all, error) = (found.triangles, found.of, found.error);
-                say(format_args!("{}: {left} of {all} triangles, {error} metres off", mesh.name))?;
+                notes.push(format!("{}: {left} of {all} triangles, {error} metres off", mesh.name));
             }
         }
         let blend = if self.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
@@ -124,7 +128,7 @@ impl Skin {
             }
             None => moment.on_host(&PORTRAIT)?,
         };
-        Ok(Made { model, vertices, picture })
+        Ok(Made { model, vertices, picture, notes })
     }
 }
 

@@ -322,8 +322,9 @@ impl Terrain {
         staged.remove_stale(Batch::is_name);
         staged.publish()?;
         say(format_args!(
-            "{} patches of {size}×{size} in {:.3} s, pictures in {:.3} s: {}",
+            "{} {} of {size}×{size} in {:.3} s, pictures in {:.3} s: {}",
             plan.patches.len(),
+            if plan.patches.len() == 1 { "patch" } else { "patches" },
             made.seconds.generate,
             made.seconds.render,
             self.out.display()

@@ -30,12 +30,9 @@ impl Program {
                 let (vertex, fragment) = match layer {
                     Layer::Depth if surface.cut_out => ("vertex", Some("depth_cut_out")),
                     Layer::Depth => ("vertex", depth_opaque),
-                    Layer::Color | Layer::Transparent if is_whole => ("vertex_whole", Some("shaded_whole")),
-                    Layer::Color if alike.is_some() => ("vertex_plain", Some("opaque_plain")),
-                    Layer::Color | Layer::Transparent => own_color(surface, normal_mapped),
-                    Layer::Surface => ("vertex_whole", Some("surface_whole")),
-                    Layer::Measure => ("vertex_whole", Some("measure_whole")),
-                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
+                    Layer::Color if !is_whole && alike.is_some() => ("vertex_plain", Some("opaque_plain")),
+                    Layer::Color | Layer::Transparent if !is_whole => own_color(surface, normal_mapped),
+                    layer => whole(layer),
                 };
                 let SurfaceKind { double_sided, cut_out, blended } = surface;
                 let textured = alike.is_some_and(|alike| alike.textured);
@@ -71,16 +68,23 @@ impl Program {
                     Layer::Color if style == TerrainStyle::Wireframe => {
                         ("vertex_wired", Some("shaded_wired"))
                     }
-                    Layer::Color | Layer::Transparent if is_whole => ("vertex_whole", Some("shaded_whole")),
-                    Layer::Color | Layer::Transparent => ("vertex", Some("fragment")),
-                    Layer::Surface => ("vertex_whole", Some("surface_whole")),
-                    Layer::Measure => ("vertex_whole", Some("measure_whole")),
-                    Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
+                    Layer::Color | Layer::Transparent if !is_whole => ("vertex", Some("fragment")),
+                    layer => whole(layer),
                 };
                 let constants = scene_terrain::Constants { shadowed }.list();
                 Self { shader: &RENDER_SCENE_TERRAIN, vertex, fragment, constants }
             }
         }
+    }
+}
+
+/// The entries of meshes and terrain that know everything of a surface, and those that know its motion.
+fn whole(layer: Layer) -> (&'static str, Option<&'static str>) {
+    match layer {
+        Layer::Surface => ("vertex_whole", Some("surface_whole")),
+        Layer::Measure => ("vertex_whole", Some("measure_whole")),
+        Layer::Velocity => ("vertex_moving", Some("velocity_moving")),
+        Layer::Color | Layer::Transparent | Layer::Depth => ("vertex_whole", Some("shaded_whole")),
     }
 }
 

@@ -82,7 +82,8 @@ fn gate(a: &Crowd) -> Result<GateMode, InputError> {
         Some(Gate::Random) => GateMode::Random,
         Some(Gate::Bounded) => GateMode::Bounded { pixels: a.pixels },
         Some(Gate::Budget) => {
-            let missing = || InputError::new("budget", "nothing", "must be the most bones a frame");
+            let missing =
+                || InputError::new("budget", "not given", "must be the most bones to interpolate in a frame");
             GateMode::Budget { bones: a.budget.ok_or_else(missing)? }
         }
     })
@@ -102,7 +103,11 @@ fn drawn(a: &Crowd) -> Result<DrawnOptions, InputError> {
     }
     for (field, given) in [("skinning", &a.skinning), ("mesh", &a.mesh)] {
         if !a.is_drawn() && given.is_some() {
-            return Err(InputError::new(field, "given", "must come with --image or --scene"));
+            return Err(InputError::new(
+                field,
+                "given",
+                "must come with --image or --scene, which draw the crowd",
+            ));
         }
     }
     let usual = if a.scene { "bounded:0.5" } else { "full" };

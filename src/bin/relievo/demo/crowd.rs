@@ -15,7 +15,7 @@ const PICTURE: Entry = entry(
 
 const PLOT: Entry = entry(
     "crowd_pareto",
-    "What skipping bones shows, by who decides which: lower and further left is better",
+    "Error on the screen against the fraction of bones that are interpolated, for each gate: lower and further left is better",
     "--pareto --model builtin --clip walk --instances 8 --frames 120",
 );
 

@@ -19,7 +19,7 @@ const ENTRIES: &[Entry] = &[
     ),
     entry(
         "relief_close_parallax",
-        "Close up, parallax with the square in the middle of the relief",
+        "Close up, parallax, with heights taken as half the depth above and below the square",
         "--builtin bricks --method parallax --bias -0.05 --tile 0.3 --angle 60",
     ),
     entry(
@@ -61,7 +61,7 @@ const ENTRIES: &[Entry] = &[
 
 const COMPARISON: Entry = entry(
     "relief_compare",
-    "What each method costs, and how far it is off: lower and further left is better",
+    "What each method costs, and how far it is off: lower and further left is better, and numbers at points are steps of linear search",
     "--builtin bricks --texels 256 --compare",
 );
 
@@ -81,7 +81,7 @@ pub fn draw(page: &mut Page<'_>, size: &str) -> Result<(), Error> {
     })?;
     let size = ["--size".as_ref(), "240x150".as_ref()];
     page.draw("relief", &[COMPARISON], &size, |command: &Relief, context| {
-        let note = "errors against the exact intersection; labels are linear steps";
+        let note = "errors against the exact intersection";
         Ok((command.comparison(context)?, note.to_owned()))
     })
 }

@@ -36,7 +36,7 @@ pub fn draw(page: &mut Page<'_>, size: &str) -> Result<(), Error> {
     page.staged.write_png(format!("{name}.png"), &picture)?;
     page.figures += &format!(
         "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
-         <figcaption>{title}.<br><code>relievo scene <a href=\"ruins.json\">ruins.json</a> --out {name}</code><br>\
+         <figcaption>{title}.<br><code>relievo scene <a href=\"ruins.json\">ruins.json</a> --size {size} --out {name}</code><br>\
          {triangles} triangles, nothing more than {pixels} px off; {seconds:.3} s with loading and compiling</figcaption>\n\
          </figure>\n",
         pixels = report.pixels,

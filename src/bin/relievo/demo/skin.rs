@@ -15,7 +15,7 @@ const ENTRIES: &[Entry] = &[
     ),
     entry(
         "skin_rigid",
-        "The same where all influences but the strongest have faded, as far away",
+        "The same where each vertex follows its strongest bone alone, as far away: see the top of the thigh",
         "--model builtin --clip walk --time 0.3 --influences fade:1",
     ),
     entry(

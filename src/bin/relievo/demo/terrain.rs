@@ -88,7 +88,7 @@ const ENTRIES: &[Configured] = &[
     ),
     plain(
         "additive",
-        "Zone weights that are added and not normalized: overlaps glow, gaps go dark",
+        "Zone weights that are added and not normalized: brighter where zones overlap",
         "--weights additive",
         r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#,
     ),
@@ -125,14 +125,14 @@ pub fn draw(page: &mut Page<'_>, size: &str) -> Result<(), Error> {
             page.staged.write_png(format!("{}.png", entry.name), view)?;
         }
         page.staged.write_png(format!("{}_map.png", entry.name), &pictures.map)?;
-        page.figures += &figure(entry, text, *has_valley, &pictures);
+        page.figures += &figure(entry, text, (*has_valley, size), &pictures);
         page.count += 2;
         page.progress.inc(1);
     }
     page.staged.write("valley.json", VALLEY.as_bytes())
 }
 
-fn figure(entry: &Entry, config: &str, has_valley: bool, pictures: &Pictures) -> String {
+fn figure(entry: &Entry, config: &str, (has_valley, size): (bool, &str), pictures: &Pictures) -> String {
     let Entry { name, title, arguments } = entry;
     let features = if has_valley { " --features valley.json" } else { "" };
     let space = if arguments.is_empty() { "" } else { " " };
@@ -141,7 +141,7 @@ fn figure(entry: &Entry, config: &str, has_valley: bool, pictures: &Pictures) ->
         "<figure>\n<a href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
          <a href=\"{name}_map.png\"><img class=\"map\" src=\"{name}_map.png\" alt=\"the same from above\"></a>\n\
          <figcaption>{title}.<br><code>{config}</code><br>\
-         <code>relievo terrain --config {name}.json{features}{space}{arguments} --out {name}</code><br>\
+         <code>relievo terrain --config {name}.json{features}{space}{arguments} --size {size} --out {name}</code><br>\
          heights {generate:.3} s, pictures {render:.3} s (first use compiles the kernels)</figcaption>\n</figure>\n",
         config = config.replace('"', "&quot;"),
     )
