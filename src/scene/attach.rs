@@ -8,8 +8,9 @@ use crate::Error;
 use crate::InputError;
 use crate::animation::local_to_model::reference::affine;
 use crate::asset::Transform;
+use crate::asset::transform::AFFINE_IDENTITY;
 use crate::gpu::{Buffer, Gpu, Staged, Uniform, Upload as _};
-use crate::lod::attach::{AttachParams, Attachment};
+use crate::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 use crate::lod::{INSTANCE_CARRIES, INSTANCE_FOLLOWS, SceneInstance};
 use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId, Slots};
@@ -38,6 +39,10 @@ pub(super) struct Attachments {
     pub version: u64,
     /// The layout for which the lists were written; `None` if attachments have changed since.
     written: Option<u64>,
+    /// Number of attachments ever made.
+    made: u32,
+    /// Whether nothing counts of what was before the next frame.
+    starts_afresh: bool,
 }
 
 /// A mesh that is attached.
@@ -51,6 +56,8 @@ struct Attached {
     sphere: BoundingSphere,
     /// Where the mesh stands when it is detached.
     own: Placement,
+    /// Its number among all attachments ever made.
+    key: u32,
 }
 
 /// The meshes of a character on the device.
@@ -58,6 +65,12 @@ struct Attached {
 pub(super) struct List {
     pub params: Uniform<AttachParams>,
     pub attachments: Buffer<Attachment>,
+    /// Where bones had taken the meshes.
+    pub kept: Buffer<KeptBone>,
+    /// The keys of the entries that are not free.
+    keys: Vec<Option<u32>>,
+    /// The value of `params` but for the frame.
+    value: AttachParams,
 }
 
 impl Scene {
@@ -69,8 +82,12 @@ impl Scene {
     /// and takes a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. The bones of a character
     /// that carries a mesh are sampled in every frame in which it is seen, so that the mesh is at its place but for
     /// rounding. Where no view of a frame sees the character (it is hidden, or masks leave it out), the mesh is not drawn
-    /// either. Despawning the character detaches the mesh. [`Layer::Velocity`](crate::render::Layer::Velocity) shows what is
-    /// attached as if it did not move.
+    /// either. Despawning the character detaches the mesh.
+    ///
+    /// [`Layer::Velocity`](crate::render::Layer::Velocity) shows it moving with its bone, and in the frame in which it is
+    /// attached from where it stood. When it changes to another bone, when its character was not seen in the last frame, or
+    /// when more meshes are attached to characters of the object than ever before, it moves for one frame with its character
+    /// alone; when it is detached, it does not move.
     ///
     /// It takes sampling each clip that the character plays, once for each bone.
     ///
@@ -100,7 +117,9 @@ impl Scene {
         let sphere = BoundingSphere { center, radius: largest * radius };
         let own = self.placement(mesh)?;
         self.release(mesh);
-        self.attachments.all.insert(mesh, Attached { character, bone, offset, sphere, own });
+        self.attachments.made = self.attachments.made.wrapping_add(1);
+        let key = self.attachments.made;
+        self.attachments.all.insert(mesh, Attached { character, bone, offset, sphere, own, key });
         self.attachments.carried.entry(character).or_default().push(mesh);
         self.attachments.written = None;
         self.carry(character)
@@ -251,17 +270,41 @@ impl Attachments {
         self.version += 1;
     }
 
-    /// Writes the lists anew, if attachments or the layout have changed.
+    /// Lets nothing count of what was before the next frame.
+    pub fn start_afresh(&mut self) {
+        self.starts_afresh = true;
+    }
+
+    /// Writes the lists anew, if attachments or the layout have changed, and the number of the frame, if the last one is kept.
     pub fn fit(
+        &mut self,
+        gpu: &Gpu,
+        objects: &Slots<Object>,
+        layout: &Layout,
+        (staged, frame): (&mut Staged, u64),
+    ) -> Result<(), Error> {
+        let is_written = self.written == Some(layout.version) || self.lists.is_empty() && self.all.is_empty();
+        if !is_written {
+            self.write_all(gpu, objects, layout, staged)?;
+        }
+        let starts_afresh = std::mem::take(&mut self.starts_afresh);
+        if layout.keeps_last {
+            for list in self.lists.values() {
+                let last_frame = if starts_afresh { 0 } else { frame as u32 };
+                let value = AttachParams { frame: frame as u32 + 1, last_frame, ..list.value };
+                staged.uniform(&list.params, &value)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_all(
         &mut self,
         gpu: &Gpu,
         objects: &Slots<Object>,
         layout: &Layout,
         staged: &mut Staged,
     ) -> Result<(), Error> {
-        if self.written == Some(layout.version) || self.lists.is_empty() && self.all.is_empty() {
-            return Ok(());
-        }
         let mut of_chunk: BTreeMap<([u32; 2], usize), Vec<Attachment>> =
             self.lists.keys().map(|key| (*key, Vec::new())).collect();
         for (mesh, attached) in &self.all {
@@ -269,15 +312,17 @@ impl Attachments {
                 of_chunk.entry(key).or_default().push(attachment);
             }
         }
+        let last_rows = if layout.keeps_last { 3 * layout.instances.len() as u32 } else { 0 };
         for (key, mut attachments) in of_chunk {
             let (object, chunk) = key;
-            let Some(first) = first_of(objects, object, chunk) else {
+            let Some([first, bones]) = first_of(objects, object, chunk) else {
                 self.lists.remove(&key);
                 self.version += 1;
                 continue;
             };
-            attachments.sort_by_key(|attachment| (attachment.character, attachment.mesh));
-            self.write(gpu, (key, first), &attachments, staged)?;
+            attachments.sort_by_key(|attachment| attachment.key);
+            let value = AttachParams { attached: 0, bones, first, last_rows, frame: 0, last_frame: 0 };
+            self.write(gpu, (key, value), &attachments, staged)?;
         }
         self.written = Some(layout.version);
         Ok(())
@@ -286,28 +331,55 @@ impl Attachments {
     fn write(
         &mut self,
         gpu: &Gpu,
-        (key, [first, bones]): (([u32; 2], usize), [u32; 2]),
+        (key, value): (([u32; 2], usize), AttachParams),
         attachments: &[Attachment],
         staged: &mut Staged,
     ) -> Result<(), Error> {
-        let params = AttachParams { attached: attachments.len() as u32, bones, first };
         let room = self.lists.get(&key).map_or(0, |list| list.attachments.len());
         if room < attachments.len() {
             let room = attachments.len().next_power_of_two().max(16);
             let list = List {
-                params: Uniform::new(gpu, "attached meshes", &params)?,
+                params: Uniform::new(gpu, "attached meshes", &value)?,
                 attachments: Buffer::new(gpu, "attached meshes", room)?,
+                kept: Buffer::new(gpu, "bones of the last frame", 2 * room)?,
+                keys: vec![None; room],
+                value,
             };
             self.lists.insert(key, list);
             self.version += 1;
         }
-        if let Some(list) = self.lists.get(&key) {
-            staged.uniform(&list.params, &params)?;
-            staged.elements(&list.attachments, 0, attachments)?;
+        if let Some(list) = self.lists.get_mut(&key) {
+            let entries = list.arranged(attachments);
+            list.value = AttachParams { attached: entries.len() as u32, ..value };
+            staged.uniform(&list.params, &list.value)?;
+            staged.elements(&list.attachments, 0, &entries)?;
         }
         Ok(())
     }
 }
+
+impl List {
+    /// All entries up to the last one that is not free: attachments stay where they are, so that what is kept of them stays
+    /// theirs, and new ones take the first that are free. There is room for all.
+    fn arranged(&mut self, attachments: &[Attachment]) -> Vec<Attachment> {
+        let known = |key: Option<u32>| {
+            let found = attachments.binary_search_by_key(&key?, |attachment| attachment.key).ok()?;
+            Some(&attachments[found])
+        };
+        let mut entries: Vec<Option<&Attachment>> = self.keys.iter().map(|key| known(*key)).collect();
+        let is_new = |attachment: &&Attachment| !self.keys.contains(&Some(attachment.key));
+        let mut new = attachments.iter().filter(is_new);
+        for free in entries.iter_mut().filter(|entry| entry.is_none()) {
+            *free = new.next();
+        }
+        self.keys = entries.iter().map(|entry| entry.map(|attachment| attachment.key)).collect();
+        let used = entries.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        entries[..used].iter().map(|entry| entry.copied().unwrap_or(FREE)).collect()
+    }
+}
+
+/// An entry that is free.
+const FREE: Attachment = Attachment { mesh: NO_MESH, character: 0, bone: 0, key: 0, offset: AFFINE_IDENTITY };
 
 /// An attachment as kernels see it, with the chunk of the character in which it is listed.
 fn on_device(
@@ -315,7 +387,7 @@ fn on_device(
     mesh: InstanceId,
     attached: &Attached,
 ) -> Option<(([u32; 2], usize), Attachment)> {
-    let Attached { character, bone, offset, .. } = attached;
+    let Attached { character, bone, offset, key, .. } = attached;
     let ObjectId { index, generation, .. } = character.object;
     let slot = character.index as usize;
     let chunks = &objects.existing(*character)?.chunks;
@@ -324,7 +396,7 @@ fn on_device(
         mesh: objects.existing(mesh)?.place(mesh.index)? as u32,
         character: (slot - chunks[chunk].slots.start) as u32,
         bone: *bone as u32,
-        unused: 0,
+        key: *key,
         offset: affine(offset),
     };
     Some((([index, generation], chunk), attachment))

@@ -47,6 +47,7 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.refresh(&self.gpu, &self.layouts_of_groups)?;
         }
+        self.attachments.start_afresh();
         self.layout = None;
         Ok(())
     }
@@ -285,7 +286,7 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
-        self.attachments.fit(&self.gpu, &self.objects, layout, &mut self.staged)?;
+        self.attachments.fit(&self.gpu, &self.objects, layout, (&mut self.staged, self.frames))?;
         let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
             let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
