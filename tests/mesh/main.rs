@@ -6,4 +6,5 @@ mod creature;
 mod input;
 mod measure;
 mod quality;
+mod reduce;
 mod shapes;
