@@ -25,6 +25,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/loads", run: baseline::loads::bench::cases },
     Stem { name: "baseline/words", run: baseline::words::bench::cases },
     Stem { name: "terrain/height", run: terrain::height::bench::cases },
+    Stem { name: "terrain/smooth", run: terrain::smooth::bench::cases },
     Stem { name: "terrain/wrap", run: terrain::wrap::bench::cases },
     Stem { name: "terrain/border", run: terrain::border::bench::cases },
     Stem { name: "terrain/pad", run: terrain::pad::bench::cases },

@@ -27,6 +27,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/loads", run: baseline::loads::verify::cases },
     Stem { name: "baseline/words", run: baseline::words::verify::cases },
     Stem { name: "terrain/height", run: terrain::height::verify::cases },
+    Stem { name: "terrain/smooth", run: terrain::smooth::verify::cases },
     Stem { name: "terrain/wrap", run: terrain::wrap::verify::cases },
     Stem { name: "terrain/border", run: terrain::border::verify::cases },
     Stem { name: "terrain/pad", run: terrain::pad::verify::cases },

@@ -4,46 +4,15 @@
 // diamonds on the rim of its cells a second time, so that threads need no barrier and a level is one dispatch.
 // With two levels per dispatch, the rows of the level in between stream through registers too and are neither
 // stored nor loaded.
-import package::wgsl::hash::threefry2x32;
-import package::wgsl::terrain::fixed::{HEIGHT_LIMIT, mean_of_sums};
-import package::wgsl::terrain::offset::height_offset;
-import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_at, feature_bits, injected_lanes};
+import package::wgsl::terrain::fixed::mean_of_sums;
+import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, feature_at, feature_bits, injected_lanes};
+import package::wgsl::terrain::level::{
+    Columns, FIRST, LANES, Place, base_points, columns_of, fine_at, held, level, loaded, offsets, origins, store_four, world_y};
 
 // Rows of coarse cells per thread: many for a software adapter, few for hardware.
 override CELL_ROWS: u32 = 4u;
 // Levels per dispatch: 1, or 2 where no features are injected.
 override LEVELS: u32 = 1u;
-// Whether the coarse level is the base lattice, which is computed here and not loaded.
-override FIRST: bool = false;
-// One of the constants OFFSET_*.
-override DISTRIBUTION: u32 = 0u;
-
-struct Level {
-    key: vec2<u32>,
-    // Points along an edge of a window, and points per window.
-    fine_width: u32,
-    fine_points: u32,
-    coarse_width: u32,
-    coarse_points: u32,
-    // World coordinates between neighbouring fine samples.
-    fine_spacing: u32,
-    fine_range: u32,
-    // The range of offsets of the level between coarse and fine, if there is one.
-    middle_range: u32,
-    base_range: u32,
-    blocks_per_row: u32,
-    // Threads per window, and number of windows.
-    blocks: u32,
-    windows: u32,
-    @align(16) fine_features: FeatureGrid,
-    @align(16) base_features: FeatureGrid,
-}
-
-@group(0) @binding(0) var<uniform> level: Level;
-// World coordinates of the first fine sample of each window, in units of fine_spacing.
-@group(0) @binding(1) var<storage, read> origins: array<vec2<i32>>;
-@group(0) @binding(2) var<storage, read> coarse: array<i32>;
-@group(0) @binding(3) var<storage, read_write> fine: array<i32>;
 
 // Columns -1 to 4 of a coarse row, for four cells.
 struct CoarseRow {
@@ -57,25 +26,6 @@ struct DiamondRow {
     left: i32,
     inner: vec4<i32>,
 }
-
-// World coordinates of the fine columns of four cells: those of coarse points, and those between them.
-struct Columns {
-    even: vec4<u32>,
-    odd: vec4<u32>,
-}
-
-// A window at one level.
-struct Place {
-    window: u32,
-    // World coordinates of the window's first sample at this level, in units of spacing.
-    origin: vec2<i32>,
-    // How far before the window the sample at coarse point (0, 0) lies: one or two samples.
-    shift: vec2<i32>,
-    spacing: u32,
-    range: u32,
-}
-
-const LANES = vec4<i32>(0, 1, 2, 3);
 
 @compute @workgroup_size(64)
 fn main(
@@ -130,16 +80,6 @@ fn subdivide(place: Place, cell: vec2<i32>) {
     }
 }
 
-fn columns_of(place: Place, x: i32) -> Columns {
-    let even = vec4<u32>(vec4<i32>(place.origin.x + 2 * x - place.shift.x) + 2 * LANES) * place.spacing;
-    return Columns(even, even + vec4<u32>(place.spacing));
-}
-
-// The fine sample at a coarse point.
-fn fine_at(place: Place, cell: vec2<i32>) -> vec2<i32> {
-    return 2 * cell - place.shift;
-}
-
 fn diamonds(place: Place, columns: Columns, cell: vec2<i32>, above: CoarseRow, below: CoarseRow) -> DiamondRow {
     let at = fine_at(place, cell) + vec2<i32>(-1, 1);
     let mean = mean_of_sums(vec4<i32>(above.left + below.left), vec4<i32>(above.inner.x + below.inner.x)).x;
@@ -189,12 +129,6 @@ fn write_rows(
     let squares = injected_squares(place, at, odd_features, Squares(beside, under));
     store_four(place, at + vec2<i32>(1, 0), squares.beside);
     store_four(place, at + vec2<i32>(0, 1), squares.under);
-}
-
-// Returns the heights unchanged, since none is less than the constant. lavapipe stores lane by lane and would
-// repeat the arithmetic of a value that is only stored for each lane; it does not split a maximum.
-fn held(heights: vec4<i32>) -> vec4<i32> {
-    return max(heights, vec4<i32>(-HEIGHT_LIMIT));
 }
 
 // Columns -1 to 5 of a coarse row.
@@ -329,14 +263,6 @@ fn drawn(place: Place, x: vec4<u32>, at: vec2<i32>, means: vec4<i32>) -> vec4<i3
     return means + offsets(place, x, world_y(place, at));
 }
 
-fn offsets(place: Place, x: vec4<u32>, y: vec4<u32>) -> vec4<i32> {
-    return height_offset(DISTRIBUTION, place.range, threefry2x32(level.key, x, y));
-}
-
-fn world_y(place: Place, at: vec2<i32>) -> vec4<u32> {
-    return vec4<u32>(u32(place.origin.y + at.y) * place.spacing);
-}
-
 fn coarse_row(place: Place, cell: vec2<i32>) -> CoarseRow {
     if FIRST {
         let left = base_points(place, cell - vec2<i32>(1, 0)).x;
@@ -346,28 +272,6 @@ fn coarse_row(place: Place, cell: vec2<i32>) -> CoarseRow {
         loaded(place, cell), loaded(place, cell + vec2<i32>(1, 0)),
         loaded(place, cell + vec2<i32>(2, 0)), loaded(place, cell + vec2<i32>(3, 0)));
     return CoarseRow(loaded(place, cell - vec2<i32>(1, 0)), inner, loaded(place, cell + vec2<i32>(4, 0)));
-}
-
-// Points outside the window feed only samples outside it, so any value will do.
-fn loaded(place: Place, cell: vec2<i32>) -> i32 {
-    let at = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(i32(level.coarse_width) - 1)));
-    return coarse[place.window * level.coarse_points + at.y * level.coarse_width + at.x];
-}
-
-// Four points of the base lattice, starting at coarse point `cell`.
-fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
-    let words = threefry2x32(level.key, columns_of(place, cell.x).even, world_y(place, fine_at(place, cell)));
-    let heights = height_offset(DISTRIBUTION, level.base_range, words);
-    if FEATURES == FEATURES_NONE {
-        return heights;
-    }
-    var result = heights;
-    for (var rest = feature_bits(level.base_features, place.window, cell) & 15u; rest != 0u; rest &= rest - 1u) {
-        let column = i32(countTrailingZeros(rest));
-        let feature = feature_at(level.base_features, place.window, cell + vec2<i32>(column, 0));
-        result = injected_lanes(feature, LANES == vec4<i32>(column), result);
-    }
-    return result;
 }
 
 // Which samples below a row of coarse points have features, starting with the one to the left of the first: the
@@ -418,22 +322,4 @@ fn injected_squares(place: Place, at: vec2<i32>, odd_features: u32, computed: Sq
         result.under = injected_lanes(feature, lanes & vec4<bool>(below == 1), result.under);
     }
     return result;
-}
-
-// Stores every other sample of a row.
-fn store_four(place: Place, at: vec2<i32>, heights: vec4<i32>) {
-    let row = place.window * level.fine_points + u32(at.y) * level.fine_width;
-    // A row outside the window has no columns to store.
-    let width = select(0u, level.fine_width, u32(at.y) < level.fine_width);
-    let x = vec4<u32>(vec4<i32>(at.x) + 2 * LANES);
-    store(row, width, x.x, heights.x);
-    store(row, width, x.y, heights.y);
-    store(row, width, x.z, heights.z);
-    store(row, width, x.w, heights.w);
-}
-
-fn store(row: u32, width: u32, x: u32, height: i32) {
-    if x < width {
-        fine[row + x] = height;
-    }
 }

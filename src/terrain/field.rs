@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::{border, despike, height, pad, thermal, wrap};
+use super::{border, despike, height, pad, smooth, thermal, wrap};
 use crate::InputError;
 use crate::terrain::border::neighbours;
-use crate::terrain::config::{Border, Config};
+use crate::terrain::config::{Border, Config, Interpolation};
 use crate::terrain::features::Features;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::Recipe;
@@ -55,8 +55,11 @@ pub fn field_with(
 /// The windows of `patches` before despiking and erosion.
 pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<i32>> {
     if config.border == Border::Seamless {
-        let window =
-            |patch: &[i32; 2]| height::reference::height(config, features, Window { patch: *patch, apron });
+        let made = match config.interpolation {
+            Interpolation::Linear => height::reference::height,
+            Interpolation::Smooth => smooth::reference::smooth,
+        };
+        let window = |patch: &[i32; 2]| made(config, features, Window { patch: *patch, apron });
         return patches.par_iter().map(window).collect();
     }
     let mut fields: Vec<_> =

@@ -11,6 +11,19 @@ pub fn mean_of_four(a: i32, b: i32, c: i32, d: i32) -> i32 {
     (a >> 2) + (b >> 2) + (c >> 2) + (d >> 2) + (((a & 3) + (b & 3) + (c & 3) + (d & 3) + 2) >> 2)
 }
 
+/// (9 (b + c) − (a + d)) / 16, rounded half up, for values of at most 1.25 · 2^30.
+#[inline(always)]
+pub fn four_point(a: i32, b: i32, c: i32, d: i32) -> i32 {
+    let whole = 9 * ((b >> 4) + (c >> 4)) - ((a >> 4) + (d >> 4));
+    whole + ((9 * ((b & 15) + (c & 15)) - ((a & 15) + (d & 15)) + 8) >> 4)
+}
+
+/// The mean of two heights, rounded half up.
+#[inline(always)]
+pub fn mean_of_two(a: i32, b: i32) -> i32 {
+    (a >> 1) + (b >> 1) + (((a & 1) + (b & 1) + 1) >> 1)
+}
+
 /// The high word of the 64-bit product of two words.
 #[inline(always)]
 pub fn multiply_high(a: u32, b: u32) -> u32 {

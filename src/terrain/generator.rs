@@ -8,13 +8,14 @@
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
-use crate::terrain::config::Border;
+use crate::terrain::config::{Border, Config, Interpolation};
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::{Fields, REMEDY};
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch};
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
+use crate::terrain::smooth::SmoothPass;
 use crate::terrain::thermal::{ThermalBuffers, ThermalPass};
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
@@ -24,7 +25,7 @@ use crate::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
 #[derive(Debug, Clone)]
 pub struct Generator {
     recipe: Recipe,
-    height: HeightPass,
+    windows: WindowPass,
     wrap: WrapPass,
     border: BorderPass,
     pad: PadPass,
@@ -41,7 +42,7 @@ impl Generator {
         recipe.validate(&[], 0)?;
         let (offset, injection) = (recipe.config.offset, recipe.features.injection());
         Ok(Self {
-            height: HeightPass::new(gpu, offset, injection)?,
+            windows: WindowPass::new(gpu, &recipe)?,
             wrap: WrapPass::new(gpu, offset, injection)?,
             border: BorderPass::new(gpu)?,
             pad: PadPass::new(gpu)?,
@@ -114,11 +115,10 @@ impl Generator {
         let count = patches.len() as u32;
         let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, count)?;
         debug_assert_eq!(windows.heights.len(), HeightJob::output_points(config, count, apron));
-        let scratch = HeightScratch::new(gpu, &self.height, config, count, apron)?;
         let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, apron })).sum();
-        let job = self.height.prepare(gpu, config, [count, apron], capacity, &windows.heights, &scratch)?;
+        let job = self.windows.prepare(gpu, config, [count, apron], capacity, &windows.heights)?;
         job.set(gpu, patches, features)?;
-        gpu.run_async("terrain/height", |encoder| job.record(encoder)).await?;
+        gpu.run_async("terrain windows", |encoder| job.record(encoder)).await?;
         Ok(windows)
     }
 
@@ -251,6 +251,44 @@ impl Generator {
             injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
         })?;
         Ok(index)
+    }
+}
+
+/// What makes windows of the plane.
+#[derive(Debug, Clone)]
+enum WindowPass {
+    Linear(HeightPass),
+    Smooth(SmoothPass),
+}
+
+impl WindowPass {
+    fn new(gpu: &Gpu, recipe: &Recipe) -> Result<Self, Error> {
+        let (offset, injection) = (recipe.config.offset, recipe.features.injection());
+        Ok(match recipe.config.interpolation {
+            Interpolation::Linear => Self::Linear(HeightPass::new(gpu, offset, injection)?),
+            Interpolation::Smooth => Self::Smooth(SmoothPass::new(gpu, offset, injection)?),
+        })
+    }
+
+    /// Prepares the generation of `count` windows with `apron`, with scratch of its own.
+    fn prepare(
+        &self,
+        gpu: &Gpu,
+        config: &Config,
+        [count, apron]: [u32; 2],
+        capacity: usize,
+        output: &Buffer<i32>,
+    ) -> Result<HeightJob, Error> {
+        match self {
+            Self::Linear(pass) => {
+                let scratch = HeightScratch::new(gpu, pass, config, count, apron)?;
+                pass.prepare(gpu, config, [count, apron], capacity, output, &scratch)
+            }
+            Self::Smooth(pass) => {
+                let scratch = pass.scratch(gpu, config, [count, apron])?;
+                pass.prepare(gpu, config, [count, apron], capacity, output, &scratch)
+            }
+        }
     }
 }
 

@@ -6,6 +6,7 @@ pub mod blend;
 pub mod border;
 pub mod color_maps;
 pub mod config;
+pub mod crease;
 pub mod despike;
 pub mod export;
 pub mod features;
@@ -25,6 +26,7 @@ pub mod morph;
 pub mod normals;
 pub mod pad;
 pub mod recipe;
+pub mod smooth;
 pub mod texture;
 pub mod thermal;
 #[cfg(feature = "verify")]

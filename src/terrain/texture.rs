@@ -40,6 +40,7 @@ impl Texture {
             seed: kind.name().to_owned(),
             roughness,
             coarse_levels: 0,
+            interpolation: crate::terrain::config::Interpolation::Linear,
             offset: Default::default(),
             border: Border::Wrap,
             corners: [0.0; 4],

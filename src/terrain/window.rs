@@ -1,10 +1,13 @@
 //! Windows onto the plane: a patch and the samples around it, level by level.
 
 use crate::InputError;
-use crate::terrain::config::{Border, Config};
+use crate::terrain::config::{Border, Config, Interpolation};
 
 /// The largest number of samples by which a window may extend beyond its patch.
 pub const MAX_APRON: u32 = 4096;
+
+/// The points outside of a window whose features it sees at every level but the first, where interpolation is smooth.
+pub(crate) const SMOOTH_RIM: u32 = 3;
 
 /// A patch and the samples around it: (patchSize + 2·apron)² of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +34,11 @@ impl Span {
         Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
     }
 
+    /// As [`Span::coarser`] where interpolation is smooth: three points more on each side.
+    fn coarser_smooth(self) -> Self {
+        Self { first: self.first.div_euclid(2) - 3, last: (self.last + 1).div_euclid(2) + 3 }
+    }
+
     /// The number of indices in the span.
     pub(crate) fn width(self) -> usize {
         (self.last - self.first + 1) as usize
@@ -55,9 +63,13 @@ impl Window {
     /// The columns and rows of the window at every level, the base lattice first.
     pub(crate) fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
         let mut levels = vec![self.spans(config)];
+        let coarser = match config.interpolation {
+            Interpolation::Linear => Span::coarser,
+            Interpolation::Smooth => Span::coarser_smooth,
+        };
         for _ in 0..config.levels() {
             let finer = levels[levels.len() - 1];
-            levels.push(finer.map(Span::coarser));
+            levels.push(finer.map(coarser));
         }
         levels.reverse();
         levels
@@ -113,9 +125,10 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// The lattice with one more point on every side.
+    /// The lattice with this many more points on every side.
     #[cfg(feature = "gpu")]
-    pub(crate) fn grown(self) -> Self {
-        Self { origin: self.origin.map(|start| start - self.spacing), width: self.width + 2, ..self }
+    pub(crate) fn grown(self, rim: u32) -> Self {
+        let origin = self.origin.map(|start| start - i64::from(rim) * self.spacing);
+        Self { origin, width: self.width + 2 * rim, ..self }
     }
 }

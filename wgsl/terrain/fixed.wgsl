@@ -31,3 +31,23 @@ fn multiply_high(a: vec4<u32>, b: u32) -> vec4<u32> {
     let carry = a_low * b_high + (middle & low);
     return a_high * b_high + (middle >> half) + (carry >> half);
 }
+
+// (9 (b + c) − (a + d)) / 16, rounded half up: the value halfway between b and c on the cubic through four values (Dyn, Levin
+// and Gregory 1987). No step overflows for values of at most 1.25 · 2^30, which it makes of heights.
+fn four_point(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
+    let four = vec4<u32>(4u);
+    let low = vec4<i32>(15);
+    let whole = 9 * ((b >> four) + (c >> four)) - ((a >> four) + (d >> four));
+    return whole + ((9 * ((b & low) + (c & low)) - ((a & low) + (d & low)) + 8) >> four);
+}
+
+// The mean of two heights, rounded half up.
+fn mean_of_two(a: vec4<i32>, b: vec4<i32>) -> vec4<i32> {
+    let one = vec4<u32>(1u);
+    return (a >> one) + (b >> one) + (((a & vec4<i32>(1)) + (b & vec4<i32>(1)) + 1) >> one);
+}
+
+// The nearest height of at most `HEIGHT_LIMIT`.
+fn limited(heights: vec4<i32>) -> vec4<i32> {
+    return max(min(heights, vec4<i32>(HEIGHT_LIMIT)), vec4<i32>(-HEIGHT_LIMIT));
+}

@@ -3,6 +3,7 @@
 mod arguments;
 mod bench;
 mod collapse;
+mod creases;
 mod crowd;
 mod demo;
 mod info;
@@ -45,6 +46,7 @@ enum Command {
     Info,
     Scene(Box<scene::Scene>),
     Terrain(Box<terrain::Terrain>),
+    Creases(creases::Creases),
     Relief(Box<relief::Relief>),
     Pose(pose::Pose),
     Priorities(priorities::Priorities),
@@ -92,6 +94,7 @@ fn main() -> ExitCode {
         Command::Info => info::run(&context),
         Command::Scene(command) => command.run(&context),
         Command::Terrain(command) => command.run(&context),
+        Command::Creases(command) => command.run(),
         Command::Relief(command) => command.run(&context),
         Command::Pose(command) => command.run(&context),
         Command::Priorities(command) => command.run(),

@@ -49,7 +49,7 @@ const WEIGHT_MODES: [(&str, WeightMode); 2] =
 /// mapping to heights), `heights_<px>_<py>.i32` (little-endian rows, in 1/65536 height units), and `report.json`.
 ///
 /// A configuration: {"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}. Optional fields: roughness,
-/// coarseLevels, offset, border, corners, terrainScale, textureTile, zones. A feature file: {"patchCoordinates":
+/// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, zones. A feature file: {"patchCoordinates":
 /// [0, 0], "precomputedHeights": [x, y, height, …]}.
 #[derive(Args)]
 pub struct Terrain {

@@ -9,7 +9,7 @@ use serde::de::{DeserializeOwned, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::terrain::config::Zone;
-use crate::terrain::config::{Border, Config, Offset};
+use crate::terrain::config::{Border, Config, Interpolation, Offset};
 use crate::{Error, InputError};
 
 /// `Config` as JSON stores it.
@@ -25,6 +25,8 @@ struct Raw {
     coarse_levels: Option<serde_json::Number>,
     #[serde(default)]
     offset: Offset,
+    #[serde(default)]
+    interpolation: Interpolation,
     #[serde(default)]
     border: RawBorder,
     #[serde(default)]
@@ -139,6 +141,7 @@ impl Config {
             roughness: raw.roughness.unwrap_or(1.0),
             coarse_levels: raw.coarse_levels.map_or(Ok(0), |levels| whole("coarseLevels", &levels, 0, 8))?,
             offset: raw.offset,
+            interpolation: raw.interpolation,
             border,
             corners: raw.corners.map_or([0.0; 4], |corners| match corners {
                 RawCorners::All(height) => [height; 4],

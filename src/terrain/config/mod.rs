@@ -26,6 +26,9 @@ pub const PATCH_EDGE: i64 = 4096;
 /// The largest absolute height, 2^30 − 1 in 1/65536 units: sums and differences of two heights still fit `i32`.
 pub const HEIGHT_LIMIT: i64 = fixed::HEIGHT_LIMIT as i64;
 
+/// The largest range of offsets and the largest absolute feature where interpolation is smooth, 2^29 in 1/65536 units.
+const SMOOTH_LIMIT: i64 = 1 << 29;
+
 /// The most texture tiles along a patch's edge: with more, `f32` texture coordinates could not resolve a
 /// quarter of a texel.
 const MAX_TILES: f64 = 16_384.0;
@@ -53,6 +56,18 @@ impl Offset {
             Self::Gaussian => offset::OFFSET_GAUSSIAN,
         }
     }
+}
+
+/// How a subdivision computes a point from those of the coarser lattice, before its random offset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Interpolation {
+    /// The mean of four neighbours, as in B. It leaves creases along the lines of coarse lattices.
+    #[default]
+    Linear,
+    /// Four-point interpolation (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision scheme for curve design",
+    /// Computer Aided Geometric Design 1987), without creases. [`Border::Seamless`] only.
+    Smooth,
 }
 
 /// How the borders of patches are made.
@@ -85,6 +100,8 @@ pub struct Config {
     pub coarse_levels: u32,
     /// Distribution of the offsets. Default `signed`.
     pub offset: Offset,
+    /// How points are interpolated. Default `linear`.
+    pub interpolation: Interpolation,
     /// Border mode. Default `seamless`.
     pub border: Border,
     /// Heights of the corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1). Default 0. `wrap` and `blend` only.
@@ -112,6 +129,7 @@ impl Config {
             roughness: 1.0,
             coarse_levels: 0,
             offset: Offset::Signed,
+            interpolation: Interpolation::Linear,
             border: Border::Seamless,
             corners: [0.0; 4],
             terrain_scale: 1.0,
@@ -186,6 +204,11 @@ impl Config {
             let bound = "must be 0 unless border is \"seamless\": a patch by itself has nothing coarser";
             return Err(InputError::new("coarseLevels", self.coarse_levels, bound));
         }
+        if self.interpolation == Interpolation::Smooth && self.border != Border::Seamless {
+            let bound =
+                "must be \"linear\" unless border is \"seamless\": a patch by itself has too few neighbours";
+            return Err(InputError::new("interpolation", "smooth", bound));
+        }
         match self.border {
             Border::Blend(width) if width == 0 || width >= self.patch_size => {
                 let bound = format!("must be in 1..={} (patchSize − 1)", self.patch_size - 1);
@@ -196,11 +219,15 @@ impl Config {
     }
 
     /// Refuses a configuration whose heights could exceed 2^30 − 1 (`HEIGHT_LIMIT`), given the largest absolute
-    /// feature height in 1/65536 units.
+    /// feature height in 1/65536 units. Smooth heights are clamped to it; there, only what would overflow before is
+    /// refused.
     ///
     /// # Errors
-    /// [`InputError`] that names `scaleFactor`.
+    /// [`InputError`] that names `scaleFactor` or `precomputedHeights`.
     pub(crate) fn check_overflow(&self, largest_feature: i64, additive: bool) -> Result<(), InputError> {
+        if self.interpolation == Interpolation::Smooth {
+            return self.check_smooth(largest_feature);
+        }
         let corner =
             self.corners.iter().map(|height| (height.abs() * HEIGHT_ONE).round()).fold(0.0, f64::max);
         let feature = largest_feature as f64;
@@ -218,6 +245,21 @@ impl Config {
                 "heights could reach {highest:.5} units with these ranges, corners and features; the bound is {most:.5}"
             );
             return Err(InputError::new("scaleFactor", self.scale_factor, bound));
+        }
+        Ok(())
+    }
+
+    fn check_smooth(&self, largest_feature: i64) -> Result<(), InputError> {
+        let most = SMOOTH_LIMIT as f64 / HEIGHT_ONE;
+        let feature = largest_feature as f64 / HEIGHT_ONE;
+        for (field, units, value) in [
+            ("scaleFactor", self.range(0), self.scale_factor),
+            ("precomputedHeights", largest_feature as f64, feature),
+        ] {
+            if units > SMOOTH_LIMIT as f64 {
+                let bound = format!("must be at most {most} in size where interpolation is smooth");
+                return Err(InputError::new(field, value, bound));
+            }
         }
         Ok(())
     }
@@ -250,6 +292,12 @@ impl Config {
     /// r_l: the range of the offsets at `level`, in 1/65536 units, rounded to nearest with ties to even.
     pub fn level_range(&self, level: u32) -> u32 {
         self.range(level) as u32
+    }
+
+    /// The range of the offsets of points on edges at `level`, where interpolation is smooth: half a step further (Saupe,
+    /// "Algorithms for random fractals", in The Science of Fractal Images, 1988), from the rounded range of the level.
+    pub fn edge_range(&self, level: u32) -> u32 {
+        (self.range(level) * libm::exp2(-self.roughness / 2.0)).round_ties_even() as u32
     }
 
     // `libm::exp2` is pure Rust, so that no platform's C library decides a bit.

@@ -2,20 +2,37 @@
 
 use super::HeightPass;
 use crate::gpu::{Buffer, Gpu, GpuError, Job};
-use crate::terrain::config::Config;
+use crate::terrain::config::{Config, Interpolation};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
-use crate::terrain::window::{Lattice, Window};
+use crate::terrain::window::{Lattice, SMOOTH_RIM, Window};
 use crate::{Error, InputError};
 
 /// Points along an edge at every level, the base lattice first: enough for windows of any alignment.
-pub(super) fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
+pub(in crate::terrain) fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
+    let halo = match config.interpolation {
+        Interpolation::Linear => 3,
+        Interpolation::Smooth => 8,
+    };
     let mut widths = vec![config.patch_size + 2 * apron];
     for _ in 0..config.levels() {
-        widths.push((widths[widths.len() - 1] - 1) / 2 + 3);
+        widths.push((widths[widths.len() - 1] - 1) / 2 + halo);
     }
     widths.reverse();
     widths
+}
+
+/// The points around a window whose features a level sees.
+fn rim(config: &Config, level: usize) -> u32 {
+    match config.interpolation {
+        Interpolation::Smooth if level > 0 => SMOOTH_RIM,
+        Interpolation::Linear | Interpolation::Smooth => 1,
+    }
+}
+
+/// The widths of the grids of an index that lists the features of windows with [`rim`], which has room for one point around.
+pub(in crate::terrain) fn grid_widths(config: &Config, widths: &[u32]) -> Vec<u32> {
+    widths.iter().enumerate().map(|(level, width)| width + 2 * (rim(config, level) - 1)).collect()
 }
 
 /// Scratch memory for the levels that one dispatch leaves to the next: about a third of the output with one
@@ -23,7 +40,7 @@ pub(super) fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
     // The two buffers alternate: the last dispatch reads the first, the one before it the second, and so on.
-    pub(super) buffers: [Buffer<i32>; 2],
+    pub(in crate::terrain) buffers: [Buffer<i32>; 2],
 }
 
 impl HeightScratch {
@@ -38,15 +55,25 @@ impl HeightScratch {
         count: u32,
         apron: u32,
     ) -> Result<Self, GpuError> {
-        let [first, second] = Self::points(pass, &level_widths(config, apron), count);
+        Self::of_plan(gpu, &pass.plan(config.levels()), &level_widths(config, apron), count)
+    }
+
+    /// Allocates scratch for dispatches from these levels on over these many levels.
+    pub(in crate::terrain) fn of_plan(
+        gpu: &Gpu,
+        plan: &[[usize; 2]],
+        widths: &[u32],
+        count: u32,
+    ) -> Result<Self, GpuError> {
+        let [first, second] = Self::points(plan, widths, count);
         let buffer =
             |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
-    fn points(pass: &HeightPass, widths: &[u32], count: u32) -> [usize; 2] {
+    fn points(plan: &[[usize; 2]], widths: &[u32], count: u32) -> [usize; 2] {
         let mut points = [0; 2];
-        for (left, &[level, _]) in pass.plan(widths.len() as u32 - 1).iter().rev().enumerate() {
+        for (left, &[level, _]) in plan.iter().rev().enumerate() {
             // The base lattice is computed in the first dispatch and not loaded.
             if level > 0 {
                 let needed = count as usize * (widths[level] as usize).pow(2);
@@ -61,8 +88,13 @@ impl HeightScratch {
         self.buffers.iter().map(Buffer::bytes).sum()
     }
 
-    pub(super) fn check(&self, pass: &HeightPass, widths: &[u32], count: u32) -> Result<(), InputError> {
-        let needed = Self::points(pass, widths, count);
+    pub(in crate::terrain) fn check(
+        &self,
+        plan: &[[usize; 2]],
+        widths: &[u32],
+        count: u32,
+    ) -> Result<(), InputError> {
+        let needed = Self::points(plan, widths, count);
         self.buffers.iter().zip(needed).try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
     }
 }
@@ -70,13 +102,13 @@ impl HeightScratch {
 /// The prepared generation of a batch of windows: set the patches, then record as often as wanted.
 #[derive(Debug, Clone)]
 pub struct HeightJob {
-    pub(super) config: Config,
-    pub(super) count: u32,
-    pub(super) apron: u32,
-    pub(super) widths: Vec<u32>,
-    pub(super) origins: Vec<Buffer<[i32; 2]>>,
-    pub(super) features: FeatureIndex,
-    pub(super) job: Job,
+    pub(in crate::terrain) config: Config,
+    pub(in crate::terrain) count: u32,
+    pub(in crate::terrain) apron: u32,
+    pub(in crate::terrain) widths: Vec<u32>,
+    pub(in crate::terrain) origins: Vec<Buffer<[i32; 2]>>,
+    pub(in crate::terrain) features: FeatureIndex,
+    pub(in crate::terrain) job: Job,
 }
 
 impl HeightJob {
@@ -110,7 +142,7 @@ impl HeightJob {
             let spacing = self.config.sample_spacing() << (self.config.levels() as usize - level);
             let origin = origins[level][window as usize].map(|first| i64::from(first) * spacing);
             let lattice = Lattice { origin, width: self.widths[level], spacing };
-            features.on_lattice([0, 0], lattice.grown(), level > 0)
+            features.on_lattice([0, 0], lattice.grown(rim(&self.config, level)), level > 0)
         })?;
         Ok(())
     }
@@ -137,7 +169,7 @@ mod tests {
             let widths = level_widths(&config, apron);
             let blocks = Blocks { cell_rows: 1, levels };
             let pass = HeightPass::with_blocks(&gpu, Offset::Signed, None, blocks).expect("compiled");
-            HeightScratch::points(&pass, &widths, 3)
+            HeightScratch::points(&pass.plan(widths.len() as u32 - 1), &widths, 3)
         };
         // The levels before the last are 131, 68, 36, 20, … points wide.
         assert_eq!(points(257, 0, 0, 1), [3 * 131 * 131, 3 * 68 * 68]);

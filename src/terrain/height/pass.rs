@@ -3,8 +3,8 @@
 use super::job::{HeightJob, HeightScratch, level_widths};
 use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Tuning, Uniform};
-use crate::shared::terrain::height::Level;
-use crate::terrain::config::{Border, Config, Offset};
+use crate::shared::terrain::level::Level;
+use crate::terrain::config::{Border, Config, Interpolation, Offset};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::window::Window;
@@ -120,16 +120,20 @@ impl HeightPass {
                 InputError::new("border", value, "must be \"seamless\" for windows of the plane").into()
             );
         }
+        if config.interpolation != Interpolation::Linear {
+            let bound = "must be \"linear\" in this pass: SmoothPass makes the others";
+            return Err(InputError::new("interpolation", "smooth", bound).into());
+        }
         Window { patch: [0, 0], apron }.validate(config)?;
         let widths = level_widths(config, apron);
         output.check_holds("output", HeightJob::output_points(config, count, apron))?;
-        scratch.check(self, &widths, count)?;
+        let plan = self.plan(config.levels());
+        scratch.check(&plan, &widths, count)?;
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
         let features = FeatureIndex::new(gpu, &widths, count, capacity)?;
         let origins: Vec<_> = (0..widths.len())
             .map(|_| Buffer::new(gpu, "window origins", count as usize))
             .collect::<Result<_, _>>()?;
-        let plan = self.plan(config.levels());
         let mut steps = Vec::new();
         for (index, &[level, levels]) in plan.iter().enumerate() {
             // The last dispatch writes to the output; those before it alternate between the scratch buffers.
@@ -185,6 +189,7 @@ impl HeightPass {
             fine_spacing: (config.sample_spacing() << (config.levels() as usize - fine)) as u32,
             fine_range: config.level_range(fine as u32 - 1),
             middle_range: config.level_range(level as u32),
+            edge_range: 0,
             base_range: config.level_range(0),
             blocks_per_row,
             blocks: blocks_per_row * cells.div_ceil(self.cell_rows),

@@ -20,21 +20,21 @@ pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> 
             spans: pair[1],
             spacing: base_spacing >> (level + 1),
             range: config.level_range(level as u32),
-            injected: Injected::new(features, pair[1], base_spacing >> (level + 1), true),
+            injected: Injected::new(features, pair[1], base_spacing >> (level + 1), (1, true)),
         };
         grid = lattice.subdivide(&grid, pair[0]);
     }
     grid
 }
 
-fn base_lattice(
+pub(in crate::terrain) fn base_lattice(
     config: &Config,
     features: &Features,
     draw: &Draw,
     spans: [Span; 2],
     spacing: i64,
 ) -> Vec<i32> {
-    let injected = Injected::new(features, spans, spacing, false);
+    let injected = Injected::new(features, spans, spacing, (1, false));
     let width = spans[0].width();
     let mut grid = vec![0; width * spans[1].width()];
     for (row, heights) in grid.chunks_exact_mut(width).enumerate() {
@@ -51,28 +51,40 @@ fn base_lattice(
     grid
 }
 
-fn world(index: i64, spacing: i64) -> u32 {
+pub(in crate::terrain) fn world(index: i64, spacing: i64) -> u32 {
     (index * spacing) as u32
 }
 
 /// The features of one level, indexed by row.
-struct Injected {
+pub(in crate::terrain) struct Injected {
     points: Vec<(u32, u32, i32)>,
     origin: [i64; 2],
 }
 
 impl Injected {
-    // The lattice has one point more than the window on every side, because diamonds in the outermost ring see
-    // features too.
-    fn new(features: &Features, spans: [Span; 2], spacing: i64, new_only: bool) -> Self {
-        let origin = [spans[0].first - 1, spans[1].first - 1];
-        let width = spans[0].width().max(spans[1].width()) as u32 + 2;
+    /// Those on a lattice that has `rim` points more than the window on every side: points outside of it, of which others
+    /// are computed, see features too. With `new_only`, points of the coarser lattice are left out.
+    pub(in crate::terrain) fn new(
+        features: &Features,
+        spans: [Span; 2],
+        spacing: i64,
+        (rim, new_only): (u32, bool),
+    ) -> Self {
+        let origin = spans.map(|span| span.first - i64::from(rim));
+        let width = spans[0].width().max(spans[1].width()) as u32 + 2 * rim;
         let lattice = Lattice { origin: origin.map(|index| index * spacing), width, spacing };
         Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
     }
 
     /// Injects into each `heights[i]`, which is the point (x + i·step, y) in units of the lattice.
-    fn inject_row(&self, features: &Features, y: i64, x: i64, step: i64, heights: &mut [i32]) {
+    pub(in crate::terrain) fn inject_row(
+        &self,
+        features: &Features,
+        y: i64,
+        x: i64,
+        step: i64,
+        heights: &mut [i32],
+    ) {
         let row = (y - self.origin[1]) as u32;
         let start = self.points.partition_point(|point| point.1 < row);
         for &(column, _, height) in self.points[start..].iter().take_while(|point| point.1 == row) {

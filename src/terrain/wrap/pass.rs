@@ -141,7 +141,7 @@ impl WrapJob {
             let spacing = PATCH_EDGE >> level;
             let lattice = Lattice { origin: [0, 0], width: self.widths[level], spacing };
             let world = Features::world_of(&self.config, patches[window as usize]);
-            features.on_lattice(world, lattice.grown(), level > 0)
+            features.on_lattice(world, lattice.grown(1), level > 0)
         })?;
         Ok(())
     }

@@ -1,0 +1,16 @@
+//! Heights of a window onto a smoothly interpolated surface of the whole plane, for `seamless` terrain without creases. Centers
+//! of cells are interpolated from four by four points of the coarser lattice, and points on edges from four points of their
+//! line and the four new centers beside them (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision scheme for curve
+//! design", Computer Aided Geometric Design 1987); random offsets are those of [`height`](super::height), with a range half a
+//! step smaller on edges (Saupe 1988). All arithmetic is on integers: every device computes the same bits.
+
+#[cfg(feature = "verify")]
+pub(crate) mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "verify")]
+pub(crate) mod verify;
+
+#[cfg(feature = "gpu")]
+pub use pass::SmoothPass;

@@ -1,0 +1,168 @@
+//! The GPU pass of `kernels/terrain/smooth.wgsl`: a level per dispatch, for a batch of windows.
+
+use crate::gpu::bindings::terrain::smooth as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::terrain::level::Level;
+use crate::terrain::config::{Config, Interpolation, Offset};
+use crate::terrain::features::FeatureIndex;
+use crate::terrain::fixed::FeatureMode;
+use crate::terrain::height::{HeightJob, HeightScratch, grid_widths, level_widths};
+use crate::terrain::window::Window;
+use crate::{Error, InputError};
+
+/// Rows of coarse cells per thread, which computes six rows of centers more. Software adapters run few long threads best,
+/// hardware many short ones.
+const CELL_ROWS_SOFTWARE: u32 = 43;
+const CELL_ROWS_HARDWARE: u32 = 8;
+
+/// Heights of smooth `seamless` windows. A pass is compiled for one distribution and one mode of injection.
+#[derive(Debug, Clone)]
+pub struct SmoothPass {
+    /// The kernel that starts from the base lattice, and the one for all later levels.
+    first: Kernel,
+    next: Kernel,
+    cell_rows: u32,
+    with_features: bool,
+}
+
+impl SmoothPass {
+    /// Compiles the pipelines. `features` is the mode of injection; `None` means that there are no features.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, Error> {
+        let is_software = gpu.tuning().wants_long_threads();
+        let cell_rows = if is_software { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
+        Self::with_rows(gpu, offset, features, cell_rows)
+    }
+
+    /// As [`SmoothPass::new`], with so many rows of coarse cells per thread.
+    ///
+    /// # Errors
+    /// [`InputError`] for no rows; what the driver's compiler reports.
+    pub(crate) fn with_rows(
+        gpu: &Gpu,
+        offset: Offset,
+        features: Option<FeatureMode>,
+        cell_rows: u32,
+    ) -> Result<Self, Error> {
+        if cell_rows == 0 {
+            return Err(InputError::new("cell_rows", 0, "must be at least 1").into());
+        }
+        let kernel = |first: bool| {
+            let constants = bindings::Constants {
+                cell_rows,
+                first,
+                distribution: offset.code(),
+                features: features.map_or(0, FeatureMode::code),
+            };
+            bindings::kernel(gpu, &constants)
+        };
+        Ok(Self { first: kernel(true)?, next: kernel(false)?, cell_rows, with_features: features.is_some() })
+    }
+
+    /// Allocates scratch for `count` windows with `apron`.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
+    pub fn scratch(
+        &self,
+        gpu: &Gpu,
+        config: &Config,
+        [count, apron]: [u32; 2],
+    ) -> Result<HeightScratch, GpuError> {
+        HeightScratch::of_plan(gpu, &plan(config), &level_widths(config, apron), count)
+    }
+
+    /// Prepares the generation of `count` windows with `apron` into `output`, which holds
+    /// [`HeightJob::output_points`] heights. `feature_capacity` is the largest number of injected points, where
+    /// a point counts once for every window that sees it.
+    ///
+    /// # Errors
+    /// [`InputError`] for a configuration that is not smooth or out of bounds, an apron out of bounds, or
+    /// buffers that are too short; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        config: &Config,
+        [count, apron]: [u32; 2],
+        feature_capacity: usize,
+        output: &Buffer<i32>,
+        scratch: &HeightScratch,
+    ) -> Result<HeightJob, Error> {
+        config.validate()?;
+        if config.interpolation != Interpolation::Smooth {
+            let bound = "must be \"smooth\" in this pass: HeightPass makes the others";
+            return Err(InputError::new("interpolation", "linear", bound).into());
+        }
+        Window { patch: [0, 0], apron }.validate(config)?;
+        let widths = level_widths(config, apron);
+        output.check_holds("output", HeightJob::output_points(config, count, apron))?;
+        let plan = plan(config);
+        scratch.check(&plan, &widths, count)?;
+        let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
+        let features = FeatureIndex::new(gpu, &grid_widths(config, &widths), count, capacity)?;
+        let origins: Vec<_> = (0..widths.len())
+            .map(|_| Buffer::new(gpu, "window origins", count as usize))
+            .collect::<Result<_, _>>()?;
+        let mut steps = Vec::new();
+        for level in 0..plan.len() {
+            // The last dispatch writes to the output; those before it alternate between the scratch buffers.
+            let left = plan.len() - 1 - level;
+            let coarse = &scratch.buffers[left % 2];
+            let fine = if left == 0 { output } else { &scratch.buffers[(left + 1) % 2] };
+            let kernel = if level == 0 { &self.first } else { &self.next };
+            let params = self.level(config, &widths, level, &features, count);
+            let uniform = Uniform::new(gpu, "terrain level", &params)?;
+            let group = bindings::Group {
+                level: &uniform,
+                origins: origins[level + 1].slice(),
+                coarse: coarse.slice(),
+                fine: fine.slice(),
+            };
+            let injected =
+                bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
+            let groups = vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?];
+            let workgroups = kernel.spread(gpu, params.blocks * count);
+            steps.push(Step { kernel: kernel.clone(), groups, workgroups });
+        }
+        let job = Job::new(gpu, "terrain/smooth", steps)?;
+        Ok(HeightJob { config: config.clone(), count, apron, widths, origins, features, job })
+    }
+
+    fn level(
+        &self,
+        config: &Config,
+        widths: &[u32],
+        level: usize,
+        features: &FeatureIndex,
+        count: u32,
+    ) -> Level {
+        let (coarse_width, fine_width) = (widths[level], widths[level + 1]);
+        // A window may start anywhere in its first cell.
+        let cells = fine_width / 2 + 1;
+        let blocks_per_row = cells.div_ceil(4);
+        Level {
+            key: config.key().into(),
+            fine_width,
+            fine_points: fine_width * fine_width,
+            coarse_width,
+            coarse_points: coarse_width * coarse_width,
+            fine_spacing: (config.sample_spacing() << (config.levels() as usize - level - 1)) as u32,
+            fine_range: config.level_range(level as u32),
+            middle_range: 0,
+            edge_range: config.edge_range(level as u32),
+            base_range: config.level_range(0),
+            blocks_per_row,
+            blocks: blocks_per_row * cells.div_ceil(self.cell_rows),
+            windows: count,
+            fine_features: features.grid(level + 1),
+            base_features: features.grid(0),
+        }
+    }
+}
+
+/// The coarse level and the number of levels of every dispatch.
+fn plan(config: &Config) -> Vec<[usize; 2]> {
+    (0..config.levels() as usize).map(|level| [level, 1]).collect()
+}

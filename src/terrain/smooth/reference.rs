@@ -1,0 +1,138 @@
+//! Heights of a window onto the smooth plane: the CPU reference of `kernels/terrain/smooth.wgsl`. Where a thread of the kernel
+//! handles four cells and a few rows, it handles the whole window.
+
+use crate::terrain::config::{Config, HEIGHT_LIMIT};
+use crate::terrain::features::Features;
+use crate::terrain::fixed::{Draw, four_point, mean_of_two};
+use crate::terrain::height::reference::{Injected, base_lattice, world};
+use crate::terrain::window::{SMOOTH_RIM, Span, Window};
+
+/// The heights of a window, rows of `window.width(config)` samples. The window must be valid, and the interpolation smooth.
+pub fn smooth(config: &Config, features: &Features, window: Window) -> Vec<i32> {
+    let levels = window.levels(config);
+    let draw = Draw::new(config);
+    let base_spacing = config.sample_spacing() << config.levels();
+    let mut grid = base_lattice(config, features, &draw, levels[0], base_spacing);
+    grid.iter_mut().for_each(|height| *height = limited(*height));
+    for (level, pair) in (0..).zip(levels.windows(2)) {
+        let spacing = base_spacing >> (level + 1);
+        let step = Subdivision {
+            features,
+            draw: &draw,
+            coarse: pair[0],
+            fine: pair[1],
+            spacing,
+            range: config.level_range(level),
+            edge_range: config.edge_range(level),
+            injected: Injected::new(features, pair[1], spacing, (SMOOTH_RIM, true)),
+        };
+        grid = step.made(&grid);
+    }
+    grid
+}
+
+fn limited(height: i32) -> i32 {
+    height.clamp(-HEIGHT_LIMIT as i32, HEIGHT_LIMIT as i32)
+}
+
+/// The finer lattice that one subdivision makes.
+struct Subdivision<'a> {
+    features: &'a Features,
+    draw: &'a Draw,
+    coarse: [Span; 2],
+    fine: [Span; 2],
+    spacing: i64,
+    range: u32,
+    edge_range: u32,
+    injected: Injected,
+}
+
+/// Rows of values, all of one width.
+struct Rows {
+    width: usize,
+    values: Vec<i32>,
+}
+
+impl Rows {
+    fn row(&self, at: usize) -> &[i32] {
+        &self.values[at * self.width..][..self.width]
+    }
+
+    /// The values between four rows, from `first` on.
+    fn between(&self, first: usize) -> Vec<i32> {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|row| self.row(first + row));
+        (0..self.width).map(|at| four_point(a[at], b[at], c[at], d[at])).collect()
+    }
+
+    /// The values between every four values of a row.
+    fn along(row: &[i32]) -> Vec<i32> {
+        row.windows(4).map(|values| four_point(values[0], values[1], values[2], values[3])).collect()
+    }
+}
+
+impl Subdivision<'_> {
+    /// The finer lattice, from the coarser one. Indices count from the first coarse point: cell i lies between the points i
+    /// and i + 1, and of a row of `along` and of `centers`, entry i belongs to cell i + 1.
+    fn made(&self, coarse: &[i32]) -> Vec<i32> {
+        let points = Rows { width: self.coarse[0].width(), values: coarse.to_vec() };
+        let rows = self.coarse[1].width();
+        let along = Rows {
+            width: points.width - 3,
+            values: (0..rows).flat_map(|row| Rows::along(points.row(row))).collect(),
+        };
+        let centers: Vec<i32> = (1..rows - 2).flat_map(|row| self.centers_below(&along, row)).collect();
+        let centers = Rows { width: along.width, values: centers };
+        let [first_x, first_y] = self.fine.map(|span| span.first);
+        let mut fine = vec![0; self.fine[0].width() * self.fine[1].width()];
+        for (at, heights) in fine.chunks_exact_mut(self.fine[0].width()).enumerate() {
+            let y = first_y + at as i64;
+            let row = (y.div_euclid(2) - self.coarse[1].first) as usize;
+            let (even, odd) = match y.rem_euclid(2) {
+                0 => (points.row(row).to_vec(), self.beside(&along, &centers, row)),
+                _ => (self.below(&points, &centers, row), centers.row(row - 1).to_vec()),
+            };
+            // The columns of `even` begin at the first coarse point or, below points, at the third; those of `odd` after the
+            // first cell or the third.
+            let skipped = if y.rem_euclid(2) == 0 { 0 } else { 3 };
+            for (column, height) in heights.iter_mut().enumerate() {
+                let x = first_x + column as i64;
+                let cell = (x.div_euclid(2) - self.coarse[0].first) as usize;
+                *height = if x.rem_euclid(2) == 0 { even[cell - skipped] } else { odd[cell - 1] };
+            }
+        }
+        fine
+    }
+
+    /// The centers of the cells below a coarse row, from cell 1 on.
+    fn centers_below(&self, along: &Rows, row: usize) -> Vec<i32> {
+        self.finished(along.between(row - 1), self.range, [3, 2 * row as i64 + 1])
+    }
+
+    /// The points between those of a coarse row, from cell 1 on.
+    fn beside(&self, along: &Rows, centers: &Rows, row: usize) -> Vec<i32> {
+        // The centers of the two rows of cells above and the two below.
+        let across = centers.between(row - 3);
+        let means = along.row(row).iter().zip(across).map(|(one, other)| mean_of_two(*one, other));
+        self.finished(means.collect(), self.edge_range, [3, 2 * row as i64])
+    }
+
+    /// The points below those of a coarse row, from column 3 on.
+    fn below(&self, points: &Rows, centers: &Rows, row: usize) -> Vec<i32> {
+        let down = points.between(row - 1);
+        let across = Rows::along(centers.row(row - 1));
+        let means = down[3..].iter().zip(across).map(|(one, other)| mean_of_two(*one, other));
+        self.finished(means.collect(), self.edge_range, [6, 2 * row as i64 + 1])
+    }
+
+    /// Interpolated heights with random offsets and features, at every other fine point from this one on, counted from the
+    /// first coarse point.
+    fn finished(&self, mut heights: Vec<i32>, range: u32, at: [i64; 2]) -> Vec<i32> {
+        let [x, y] = [0, 1].map(|axis| 2 * self.coarse[axis].first + at[axis]);
+        heights.iter_mut().for_each(|height| *height = limited(*height));
+        let step = 2 * self.spacing as u32;
+        self.draw.add_row(&mut heights, range, world(x, self.spacing), step, world(y, self.spacing));
+        self.injected.inject_row(self.features, y, x, 2, &mut heights);
+        heights.iter_mut().for_each(|height| *height = limited(*height));
+        heights
+    }
+}
