@@ -4,6 +4,8 @@
 pub mod distance;
 pub mod nearest;
 pub mod ray;
+pub mod reduce;
 pub mod simplify;
 
+pub use reduce::{Limits, Reduced, Reducer};
 pub use simplify::{Collapse, Cost, Options, Simplified, Stopped, Surface, simplify, simplify_within};

@@ -7,4 +7,5 @@ mod distance;
 mod input;
 mod measure;
 mod quality;
+mod reduce;
 mod shapes;
