@@ -56,7 +56,9 @@ fn obj_comes_back_to_the_bit() {
         assert_eq!(found.meshes.len(), rest.meshes.len(), "{name}");
         for (found, wanted) in found.meshes.iter().zip(&rest.meshes) {
             assert_eq!(difference(found, wanted), None, "{name} {}", wanted.name);
-            assert_eq!(found.vertices(), wanted.vertices(), "{name} {}", wanted.name);
+            // Vertices without triangles are left out.
+            let used: std::collections::HashSet<u32> = wanted.indices.iter().copied().collect();
+            assert_eq!(found.vertices(), used.len(), "{name} {}", wanted.name);
         }
         // A second time nothing changes any more but names.
         let mut again = from_obj(&found.to_obj("model").expect(name));

@@ -117,7 +117,7 @@ fn simplified_meshes_are_as_far_as_dense_samples_say() {
             let simplified = shape.simplified(&Limits { cost, triangles: limit, ..Limits::default() });
             let coarse = simplified.triangles(&shape.indices, simplified.collapses().len());
             let name = format!("{name} {cost:?} {share}");
-            check(&name, &triangles(&shape, &shape.indices), &triangles(&shape, &coarse), [30, 60]);
+            check(&name, &triangles(&shape, &shape.indices), &triangles(&shape, &coarse), [20, 40]);
         }
     }
 }
@@ -125,7 +125,7 @@ fn simplified_meshes_are_as_far_as_dense_samples_say() {
 /// Triangles without connection, of all shapes, near and far, with thin ones among them.
 #[test]
 fn loose_triangles_too() {
-    for seed in 0..12 {
+    for seed in 0..8 {
         let noise = |count: usize, salt: u64| -> Vec<[f32; 3]> {
             let order = shuffled(3 * count, seed * 100 + salt);
             (0..count)
@@ -142,7 +142,7 @@ fn loose_triangles_too() {
             bare((0..3 * count).map(place).collect(), (0..3 * count as u32).collect())
         };
         let (a, b) = (soup(9, 0.8, 1), soup(14, 0.3 + 0.1 * seed as f32, 5));
-        check(&format!("seed {seed}"), &triangles(&a, &a.indices), &triangles(&b, &b.indices), [100, 100]);
+        check(&format!("seed {seed}"), &triangles(&a, &a.indices), &triangles(&b, &b.indices), [50, 50]);
     }
 }
 
@@ -200,7 +200,7 @@ fn planted_faults_are_found() {
     let simplified = shape.simplified(&Limits { triangles: 20, ..Limits::default() });
     let coarse = simplified.triangles(&shape.indices, simplified.collapses().len());
     let (fine, coarse) = (triangles(&shape, &shape.indices), triangles(&shape, &coarse));
-    let samples = dense(&coarse, &fine, 60);
+    let samples = dense(&coarse, &fine, 40);
     let right = distance(&fine, &coarse, &Options { samples: 60_000, ..FEW }).expect("valid").backward;
     assert_eq!(wrong(&right, samples), None);
     // The corners of the coarse mesh lie on the fine one.
