@@ -56,15 +56,9 @@ impl ReducedModel {
     /// # Errors
     /// [`InputError`] for a model without triangles.
     pub fn distance(&self, whole: &Model) -> Result<Distance, InputError> {
-        let [from, to] = [whole, &self.model].map(|model| joined(model));
-        let triangles = |(positions, indices): &(Vec<[f32; 3]>, Vec<u32>)| {
-            distance::distance(
-                &Triangles { positions: &from.0, indices: &from.1 },
-                &Triangles { positions, indices },
-                &distance::Options::default(),
-            )
-        };
-        triangles(&to)
+        let [from, to] = [whole, &self.model].map(joined);
+        let [from, to] = [&from, &to].map(|(positions, indices)| Triangles { positions, indices });
+        distance::distance(&from, &to, &distance::Options::default())
     }
 }
 

@@ -3,7 +3,6 @@
 mod detail;
 mod pareto;
 mod plan;
-mod progress;
 mod report;
 mod scene;
 

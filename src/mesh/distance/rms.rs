@@ -67,7 +67,7 @@ pub(super) fn sampled(surface: &Surface, tree: &Tree, least: usize) -> Sampled {
 
 /// The square of the longest edge: what bounds the error where there is no area.
 fn extent_squared(surface: &Surface) -> f64 {
-    surface.corners.iter().map(|corners| edges_squared(corners)).fold(0.0, f64::max)
+    surface.corners.iter().map(edges_squared).fold(0.0, f64::max)
 }
 
 fn area([a, b, c]: &[DVec3; 3]) -> f64 {
