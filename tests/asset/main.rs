@@ -15,19 +15,20 @@ use relievo::asset::Model;
 
 /// Files beside a model.
 #[derive(Default)]
-pub struct Folder(pub HashMap<String, Vec<u8>>);
+struct Folder( HashMap<String, Vec<u8>>);
 
 impl Folder {
-    pub fn with(mut self, name: &str, bytes: impl Into<Vec<u8>>) -> Self {
+    /// The folder with another file.
+    fn with(mut self, name: &str, bytes: impl Into<Vec<u8>>) -> Self {
         self.0.insert(name.to_owned(), bytes.into());
         self
     }
 
-    pub fn read(&self, text: &str) -> Result<Model, InputError> {
+    fn read(&self, text: &str) -> Result<Model, InputError> {
         self.read_bytes(text.as_bytes())
     }
 
-    pub fn read_bytes(&self, text: &[u8]) -> Result<Model, InputError> {
+    fn read_bytes(&self, text: &[u8]) -> Result<Model, InputError> {
         let beside = |name: &Path| {
             let found = self.0.get(&name.to_string_lossy().into_owned());
             found.cloned().ok_or_else(|| std::io::ErrorKind::NotFound.into())
@@ -39,7 +40,7 @@ impl Folder {
 }
 
 /// Checks that a model is valid throughout.
-pub fn check(model: &Model) {
+fn check(model: &Model) {
     for skin in &model.skins {
         skin.validate(&model.skeleton).expect("a valid skin");
     }
@@ -50,21 +51,21 @@ pub fn check(model: &Model) {
 }
 
 /// Reads OBJ that names no files.
-pub fn read(text: &str) -> Result<Model, InputError> {
+fn read(text: &str) -> Result<Model, InputError> {
     Folder::default().read(text)
 }
 
-pub fn png(image: &RgbaImage) -> Vec<u8> {
+fn png(image: &RgbaImage) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, image::ImageFormat::Png).expect("encoded");
     bytes.into_inner()
 }
 
 /// A sequence of words that a seed decides.
-pub struct Words(pub u64);
+struct Words(u64);
 
 impl Words {
-    pub fn below(&mut self, bound: usize) -> usize {
+    fn below(&mut self, bound: usize) -> usize {
         self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
         ((self.0 >> 33) % bound as u64) as usize
     }

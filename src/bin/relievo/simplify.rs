@@ -144,7 +144,7 @@ impl Simplify {
         staged.write_json("report.json", &report)?;
         staged.remove_stale(is_ours);
         staged.publish()?;
-        report.levels.iter().try_for_each(|level| say(level))?;
+        report.levels.iter().try_for_each(say)?;
         Ok(ExitCode::SUCCESS)
     }
 
