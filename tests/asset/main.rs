@@ -15,7 +15,7 @@ use relievo::asset::Model;
 
 /// Files beside a model.
 #[derive(Default)]
-struct Folder( HashMap<String, Vec<u8>>);
+struct Folder(HashMap<String, Vec<u8>>);
 
 impl Folder {
     /// The folder with another file.
