@@ -145,7 +145,7 @@ pub(super) fn drawable(
         })
         .collect::<Result<_, Error>>()?;
     let count = if pages.is_some() { buffers.clusters() as u32 } else { 0 };
-    let material_of = Buffer::from_slice(gpu, "materials of vertices", &placed)?;
+    let material_of = Buffer::constant(gpu, "materials of vertices", &placed)?;
     let geometry = MeshGeometry {
         params: Uniform::new(
             gpu,

@@ -47,7 +47,7 @@ pub(in crate::scene) async fn made(
     let mut ground = Ground::new(config)?;
     let mut instances = Instances::new(parts.iter().map(|part| part.count as usize).sum());
     let indices = patch_indices(config.patch_size);
-    let triangles = Buffer::from_slice(gpu, "triangles of a patch", &indices)?;
+    let triangles = Buffer::constant(gpu, "triangles of a patch", &indices)?;
     let (mut chunks, mut first) = (Vec::new(), 0);
     for part in &parts {
         let slots = first..first + part.count as usize;
