@@ -145,7 +145,10 @@ fn levels_are_written_in_their_order() {
         let picture = image::open(bench.path("out/levels.png")).expect("a picture").to_rgb8();
         let pictures = if format == "glb" { 5 } else { 3 };
         assert_eq!(picture.width(), pictures * (384 + 8) + 8);
-        let green = picture.pixels().filter(|pixel| pixel[1] > 2 * pixel[0] && pixel[1] > 40).count();
+        let green = picture
+            .pixels()
+            .filter(|pixel| u16::from(pixel[1]) > 2 * u16::from(pixel[0]) && pixel[1] > 40)
+            .count();
         assert!(green > 5000, "{green}");
     }
 }

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Surface;
@@ -11,6 +12,9 @@ use super::tree::Tree;
 
 /// The number of pieces that are divided at a time, the furthest first, whatever the number of threads.
 const BATCH: usize = 1024;
+
+/// The number of triangles whose corners are measured one after another.
+const CHUNK: usize = 256;
 
 /// Distances below this fraction of the surfaces' extent count as rounding.
 const ROUNDING: f64 = 1e-9;
@@ -48,9 +52,9 @@ impl Ord for Open {
 /// The distance of a point of the surface from the triangles of the tree, and an upper bound of the distance of all points.
 /// `seen` is the distance of some point.
 pub(super) fn largest(surface: &Surface, tree: &Tree, seen: f64, tolerance: f64, extent: f64) -> (f64, f64) {
-    let pieces: Vec<Piece> = (surface.corners.par_iter())
-        .map(|triangle| Piece { corners: triangle.map(|place| Corner::new(place, tree, 0)) })
-        .collect();
+    let chunks: Vec<Vec<Piece>> =
+        surface.corners.par_chunks(CHUNK).map(|triangles| whole(triangles, tree)).collect();
+    let pieces = chunks.concat();
     let squares = pieces.iter().flat_map(|piece| piece.corners).map(|corner| corner.near.squared);
     let reached = squares.fold(seen * seen, f64::max).sqrt();
     let mut search =
@@ -65,6 +69,17 @@ pub(super) fn largest(surface: &Surface, tree: &Tree, seen: f64, tolerance: f64,
     }
     let left = search.open.peek().map_or(0.0, |open| open.bound);
     (search.reached, search.closed.max(left))
+}
+
+/// Triangles as pieces. Neighbours in the list are often neighbours in space: each search begins where the last ended.
+fn whole(triangles: &[[DVec3; 3]], tree: &Tree) -> Vec<Piece> {
+    let mut hint = 0;
+    let mut corner = |place: DVec3| {
+        let corner = Corner::new(place, tree, hint);
+        hint = corner.near.triangle;
+        corner
+    };
+    triangles.iter().map(|triangle| Piece { corners: triangle.map(&mut corner) }).collect()
 }
 
 struct Search<'a> {
