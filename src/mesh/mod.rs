@@ -1,7 +1,9 @@
 //! Simplification of meshes: the same surface with fewer triangles (A sections 2 to 5, B sections 3.2 and 4.3).
 
 pub mod nearest;
+pub mod progressive;
 pub mod ray;
 pub mod simplify;
 
+pub use progressive::ProgressiveMesh;
 pub use simplify::{Collapse, Cost, Options, Simplified, Stopped, Surface, simplify, simplify_within};

@@ -5,5 +5,6 @@ mod closed;
 mod creature;
 mod input;
 mod measure;
+mod progressive;
 mod quality;
 mod shapes;
