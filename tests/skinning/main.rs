@@ -1,6 +1,7 @@
 //! Skinning: the reference compared with geometry, and with independent code in double precision.
 
 mod blending;
+mod borders;
 mod collapse;
 mod fading;
 mod gating;
