@@ -35,6 +35,7 @@ mod surfaces;
 mod targets;
 mod terrain;
 mod transparent;
+mod uploads;
 mod velocity;
 mod views;
 mod world;

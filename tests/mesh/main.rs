@@ -7,4 +7,5 @@ mod input;
 mod measure;
 mod progressive;
 mod quality;
+mod reduce;
 mod shapes;

@@ -1,0 +1,3 @@
+//! All reducers behind one interface.
+
+mod interface;
