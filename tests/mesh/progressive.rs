@@ -9,6 +9,7 @@ use relievo::mesh::progressive::Chosen;
 use relievo::mesh::{Options, ProgressiveMesh, Simplified, simplify};
 use serde_json::Value;
 
+use crate::measure::distances;
 use crate::shapes::{Shape, bumps, cube, ground, sphere, torus};
 
 /// A shape as a mesh, each of whose attributes tells its vertices apart.
@@ -210,6 +211,33 @@ fn a_level_that_has_moved_is_the_next_coarser_one() {
         assert_eq!(progressive.morphed(0, 1.5, &mesh.positions).err().expect("refused").path, "t");
         assert_eq!(progressive.morphed(0, 0.5, &mesh.uv[1..]).err().expect("refused").path, "values.len");
     }
+}
+
+/// The largest distance of the mesh's vertices from a level on its way to the next one.
+fn off(progressive: &ProgressiveMesh, level: usize, t: f32) -> f64 {
+    let mesh = progressive.mesh();
+    let mut places = mesh.positions.clone();
+    let first = places.len() as u32;
+    places.extend(progressive.morphed(level, t, &mesh.positions).expect("valid"));
+    let indices: Vec<u32> = progressive.indices(level).iter().map(|vertex| first + vertex).collect();
+    distances(&crate::shapes::bare(places, Vec::new()), 0, &indices)[1]
+}
+
+/// Half way, a level is further off than the worse of its ends by a small factor only: it has no error of its own.
+#[test]
+fn between_two_levels_it_is_hardly_further_off() {
+    let mut worst = 0.0_f64;
+    for Case { name, progressive, .. } in cases() {
+        for level in 0..progressive.levels() - 1 {
+            let ends = off(&progressive, level, 0.0).max(off(&progressive, level, 1.0));
+            for t in [0.25, 0.5, 0.75] {
+                let between = off(&progressive, level, t);
+                println!("{name}: level {level} at {t}: {between:.5} of {ends:.5}");
+                worst = worst.max(if ends > 1e-6 { between / ends } else { between });
+            }
+        }
+    }
+    assert!(worst < 1.5, "{worst}");
 }
 
 /// A partner that is not the one of the record, and a level that lacks a triangle of the one before, are found.

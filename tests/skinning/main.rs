@@ -8,6 +8,7 @@ mod gating;
 #[cfg(feature = "verify")]
 #[path = "../harness/mod.rs"]
 mod harness;
+mod hull;
 mod levels;
 mod merged;
 mod rigs;
