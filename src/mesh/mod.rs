@@ -4,9 +4,11 @@
 pub mod cluster;
 pub mod distance;
 pub mod nearest;
+pub mod progressive;
 pub mod ray;
 pub mod reduce;
 pub mod simplify;
 
+pub use progressive::ProgressiveMesh;
 pub use reduce::{Limits, Reduced, Reducer};
 pub use simplify::{Collapse, Cost, Options, Simplified, Stopped, Surface, simplify, simplify_within};

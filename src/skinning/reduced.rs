@@ -229,6 +229,7 @@ impl<'a> Input<'a> {
             weights: Vec::new(),
             weight_keys: Vec::new(),
             levels: Vec::new(),
+            partners: Vec::new(),
         })
     }
 

@@ -6,6 +6,7 @@ mod creature;
 mod distance;
 mod input;
 mod measure;
+mod progressive;
 mod quality;
 mod reduce;
 mod shapes;

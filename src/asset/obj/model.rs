@@ -169,6 +169,7 @@ fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, 
         weights: Vec::new(),
         weight_keys: Vec::new(),
         levels: Vec::new(),
+        partners: Vec::new(),
     })
 }
 
