@@ -54,11 +54,11 @@ impl ReducedModel {
     /// backward ([`distance::distance`]).
     ///
     /// # Errors
-    /// [`InputError`] for a model without triangles.
-    pub fn distance(&self, whole: &Model) -> Result<Distance, InputError> {
+    /// [`InputError`] for a model without triangles, and for options out of range.
+    pub fn distance(&self, whole: &Model, options: &distance::Options) -> Result<Distance, InputError> {
         let [from, to] = [whole, &self.model].map(joined);
         let [from, to] = [&from, &to].map(|(positions, indices)| Triangles { positions, indices });
-        distance::distance(&from, &to, &distance::Options::default())
+        distance::distance(&from, &to, options)
     }
 }
 

@@ -11,6 +11,7 @@ use super::{Run, Target};
 use crate::InputError;
 use crate::asset::Model;
 use crate::measure::progress::Listener;
+use crate::mesh::distance::Options;
 use crate::mesh::reduce::Reducer;
 use crate::skinning::at_rest;
 use crate::skinning::reduced::Normals;
@@ -81,15 +82,15 @@ impl ReducerComparison {
         if all == 0 {
             return Err(InputError::new("model.triangles.len", 0, "must be at least 1"));
         }
-        let mut reducers = Vec::new();
+        let (options, mut reducers) = (Options::default(), Vec::new());
         for (reducer, parameters) in Reducer::ALL {
             let mut run = Run { whole: &whole, reducer: &parameters, normals, listener, seconds: 0.0 };
             let counts: Vec<usize> =
                 SHARES.iter().filter_map(|share| Target::Share(*share).count(all)).collect();
             // Where a level has no triangle left, the others are measured one by one.
-            let measured: Vec<_> = match run.measured(&counts) {
+            let measured: Vec<_> = match run.measured(&counts, &options) {
                 Ok(levels) => levels.into_iter().map(Some).collect(),
-                Err(_) => counts.iter().map(|count| run.measured(&[*count]).ok()?.pop()).collect(),
+                Err(_) => counts.iter().map(|count| run.measured(&[*count], &options).ok()?.pop()).collect(),
             };
             let levels = SHARES.iter().zip(measured).filter_map(|(share, level)| {
                 let level = level?;

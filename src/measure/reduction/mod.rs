@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use crate::InputError;
 use crate::asset::Model;
-use crate::mesh::distance::Distance;
+use crate::mesh::distance::{Distance, Options};
 use crate::mesh::reduce::{Limits, Reducer};
 use crate::skinning::at_rest;
 use crate::skinning::reduced::{Normals, ReducedModel, reduce_model};
@@ -70,7 +70,7 @@ pub fn reduction(
     }
     let mut run = Run { whole: &whole, reducer, normals, listener, seconds: 0.0 };
     let counts: Vec<usize> = targets.iter().filter_map(|target| target.count(all)).collect();
-    let mut counted = run.measured(&counts)?.into_iter();
+    let mut counted = run.measured(&counts, &Options::default())?.into_iter();
     let errors: Vec<f64> = targets.iter().filter_map(Target::error).collect();
     let mut found = search::within(&mut run, &errors, all)?.into_iter();
     let next = |target: &Target| if target.error().is_some() { found.next() } else { counted.next() };
@@ -128,7 +128,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The levels with these numbers of triangles, measured.
-    fn measured(&mut self, counts: &[usize]) -> Result<Vec<MeasuredLevel>, InputError> {
+    fn measured(&mut self, counts: &[usize], options: &Options) -> Result<Vec<MeasuredLevel>, InputError> {
         if counts.is_empty() {
             return Ok(Vec::new());
         }
@@ -140,7 +140,7 @@ impl Run<'_> {
         self.seconds += start.elapsed().as_secs_f64();
         let steps = Steps::new(self.listener, "measuring", reduced.len() as u64);
         let measured = reduced.into_iter().map(|reduced| {
-            let distance = reduced.distance(self.whole)?;
+            let distance = reduced.distance(self.whole, options)?;
             steps.step();
             Ok(MeasuredLevel { reduced, distance })
         });

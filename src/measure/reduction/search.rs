@@ -2,9 +2,13 @@
 
 use super::{MeasuredLevel, Run};
 use crate::InputError;
+use crate::mesh::distance::Options;
 
 /// The fraction of triangles of one trial that the next has.
 const STEP: f64 = 0.75;
+
+/// How trials are measured: the largest distance does not need the samples of a root mean square.
+const TRIAL: Options = Options { tolerance: 0.01, samples: 1 };
 
 /// The number of trials between two of them.
 const BETWEEN: usize = 6;
@@ -23,8 +27,13 @@ pub(super) fn within(
     while let Some(last) = counts.last().filter(|last| **last > 4) {
         counts.push(((*last as f64 * STEP) as usize).max(1));
     }
-    let trials = run.measured(&counts)?;
-    errors.iter().map(|error| best(run, &trials, *error)).collect()
+    let trials = run.measured(&counts, &TRIAL)?;
+    let found = errors.iter().map(|error| best(run, &trials, *error)).collect::<Result<Vec<_>, _>>()?;
+    let measured = found.into_iter().map(|MeasuredLevel { reduced, .. }| {
+        let distance = reduced.distance(run.whole, &Options::default())?;
+        Ok(MeasuredLevel { reduced, distance })
+    });
+    measured.collect()
 }
 
 /// The best of the trials, and of some more between it and the next.
@@ -37,6 +46,6 @@ fn best(run: &mut Run<'_>, trials: &[MeasuredLevel], error: f64) -> Result<Measu
     let between = |part: usize| most - (most - least.min(most)) * part / (BETWEEN + 1);
     let counts: Vec<usize> =
         (1..=BETWEEN).map(between).filter(|count| *count > least && *count < most).collect();
-    let finer = run.measured(&counts)?;
+    let finer = run.measured(&counts, &TRIAL)?;
     Ok(finer.iter().filter(is_within).min_by_key(|level| level.reduced.triangles()).unwrap_or(coarse).clone())
 }
