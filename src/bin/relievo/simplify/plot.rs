@@ -1,5 +1,7 @@
 //! The plot of `relievo simplify --compare`.
 
+use std::path::Path;
+
 use image::{DynamicImage, RgbaImage};
 use relievo::InputError;
 use relievo::measure::reduction::{ReducerComparison, ReducerLevel};
@@ -23,6 +25,7 @@ pub fn plot(comparison: &ReducerComparison) -> Result<RgbaImage, InputError> {
     };
     let charts =
         [chart("root mean square", |level| level.error_rms), chart("largest", |level| level.error_max)];
-    let title = format!("Distance between {} and its levels, by reducer", comparison.model);
+    let model = Path::new(&comparison.model).file_name().unwrap_or_default().to_string_lossy();
+    let title = format!("Distance between {model} and its levels, by reducer");
     Ok(DynamicImage::ImageRgb8(grid(&title, &charts, 2, (1200, 560))?).into_rgba8())
 }
