@@ -179,6 +179,7 @@ impl Builder {
             weights: Vec::new(),
             weight_keys: Vec::new(),
             levels: Vec::new(),
+            partners: Vec::new(),
         };
         let texture = image.is_some().then(|| Texture { image: 0, sampling: Sampling::default() });
         let material = Material { texture, ..Material::opaque(name, color) };

@@ -28,6 +28,7 @@ pub(crate) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), 
         // The levels were made for this pose. Vertices and their order are the same.
         for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
             mesh.levels.clone_from(&from.levels);
+            mesh.partners.clone_from(&from.partners);
         }
     }
     let merged = merged(&rest, OBJECT_LEVELS as usize)?;

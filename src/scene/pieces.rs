@@ -135,6 +135,7 @@ impl<'a> Piece<'a> {
             weights: Vec::new(),
             weight_keys: Vec::new(),
             levels: Vec::new(),
+            partners: Vec::new(),
         });
         Ok(())
     }

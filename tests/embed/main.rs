@@ -13,7 +13,10 @@ mod counts;
 mod frame;
 mod health;
 mod host;
+#[path = "../skinning/hull.rs"]
+mod hull;
 mod layers;
+mod levels;
 mod life;
 mod materials;
 mod misuse;

@@ -3,8 +3,10 @@
 mod attributes;
 mod closed;
 mod creature;
+mod distance;
 mod input;
 mod measure;
+mod progressive;
 mod quality;
 mod reduce;
 mod shapes;

@@ -64,8 +64,17 @@ fn place(shape: &Shape, pose: usize, vertex: u32) -> DVec3 {
 
 /// The distances of all vertices from the triangles `indices` in a pose: root mean square, and largest.
 pub fn distances(shape: &Shape, pose: usize, indices: &[u32]) -> [f64; 2] {
+    from_triangles(shape, pose, shape, indices)
+}
+
+/// The distances of all vertices of one shape from another in their first poses: root mean square, and largest.
+pub fn distances_between(shape: &Shape, other: &Shape) -> [f64; 2] {
+    from_triangles(shape, 0, other, &other.indices)
+}
+
+fn from_triangles(shape: &Shape, pose: usize, other: &Shape, indices: &[u32]) -> [f64; 2] {
     let corners =
-        indices.chunks_exact(3).map(|triangle| [0, 1, 2].map(|at| place(shape, pose, triangle[at])));
+        indices.chunks_exact(3).map(|triangle| [0, 1, 2].map(|at| place(other, pose, triangle[at])));
     let triangles: Vec<[DVec3; 3]> = corners.collect();
     let squares = (0..shape.uv.len() as u32).map(|vertex| {
         let at = place(shape, pose, vertex);
@@ -76,7 +85,7 @@ pub fn distances(shape: &Shape, pose: usize, indices: &[u32]) -> [f64; 2] {
 }
 
 /// The point of a triangle that is nearest to another (Ericson, "Real-Time Collision Detection", section 5.1.5).
-fn nearest(p: DVec3, [a, b, c]: &[DVec3; 3]) -> DVec3 {
+pub fn nearest(p: DVec3, [a, b, c]: &[DVec3; 3]) -> DVec3 {
     let (ab, ac, ap, bp, cp) = (b - a, c - a, p - a, p - b, p - c);
     let [d1, d2, d3, d4, d5, d6] = [ab.dot(ap), ac.dot(ap), ab.dot(bp), ac.dot(bp), ab.dot(cp), ac.dot(cp)];
     if d1 <= 0.0 && d2 <= 0.0 {

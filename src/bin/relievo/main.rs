@@ -7,6 +7,7 @@ mod creases;
 mod crowd;
 mod demo;
 mod info;
+mod measuring;
 mod memory;
 mod output;
 mod pose;
@@ -15,6 +16,7 @@ mod progress;
 mod relief;
 mod scene;
 mod shaders;
+mod simplify;
 mod skin;
 mod terrain;
 mod verify;
@@ -51,6 +53,7 @@ enum Command {
     Pose(pose::Pose),
     Priorities(priorities::Priorities),
     Skin(skin::Skin),
+    Simplify(Box<simplify::Simplify>),
     Crowd(Box<crowd::Crowd>),
     Verify(verify::Verify),
     Bench(bench::Bench),
@@ -61,7 +64,15 @@ enum Command {
 impl Command {
     /// Whether the command takes `--backend`.
     fn has_backend(&self) -> bool {
-        matches!(self, Self::Terrain(_) | Self::Relief(_) | Self::Pose(_) | Self::Skin(_) | Self::Crowd(_))
+        matches!(
+            self,
+            Self::Terrain(_)
+                | Self::Relief(_)
+                | Self::Pose(_)
+                | Self::Skin(_)
+                | Self::Simplify(_)
+                | Self::Crowd(_)
+        )
     }
 }
 
@@ -99,6 +110,7 @@ fn main() -> ExitCode {
         Command::Pose(command) => command.run(&context),
         Command::Priorities(command) => command.run(),
         Command::Skin(command) => command.run(&context),
+        Command::Simplify(command) => command.run(&context),
         Command::Crowd(command) => command.run(&context),
         Command::Verify(command) => command.run(&context),
         Command::Bench(command) => command.run(&context),

@@ -44,29 +44,43 @@ impl Reduced {
         triangles: Vec<u32>,
         (error, stopped): (f32, Stopped),
     ) -> Self {
-        let (vertices, indices) = compacted(corners, surface.poses.first().map_or(0, Vec::len));
+        let (vertices, indices) = compacted(corners);
         let poses = surface.poses.iter().map(|pose| vertices.iter().map(|at| pose[*at as usize]).collect());
-        let stride = surface.stride;
-        let attributes =
-            vertices.iter().flat_map(|at| &surface.attributes[*at as usize * stride..][..stride]).copied();
-        Self {
-            poses: poses.collect(),
-            attributes: attributes.collect(),
-            stride,
-            indices,
-            triangles,
-            error,
-            stopped,
-            vertices,
+        let (poses, stride) = (poses.collect(), surface.stride);
+        let attributes = attributes_of((surface.attributes, stride), &vertices);
+        Self { poses, attributes, stride, indices, vertices, triangles, error, stopped }
+    }
+
+    /// The mesh of triangles whose corners are vertices of the input in other places: `corners` has three vertices a
+    /// triangle with their positions in the only pose. A vertex has one position, and its own attributes of `stride` numbers.
+    pub(super) fn placed(
+        corners: &[(u32, [f32; 3])],
+        (attributes, stride): (&[f32], usize),
+        triangles: Vec<u32>,
+        (error, stopped): (f32, Stopped),
+    ) -> Self {
+        let of: Vec<u32> = corners.iter().map(|(vertex, _)| *vertex).collect();
+        let (vertices, indices) = compacted(&of);
+        let mut positions = vec![[0.0; 3]; vertices.len()];
+        for (index, (_, position)) in indices.iter().zip(corners) {
+            positions[*index as usize] = *position;
         }
+        let attributes = attributes_of((attributes, stride), &vertices);
+        Self { poses: vec![positions], attributes, stride, indices, vertices, triangles, error, stopped }
     }
 }
 
+/// The numbers of some vertices.
+fn attributes_of((attributes, stride): (&[f32], usize), vertices: &[u32]) -> Vec<f32> {
+    vertices.iter().flat_map(|at| &attributes[*at as usize * stride..][..stride]).copied().collect()
+}
+
 /// The vertices that corners use, in ascending order, and the corners as indices into these.
-pub(super) fn compacted(corners: &[u32], vertices: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut slots = vec![0_u32; vertices];
+fn compacted(corners: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let count = corners.iter().max().map_or(0, |last| *last as usize + 1);
+    let mut slots = vec![0_u32; count];
     corners.iter().for_each(|vertex| slots[*vertex as usize] = 1);
-    let used: Vec<u32> = (0..vertices as u32).filter(|vertex| slots[*vertex as usize] == 1).collect();
+    let used: Vec<u32> = (0..count as u32).filter(|vertex| slots[*vertex as usize] == 1).collect();
     (0_u32..).zip(&used).for_each(|(slot, vertex)| slots[*vertex as usize] = slot);
     let indices = corners.iter().map(|vertex| slots[*vertex as usize]).collect();
     (used, indices)
