@@ -16,6 +16,9 @@ pub enum Transition {
     /// ([`Mesh::partners`](crate::asset::Mesh::partners)), the further the more is allowed, in each view by itself. Once they
     /// are there, the picture is the coarser level's, and stays so where levels change.
     ///
+    /// Both levels keep to what is allowed. The surface in between is not measured by itself: in the tests of
+    /// [`ProgressiveMesh::morphed`](crate::mesh::ProgressiveMesh::morphed) it was never further off than the worse of the two.
+    ///
     /// A level begins to move once the error of the coarser one is allowed, and has arrived when that of the one after it
     /// is. So the level that is drawn is finer by one than with [`Transition::Hard`]: it costs about 1.4 times the triangles,
     /// and of each vertex two are loaded. Instances that are drawn one by one ([`Layer::Transparent`](crate::render::Layer::Transparent))

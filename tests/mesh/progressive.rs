@@ -223,21 +223,23 @@ fn off(progressive: &ProgressiveMesh, level: usize, t: f32) -> f64 {
     distances(&crate::shapes::bare(places, Vec::new()), 0, &indices)[1]
 }
 
-/// Half way, a level is further off than the worse of its ends by a small factor only: it has no error of its own.
+/// On its way a level is no further off than the worse of its ends.
 #[test]
-fn between_two_levels_it_is_hardly_further_off() {
+fn between_two_levels_it_is_not_further_off() {
     let mut worst = 0.0_f64;
     for Case { name, progressive, .. } in cases() {
         for level in 0..progressive.levels() - 1 {
             let ends = off(&progressive, level, 0.0).max(off(&progressive, level, 1.0));
             for t in [0.25, 0.5, 0.75] {
                 let between = off(&progressive, level, t);
-                println!("{name}: level {level} at {t}: {between:.5} of {ends:.5}");
-                worst = worst.max(if ends > 1e-6 { between / ends } else { between });
+                // Rounding alone puts a flat cube off.
+                let ratio = if ends > 1e-6 { between / ends } else { between };
+                assert!(ratio <= 1.0, "{name}: level {level} at {t}: {between} of {ends}");
+                worst = worst.max(ratio);
             }
         }
     }
-    assert!(worst < 1.5, "{worst}");
+    assert!(worst > 0.5, "it was measured: {worst}");
 }
 
 /// A partner that is not the one of the record, and a level that lacks a triangle of the one before, are found.
