@@ -39,7 +39,7 @@ impl Blocks {
                 first_draw,
                 parts: draw.word() % 4,
                 mesh_fraction: 0.5,
-                shown: u32::from(index != 2) | (index as u32 + case) % 2 * OBJECT_MORPHS,
+                shown: u32::from(index != 2) | ((index as u32 + case) % 2 * OBJECT_MORPHS),
                 errors: std::array::from_fn(|four| {
                     std::array::from_fn(|lane| {
                         let is_still = (index as u32 + case).is_multiple_of(2);

@@ -2,6 +2,7 @@
 
 mod device;
 mod frame;
+mod morph;
 mod slots;
 
 use glam::Vec3;
@@ -211,7 +212,7 @@ impl Object {
             first_draw: chunk.range.first_draw,
             parts: self.draws.len() as u32 / OBJECT_LISTS,
             mesh_fraction: self.coarsening * self.mesh_fraction,
-            shown: u32::from(self.is_drawn()) * OBJECT_SHOWN | self.transition.flag(),
+            shown: (u32::from(self.is_drawn()) * OBJECT_SHOWN) | self.transition.flag(),
             errors: error_vectors(&self.transition.begins(&self.errors)).map(Into::into),
         }
     }
