@@ -3,6 +3,7 @@
 mod attributes;
 mod closed;
 mod creature;
+mod distance;
 mod input;
 mod measure;
 mod progressive;
