@@ -73,7 +73,7 @@ pub enum Reducer {
     /// few enough triangles; if its error is too large, the coarsest with an error that is not.
     UniformClustering {
         /// The largest number of cells along the longest edge of the bounding box, from 1 to
-        /// [`MAX_CELLS`](crate::mesh::cluster::MAX_CELLS).
+        /// [`MAX_CELLS`].
         cells: u32,
     },
     /// Clusters points around those that count most (Rossignac and Borrel 1993, with the grades and floating cells of Low and
