@@ -44,7 +44,6 @@ mod turned;
 
 use crate::InputError;
 use points::Points;
-use topology::Topology;
 
 /// The mesh to simplify.
 #[derive(Debug, Clone, Copy)]
@@ -282,9 +281,7 @@ pub fn simplify_within(
     if options.error.is_nan() || options.error < 0.0 {
         return Err(InputError::new("error", options.error, "must be at least 0"));
     }
-    let points = Points::new(surface.poses);
-    let topology = Topology::new(&points, surface.indices);
-    Ok(reducer::reduce(surface, points, topology, options, distances))
+    Ok(reducer::reduce(surface, options, distances))
 }
 
 /// The point of each vertex, numbered in the order of the points' first vertices; see [`Simplified::point`].

@@ -6,7 +6,7 @@ use super::neighbors::Neighbors;
 use super::points::Points;
 use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
-use super::topology::{Kind, Marks, Topology};
+use super::topology::{Change, Kind, Marks, Topology};
 use super::tracked_samples::TrackedSamples;
 use super::{Collapse, Cost, Options, Simplified, Stopped, Surface};
 
@@ -20,6 +20,8 @@ struct Reducer<'a> {
     /// Only where distances are limited.
     tracked_samples: Option<TrackedSamples>,
     neighbors: Neighbors,
+    /// Points for which a cheaper collapse than the queue's may become legal when triangles around them change.
+    watched: Vec<bool>,
     /// Marks for points, and for vertices.
     marks: [Marks; 2],
     /// The points whose triangles the last collapse changed.
@@ -27,16 +29,10 @@ struct Reducer<'a> {
 }
 
 /// Collapses until a limit of `options` is reached, within one distance after the other.
-pub(crate) fn reduce(
-    surface: &Surface<'_>,
-    points: Points,
-    topology: Topology,
-    options: &Options,
-    distances: &[f32],
-) -> Simplified {
-    let triangles = topology.triangles();
+pub(crate) fn reduce(surface: &Surface<'_>, options: &Options, distances: &[f32]) -> Simplified {
     let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
-    let mut reducer = Reducer::new(surface, points, topology, options.cost, is_limited);
+    let mut reducer = Reducer::new(surface, options.cost, is_limited);
+    let triangles = reducer.topology.triangles();
     let mut done = Done::default();
     let mut stopped = Stopped::Exhausted;
     for distance in distances {
@@ -58,7 +54,9 @@ struct Done {
 }
 
 impl<'a> Reducer<'a> {
-    fn new(surface: &Surface<'a>, points: Points, topology: Topology, cost: Cost, is_limited: bool) -> Self {
+    fn new(surface: &Surface<'a>, cost: Cost, is_limited: bool) -> Self {
+        let points = Points::new(surface.poses);
+        let topology = Topology::new(&points, surface.indices, is_limited);
         let quadrics = match cost {
             Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
             Cost::Melax { .. } => None,
@@ -66,15 +64,15 @@ impl<'a> Reducer<'a> {
         let tracked_samples =
             is_limited.then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3));
         let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
-        let (neighbors, changed) = (Neighbors::default(), Vec::new());
-        Self { points, topology, cost, quadrics, tracked_samples, neighbors, marks, changed }
+        let (neighbors, changed, watched) = (Neighbors::default(), Vec::new(), vec![false; points.len()]);
+        Self { points, topology, cost, quadrics, tracked_samples, neighbors, watched, marks, changed }
     }
 
     /// Collapses until no legal collapse keeps every sample within `distance`, or until a limit of `options` is
     /// reached.
     fn run(&mut self, options: &Options, distance: f32, done: &mut Done) -> Stopped {
         if let Some(tracked_samples) = &mut self.tracked_samples {
-            tracked_samples.set_most(distance);
+            tracked_samples.set_most((f64::from(distance) * self.points.scale()) as f32);
         }
         let mut queue = self.queue();
         loop {
@@ -82,7 +80,7 @@ impl<'a> Reducer<'a> {
                 return Stopped::Triangles;
             }
             let Some((point, best)) = self.next(&mut queue) else { return Stopped::Exhausted };
-            let cost = best.cost.sqrt() as f32;
+            let cost = (f64::from(best.cost).sqrt() / self.points.scale()) as f32;
             if cost > options.error {
                 return Stopped::Error;
             }
@@ -95,36 +93,89 @@ impl<'a> Reducer<'a> {
     }
 
     fn queue(&mut self) -> Queue {
-        Queue::new((0..self.points.len() as u32).map(|point| self.find(point)).collect())
+        let mut queue = Queue::new(self.points.len());
+        (0..self.points.len() as u32).for_each(|point| self.set(&mut queue, point));
+        queue
     }
 
-    /// The cheapest legal collapse.
+    /// Finds the best collapse of a point anew.
+    fn set(&mut self, queue: &mut Queue, point: u32) {
+        self.topology.refresh(point);
+        self.topology.take_change(point);
+        let best = self.find(point);
+        self.watched[point as usize] = best.is_none();
+        queue.set(point, best);
+    }
+
+    /// The cheapest legal collapse, up to the width of the queue's buckets.
     fn next(&mut self, queue: &mut Queue) -> Option<(u32, Best)> {
         loop {
-            let (point, best) = queue.pop()?;
-            if self.is_legal(point, best.neighbor) {
+            self.fetch(queue);
+            let (point, queued) = queue.pop()?;
+            self.topology.refresh(point);
+            let mut best = queued;
+            if self.is_outdated(point, &queued) {
+                let found = self.find(point);
+                self.watched[point as usize] = found.is_none();
+                let Some(found) = found else { continue };
+                best = found;
+            }
+            if !Queue::is_later(&best, &queued) {
+                match self.check(point, best) {
+                    None => {
+                        self.watched[point as usize] = true;
+                        let second = self.find_legal(point);
+                        queue.set(point, second);
+                        continue;
+                    }
+                    Some(checked) => best = checked,
+                }
+            }
+            if !Queue::is_later(&best, &queued) {
                 return Some((point, best));
             }
-            queue.set(point, self.find_legal(point));
+            queue.set(point, Some(best));
         }
+    }
+
+    /// Whether the best collapse of a point, all of whose triangles are up to date, must be found anew. Where it is not
+    /// merged into, its other costs have not changed, and a new neighbour is hardly ever cheaper than the best old one.
+    fn is_outdated(&mut self, point: u32, best: &Best) -> bool {
+        match self.topology.take_change(point) {
+            Change::None => false,
+            Change::Around if self.quadrics.is_some() && self.topology.kind(point) == Kind::Interior => {
+                self.topology.is_gone(best.neighbor) || self.points.only_wedge(point).is_none()
+            }
+            Change::Around | Change::Merged => true,
+        }
+    }
+
+    /// Reads what the next few points need, so that the processor waits for all of it at once: points that follow each
+    /// other in cost lie anywhere.
+    fn fetch(&self, queue: &Queue) {
+        let mut read = 0;
+        for &point in queue.ahead() {
+            read ^= self.topology.touch(point);
+            read ^= self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, point)) as u32;
+            for &[other, _] in self.topology.ring(point) {
+                read ^= self.points.touch(other);
+            }
+            if let Some(best) = queue.best(point) {
+                read ^= self.topology.touch(best.neighbor);
+                read ^= self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, best.neighbor)) as u32;
+            }
+        }
+        std::hint::black_box(read);
     }
 
     /// Performs a collapse, and updates the best collapses of the points around it.
     fn step(&mut self, queue: &mut Queue, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         let mut changed = std::mem::take(&mut self.changed);
-        self.collect(&[point], &mut changed);
+        self.collect(point, &mut changed);
         self.collapse(point, neighbor, moved);
-        queue.set(point, None);
         for &other in &changed {
-            let before = queue.best(other).copied();
-            let now = match before {
-                Some(before) if other != neighbor && self.is_plain(other, point, &before) => {
-                    self.nearer(other, neighbor, before)
-                }
-                _ => self.find(other),
-            };
-            if now != before {
-                queue.set(other, now);
+            if self.watched[other as usize] {
+                self.set(queue, other);
             }
         }
         if self.cost == (Cost::Melax { check_normals: true }) || self.tracked_samples.is_some() {
@@ -139,35 +190,43 @@ impl<'a> Reducer<'a> {
     /// before, and the set of points that neighbour both ends of an edge can only grow.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
-        self.collect(changed, &mut around);
+        changed.iter().for_each(|point| self.topology.refresh(*point));
+        let marks = &mut self.marks[0];
+        marks.clear();
+        let all = changed.iter().flat_map(|point| self.topology.ring(*point)).flatten();
+        around.extend(all.copied().filter(|other| marks.insert(*other)));
         for other in around {
-            if queue.best(other).is_none_or(|best| best.is_second) {
-                queue.set(other, self.find(other));
+            if self.watched[other as usize] {
+                self.set(queue, other);
             }
         }
     }
 
-    /// Whether the best collapse of `point` is still valid and its other costs are unchanged, except the cost
-    /// of collapsing into the neighbour that replaced `collapsed`.
-    fn is_plain(&self, point: u32, collapsed: u32, best: &Best) -> bool {
-        self.quadrics.as_ref().is_some_and(|quadrics| !quadrics.has_attributes())
-            && self.topology.kind(point) == Kind::Interior
-            && self.points.wedges(point).len() == 1
-            && !best.is_second
-            && best.neighbor != collapsed
+    /// Collects the neighbours of a point, each once.
+    fn collect(&self, point: u32, around: &mut Vec<u32>) {
+        around.clear();
+        let ring = self.topology.ring(point);
+        around.extend(ring.iter().map(|[next, _]| *next));
+        if self.topology.kind(point) != Kind::Interior {
+            let first = |last: &u32| ring.iter().all(|[next, _]| next != last);
+            around.extend(ring.iter().map(|[_, last]| *last).filter(first));
+        }
     }
 
-    /// Collects the neighbours of some points, each once.
-    fn collect(&mut self, points: &[u32], around: &mut Vec<u32>) {
-        around.clear();
-        let marks = &mut self.marks[0];
-        marks.clear();
-        for ring in points.iter().flat_map(|point| self.topology.one_ring(*point)) {
-            for other in [ring.next.point, ring.last.point] {
-                if marks.insert(other) {
-                    around.push(other);
-                }
-            }
+    /// Lists the vertices of a point that belong to triangles, each with the one that is to replace it.
+    fn replace(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
+        if let [Some(vertex), Some(target)] = [point, neighbor].map(|point| self.points.only_wedge(point)) {
+            moved.push([vertex, target]);
+            return;
+        }
+        self.neighbors.look(&self.topology, point, &mut self.marks);
+        let Some(to) = self.neighbors.all().iter().find(|other| other.point == neighbor) else { return };
+        for wedge in self.neighbors.wedges() {
+            let target = match &self.quadrics {
+                Some(quadrics) => quadrics.target(&self.points, &self.neighbors, point, to, wedge).0,
+                None => self.neighbors.remap(to, wedge).into_iter().next().unwrap_or(wedge.vertex),
+            };
+            moved.push([wedge.vertex, target]);
         }
     }
 
@@ -175,16 +234,7 @@ impl<'a> Reducer<'a> {
     /// triangle.
     fn collapse(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         let start = moved.len();
-        self.neighbors.look(&self.topology, point, &mut self.marks);
-        if let Some(to) = self.neighbors.all().iter().find(|other| other.point == neighbor) {
-            for wedge in self.neighbors.wedges() {
-                let target = match &self.quadrics {
-                    Some(quadrics) => quadrics.target(&self.points, &self.neighbors, point, to, wedge).0,
-                    None => self.neighbors.remap(to, wedge).into_iter().next().unwrap_or(wedge.vertex),
-                };
-                moved.push([wedge.vertex, target]);
-            }
-        }
+        self.replace(point, neighbor, moved);
         let live = moved.len();
         if let Some(tracked_samples) = &mut self.tracked_samples {
             tracked_samples.collapse(&self.topology, &self.points, point, neighbor);
