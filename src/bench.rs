@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::{Error, InputError};
 
 use crate::harness::{Bench, Row, selected};
-use crate::{animation, baseline, lod, skinning, surface, terrain};
+use crate::{animation, baseline, lod, mesh, skinning, surface, terrain};
 
 /// The benchmark cases of a kernel.
 #[derive(Clone, Copy)]
@@ -37,6 +37,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/cone_map", run: surface::cone_map::bench::cases },
     Stem { name: "surface/shade", run: surface::shade::bench::cases },
     Stem { name: "surface/tangent", run: surface::tangent::bench::cases },
+    Stem { name: "mesh/cluster", run: mesh::cluster::bench::cases },
     Stem { name: "animation/keyframe_cursor", run: animation::keyframe_cursor::bench::cases },
     Stem { name: "animation/clip_clock", run: animation::clip_clock::bench::cases },
     Stem { name: "animation/gate", run: animation::gate::bench::cases },

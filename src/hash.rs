@@ -1,4 +1,4 @@
-//! Counter-based random words: the CPU reference of `wgsl/hash.wgsl`.
+//! Counter-based random words: the CPU reference of `wgsl/hash.wgsl`; and hashes of data.
 
 use sha2::{Digest, Sha256};
 
@@ -37,6 +37,13 @@ pub fn key_of(text: &str) -> [u32; 2] {
     [word(0), word(4)]
 }
 
+/// The SHA-256 of words, each as four bytes, the lowest first: 64 hexadecimal digits.
+pub(crate) fn sha256(words: &[u32]) -> String {
+    let mut hash = Sha256::new();
+    words.iter().for_each(|word| hash.update(word.to_le_bytes()));
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,5 +60,13 @@ mod tests {
             let (first, second) = threefry2x32(key, [x; LANES], [y; LANES]);
             assert_eq!((first, second), ([expected[0]; LANES], [expected[1]; LANES]), "key {key:x?}");
         }
+    }
+
+    /// The answer of `printf abcd | sha256sum`, and that for nothing.
+    #[test]
+    fn words_are_hashed_as_bytes() {
+        let known = "88d4266fd4e6338d13b845fcf289579d209c897823b9217da3e161936f031589";
+        assert_eq!(sha256(&[u32::from_le_bytes(*b"abcd")]), known);
+        assert!(sha256(&[]).starts_with("e3b0c44298fc1c149afbf4c8996fb924"));
     }
 }

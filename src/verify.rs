@@ -9,7 +9,7 @@ use crate::Error;
 use crate::gpu::{AdapterSummary, Gpu};
 use crate::harness::compare::Comparison;
 use crate::harness::{CaseResult, Cases, Skipped, selected};
-use crate::{animation, baseline, lod, skinning, surface, terrain};
+use crate::{animation, baseline, lod, mesh, skinning, surface, terrain};
 
 /// The parity cases of a kernel.
 #[derive(Clone, Copy)]
@@ -40,6 +40,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "surface/relief", run: surface::relief::verify::cases },
     Stem { name: "surface/shade", run: surface::shade::verify::cases },
     Stem { name: "surface/tangent", run: surface::tangent::verify::cases },
+    Stem { name: "mesh/cluster", run: mesh::cluster::verify::cases },
     Stem { name: "animation/keyframe_cursor", run: animation::keyframe_cursor::verify::cases },
     Stem { name: "animation/clip_clock", run: animation::clip_clock::verify::cases },
     Stem { name: "animation/gate", run: animation::gate::verify::cases },

@@ -1,17 +1,27 @@
 // Placements of meshes that are attached to bones: a thread gives one of them, in one view, the transform of its character
 // with that of the bone and its own offset. Where no view of the frame sees the character, its bones are those of an earlier
-// frame, and the mesh becomes a point, which draws nothing.
+// frame, and the mesh becomes a point, which draws nothing. If the scene keeps its last frame, the thread also gives the
+// transform that the mesh had then.
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
 
 struct AttachParams {
-    // Number of attached meshes.
+    // Number of entries of `attachments` that count.
     attached: u32,
     // Number of bones of the character.
     bones: u32,
     // The index in the scene of the character's first instance.
     first: u32,
+    // The index in `rows` of the transforms of the last frame: three times the number of instances; 0 if it is not kept.
+    last_rows: u32,
+    // The number of the frame, from 1 on.
+    frame: u32,
+    // The number of the frame before; 0 if nothing is known of it.
+    last_frame: u32,
 }
+
+// `Attachment.mesh` of an entry that is free.
+const NO_MESH: u32 = 0xffffffffu;
 
 // A mesh that is attached to a bone.
 struct Attachment {
@@ -21,10 +31,23 @@ struct Attachment {
     character: u32,
     // The index of the bone.
     bone: u32,
-    // No meaning: elements have no padding.
-    unused: u32,
+    // A number that no other attachment has, now or later.
+    key: u32,
     // The transform from the mesh's space to the bone's, three rows.
     offset: array<vec4<f32>, 3>,
+}
+
+// Where a bone had taken a mesh in a frame.
+struct KeptBone {
+    // The product of the bone's model matrix and the mesh's offset, three rows.
+    rows: array<vec4<f32>, 3>,
+    // The number of the frame; 0 for none.
+    frame: u32,
+    // The key of the attachment.
+    key: u32,
+    // No meaning: elements have no padding.
+    unused_a: u32,
+    unused_b: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: AttachParams;
@@ -36,13 +59,29 @@ struct Attachment {
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
 // For each instance of the scene what the views of the frame allow; negative if none sees it.
 @group(0) @binding(5) var<storage, read> allowed: array<f32>;
-// For each instance of the scene three rows: the transform from the model's space to the corner of the view's cell.
+// For each instance of the scene three rows: the transform from the model's space to the corner of the view's cell; from
+// `last_rows` on the same for the last frame, relative to the same cell.
 @group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
+// All instances of the scene as they were in the last frame.
+@group(0) @binding(7) var<storage, read> last_instances: array<SceneInstance>;
+// Two for each attachment: that of even frames, and that of odd ones.
+@group(0) @binding(8) var<storage, read_write> kept: array<KeptBone>;
 
 // A row of the product of two transforms, from a row of the first and all of the second.
 fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
     let linear = row.x * x + row.y * y + row.z * z;
     return vec4<f32>(linear.xyz, linear.w + row.w);
+}
+
+// The rows of an instance's placement, followed from the right by those of a transform in its space.
+fn write_placed(instance: SceneInstance, local: array<vec4<f32>, 3>, first: u32, is_seen: bool) {
+    let axes = instance_axes(instance);
+    let at = instance_position(instance, view.cell);
+    for (var row = 0u; row < 3u; row++) {
+        let placed = vec4<f32>(axes.x[row], axes.y[row], axes.z[row], at[row]);
+        let moved = product_row(placed, local[0], local[1], local[2]);
+        rows[first + row] = select(vec4<f32>(0.0, 0.0, 0.0, at[row]), moved, is_seen);
+    }
 }
 
 @compute @workgroup_size(64)
@@ -52,23 +91,30 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let index = (group.y * groups.x + group.x) * 64u + lane;
-    if index >= params.attached {
+    if index >= params.attached || attachments[index].mesh == NO_MESH {
         return;
     }
     let attachment = attachments[index];
     let character = params.first + attachment.character;
-    let instance = instances[character];
-    let axes = instance_axes(instance);
-    let at = instance_position(instance, view.cell);
     let bone = 3u * (attachment.character * params.bones + attachment.bone);
     let offset = attachment.offset;
-    let x = product_row(model_matrices[bone], offset[0], offset[1], offset[2]);
-    let y = product_row(model_matrices[bone + 1u], offset[0], offset[1], offset[2]);
-    let z = product_row(model_matrices[bone + 2u], offset[0], offset[1], offset[2]);
+    let local = array<vec4<f32>, 3>(
+        product_row(model_matrices[bone], offset[0], offset[1], offset[2]),
+        product_row(model_matrices[bone + 1u], offset[0], offset[1], offset[2]),
+        product_row(model_matrices[bone + 2u], offset[0], offset[1], offset[2]));
     let is_seen = allowed[character] >= 0.0;
-    for (var row = 0u; row < 3u; row++) {
-        let placed = vec4<f32>(axes.x[row], axes.y[row], axes.z[row], at[row]);
-        let moved = product_row(placed, x, y, z);
-        rows[3u * attachment.mesh + row] = select(vec4<f32>(0.0, 0.0, 0.0, at[row]), moved, is_seen);
+    write_placed(instances[character], local, 3u * attachment.mesh, is_seen);
+    if params.last_rows == 0u {
+        return;
+    }
+    // The views of a frame write the same, and read what none of them writes.
+    let last = kept[2u * index + ((params.frame + 1u) & 1u)];
+    var last_local = local;
+    if params.last_frame != 0u && last.frame == params.last_frame && last.key == attachment.key {
+        last_local = last.rows;
+    }
+    write_placed(last_instances[character], last_local, params.last_rows + 3u * attachment.mesh, is_seen);
+    if is_seen {
+        kept[2u * index + (params.frame & 1u)] = KeptBone(local, params.frame, attachment.key, 0u, 0u);
     }
 }

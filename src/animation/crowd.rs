@@ -56,11 +56,11 @@ impl ClipBuffers {
     pub fn new(gpu: &Gpu, set: &ClipSet) -> Result<Self, GpuError> {
         let tracks: Vec<PackedTrack> = set.tracks().iter().map(SetTrack::packed).collect();
         Ok(Self {
-            clips: Buffer::from_slice(gpu, "clips", set.clips())?,
-            tracks: Buffer::from_slice(gpu, "tracks", &tracks)?,
-            timelines: Buffer::from_slice(gpu, "timelines", set.timelines())?,
-            times: Buffer::from_slice(gpu, "times", set.times())?,
-            values: Buffer::from_slice(gpu, "values", set.values())?,
+            clips: Buffer::constant(gpu, "clips", set.clips())?,
+            tracks: Buffer::constant(gpu, "tracks", &tracks)?,
+            timelines: Buffer::constant(gpu, "timelines", set.timelines())?,
+            times: Buffer::constant(gpu, "times", set.times())?,
+            values: Buffer::constant(gpu, "values", set.values())?,
             timelines_a_clip: set.timelines_a_clip(),
             has_splines: set.has_splines(),
         })

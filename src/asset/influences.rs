@@ -65,6 +65,43 @@ impl Influences {
         Ok(influences)
     }
 
+    /// Influences that keep their order and their weights to the bit: those of [`Influences::of`], stored and read back.
+    ///
+    /// # Errors
+    /// [`InputError`] for weights that are not in 0..=1 or that ascend, for those of a vertex whose sum is not 1 but for
+    /// rounding, for a bone that is named twice, and for a vertex without influences or with more than [`MAX_INFLUENCES`].
+    pub(crate) fn stored(
+        path: &str,
+        vertices: impl IntoIterator<Item = Vec<Influence>>,
+    ) -> Result<Self, InputError> {
+        let mut influences = Self::default();
+        for (vertex, given) in vertices.into_iter().enumerate() {
+            let refused =
+                |value: String, bound: &str| InputError::new(format!("{path}[{vertex}]"), value, bound);
+            check(&given, usize::MAX).map_err(|(value, bound)| refused(value, &bound))?;
+            let mut most = 1.0;
+            for (at, Influence { bone, weight }) in given.iter().enumerate() {
+                if !(*weight > 0.0 && *weight <= most) {
+                    return Err(refused(
+                        weight.to_string(),
+                        "must be above 0, and at most 1 and the weight before",
+                    ));
+                }
+                if given[..at].iter().any(|other| other.bone == *bone) {
+                    return Err(refused(format!("joint {bone}"), "must be named once"));
+                }
+                most = *weight;
+            }
+            let sum: f64 = given.iter().map(|influence| f64::from(influence.weight)).sum();
+            if (sum - 1.0).abs() > 1e-6 {
+                return Err(refused(format!("a sum of {sum}"), "must be 1"));
+            }
+            influences.all.extend(given);
+            influences.offsets.push(influences.all.len() as u32);
+        }
+        Ok(influences)
+    }
+
     /// Appends a vertex with the influences of an existing one.
     pub(crate) fn repeat(&mut self, vertex: usize) {
         self.all.extend_from_within(self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize);

@@ -23,6 +23,14 @@ pub struct Material {
     pub alpha: Alpha,
 }
 
+impl Material {
+    /// An opaque colour without textures.
+    pub fn opaque(name: &str, color: [f32; 4]) -> Self {
+        let (name, alpha) = (name.to_owned(), Alpha::Opaque);
+        Self { name, color, texture: None, normal: None, normal_scale: 1.0, alpha }
+    }
+}
+
 /// An image, and how it is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Texture {

@@ -67,6 +67,11 @@ pub struct Mesh {
     /// Coarser levels, fewer than [`MAX_LEVELS`], starting with level 1; level 0 is the mesh itself. Each uses
     /// a subset of the vertices of the level before, and errors do not decrease.
     pub levels: Vec<MeshLevel>,
+    /// For each vertex its *partner*: the vertex that takes its place in the first level that lacks it. It is a vertex of that
+    /// level, or one without triangles there at the same place; a vertex of the coarsest level, and one without triangles, is
+    /// its own. With partners in the corners of a level, its triangles are those of the next coarser level in the same
+    /// order, and others without area. Empty where partners are not known.
+    pub partners: Vec<u32>,
 }
 
 impl Mesh {
@@ -82,6 +87,15 @@ impl Mesh {
             0 => &self.indices,
             level => &self.levels[level - 1].indices,
         }
+    }
+
+    /// For each vertex the coarsest level whose triangles use it; 0 for a vertex without triangles.
+    pub fn coarsest_levels(&self) -> Vec<u32> {
+        let mut coarsest = vec![0; self.vertices()];
+        for level in 1..=self.levels.len() as u32 {
+            self.triangles(level).iter().for_each(|vertex| coarsest[*vertex as usize] = level);
+        }
+        coarsest
     }
 
     /// The weights of the morph targets at a time inside a clip, in seconds.
@@ -205,6 +219,7 @@ mod tests {
             weights: vec![-3.0],
             weight_keys: vec![],
             levels: vec![],
+            partners: vec![],
         };
         (mesh, vec![skin])
     }

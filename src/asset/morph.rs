@@ -94,6 +94,11 @@ impl WeightKeys {
         (&self.times, &self.values, self.interpolation)
     }
 
+    /// Number of targets.
+    pub(crate) fn targets(&self) -> usize {
+        self.targets
+    }
+
     fn between(&self, key: usize, t: f32, target: usize) -> f32 {
         let value = |key: usize, part: usize| match self.interpolation {
             Interpolation::CubicSpline => self.values[(3 * key + part) * self.targets + target],

@@ -62,6 +62,17 @@ impl<T: bytemuck::Pod> Buffer<T> {
         Ok(buffer)
     }
 
+    /// As [`Buffer::from_slice`], for data that never changes: on a device that defers, its upload waits
+    /// ([`Gpu::deferring`]).
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub(crate) fn constant(gpu: &Gpu, label: &'static str, data: &[T]) -> Result<Self, GpuError> {
+        let buffer = Self::new(gpu, label, data.len())?;
+        gpu.fill_buffer(&buffer.raw, bytemuck::cast_slice(data))?;
+        Ok(buffer)
+    }
+
     /// Replaces the first `data.len()` elements.
     ///
     /// # Errors

@@ -17,6 +17,7 @@ mod errors;
 mod job;
 mod kernel;
 mod memory;
+mod pending;
 mod readback;
 mod readback_ring;
 pub mod shaders;
@@ -39,6 +40,7 @@ pub use job::{IndirectJob, Job, compute_pass};
 pub use kernel::{Group, Kernel};
 pub(crate) use kernel::{Layouts, rows_of_workgroups};
 pub use memory::Memory;
+pub(crate) use pending::PendingUploads;
 pub use readback_ring::ReadbackRing;
 #[cfg(not(target_arch = "wasm32"))]
 pub use timer::{Measurement, TimedBy, Timer};
@@ -59,6 +61,8 @@ pub struct Gpu {
     errors: Errors,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
+    /// Where uploads of data that never changes wait, if they do.
+    pending: Option<PendingUploads>,
 }
 
 impl Gpu {
@@ -105,7 +109,7 @@ impl Gpu {
     fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
         let (summary, tuning) = (AdapterSummary::of(info), Tuning::of(info));
         let (errors, memory, kernels) = Default::default();
-        Self { device, queue, summary, tuning, errors, memory, kernels }
+        Self { device, queue, summary, tuning, errors, memory, kernels, pending: None }
     }
 
     /// The wgpu device.

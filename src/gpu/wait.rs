@@ -35,6 +35,21 @@ impl Gpu {
         self.wait()
     }
 
+    /// As `Gpu::run`, with the error of the recording.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`](crate::Error::Gpu) with what the device reports, and the error of `record`.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn try_run(
+        &self,
+        label: &str,
+        record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), crate::Error>,
+    ) -> Result<(), crate::Error> {
+        let mut recorded = Ok(());
+        self.run(label, |encoder| recorded = record(encoder))?;
+        recorded
+    }
+
     /// Records with `record`, submits, and completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors

@@ -289,7 +289,7 @@ pub(crate) fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     Points::new(poses).into_of()
 }
 
-fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
+pub(crate) fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     let Some(first) = surface.poses.first() else {
         return Err(InputError::new("poses.len", 0, "must be at least 1"));
     };

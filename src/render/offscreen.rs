@@ -196,14 +196,11 @@ impl Offscreen {
         renderer.prepare(scene)?;
         let mut view = scene.view(Quality { pixels: 0.0 })?;
         view.set(camera)?;
-        let mut recorded = Ok(());
-        gpu.run("draw", |encoder| {
-            recorded = scene.record(encoder, &mut [&mut view]).and_then(|()| {
-                let draw = |pass: &mut wgpu::RenderPass<'_>| renderer.draw(pass, scene, &view, Layer::Color);
-                Ok(self.record(encoder, background, draw)?)
-            });
-        })?;
-        recorded
+        gpu.try_run("draw", |encoder| {
+            scene.record(encoder, &mut [&mut view])?;
+            let draw = |pass: &mut wgpu::RenderPass<'_>| renderer.draw(pass, scene, &view, Layer::Color);
+            Ok(self.record(encoder, background, draw)?)
+        })
     }
 
     /// Reads the colours: sRGB, row by row. Waits for the device.

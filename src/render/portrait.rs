@@ -50,15 +50,8 @@ pub fn portrait(
 /// has one layer. A mesh without a material is clay.
 fn alone(model: &Model, mesh: &Mesh, portrait: &Portrait) -> Result<Model, InputError> {
     let [r, g, b] = portrait.clay;
-    let clay = Material {
-        name: "clay".to_owned(),
-        color: [r, g, b, 1.0],
-        texture: None,
-        normal: None,
-        normal_scale: 1.0,
-        alpha: Alpha::Opaque,
-    };
-    let mut material = model.material(mesh)?.cloned().unwrap_or(clay);
+    let clay = || Material::opaque("clay", [r, g, b, 1.0]);
+    let mut material = model.material(mesh)?.cloned().unwrap_or_else(clay);
     let mut images = Vec::new();
     if let Some(texture) = &mut material.texture {
         images.push(model.images[texture.image].clone());

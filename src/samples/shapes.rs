@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::InputError;
-use crate::asset::material::{Alpha, Sampling, Texture};
+use crate::asset::material::{Sampling, Texture};
 use crate::asset::mesh::solved_tangents;
 use crate::asset::skeleton::Bone;
 use crate::asset::{Influence, Influences, Material, Mesh, Model, Skeleton, Skin, Transform};
@@ -179,16 +179,10 @@ impl Builder {
             weights: Vec::new(),
             weight_keys: Vec::new(),
             levels: Vec::new(),
+            partners: Vec::new(),
         };
         let texture = image.is_some().then(|| Texture { image: 0, sampling: Sampling::default() });
-        let material = Material {
-            name: name.to_owned(),
-            color,
-            texture,
-            normal: None,
-            normal_scale: 1.0,
-            alpha: Alpha::Opaque,
-        };
+        let material = Material { texture, ..Material::opaque(name, color) };
         Ok(Model {
             skeleton: Skeleton::of_joints(vec![bone])?,
             skins: vec![Skin {

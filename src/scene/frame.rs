@@ -47,6 +47,7 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.refresh(&self.gpu, &self.layouts_of_groups)?;
         }
+        self.attachments.start_afresh();
         self.layout = None;
         Ok(())
     }
@@ -103,11 +104,12 @@ impl Scene {
             return Ok(());
         }
         self.objects.iter_mut().for_each(|object| object.settle(self.now));
+        let sent = self.upload()?;
         self.provide(views)?;
         self.fit(views)?;
         self.stage(views)?;
         let gpu = self.gpu.clone();
-        self.uploaded = self.staged.len();
+        self.uploaded = sent + self.staged.len();
         if !self.staging.record(&gpu, encoder, &mut self.staged)? {
             let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
@@ -218,7 +220,7 @@ impl Scene {
         for (object, sides) in self.objects.iter().zip(&recorded.sides) {
             let ground = object.seen_terrain().and_then(|_| view.ground(terrains));
             terrains += usize::from(object.seen_terrain().is_some());
-            if object.is_shown {
+            if object.is_drawn() {
                 let drawn = object.chunks.iter().flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods));
                 let sides = *sides;
                 objects.extend(drawn.map(|(drawable, lod)| DrawnObject { drawable, lod, sides, ground }));
@@ -234,7 +236,7 @@ impl Scene {
         let objects: Vec<&Object> = self.objects.iter().collect();
         let mut parts = Vec::new();
         for Ordered { object, instance, .. } in &lists.order {
-            let Some(object) = objects.get(*object).filter(|object| object.is_shown) else { continue };
+            let Some(object) = objects.get(*object).filter(|object| object.is_drawn()) else { continue };
             let placed = object.instances.all().get(*instance as usize);
             let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
             let Some(chunk) = object.chunk_of(*instance) else { continue };
@@ -284,7 +286,7 @@ impl Scene {
         for object in self.objects.iter_mut() {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
-        self.attachments.fit(&self.gpu, &self.objects, layout, &mut self.staged)?;
+        self.attachments.fit(&self.gpu, &self.objects, layout, (&mut self.staged, self.frames))?;
         let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
             let passes = (&self.passes.select, &self.passes.list, &self.passes.single);

@@ -30,6 +30,7 @@ pub(crate) struct Layout {
     pub instances: Buffer<SceneInstance>,
     /// The same as they were in the last frame, if it is kept; else the same buffer.
     pub last_instances: Buffer<SceneInstance>,
+    pub keeps_last: bool,
     /// The allowed displacement of each instance, in its model's units; −1 for those that no view sees.
     pub allowed: Buffer<f32>,
     pub objects: Buffer<LodObject>,
@@ -75,6 +76,7 @@ impl Layout {
             version,
             instances,
             last_instances,
+            keeps_last,
             allowed: Buffer::new(gpu, "allowed displacements", count)?,
             objects: Buffer::from_slice(gpu, "objects", objects)?,
             object_count: objects.len() as u32,

@@ -5,7 +5,7 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
-use crate::scene::pieces::{Most, pieces};
+use crate::scene::pieces::{Most, indices_of_levels, pieces};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::at_rest::at_rest;
@@ -28,6 +28,7 @@ pub(crate) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), 
         // The levels were made for this pose. Vertices and their order are the same.
         for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
             mesh.levels.clone_from(&from.levels);
+            mesh.partners.clone_from(&from.partners);
         }
     }
     let merged = merged(&rest, OBJECT_LEVELS as usize)?;
@@ -70,7 +71,7 @@ pub(super) fn drawn(
 
 /// Checks that one binding of the device holds the vertices of a merged mesh, and another its triangles.
 pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
-    let indices = mesh.indices.len() + mesh.levels.iter().map(|level| level.indices.len()).sum::<usize>();
+    let indices = indices_of_levels(mesh);
     let all = [
         ("model.meshes.positions.len", mesh.vertices(), size_of::<Vertex>()),
         ("model.meshes.indices.len", indices, size_of::<u32>()),
@@ -145,7 +146,7 @@ pub(super) fn drawable(
         })
         .collect::<Result<_, Error>>()?;
     let count = if pages.is_some() { buffers.clusters() as u32 } else { 0 };
-    let material_of = Buffer::from_slice(gpu, "materials of vertices", &placed)?;
+    let material_of = Buffer::constant(gpu, "materials of vertices", &placed)?;
     let geometry = MeshGeometry {
         params: Uniform::new(
             gpu,

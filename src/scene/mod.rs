@@ -48,6 +48,7 @@ mod spawned;
 mod stage;
 mod statistics;
 pub(crate) mod terrain;
+mod uploads;
 mod view;
 mod watch;
 
@@ -140,6 +141,8 @@ pub struct Scene {
     staging: StagingRing,
     staged: Staged,
     uploaded: usize,
+    /// Bytes of what was added that a frame uploads; `None` for all.
+    upload_budget: Option<usize>,
     passes: Passes,
     layouts_of_groups: SceneLayouts,
     /// Whether frames are counted.
@@ -194,6 +197,7 @@ impl Scene {
             staging: StagingRing::new(RECORDINGS),
             staged: Staged::default(),
             uploaded: 0,
+            upload_budget: None,
             passes,
             layouts_of_groups: SceneLayouts::new(gpu)?,
             counted: false,
@@ -303,7 +307,8 @@ impl Scene {
         Ok(self.object_at(object)?.draws())
     }
 
-    /// The number of bytes that the last recorded frame took from the host: cameras, times, and what has changed.
+    /// The number of bytes that the last recorded frame took from the host: cameras, times, what has
+    /// changed, and what waited ([`Scene::set_upload_budget`]).
     pub fn uploaded(&self) -> usize {
         self.uploaded
     }

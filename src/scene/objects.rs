@@ -30,8 +30,9 @@ impl Scene {
     /// # Errors
     /// As `Scene::add_terrain`.
     pub async fn add_terrain_async(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
-        let object = Object::terrain(&self.gpu, &self.layouts_of_groups, source).await?;
-        self.add_checked(object).await
+        let (gpu, pending) = self.uploader();
+        let object = Object::terrain(&gpu, &self.layouts_of_groups, source).await?;
+        self.add_checked(object.awaiting(pending)).await
     }
 
     /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail
@@ -45,7 +46,7 @@ impl Scene {
     /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
     /// [`crate::gpu::GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
-        let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
+        let object = self.mesh(model, capacity)?;
         Ok(self.add(object))
     }
 
@@ -55,7 +56,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::add_mesh`].
     pub async fn add_mesh_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
-        let object = Object::mesh(&self.gpu, &self.layouts_of_groups, model, capacity)?;
+        let object = self.mesh(model, capacity)?;
         self.add_checked(object).await
     }
 
@@ -104,14 +105,25 @@ impl Scene {
         capacity: usize,
         options: &CharacterOptions<'_>,
     ) -> Result<Object, Error> {
-        let layouts = &self.layouts_of_groups;
-        match model.clips.is_empty() {
-            true => Object::mesh(&self.gpu, layouts, model, capacity),
-            false => {
-                let settings = (self.shares, self.keeps_last);
-                Object::character(&self.gpu, layouts, (model, options), capacity, settings)
-            }
+        if model.clips.is_empty() {
+            return self.mesh(model, capacity);
         }
+        let (gpu, pending) = self.uploader();
+        let (layouts, settings) = (&self.layouts_of_groups, (self.shares, self.keeps_last));
+        let object = Object::character(&gpu, layouts, (model, options), capacity, settings)?;
+        Ok(object.awaiting(pending))
+    }
+
+    fn mesh(&self, model: &Model, capacity: usize) -> Result<Object, Error> {
+        let (gpu, pending) = self.uploader();
+        let object = Object::mesh(&gpu, &self.layouts_of_groups, model, capacity)?;
+        Ok(object.awaiting(pending))
+    }
+
+    fn relief(&self, relief: &Relief, capacity: usize) -> Result<Object, Error> {
+        let (gpu, pending) = self.uploader();
+        let object = Object::relief(&gpu, &self.layouts_of_groups, relief, capacity)?;
+        Ok(object.awaiting(pending))
     }
 
     /// Adds a mesh that carries a relief. There is room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says
@@ -121,7 +133,7 @@ impl Scene {
     /// [`InputError`] for a capacity out of range, and for maps, options or a mesh that do not fit each other;
     /// [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
-        let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
+        let object = self.relief(relief, capacity)?;
         Ok(self.add(object))
     }
 
@@ -131,7 +143,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::add_relief`].
     pub async fn add_relief_async(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
-        let object = Object::relief(&self.gpu, &self.layouts_of_groups, relief, capacity)?;
+        let object = self.relief(relief, capacity)?;
         self.add_checked(object).await
     }
 

@@ -105,7 +105,7 @@ impl Scene {
     /// The instances whose bounding spheres a ray meets within its limit.
     fn spheres_near(&self, ray: &Ray, direction: DVec3) -> Vec<Candidate<'_>> {
         let mut near = Vec::new();
-        for (object, entry) in self.objects.each().filter(|(_, entry)| entry.is_shown) {
+        for (object, entry) in self.objects.each().filter(|(_, entry)| entry.is_drawn()) {
             for [index, generation] in entry.instances.each() {
                 let instance = &entry.instances.all()[index as usize];
                 if instance.flags & INSTANCE_ALIVE == 0

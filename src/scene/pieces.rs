@@ -19,9 +19,13 @@ pub(super) struct Most {
 impl Most {
     /// Whether a mesh fits, with all its levels.
     pub fn holds(self, mesh: &Mesh) -> bool {
-        let levels: usize = mesh.levels.iter().map(|level| level.indices.len()).sum();
-        mesh.vertices() <= self.vertices && mesh.indices.len() + levels <= self.indices
+        mesh.vertices() <= self.vertices && indices_of_levels(mesh) <= self.indices
     }
+}
+
+/// Number of indices of a mesh, those of all its levels together.
+pub(super) fn indices_of_levels(mesh: &Mesh) -> usize {
+    mesh.indices.len() + mesh.levels.iter().map(|level| level.indices.len()).sum::<usize>()
 }
 
 /// A merged mesh at rest in pieces: meshes without levels, whose parts are drawn at one level each. The triangles of a level
@@ -131,6 +135,7 @@ impl<'a> Piece<'a> {
             weights: Vec::new(),
             weight_keys: Vec::new(),
             levels: Vec::new(),
+            partners: Vec::new(),
         });
         Ok(())
     }

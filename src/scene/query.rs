@@ -115,7 +115,7 @@ mod drawn {
             }
             let all = entry.instances.each();
             let shown = all.filter(|[index, _]| {
-                entry.is_shown && view.may_show(entry.instances.all()[*index as usize].flags)
+                entry.is_drawn() && view.may_show(entry.instances.all()[*index as usize].flags)
             });
             let instance = |[index, generation]: [u32; 2]| DrawnInstance {
                 instance: InstanceId { object, index, generation },

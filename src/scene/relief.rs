@@ -155,12 +155,12 @@ pub(super) fn drawn(
             "mesh",
             &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0, first_slot: 0 },
         )?,
-        vertices: Buffer::from_slice(gpu, "mesh vertices", &vertices)?,
+        vertices: Buffer::constant(gpu, "mesh vertices", &vertices)?,
         last: 0,
         page_table: material_of.clone(),
-        uv: Buffer::from_slice(gpu, "mesh uv", &uv)?,
+        uv: Buffer::constant(gpu, "mesh uv", &uv)?,
         material_of,
-        indices: Buffer::from_slice(gpu, "mesh indices", &relief.mesh.indices)?,
+        indices: Buffer::constant(gpu, "mesh indices", &relief.mesh.indices)?,
     };
     let surface = SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided };
     let materials = MeshMaterials::Relief(material(gpu, layouts, relief)?);

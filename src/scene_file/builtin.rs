@@ -16,7 +16,6 @@ pub(super) use nothing::{CHARACTERS, MAPS, MODELS, map, model};
 mod there {
     use super::*;
     use crate::asset::Material;
-    use crate::asset::material::Alpha;
     use crate::samples::{BuiltInMap, creature, rock, wall};
 
     /// Models that a mesh may be.
@@ -45,14 +44,7 @@ mod there {
 
     /// The model with a colour: it has no material of its own.
     fn of_clay(mut model: Model) -> Model {
-        let material = Material {
-            name: "clay".to_owned(),
-            color: CLAY,
-            texture: None,
-            normal: None,
-            normal_scale: 1.0,
-            alpha: Alpha::Opaque,
-        };
+        let material = Material::opaque("clay", CLAY);
         for mesh in &mut model.meshes {
             mesh.material = Some(model.materials.len());
         }

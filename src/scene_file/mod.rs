@@ -8,37 +8,7 @@
 //! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`), the
 //! value and the bound.
 //!
-//! # The format
-//!
-//! An object with these fields, of which only `camera` must be there, and something to see. Positions are in world units: x
-//! east, y up, z south. Angles are in radians, times in seconds, colours in linear light. Files are relative to the scene's.
-//!
-//! | field | value |
-//! |---|---|
-//! | `terrain` | `config`, which is a configuration of [`Config`](crate::terrain::config::Config), and `patches`: a list of columns and rows; by default `[[0, 0]]` |
-//! | `meshes` | a list of models that do not move by themselves |
-//! | `characters` | a list of animated models |
-//! | `light` | `direction` towards the light, `color`, `ambient` 0 to 1, `shadow`: whether it casts one, or an object with the `size` of its map in texels (2048) and its `range` ahead of the camera in world units (100) |
-//! | `camera` | `at` and `look`, or a `path`: a list of moments with `time`, `at`, `look` and optionally `fov`, between which the camera moves smoothly. `fov` is the vertical field of view (0.8), `near` the near plane (0.1), `far` the far plane (at infinity) |
-//! | `quality` | `pixels`, by how many anything may be off (1) |
-//! | `background` | red, green and blue |
-//!
-//! A mesh and a character have a `file` (`.glb`, `.gltf`, or `builtin:creature`; meshes also `builtin:rock` and
-//! `builtin:wall`), and `instances` or `scatter` or both.
-//!
-//! - An instance has a place: `at` `[x, y, z]`, or `on` `[x, z]`, on the ground that is drawn, and then optionally `lift`,
-//!   how many model units above it. `turn` is an angle about the vertical axis, counter-clockwise seen from above, or a
-//!   quaternion x, y, z, w. `scale` is a factor or three, along the model's axes; negative ones mirror.
-//! - `scatter` has a `count` and a `seed`, which is any text: the same text gives the same places, on every machine. They lie
-//!   on the ground of the terrain's patches, or inside an `area`: two corners `[[x, z], [x, z]]`; without terrain at height
-//!   0. `scale` is a factor, or the smallest and the largest; `lift` as above. Everything is turned at random.
-//! - A mesh may have a `material` with a relief: `relief` is the image of its heights (or `builtin:bricks`, `cobbles`,
-//!   `text`, `posts`), in its `channel` `brightness` or `alpha`; `albedo` its colours (by default those that belong to the
-//!   heights, or the model's), `normal` a normal map whose green points up, `scale` the depth in tiles (0.1), `tiles` a
-//!   factor of the texture coordinates, `method` one of [`Method`](crate::surface::relief::Method) (`quadtree`), `shadow`
-//!   `none`, `hard` or `soft`. Such a mesh has one level of detail.
-//! - A character plays a `clip`, by its name or number (the first), at a `rate` (1) from `start` on (0), and then repeats it
-//!   (`wrap` `loop`) or holds its last pose (`clamp`); each instance may differ. Scattered ones begin at random times.
+#![doc = include_str!("../../docs/scene-files.md")]
 //!
 //! # An example
 //!

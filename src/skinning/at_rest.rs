@@ -77,5 +77,6 @@ fn baked(mesh: &Mesh, index: usize, vertices: &[Vertex]) -> Result<Mesh, InputEr
         weights: Vec::new(),
         weight_keys: Vec::new(),
         levels: Vec::new(),
+        partners: Vec::new(),
     })
 }

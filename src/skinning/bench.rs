@@ -69,6 +69,7 @@ pub(crate) fn tube(influences: usize, targets: usize) -> Result<Model, Error> {
         targets: vec![target; targets],
         weights: vec![0.0; targets],
         levels: vec![],
+        partners: vec![],
         ..model.meshes[0].clone()
     };
     Ok(model)

@@ -1,23 +1,29 @@
 //! Levels of detail of skinned meshes: the mesh is simplified for all poses of its clips, and the error of each
-//! level is measured (A sections 9.3 and 9.4: all poses of the animation count).
+//! level is measured (A sections 9.3 and 9.4: all poses of the animation count). Meshes of a model that share borders are
+//! simplified as one, so that no gap opens between them (B section 5.2).
 
 use std::iter::successors;
 
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::pose::{Moment, Pose, moments, poses_of};
+use super::pose::{Moment, moments};
 use crate::InputError;
 use crate::asset::Model;
-use crate::asset::mesh::{MAX_LEVELS, Mesh, MeshLevel};
+use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
+use crate::mesh::progressive::{Became, partners};
 use crate::mesh::simplify::{Options, Simplified, Surface, simplify_within};
-use keys::Keys;
+pub use coarsen::{Coarsened, coarsen};
+use keys::{Keys, key_moments};
 use near::{Near, Sides};
 use welded::Welded;
+use whole::{Shared, Whole, shared};
 
+mod coarsen;
 mod keys;
 mod near;
 mod welded;
+mod whole;
 
 /// The error of the finest level, as a fraction of the mesh's size ([`Keys::size`]).
 const FIRST: f32 = 1e-3;
@@ -37,21 +43,24 @@ const ERROR_MARGIN: f32 = 1.01;
 /// Coarser levels of one of a model's meshes.
 #[derive(Debug, Clone)]
 pub struct MeshLevels {
-    /// The levels for [`Mesh::levels`]. The first has an error of a thousandth of the mesh's size, and each
+    /// The levels for [`Mesh::levels`](crate::asset::Mesh::levels). The first has an error of a thousandth of the mesh's size, and each
     /// later one 1.4 times the error of the one before and at most 0.9 times its triangles. Empty if nothing
     /// can be removed. The size is the diagonal of the box around the triangles at rest or, if clips make the
     /// mesh more than twice as large or small, in the pose in which they make it largest. The units in which a
-    /// mesh was bound do not matter.
+    /// mesh was bound do not matter. Where meshes share borders, sizes and numbers of triangles are those of all of them
+    /// together, and all have equally many levels with the same errors.
     pub levels: Vec<MeshLevel>,
+    /// The partner of each vertex, for [`Mesh::partners`](crate::asset::Mesh::partners).
+    pub partners: Vec<u32>,
     near: Vec<Near>,
 }
 
 impl MeshLevels {
     /// Simplifies a mesh for these clips and its rest pose, and measures each level in `poses` of each clip,
-    /// evenly spaced from start to end; [`poses_of`] gives a sufficient number for a clip.
+    /// evenly spaced from start to end; [`poses_of`](super::poses_of) gives a sufficient number for a clip.
     /// Without clips only the rest pose counts. Blending is linear, with the clips' weights of morph targets.
     /// Edges that are hard in normals only do not hinder simplification: each remaining corner keeps a vertex
-    /// whose normal is close to its own.
+    /// whose normal is close to its own. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
     ///
     /// The error of a level is the largest distance, in all of these poses, between a vertex of the mesh and
     /// the level's triangles close to it, and between midpoints of the level's triangles and edges and the
@@ -66,32 +75,8 @@ impl MeshLevels {
     /// [`InputError`] as [`Extent::new`](super::Extent::new).
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         let moments = moments(model, mesh, clips, poses)?;
-        let mesh = &model.meshes[mesh];
-        let keys = Keys::new(model, mesh, &moments);
-        let welded = Welded::new(mesh, &keys.poses);
-        let simplified = simplified(mesh, &welded, &keys)?;
-        let levels = found(mesh, &welded, &simplified);
-        let unit = keys.unit;
-        let poses: Vec<Vec<Vec3>> =
-            keys.poses.into_iter().map(|pose| pose.into_iter().map(Vec3::from).collect()).collect();
-        let sides: Vec<Sides> =
-            levels.par_iter().map(|level| Sides::new(mesh, &simplified, level, &poses)).collect();
-        let errors = moments
-            .par_iter()
-            .map(|moment| {
-                let points = points(model, mesh, *moment, unit);
-                sides.iter().map(|sides| sides.error(&points)).collect::<Vec<f32>>()
-            })
-            .reduce(|| vec![0.0; sides.len()], |a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect());
-        let mut most = 0.0_f32;
-        let level = |(Found { indices, .. }, error): (Found, f32)| {
-            most = most.max(unit * (ERROR_MARGIN * error));
-            MeshLevel { indices, error: most }
-        };
-        Ok(Self {
-            levels: levels.into_iter().zip(errors).map(level).collect(),
-            near: sides.into_iter().map(|sides| sides.near).collect(),
-        })
+        let mut all = levels_of(&Whole::new(model, &[mesh], &Shared::new()), &moments)?;
+        Ok(all.remove(0))
     }
 
     /// The point on level `level + 1` of the mesh that is nearest to `wanted`, the correct position of a vertex
@@ -105,70 +90,88 @@ impl MeshLevels {
     }
 }
 
-/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them. `clips` are the indices
+/// The levels of meshes that are simplified as one: one entry for each, which have equally many levels with the same errors.
+fn levels_of(whole: &Whole<'_>, moments: &[Moment]) -> Result<Vec<MeshLevels>, InputError> {
+    let keys = Keys::new(whole, moments);
+    let welded = Welded::new(whole, &keys.poses);
+    let simplified = simplified(whole, &welded, &keys)?;
+    let levels = found(whole, &welded, &simplified);
+    let unit = keys.unit;
+    let poses: Vec<Vec<Vec3>> =
+        keys.poses.into_iter().map(|pose| pose.into_iter().map(Vec3::from).collect()).collect();
+    let sides: Vec<Sides> =
+        levels.par_iter().map(|level| Sides::new(whole, &simplified, level, &poses)).collect();
+    let errors = moments
+        .par_iter()
+        .map(|moment| {
+            let points = whole.points(*moment, unit);
+            sides.iter().map(|sides| sides.error(&points)).collect::<Vec<f32>>()
+        })
+        .reduce(|| vec![0.0; sides.len()], |a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect());
+    let mut most = 0.0_f32;
+    let error = |error: f32| {
+        most = most.max(unit * (ERROR_MARGIN * error));
+        most
+    };
+    let errors: Vec<f32> = errors.into_iter().map(error).collect();
+    let became: Vec<Became<'_>> =
+        levels.iter().map(|level| Became { indices: &level.indices, remap: &level.into }).collect();
+    let place = |vertex: u32| (whole.member[vertex as usize], simplified.point(vertex));
+    let partners = partners(&whole.indices, &became, place, whole.vertices());
+    let of_mesh = |member: usize| {
+        let level = |(level, error): (&Found, &f32)| MeshLevel {
+            indices: whole.own(&level.indices, member),
+            error: *error,
+        };
+        let local = |vertex: u32| whole.local(vertex);
+        MeshLevels {
+            levels: levels.iter().zip(&errors).map(level).collect(),
+            partners: partners[whole.range(member)].iter().map(|vertex| local(*vertex)).collect(),
+            near: sides.iter().map(|sides| sides.near.part(whole.range(member), local)).collect(),
+        }
+    };
+    Ok((0..whole.meshes.len()).map(of_mesh).collect())
+}
+
+/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them. Meshes whose borders have
+/// the same positions in every pose are simplified as one: their borders stay closed at every level, and they have equally
+/// many levels with the same errors. A mesh of which nothing is left at a level has one triangle without area there. `clips` are the indices
 /// of the clips that will be played, none for a mesh that stands still, and `poses` is the number of poses of each of them
-/// that are examined: the largest of [`poses_of`] misses no motion, fewer are quicker.
+/// that are examined: the largest of [`poses_of`](super::poses_of) misses no motion, fewer are quicker.
 ///
 /// The time grows with vertices × clips × poses: seconds for a character of a few thousand vertices, but minutes for one of
-/// tens of thousands or a clip of half a minute. The result is plain data ([`Mesh::levels`]) that a program may store.
+/// tens of thousands or a clip of half a minute. The result is plain data ([`Mesh::levels`](crate::asset::Mesh::levels)) that a program may store.
 ///
 /// # Errors
 /// [`InputError`] as [`MeshLevels::new`].
 pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Vec<MeshLevels>, InputError> {
-    let meshes = 0..model.meshes.len();
-    let all = meshes.map(|mesh| MeshLevels::new(model, mesh, clips, poses));
-    let all = all.collect::<Result<Vec<_>, _>>()?;
+    let each = (0..model.meshes.len()).map(|mesh| moments(model, mesh, clips, poses));
+    let Some(moments) = each.collect::<Result<Vec<_>, _>>()?.into_iter().next() else {
+        return Ok(Vec::new());
+    };
+    let (borders, groups) = shared(model, &key_moments(&moments));
+    let mut all: Vec<(usize, MeshLevels)> = Vec::with_capacity(model.meshes.len());
+    for group in &groups {
+        let found = levels_of(&Whole::new(model, group, &borders), &moments)?;
+        all.extend(group.iter().copied().zip(found));
+    }
+    all.sort_by_key(|(mesh, _)| *mesh);
+    let all: Vec<MeshLevels> = all.into_iter().map(|(_, found)| found).collect();
     for (mesh, found) in model.meshes.iter_mut().zip(&all) {
         mesh.levels.clone_from(&found.levels);
+        mesh.partners.clone_from(&found.partners);
     }
     Ok(all)
 }
 
-/// What became of a mesh that was coarsened.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coarsened {
-    /// Triangles that are left.
-    pub triangles: usize,
-    /// Triangles that it had.
-    pub of: usize,
-    /// How far it is off, in the model's units, in any pose of the clip or at rest.
-    pub error: f32,
-}
-
-/// Gives every mesh the triangles of the coarsest of its levels that is off by no more than `within` (the model's units) in
-/// any pose of a clip, which is looked at 60 times a second, or at rest.
-///
-/// # Errors
-/// [`InputError`] for a distance that is negative or not finite, and as [`poses_of`] and [`MeshLevels::new`].
-pub fn coarsen(model: &mut Model, clip: usize, within: f32) -> Result<Vec<Coarsened>, InputError> {
-    if !(within >= 0.0 && within.is_finite()) {
-        return Err(InputError::new("within", within, "must be finite, and not negative"));
-    }
-    let poses = model.clips.get(clip).map_or(Ok(1), poses_of)?;
-    add_levels(model, &[clip], poses)?;
-    let coarsened = |mesh: &mut Mesh| {
-        let of = mesh.indices.len() / 3;
-        let level = std::mem::take(&mut mesh.levels).into_iter().rfind(|level| level.error <= within);
-        let error = level.as_ref().map_or(0.0, |level| level.error);
-        if let Some(level) = level {
-            mesh.indices = level.indices;
-        }
-        Coarsened { triangles: mesh.indices.len() / 3, of, error }
-    };
-    Ok(model.meshes.iter_mut().map(coarsened).collect())
-}
-
-/// The positions of all vertices, in multiples of `unit`.
-fn points(model: &Model, mesh: &Mesh, moment: Moment, unit: f32) -> Vec<Vec3> {
-    let all = Pose::new(model, mesh, moment).positions(mesh);
-    all.into_iter().map(|point| point / unit).collect()
-}
-
-fn simplified(mesh: &Mesh, welded: &Welded, keys: &Keys) -> Result<Simplified, InputError> {
-    let (normal, texture) = (NORMAL * keys.size, keys.texture_scale(mesh));
-    let (normals, indices) = (welded.normals(&keys.normals), welded.indices(mesh));
-    let attributes: Vec<f32> = (normals.iter().zip(&mesh.uv))
-        .flat_map(|([x, y, z], [u, v])| [normal * x, normal * y, normal * z, texture * u, texture * v])
+fn simplified(whole: &Whole<'_>, welded: &Welded, keys: &Keys) -> Result<Simplified, InputError> {
+    let (normal, texture) = (NORMAL * keys.size, keys.texture_scales(whole));
+    let (normals, indices) = (welded.normals(&keys.normals), welded.indices(whole));
+    let attributes: Vec<f32> = (normals.iter().zip(&whole.uv).zip(&whole.member))
+        .flat_map(|(([x, y, z], [u, v]), member)| {
+            let texture = texture[*member as usize];
+            [normal * x, normal * y, normal * z, texture * u, texture * v]
+        })
         .collect();
     let surface = Surface { poses: &keys.poses, indices: &indices, attributes: &attributes, stride: 5 };
     let distances: Vec<f32> =
@@ -180,33 +183,34 @@ fn simplified(mesh: &Mesh, welded: &Welded, keys: &Keys) -> Result<Simplified, I
 struct Found {
     /// The vertex into which each vertex has collapsed.
     remap: Vec<u32>,
+    /// For each vertex of the level before, the vertex that takes its place.
+    into: Vec<u32>,
     indices: Vec<u32>,
 }
 
 /// The levels, each using a subset of the vertices of the one before.
-fn found(mesh: &Mesh, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
+fn found(whole: &Whole<'_>, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
     let mut distances: Vec<f32> = simplified.collapses().iter().map(|collapse| collapse.distance).collect();
     distances.dedup();
-    let mut last = mesh.indices.len();
-    let mut used = vec![true; mesh.vertices()];
-    let level = |distance: f32| {
+    let mut last = whole.indices.len() / 3;
+    let mut levels: Vec<Found> = Vec::new();
+    for distance in distances {
         let remap = welded.remap(simplified, simplified.collapses_near(distance));
-        let indices = welded.triangles(mesh, simplified, &remap, &used);
-        if indices.is_empty() || indices.len() as f64 > WORTHWHILE * last as f64 {
-            return None;
+        let before = levels.last().map_or(&whole.indices, |level| &level.indices);
+        let (indices, into, triangles) = welded.next(whole, simplified, &remap, before);
+        if triangles > 0 && triangles as f64 <= WORTHWHILE * last as f64 {
+            last = triangles;
+            levels.push(Found { remap, into, indices });
         }
-        last = indices.len();
-        used.fill(false);
-        indices.iter().for_each(|vertex| used[*vertex as usize] = true);
-        Some(Found { remap, indices })
-    };
-    distances.into_iter().filter_map(level).collect()
+    }
+    levels
 }
 
 #[cfg(all(test, feature = "samples"))]
 mod tests {
     use super::*;
-    use crate::asset::{Influence, Influences};
+    use crate::asset::{Influence, Influences, Mesh};
+    use crate::skinning::pose::Pose;
 
     /// If the simplifier saw all moments, the measured errors equal the distances that it kept: no near
     /// triangle is overlooked.
@@ -220,13 +224,13 @@ mod tests {
             // All vertices follow one bone; otherwise the bones would have to be scaled too.
             let follows = (0..mesh.vertices()).map(|_| vec![Influence { bone: 0, weight: 1.0 }]);
             mesh.influences = Influences::new("w", model.skins[0].bones.len(), follows).expect("valid");
-            let mesh = &model.meshes[0];
-            let keys = Keys::new(&model, mesh, &[Moment::In(0, 0.0)]);
-            let welded = Welded::new(mesh, &keys.poses);
-            let simplified = simplified(mesh, &welded, &keys).expect("valid");
+            let whole = Whole::new(&model, &[0], &Shared::new());
+            let keys = Keys::new(&whole, &[Moment::In(0, 0.0)]);
+            let welded = Welded::new(&whole, &keys.poses);
+            let simplified = simplified(&whole, &welded, &keys).expect("valid");
             let mut distances: Vec<f32> = simplified.collapses().iter().map(|one| one.distance).collect();
             distances.dedup();
-            let levels = found(mesh, &welded, &simplified);
+            let levels = super::found(&whole, &welded, &simplified);
             let found = MeshLevels::new(&model, 0, &[0], 1).expect("valid").levels;
             assert_eq!(levels.len(), found.len());
             assert!(levels.len() > 9, "{} at {scale}", levels.len());

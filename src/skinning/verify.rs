@@ -59,6 +59,7 @@ pub(crate) fn random_model(case: u32, shape: Shape) -> Result<Model, InputError>
         tangents: vertices.clone().map(|_| tangent(&mut draw)).collect(),
         uv: vertices.clone().map(|_| [0; 2].map(|_| draw.signed())).collect(),
         levels: levels(&mut draw, shape),
+        partners: Vec::new(),
         indices: triangles(shape).collect(),
         double_sided: true,
         material: None,

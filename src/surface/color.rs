@@ -24,7 +24,7 @@ impl ColorTexture {
             true => wgpu::TextureFormat::Rgba8UnormSrgb,
             false => wgpu::TextureFormat::Rgba8Unorm,
         };
-        upload(gpu, mips, wraps, format, 4, |level| level.as_raw().clone())
+        upload(gpu, mips, wraps, format, |level| level.as_raw().clone())
     }
 
     /// Uploads mip levels as linear half floats, for pictures that are compared across drivers: this takes
@@ -44,7 +44,7 @@ impl ColorTexture {
             });
             texels.flat_map(|light| half::f16::from_f32(light).to_le_bytes()).collect()
         };
-        upload(gpu, mips, wraps, wgpu::TextureFormat::Rgba16Float, 8, halves)
+        upload(gpu, mips, wraps, wgpu::TextureFormat::Rgba16Float, halves)
     }
 
     /// The same texture with another sampler. The mip levels stay those that were uploaded.
@@ -93,7 +93,6 @@ fn upload(
     mips: &Mips,
     wraps: bool,
     format: wgpu::TextureFormat,
-    texel: u32,
     bytes: impl Fn(&image::RgbaImage) -> Vec<u8>,
 ) -> Result<ColorTexture, GpuError> {
     let size = |level: &image::RgbaImage| wgpu::Extent3d {
@@ -124,13 +123,7 @@ fn upload(
             view_formats: &[],
         });
         for (mip_level, level) in (0..).zip(&mips.levels) {
-            let to = wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() };
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(texel * level.width()),
-                rows_per_image: None,
-            };
-            gpu.queue().write_texture(to, &bytes(level), layout, size(level));
+            gpu.fill_level(&texture, [mip_level, 0], &bytes(level));
         }
         ColorTexture { texture, sampler: sampler(gpu, wraps) }
     })

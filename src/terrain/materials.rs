@@ -57,19 +57,9 @@ fn upload(gpu: &Gpu, layers: &[Texture]) -> wgpu::Texture {
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (layer, image) in layers.iter().enumerate() {
-        for (level, texels) in image.mips.iter().enumerate() {
-            let to = wgpu::TexelCopyTextureInfo {
-                mip_level: level as u32,
-                origin: wgpu::Origin3d { z: layer as u32, ..Default::default() },
-                ..texture.as_image_copy()
-            };
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(4 * (TEXTURE_SIZE >> level)),
-                rows_per_image: None,
-            };
-            gpu.queue().write_texture(to, texels, layout, size(level as u32));
+    for (layer, image) in (0..).zip(layers) {
+        for (level, texels) in (0..).zip(&image.mips) {
+            gpu.fill_level(&texture, [level, layer], texels);
         }
     }
     texture

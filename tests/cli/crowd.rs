@@ -155,6 +155,7 @@ fn bad_input_is_refused_and_nothing_written() {
         (&[][..], &["--gate"][..]),
         (&["--gate", "magic"], &["magic", "bounded"]),
         (&["--gate", "budget"], &["budget", "must be"]),
+        (&["--gate", "uniform", "--budget", "9"], &["budget", "must come with --gate budget"]),
         (&["--gate", "off", "--range", "1700,200"], &["range.max", "200", "above range.min, 1700"]),
         (&["--gate", "off", "--range", "5,5"], &["range.max", "5"]),
         (&["--gate", "off", "--range", "-1,5"], &["range.min", "-1"]),

@@ -13,7 +13,10 @@ mod counts;
 mod frame;
 mod health;
 mod host;
+#[path = "../skinning/hull.rs"]
+mod hull;
 mod layers;
+mod levels;
 mod life;
 mod materials;
 mod misuse;
@@ -35,6 +38,7 @@ mod surfaces;
 mod targets;
 mod terrain;
 mod transparent;
+mod uploads;
 mod velocity;
 mod views;
 mod world;

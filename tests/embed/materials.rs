@@ -32,6 +32,7 @@ fn square(material: usize, x: f32) -> Mesh {
         weights: Vec::new(),
         weight_keys: Vec::new(),
         levels: Vec::new(),
+        partners: Vec::new(),
     }
 }
 

@@ -18,7 +18,7 @@ const EDGE: u32 = 321;
 
 /// A cloth in waves with 103,041 vertices, which 3 MiB do not hold, and a border of another colour that is seen from one side;
 /// its second level has every other vertex in each direction.
-fn cloth() -> Model {
+pub fn cloth() -> Model {
     let mut model = relievo::skinning::at_rest::at_rest(&model()).expect("at rest");
     let color = |color| Material {
         name: "cloth".to_owned(),

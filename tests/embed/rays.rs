@@ -103,6 +103,7 @@ pub fn model(corners: &[[[f32; 3]; 3]], material: Material, double_sided: bool) 
         weights: Vec::new(),
         weight_keys: Vec::new(),
         levels: Vec::new(),
+        partners: Vec::new(),
         positions,
     };
     Model {

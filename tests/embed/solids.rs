@@ -36,6 +36,7 @@ pub fn solid(mirrors: bool, double_sided: bool) -> Model {
         weights: Vec::new(),
         weight_keys: Vec::new(),
         levels: Vec::new(),
+        partners: Vec::new(),
         positions,
         normals,
     };

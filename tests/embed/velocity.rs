@@ -1,6 +1,7 @@
 //! Velocities against places of two frames that are projected on the host in f64: of moving characters, placements and
 //! cameras, and of still ones.
 
+mod attached;
 mod characters;
 
 use glam::{DMat4, DVec3, Vec3};
@@ -53,6 +54,24 @@ impl Eye {
     /// Records a frame, draws its velocities, and reads them; 7 where nothing is drawn.
     fn frame(&self, scene: &mut Scene, view: &mut View) -> Vec<[f32; 2]> {
         self.raw.frame(scene, view, &self.renderer, &[Layer::Depth, Layer::Velocity]);
+        self.read(scene)
+    }
+
+    /// As [`Eye::frame`], of the first of the views that the frame has.
+    fn frames(&self, scene: &mut Scene, views: [&mut View; 2]) -> Vec<[f32; 2]> {
+        let mut encoder = scene.gpu().encoder("two views");
+        let [view, other] = views;
+        scene.record(&mut encoder, &mut [&mut *view, other]).expect("recorded");
+        self.raw.pass(&mut encoder, |pass| {
+            for layer in [Layer::Depth, Layer::Velocity] {
+                self.renderer.draw(pass, scene, view, layer).expect("drawn");
+            }
+        });
+        scene.gpu().queue().submit([encoder.finish()]);
+        self.read(scene)
+    }
+
+    fn read(&self, scene: &Scene) -> Vec<[f32; 2]> {
         self.raw.floats(scene.gpu(), 0).into_iter().map(|[x, y, ..]| [x, y]).collect()
     }
 }

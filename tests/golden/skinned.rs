@@ -70,6 +70,7 @@ fn limb() -> Model {
         weights: vec![],
         weight_keys: vec![],
         levels: vec![],
+        partners: vec![],
     };
     let (clips, materials, images) = (vec![], vec![], vec![]);
     Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images }

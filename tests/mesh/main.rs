@@ -5,5 +5,7 @@ mod closed;
 mod creature;
 mod input;
 mod measure;
+mod progressive;
 mod quality;
+mod reduce;
 mod shapes;

@@ -64,8 +64,17 @@ fn place(shape: &Shape, pose: usize, vertex: u32) -> DVec3 {
 
 /// The distances of all vertices from the triangles `indices` in a pose: root mean square, and largest.
 pub fn distances(shape: &Shape, pose: usize, indices: &[u32]) -> [f64; 2] {
+    from_triangles(shape, pose, shape, indices)
+}
+
+/// The distances of all vertices of one shape from another in their first poses: root mean square, and largest.
+pub fn distances_between(shape: &Shape, other: &Shape) -> [f64; 2] {
+    from_triangles(shape, 0, other, &other.indices)
+}
+
+fn from_triangles(shape: &Shape, pose: usize, other: &Shape, indices: &[u32]) -> [f64; 2] {
     let corners =
-        indices.chunks_exact(3).map(|triangle| [0, 1, 2].map(|at| place(shape, pose, triangle[at])));
+        indices.chunks_exact(3).map(|triangle| [0, 1, 2].map(|at| place(other, pose, triangle[at])));
     let triangles: Vec<[DVec3; 3]> = corners.collect();
     let squares = (0..shape.uv.len() as u32).map(|vertex| {
         let at = place(shape, pose, vertex);

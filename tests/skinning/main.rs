@@ -1,12 +1,14 @@
 //! Skinning: the reference compared with geometry, and with independent code in double precision.
 
 mod blending;
+mod borders;
 mod collapse;
 mod fading;
 mod gating;
 #[cfg(feature = "verify")]
 #[path = "../harness/mod.rs"]
 mod harness;
+mod hull;
 mod levels;
 mod merged;
 mod rigs;

@@ -206,6 +206,7 @@ fn mesh(skin: usize, positions: Vec<[f32; 3]>, influences: Influences) -> Mesh {
         weights: vec![],
         weight_keys: vec![],
         levels: vec![],
+        partners: vec![],
     }
 }
 

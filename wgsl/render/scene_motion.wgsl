@@ -1,6 +1,6 @@
 // Where the instances of a scene were in the last frame, and how far their surfaces moved on the screen since.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
-import package::wgsl::render::scene_vertex::{mesh, rows, vertex_index_of, vertices};
+import package::wgsl::render::scene_vertex::{instances, mesh, rows, vertex_index_of, vertices};
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_position};
 import package::wgsl::skinning::vertex::vertex_position;
@@ -11,12 +11,14 @@ import package::wgsl::skinning::vertex::vertex_position;
 // Determinants below this have no inverse.
 const LEAST_DETERMINANT: f32 = 1e-30;
 
-// The transform that an instance had, from the model's space to positions relative to the corner of the view's cell. Where a
-// bone had taken a mesh is not kept: it counts as if it had been there already.
+// The transform that an instance had, from the model's space to positions relative to the corner of the view's cell. A mesh
+// that was attached to a bone and is no longer counts as if it had been where it is.
 fn last_rows(index: u32) -> Rows {
     let instance = last_instances[index];
     if (instance.flags & INSTANCE_FOLLOWS) != 0u {
-        return Rows(rows[3u * index], rows[3u * index + 1u], rows[3u * index + 2u]);
+        let follows = (instances[index].flags & INSTANCE_FOLLOWS) != 0u;
+        let first = 3u * index + select(0u, 3u * arrayLength(&last_instances), follows);
+        return Rows(rows[first], rows[first + 1u], rows[first + 2u]);
     }
     let axes = instance_axes(instance);
     let at = instance_position(instance, view.cell);

@@ -19,7 +19,8 @@ struct MeshParams {
 }
 
 // Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the
-// view's cell. Only those of instances that the view sees are written.
+// view's cell. Only those of instances that the view sees are written. If the scene keeps its last frame, as many follow, of
+// which those of meshes that are attached to bones are written: the transforms that they had then.
 @group(0) @binding(1) var<storage, read> rows: array<vec4<f32>>;
 // All instances of the scene.
 @group(0) @binding(2) var<storage, read> instances: array<SceneInstance>;

@@ -49,8 +49,8 @@ impl TableBuffers {
         path: Option<RotationPath>,
     ) -> Result<Self, GpuError> {
         Ok(Self {
-            animated_bones: Buffer::from_slice(gpu, "animated bones", bones.records())?,
-            rows: Buffer::from_slice(gpu, "gate table", rows)?,
+            animated_bones: Buffer::constant(gpu, "animated bones", bones.records())?,
+            rows: Buffer::constant(gpu, "gate table", rows)?,
             stride: stride as u32,
             words: bones.words() as u32,
             bones: bones.bones(),

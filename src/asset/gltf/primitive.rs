@@ -75,6 +75,7 @@ impl Reader<'_, '_> {
             weights,
             weight_keys,
             levels: vec![],
+            partners: vec![],
         };
         tangents.apply(&mut mesh);
         Ok(mesh)

@@ -14,6 +14,19 @@ impl Mesh {
         let Some(skin) = skins.get(self.skin) else {
             return Err(InputError::new("mesh.skin", self.skin, format!("must be below {}", skins.len())));
         };
+        self.validate_alone()?;
+        for vertex in 0..self.vertices() {
+            let mut bones = self.influences.of(vertex).iter().map(|influence| influence.bone);
+            if let Some(bone) = bones.find(|bone| *bone as usize >= skin.bones.len()) {
+                let bound = format!("must be below {}, the skin's bones", skin.bones.len());
+                return Err(InputError::new(format!("mesh.influences[{vertex}].bone"), bone, bound));
+            }
+        }
+        Ok(())
+    }
+
+    /// As [`Mesh::validate`], without the skin.
+    pub(crate) fn validate_alone(&self) -> Result<(), InputError> {
         let vertices = self.vertices();
         if vertices > MAX_VERTICES {
             return Err(InputError::new(
@@ -40,15 +53,9 @@ impl Mesh {
         in_range("mesh.normals", &self.normals)?;
         in_range("mesh.tangents", &self.tangents)?;
         in_range("mesh.uv", &self.uv)?;
-        for vertex in 0..vertices {
-            let mut bones = self.influences.of(vertex).iter().map(|influence| influence.bone);
-            if let Some(bone) = bones.find(|bone| *bone as usize >= skin.bones.len()) {
-                let bound = format!("must be below {}, the skin's bones", skin.bones.len());
-                return Err(InputError::new(format!("mesh.influences[{vertex}].bone"), bone, bound));
-            }
-        }
         check_triangles("mesh.indices", &self.indices, vertices)?;
         self.validate_levels()?;
+        self.validate_partners()?;
         self.validate_targets()
     }
 
@@ -74,6 +81,35 @@ impl Mesh {
                 return Err(InputError::new(format!("{path}.indices[{at}]"), level.indices[at], bound));
             }
             (least, finer) = (level.error, self.used(&level.indices));
+        }
+        Ok(())
+    }
+
+    fn validate_partners(&self) -> Result<(), InputError> {
+        let vertices = self.vertices();
+        // Without levels they mean nothing.
+        if self.partners.is_empty() || self.levels.is_empty() {
+            return Ok(());
+        }
+        if self.partners.len() != vertices {
+            let bound = format!("must be {vertices}, one a vertex, or 0");
+            return Err(InputError::new("mesh.partners.len", self.partners.len(), bound));
+        }
+        let coarsest = self.coarsest_levels();
+        for (vertex, partner) in (0..).zip(&self.partners) {
+            let Some(level) = coarsest.get(*partner as usize) else {
+                let bound = format!("must be below {vertices}");
+                return Err(InputError::new(format!("mesh.partners[{vertex}]"), partner, bound));
+            };
+            let own = coarsest[vertex as usize];
+            // A chain of partners thus ends.
+            if !(partner == &vertex
+                || *level > own
+                || *level == own && self.partners[*partner as usize] == *partner)
+            {
+                let bound = format!("must be a vertex of level {}, or stay at level {own}", own + 1);
+                return Err(InputError::new(format!("mesh.partners[{vertex}]"), partner, bound));
+            }
         }
         Ok(())
     }

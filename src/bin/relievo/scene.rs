@@ -35,8 +35,8 @@ const DEPTHS: [(&str, Depth); 2] = [("forward", Depth::Forward), ("reversed", De
 /// Draws the frames of a scene file: terrain, models, reliefs and crowds, along the path of its camera.
 ///
 /// Writes frame_0000.png and so on, and report.json: for each frame the pixels by which anything may be off, what was
-/// drawn of each object with each level of detail, and what it cost. The documentation of `relievo::scene_file` describes
-/// the format of scenes; examples/scenes has some to begin with:
+/// drawn of each object with each level of detail, and what it cost. docs/scene-files.md, which is
+/// also the documentation of `relievo::scene_file`, describes the format of scenes; examples/scenes has some to begin with:
 ///
 /// relievo scene examples/scenes/ruins.json --out ruins
 ///

@@ -1,6 +1,6 @@
 //! Benchmark cases of `kernels/lod/attach.wgsl`.
 
-use super::reference::attached;
+use super::reference::{attached, local};
 use super::{AttachBuffers, AttachParams, AttachPass, Attachment};
 use crate::Error;
 use crate::animation::ModelMatrices;
@@ -29,18 +29,22 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             mesh: count + character,
             character,
             bone: character % BONES,
-            unused: 0,
+            key: character,
             offset: AFFINE_IDENTITY,
         };
         let attachments: Vec<Attachment> = (0..count).map(attachment).collect();
-        let params = AttachParams { attached: count, bones: BONES, first: 0 };
+        let params =
+            AttachParams { attached: count, bones: BONES, first: 0, last_rows: 0, frame: 1, last_frame: 0 };
         let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
+        let of_scene = Buffer::from_slice(gpu, "instances", &instances)?;
         let buffers = AttachBuffers {
             params: &Uniform::new(gpu, "params", &params)?,
             view: &Uniform::new(gpu, "view", &view)?,
             attachments: &Buffer::from_slice(gpu, "attachments", &attachments)?,
             model_matrices: &model_matrices,
-            instances: &Buffer::from_slice(gpu, "instances", &instances)?,
+            instances: &of_scene,
+            last_instances: &of_scene,
+            kept: &Buffer::new(gpu, "kept", 2 * attachments.len())?,
             allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
             rows: &Buffer::new(gpu, "rows", 3 * instances.len())?,
         };
@@ -53,7 +57,8 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             Contender::job(Backend::Copy, &copied),
             Contender::host(Backend::Reference, || {
                 let scene = (&instances[..], &allowed[..]);
-                let all = attachments.iter().map(|of| attached(&params, of, view.cell, scene, &matrices));
+                let of = |of| attached(&params, of, view.cell, scene, &local(&params, of, &matrices));
+                let all = attachments.iter().map(of);
                 drop(std::hint::black_box(all.collect::<Vec<_>>()));
             }),
         ];

@@ -4,6 +4,10 @@
 //! character's placement and a sphere that holds the mesh wherever the bone may be, and this operation replaces the rows that the
 //! selection wrote by the product of the character's placement, the bone's model matrix and the mesh's offset. Where no
 //! view of the frame sees the character, its bones are not posed, and the mesh becomes a point.
+//!
+//! If the scene keeps its last frame, the operation also keeps the product of bone and offset, of the frame and of the one
+//! before, and writes the transform that the mesh had then. A mesh whose character was not seen then, or that was attached
+//! since, counts as if its bone had been where it is.
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
@@ -16,7 +20,7 @@ pub(crate) mod verify;
 #[cfg(feature = "gpu")]
 pub use pass::{AttachBuffers, AttachPass};
 
-pub use crate::shared::lod::attach::{AttachParams, Attachment};
+pub use crate::shared::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 
 /// The largest difference allowed between an entry of a row and the reference, on any device, relative to the same entry of
 /// the product of the three transforms with all their entries' absolute values. With ε = 2⁻²³, to which every

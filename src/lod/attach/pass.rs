@@ -1,6 +1,6 @@
 //! The GPU pass of `kernels/lod/attach.wgsl`.
 
-use super::{AttachParams, Attachment};
+use super::{AttachParams, Attachment, KeptBone};
 use crate::Error;
 use crate::animation::ModelMatrices;
 use crate::gpu::bindings::lod::attach as bindings;
@@ -23,8 +23,12 @@ pub struct AttachBuffers<'a> {
     /// What the views of the frame allow each of them, negative if none sees it.
     pub allowed: &'a Buffer<f32>,
     /// Written for the attached meshes, three for each instance: the rows of the transform from the model's space to the
-    /// corner of the view's cell.
+    /// corner of the view's cell. If the last frame is kept, as many follow for the transforms of that frame.
     pub rows: &'a Buffer<[f32; 4]>,
+    /// All instances of the scene as they were in the last frame; the same buffer as `instances` if it is not kept.
+    pub last_instances: &'a Buffer<SceneInstance>,
+    /// Two for each attachment, zeros at first; where they were in this frame is kept here for the next one.
+    pub kept: &'a Buffer<KeptBone>,
 }
 
 /// Places attached meshes.
@@ -46,11 +50,15 @@ impl AttachPass {
     /// selection of the view and the model matrices of the character.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for `allowed` or rows that hold fewer instances than there are; [`GpuError`].
+    /// [`InputError`](crate::InputError) for `allowed`, rows, last instances or kept bones of fewer elements than there are;
+    /// [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, buffers: AttachBuffers<'_>) -> Result<Job, Error> {
         let instances = buffers.instances.len();
         buffers.allowed.check_holds("allowed", instances)?;
-        buffers.rows.check_holds("rows", 3 * instances)?;
+        let is_kept = buffers.last_instances.raw() != buffers.instances.raw();
+        buffers.rows.check_holds("rows", if is_kept { 6 } else { 3 } * instances)?;
+        buffers.last_instances.check_holds("last_instances", instances)?;
+        buffers.kept.check_holds("kept", 2 * buffers.attachments.len())?;
         let group = bindings::Group {
             params: buffers.params,
             view: buffers.view,
@@ -59,6 +67,8 @@ impl AttachPass {
             instances: buffers.instances.slice(),
             allowed: buffers.allowed.slice(),
             rows: buffers.rows.slice(),
+            last_instances: buffers.last_instances.slice(),
+            kept: buffers.kept.slice(),
         };
         let step = Step {
             groups: vec![group.bind(gpu, &self.kernel)?],

@@ -2,21 +2,30 @@
 
 use glam::IVec3;
 
-use super::{AttachParams, Attachment};
+use super::{AttachParams, Attachment, KeptBone};
 use crate::asset::Affine;
 use crate::lod::SceneInstance;
 
-/// The rows of an attached mesh: the transform from its space to the corner of a cell. `instances` are those of the scene,
-/// `allowed` what the views of the frame allow each of them, and `model_matrices` those of the character's bones.
+/// The product of a mesh's bone and its offset.
 ///
 /// # Panics
-/// For an attachment to an instance or a bone that is not there.
+/// For an attachment to a bone that is not there.
+pub fn local(params: &AttachParams, attachment: &Attachment, model_matrices: &[Affine]) -> Affine {
+    let bone = &model_matrices[(attachment.character * params.bones + attachment.bone) as usize];
+    product(bone, &attachment.offset)
+}
+
+/// The rows of an attached mesh: the transform from its space to the corner of a cell. `instances` are those of the scene,
+/// `allowed` what the views of the frame allow each of them, and `local` the product of bone and offset.
+///
+/// # Panics
+/// For an attachment to an instance that is not there.
 pub fn attached(
     params: &AttachParams,
     attachment: &Attachment,
     cell: IVec3,
     (instances, allowed): (&[SceneInstance], &[f32]),
-    model_matrices: &[Affine],
+    local: &Affine,
 ) -> Affine {
     let character = (params.first + attachment.character) as usize;
     let instance = &instances[character];
@@ -25,8 +34,22 @@ pub fn attached(
         return std::array::from_fn(|row| [0.0, 0.0, 0.0, at[row]]);
     }
     let placement = std::array::from_fn(|row| [x[row], y[row], z[row], at[row]]);
-    let bone = &model_matrices[(attachment.character * params.bones + attachment.bone) as usize];
-    product(&placement, &product(bone, &attachment.offset))
+    product(&placement, local)
+}
+
+/// The product of bone and offset in the last frame, as far as it is known: what was kept of it, or else `local`, that of this
+/// frame. `kept` are the two of the attachment.
+pub fn last_local(
+    params: &AttachParams,
+    attachment: &Attachment,
+    kept: &[KeptBone; 2],
+    local: &Affine,
+) -> Affine {
+    let last = &kept[(params.frame as usize + 1) % 2];
+    match params.last_frame != 0 && last.frame == params.last_frame && last.key == attachment.key {
+        true => last.rows,
+        false => *local,
+    }
 }
 
 /// The product `a · b`, which applies b first.

@@ -136,7 +136,7 @@ impl<'a> Drawing<'a> {
     /// Draws the last frame of a look.
     pub(crate) fn picture(&self, look: usize) -> Result<RgbaImage, Error> {
         let (target, renderer, look) = (&self.target, &self.renderer, &self.looks[look]);
-        run(self.gpu, |encoder| draw(target, renderer, look, encoder))?;
+        self.gpu.try_run("frame", |encoder| draw(target, renderer, look, encoder))?;
         target.read(self.gpu)
     }
 
@@ -145,12 +145,12 @@ impl<'a> Drawing<'a> {
         let Self { gpu, timer, target, renderer, looks, .. } = self;
         let look = &mut looks[look];
         match aim {
-            Aim::First => run(gpu, |encoder| {
+            Aim::First => gpu.try_run("frame", |encoder| {
                 look.compute(encoder)?;
                 draw(target, renderer, look, encoder)
             }),
             Aim::Nothing if !look.is_gated => Ok(()),
-            Aim::Nothing => run(gpu, |encoder| look.compute(encoder)),
+            Aim::Nothing => gpu.try_run("frame", |encoder| look.compute(encoder)),
             Aim::Whole => {
                 let frame = timed(gpu, timer, |encoder| {
                     look.compute(encoder)?;
@@ -168,7 +168,7 @@ impl<'a> Drawing<'a> {
             }
             Aim::Measures { begins } => {
                 look.scene.set_statistics(true)?;
-                run(gpu, |encoder| look.compute(encoder))?;
+                gpu.try_run("frame", |encoder| look.compute(encoder))?;
                 look.measure(begins)?;
                 look.scene.set_statistics(false)
             }
@@ -186,14 +186,7 @@ fn draw(
     Ok(target.record(encoder, SKY, |pass| look.draw(renderer, pass))?)
 }
 
-/// Records, submits and waits.
-fn run(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), Error>) -> Result<(), Error> {
-    let mut recorded = Ok(());
-    gpu.run("frame", |encoder| recorded = record(encoder))?;
-    recorded
-}
-
-/// As [`run`], and returns how many nanoseconds it took.
+/// Records, submits and waits, and returns how many nanoseconds it took.
 fn timed(
     gpu: &Gpu,
     timer: &Timer,

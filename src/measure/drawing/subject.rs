@@ -3,7 +3,7 @@
 use image::{Rgba, RgbaImage};
 
 use crate::InputError;
-use crate::asset::material::{Alpha, Material, Sampling, Texture};
+use crate::asset::material::{Material, Sampling, Texture};
 use crate::asset::{Mesh, Model};
 use crate::measure::levels::LevelReport;
 use crate::measure::options::{MeshDetail, Subject};
@@ -72,14 +72,8 @@ fn clothe(model: &mut Model) {
     };
     let (clay, image) = (model.materials.len(), model.images.len());
     model.images.push(RgbaImage::from_fn(64, 64, square));
-    model.materials.push(Material {
-        name: "clay".to_owned(),
-        color: [1.0; 4],
-        texture: Some(Texture { image, sampling: Sampling::default() }),
-        normal: None,
-        normal_scale: 1.0,
-        alpha: Alpha::Opaque,
-    });
+    let texture = Some(Texture { image, sampling: Sampling::default() });
+    model.materials.push(Material { texture, ..Material::opaque("clay", [1.0; 4]) });
     for mesh in model.meshes.iter_mut().filter(|mesh| mesh.material.is_none()) {
         mesh.material = Some(clay);
     }

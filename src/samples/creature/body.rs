@@ -243,6 +243,7 @@ fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
         weights: vec![],
         weight_keys: vec![],
         levels: vec![],
+        partners: vec![],
     })
 }
 

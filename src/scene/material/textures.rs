@@ -133,14 +133,7 @@ fn upload(gpu: &Gpu, layers: &[Mips], texels: Texels) -> wgpu::Texture {
     });
     for (z, layer) in (0..).zip(layers) {
         for (mip_level, level) in (0..).zip(&layer.levels) {
-            let origin = wgpu::Origin3d { z, ..Default::default() };
-            let to = wgpu::TexelCopyTextureInfo { mip_level, origin, ..texture.as_image_copy() };
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(4 * level.width()),
-                rows_per_image: None,
-            };
-            gpu.queue().write_texture(to, level.as_raw(), layout, size(level));
+            gpu.fill_level(&texture, [mip_level, z], level.as_raw());
         }
     }
     texture

@@ -85,6 +85,7 @@ impl Object {
         }
         self.chunks = chunks;
         self.coarsening = 1.0;
+        self.pending = None;
         (self.is_retuned, self.is_rebound, self.fitted) = (false, false, 0);
         self.instances.change_all();
     }

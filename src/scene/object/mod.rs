@@ -7,7 +7,7 @@ mod slots;
 use glam::Vec3;
 
 use crate::asset::Model;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, PendingUploads};
 use crate::scene::character::Character;
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
@@ -43,13 +43,15 @@ pub(crate) struct Object {
     pub(super) mesh_fraction: f32,
     /// The factor by which its levels are coarser than the views ask for: 1 unless memory has ended.
     pub(super) coarsening: f32,
-    /// Whether the device does not know the factor yet.
-    is_retuned: bool,
+    /// Whether the device does not know the factor yet, or whether the object is drawn.
+    pub(super) is_retuned: bool,
     /// Whether the device does not know where the vertices of new pages lie.
     is_rebound: bool,
     /// The number that its handle tells.
     pub(super) handle: u32,
     pub(super) is_shown: bool,
+    /// What still waits to be uploaded.
+    pub(super) pending: Option<PendingUploads>,
     /// The materials of a mesh or a character.
     pub(super) looks: Option<Looks>,
     /// Of each part, the draws of all lists of a chunk, without instances.
@@ -112,6 +114,7 @@ impl Object {
             is_rebound: false,
             handle: 0,
             is_shown: true,
+            pending: None,
             looks: None,
             draws,
             chunks,
@@ -181,6 +184,11 @@ impl Object {
         Ok(Self { looks: Some(looks), ..object })
     }
 
+    /// The same object, of which some uploads wait.
+    pub(super) fn awaiting(self, pending: Option<PendingUploads>) -> Self {
+        Self { pending, ..self }
+    }
+
     /// What views need to know of a terrain.
     pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
         match &self.kind {
@@ -199,7 +207,7 @@ impl Object {
             first_draw: chunk.range.first_draw,
             parts: self.draws.len() as u32 / OBJECT_LISTS,
             mesh_fraction: self.coarsening * self.mesh_fraction,
-            shown: u32::from(self.is_shown),
+            shown: u32::from(self.is_drawn()),
             errors: error_vectors(&self.errors).map(Into::into),
         }
     }

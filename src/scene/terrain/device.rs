@@ -46,6 +46,8 @@ pub(in crate::scene) async fn made(
     let zones = Materials::new(gpu, &config.zones, &textures)?;
     let mut ground = Ground::new(config)?;
     let mut instances = Instances::new(parts.iter().map(|part| part.count as usize).sum());
+    let indices = patch_indices(config.patch_size);
+    let triangles = Buffer::constant(gpu, "triangles of a patch", &indices)?;
     let (mut chunks, mut first) = (Vec::new(), 0);
     for part in &parts {
         let slots = first..first + part.count as usize;
@@ -56,13 +58,12 @@ pub(in crate::scene) async fn made(
             let (placement, sphere) = placed(config, (at, *patch), extremes(heights))?;
             instances.spawn(&placement, &sphere);
         }
-        let drawable = drawable((gpu, layouts), (source, &zones), part, (first, shown))?;
+        let drawable = drawable((gpu, layouts), (source, &zones, &triangles), part, (first, shown))?;
         first = slots.end;
         chunks.push(Chunk::new(slots, vec![drawable]));
     }
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
-    let edge = config.patch_size - 1;
-    draws[0].indices = 6 * edge * edge;
+    draws[0].indices = indices.len() as u32;
     let (edge, spacing) = (config.edge_length(), config.terrain_scale);
     let terrain = Terrain { ground, edge, spacing, source: source.clone() };
     Ok((terrain, instances, (chunks, draws)))
@@ -81,7 +82,7 @@ async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<V
 /// How the patches of one part are drawn; `first` is the number of the first of them.
 fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
-    (source, zones): (&TerrainSource, &Materials),
+    (source, zones, triangles): (&TerrainSource, &Materials, &Buffer<u32>),
     fields: &Fields,
     (first, shown): (usize, &[[i32; 2]]),
 ) -> Result<Drawable, Error> {
@@ -105,7 +106,7 @@ fn drawable(
         params: Uniform::new(gpu, "terrain", &params)?,
         heights: fields.heights.clone(),
         patches,
-        indices: Buffer::from_slice(gpu, "triangles of a patch", &patch_indices(size))?,
+        indices: triangles.clone(),
         zones: zones.clone(),
     };
     Ok(Drawable::Terrain(TerrainDrawable::new(gpu, layouts, geometry, source.style)?))

@@ -43,6 +43,8 @@ impl View {
                 instances: &layout.instances,
                 allowed: &layout.allowed,
                 rows: &lists.rows,
+                last_instances: &layout.last_instances,
+                kept: &list.kept,
             };
             jobs.push(pass.prepare(gpu, buffers)?);
         }

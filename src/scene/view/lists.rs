@@ -23,6 +23,7 @@ pub(crate) struct ViewLists {
     /// The draws of all objects.
     pub arguments: Buffer<SceneDraw>,
     /// For each instance that is seen, the rows of its transform from the model's space to the corner of the view's cell.
+    /// If the last frame is kept, as many follow for meshes on bones as they were then.
     pub rows: Buffer<[f32; 4]>,
     /// Bind group 0.
     pub group: Group,
@@ -50,7 +51,8 @@ impl ViewLists {
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
         let counts = Buffer::new(gpu, "counts of blocks", 16 * layout.blocks as usize)?;
-        let rows = Buffer::new(gpu, "placements in the view", 3 * instances)?;
+        let each = if layout.keeps_last { 6 } else { 3 };
+        let rows = Buffer::new(gpu, "placements in the view", each * instances)?;
         let lists = Buffer::new(gpu, "lists of instances", layout.list_words as usize)?;
         let arguments = Buffer::from_slice(gpu, "draws", &layout.draws)?;
         let buffers = SelectBuffers {

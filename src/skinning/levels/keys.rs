@@ -1,14 +1,12 @@
-//! The key poses that decide a mesh's levels, and its size in them. The error of a level is a fraction of that
-//! size and does not depend on the positions with which the mesh was bound, whose units the inverse bind
+//! The key poses that decide the levels of meshes, and their size in them. The error of a level is a fraction of that
+//! size and does not depend on the positions with which the meshes were bound, whose units the inverse bind
 //! matrices may change.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::points;
-use crate::asset::Model;
-use crate::asset::mesh::Mesh;
-use crate::skinning::pose::{Moment, Pose};
+use super::whole::Whole;
+use crate::skinning::pose::Moment;
 
 /// Number of the clips' moments that serve as key poses.
 const MOMENTS: usize = 24;
@@ -21,7 +19,7 @@ const UNLIKE: f32 = 2.0;
 /// The first is the rest pose or, if its size differs from the others' too much, the largest of these.
 pub(super) struct Keys {
     pub poses: Vec<Vec<[f32; 3]>>,
-    /// The normals of the first pose.
+    /// The normals of the first pose, vertex by vertex.
     pub normals: Vec<[f32; 3]>,
     /// The diagonal of the box around the triangles in the first pose: 1 to 2, or 0.
     pub size: f32,
@@ -30,11 +28,9 @@ pub(super) struct Keys {
 }
 
 impl Keys {
-    pub fn new(model: &Model, mesh: &Mesh, moments: &[Moment]) -> Self {
-        let every = moments.len().div_ceil(MOMENTS);
-        let played = moments.par_iter().step_by(every).copied().filter(|moment| *moment != Moment::Rest);
-        let all = rayon::iter::once(Moment::Rest).chain(played);
-        let mut all: Vec<Key> = all.map(|moment| Key::new(model, mesh, moment)).collect();
+    pub fn new(whole: &Whole<'_>, moments: &[Moment]) -> Self {
+        let mut all: Vec<Key> =
+            key_moments(moments).into_par_iter().map(|moment| Key::new(whole, moment)).collect();
         // Takes the first of several equally large ones.
         let largest = (1..all.len()).rev().max_by(|a, b| all[*a].size.total_cmp(&all[*b].size));
         if let Some(largest) = largest.filter(|largest| all[0].is_unlike(all[*largest].size)) {
@@ -44,26 +40,37 @@ impl Keys {
         let (first, size) = (all[0].moment, all[0].size);
         let unit = power_of_two(size);
         all.par_iter_mut().for_each(|key| key.points.as_flattened_mut().iter_mut().for_each(|x| *x /= unit));
-        let normals = Pose::new(model, mesh, first).normals(mesh);
+        let normals = whole.posed_normals(first);
         Self { poses: all.into_iter().map(|key| key.points).collect(), normals, size: size / unit, unit }
     }
 
-    /// The length that a unit of texture coordinates covers in the first pose, on average, in these units; a
+    /// For each mesh the length that a unit of texture coordinates covers in the first pose, on average, in these units; a
     /// texture thus counts by how far it slips over the surface. 0 if there is no texture.
-    pub fn texture_scale(&self, mesh: &Mesh) -> f32 {
-        let (mut surface, mut texture) = (0.0_f64, 0.0_f64);
-        for triangle in mesh.indices.chunks_exact(3) {
+    pub fn texture_scales(&self, whole: &Whole<'_>) -> Vec<f32> {
+        let mut sums = vec![[0.0_f64; 2]; whole.meshes.len()];
+        for triangle in whole.indices.chunks_exact(3) {
+            let [surface, texture] = &mut sums[whole.member_of(triangle) as usize];
             let corners = [0, 1, 2].map(|corner| triangle[corner] as usize);
             let [a, b, c] = corners.map(|corner| Vec3::from(self.poses[0][corner]).as_dvec3());
-            surface += (b - a).cross(c - a).length();
-            let [d, e, f] = corners.map(|corner| Vec2::from(mesh.uv[corner]).as_dvec2());
-            texture += (e - d).perp_dot(f - d).abs();
+            *surface += (b - a).cross(c - a).length();
+            let [d, e, f] = corners.map(|corner| Vec2::from(whole.uv[corner]).as_dvec2());
+            *texture += (e - d).perp_dot(f - d).abs();
         }
-        if texture > 0.0 { (surface / texture).sqrt() as f32 } else { 0.0 }
+        let scale = |[surface, texture]: &[f64; 2]| {
+            if *texture > 0.0 { (surface / texture).sqrt() as f32 } else { 0.0 }
+        };
+        sums.iter().map(scale).collect()
     }
 }
 
-/// A mesh at a moment.
+/// The rest pose and some of these moments.
+pub(super) fn key_moments(moments: &[Moment]) -> Vec<Moment> {
+    let every = moments.len().div_ceil(MOMENTS).max(1);
+    let played = moments.iter().step_by(every).copied().filter(|moment| *moment != Moment::Rest);
+    std::iter::once(Moment::Rest).chain(played).collect()
+}
+
+/// The meshes at a moment.
 struct Key {
     moment: Moment,
     points: Vec<[f32; 3]>,
@@ -71,9 +78,9 @@ struct Key {
 }
 
 impl Key {
-    fn new(model: &Model, mesh: &Mesh, moment: Moment) -> Self {
-        let points: Vec<[f32; 3]> = points(model, mesh, moment, 1.0).iter().map(Vec3::to_array).collect();
-        let size = diagonal(&points, &mesh.indices);
+    fn new(whole: &Whole<'_>, moment: Moment) -> Self {
+        let points = whole.joined_points(moment);
+        let size = diagonal(&points, &whole.indices);
         Self { moment, points, size }
     }
 

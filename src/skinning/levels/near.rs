@@ -2,11 +2,12 @@
 //! which a vertex has collapsed, and the triangles around it, are close to it in every pose.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use glam::Vec3;
 
 use super::Found;
-use crate::asset::mesh::Mesh;
+use super::whole::Whole;
 use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::Simplified;
 use crate::surface::tangent::Adjacency;
@@ -32,6 +33,13 @@ impl Near {
         near
     }
 
+    /// The triangles of the things in a range, with other numbers of their corners.
+    pub(super) fn part(&self, range: Range<usize>, local: impl Fn(u32) -> u32) -> Self {
+        let triangles =
+            |thing: usize| &self.triangles[self.starts[thing] as usize..self.starts[thing + 1] as usize];
+        Self::of(range.map(|thing| triangles(thing).iter().map(|corners| corners.map(&local)).collect()))
+    }
+
     /// The point nearest to `wanted` on the triangles of an item, if it has any.
     pub(super) fn nearest(&self, thing: usize, wanted: Vec3, point: &impl Fn(u32) -> Vec3) -> Option<Vec3> {
         let range = self.starts[thing] as usize..self.starts[thing + 1] as usize;
@@ -52,47 +60,33 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    /// `keys` are the poses that decide what is close.
-    pub(super) fn new(
-        mesh: &Mesh,
-        simplified: &Simplified,
-        Found { remap, indices: level }: &Found,
-        keys: &[Vec<Vec3>],
-    ) -> Self {
+    /// `keys` are the poses that decide what is close. What is close is of the same mesh.
+    pub(super) fn new(whole: &Whole<'_>, simplified: &Simplified, found: &Found, keys: &[Vec<Vec3>]) -> Self {
+        let level = &found.indices;
         let point = |vertex: u32| simplified.point(vertex);
         let around = |indices: &[u32], target: &dyn Fn(u32) -> u32| {
             let corners: Vec<u32> = indices.iter().map(|vertex| point(target(*vertex))).collect();
-            Around::new(&corners, mesh.vertices())
+            Around::new(&corners, whole.vertices())
         };
         let ring = around(level, &|vertex| vertex);
-        let mut used = vec![false; mesh.vertices()];
-        level.iter().for_each(|vertex| used[*vertex as usize] = true);
-        let before = |vertex: u32| {
-            if used[vertex as usize] {
-                return Vec::new();
-            }
-            // There are none for a vertex without triangles. The replacement itself may be a wedge that no
-            // triangle of the level uses.
-            let candidates = ring.two_rings(remap[vertex as usize], level, &point);
-            let points = |key: &Vec<Vec3>| key[vertex as usize];
-            nearest_in_each(keys, points, candidates.into_iter())
-        };
-        let near = Near::of((0..mesh.vertices() as u32).map(before));
+        let near = Near::of(before(whole, &ring, found, &point, keys).into_iter());
 
-        // Triangles of the mesh that have an area, by the points into which their corners have collapsed.
+        // Triangles of the meshes that have an area, by the points into which their corners have collapsed.
         let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
-        let whole: Vec<u32> = mesh.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
-        let became = around(&whole, &|vertex| remap[vertex as usize]);
+        let area: Vec<u32> = whole.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
+        let became = around(&area, &|vertex| found.remap[vertex as usize]);
         let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
         let behind = Near::of(level.chunks_exact(3).flat_map(|triangle| {
+            let is_own = |at: &u32| whole.member_of(&corners_of(&area, *at)) == whole.member_of(triangle);
             let mut candidates: Vec<u32> = (ring.beside(triangle, level, &point).into_iter())
                 .flat_map(|point| became.of(point))
+                .filter(is_own)
                 .collect();
             candidates.sort_unstable();
             candidates.dedup();
             samples_of(triangle).map(|(corners, parts)| {
                 let point = |key: &Vec<Vec3>| blend(&corners, &parts, &|vertex| key[vertex as usize]);
-                nearest_in_each(keys, point, candidates.iter().map(|at| corners_of(&whole, *at)))
+                nearest_in_each(keys, point, candidates.iter().map(|at| corners_of(&area, *at)))
             })
         }));
         Self { near, samples, behind }
@@ -109,6 +103,35 @@ impl Sides {
             .map(|(at, (corners, parts))| off(&self.behind, at, blend(corners, parts, &point)));
         forth.chain(back).fold(0.0, f32::max)
     }
+}
+
+/// For each vertex that a level does not have, triangles of the level that are close to it.
+fn before(
+    whole: &Whole<'_>,
+    ring: &Around,
+    Found { remap, indices: level, .. }: &Found,
+    point: &impl Fn(u32) -> u32,
+    keys: &[Vec<Vec3>],
+) -> Vec<Vec<[u32; 3]>> {
+    let (mut is_used, mut is_left) = (vec![false; whole.vertices()], vec![false; whole.vertices()]);
+    whole.indices.iter().for_each(|vertex| is_used[*vertex as usize] = true);
+    level.iter().for_each(|vertex| is_left[*vertex as usize] = true);
+    let near = |vertex: u32| {
+        if is_left[vertex as usize] {
+            return Vec::new();
+        }
+        let is_own = |triangle: &[u32; 3]| whole.member_of(triangle) == whole.member[vertex as usize];
+        // There may be none for a vertex without triangles. The replacement itself may be a wedge that no triangle of the
+        // level uses.
+        let mut candidates = ring.two_rings(remap[vertex as usize], level, point);
+        candidates.retain(is_own);
+        if candidates.is_empty() && is_used[vertex as usize] {
+            // Of what became a point, or of a part of the mesh that has vanished.
+            candidates = level.as_chunks::<3>().0.iter().copied().filter(is_own).collect();
+        }
+        nearest_in_each(keys, |key| key[vertex as usize], candidates.into_iter())
+    };
+    (0..whole.vertices() as u32).map(near).collect()
 }
 
 /// The midpoints of a triangle and of its edges.

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use crate::asset::mesh::Mesh;
+use super::whole::Whole;
 use crate::mesh::simplify::{Simplified, weld};
 
 /// The groups of merged vertices.
@@ -18,17 +18,18 @@ pub(super) struct Welded {
 }
 
 impl Welded {
-    /// Merges vertices that have one position in every pose and the same texture coordinates.
-    pub(super) fn new(mesh: &Mesh, poses: &[Vec<[f32; 3]>]) -> Self {
+    /// Merges vertices of one mesh that have one position in every pose and the same texture coordinates.
+    pub(super) fn new(whole: &Whole<'_>, poses: &[Vec<[f32; 3]>]) -> Self {
         let points = weld(poses);
-        let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::with_capacity(mesh.vertices());
+        let mut known: HashMap<(u32, u32, [u32; 2]), u32> = HashMap::with_capacity(whole.vertices());
         let mut all: HashMap<u32, Vec<u32>> = HashMap::new();
         // Adding 0 turns −0 into +0.
         let bits = |number: f32| (number + 0.0).to_bits();
-        let first = (0..mesh.vertices() as u32)
+        let first = (0..whole.vertices() as u32)
             .map(|vertex| {
                 let at = vertex as usize;
-                let first = *known.entry((points[at], mesh.uv[at].map(bits))).or_insert(vertex);
+                let key = (whole.member[at], points[at], whole.uv[at].map(bits));
+                let first = *known.entry(key).or_insert(vertex);
                 all.entry(first).or_default().push(vertex);
                 first
             })
@@ -37,8 +38,8 @@ impl Welded {
     }
 
     /// The triangles with vertices replaced by the first ones of their groups.
-    pub(super) fn indices(&self, mesh: &Mesh) -> Vec<u32> {
-        mesh.indices.iter().map(|vertex| self.first[*vertex as usize]).collect()
+    pub(super) fn indices(&self, whole: &Whole<'_>) -> Vec<u32> {
+        whole.indices.iter().map(|vertex| self.first[*vertex as usize]).collect()
     }
 
     /// The normal of each first vertex: the mean of its group.
@@ -57,33 +58,59 @@ impl Welded {
         self.first.iter().map(|first| remap[*first as usize]).collect()
     }
 
-    /// The triangles that still have three different points after vertices have collapsed as `remap` says,
-    /// using only vertices that are `used`. A collapsed corner gets the vertex at its new point whose normal is
-    /// closest to its own.
-    pub(super) fn triangles(
+    /// The next level after one with these triangles, in which vertices have collapsed as `remap` says: its triangles, three
+    /// different points each, and for each vertex that the triangles of the level before use the one that takes its place. A
+    /// vertex that has collapsed gets the vertex at its new point whose normal is closest to its own, of those that are used.
+    ///
+    /// A mesh of which nothing is left becomes a point: all of its vertices go to one, and one triangle has it in all
+    /// corners. The number counts the other triangles.
+    pub(super) fn next(
         &self,
-        mesh: &Mesh,
+        whole: &Whole<'_>,
         simplified: &Simplified,
         remap: &[u32],
-        used: &[bool],
-    ) -> Vec<u32> {
-        let normal = |vertex: u32| Vec3::from(mesh.normals[vertex as usize]);
-        let corner = |vertex: u32| {
-            let target = remap[vertex as usize];
-            if target == self.first[vertex as usize] {
-                return vertex;
-            }
-            let facing = |other: &&u32| normal(**other).dot(normal(vertex));
-            let others = self.all[&target].iter().filter(|other| used[**other as usize]);
-            // Takes the first of several equally close ones.
-            others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(target)
-        };
-        let mut left = Vec::new();
-        for triangle in mesh.indices.chunks_exact(3) {
-            if simplified.are_apart([0, 1, 2].map(|at| remap[triangle[at] as usize])) {
-                left.extend(triangle.iter().map(|vertex| corner(*vertex)));
+        triangles: &[u32],
+    ) -> (Vec<u32>, Vec<u32>, usize) {
+        let mut used = vec![false; whole.vertices()];
+        triangles.iter().for_each(|vertex| used[*vertex as usize] = true);
+        let corner = |vertex: u32| self.corner(whole, remap, &used, vertex);
+        let mut into: Vec<u32> =
+            (0..whole.vertices() as u32).map(|at| if used[at as usize] { corner(at) } else { at }).collect();
+        let is_left =
+            |triangle: &[u32]| simplified.are_apart([0, 1, 2].map(|at| remap[triangle[at] as usize]));
+        let mut has = vec![false; whole.meshes.len()];
+        for triangle in triangles.chunks_exact(3).filter(|triangle| is_left(triangle)) {
+            has[whole.member_of(triangle) as usize] = true;
+        }
+        let (mut left, mut count) = (Vec::new(), 0);
+        let mut points = vec![None; whole.meshes.len()];
+        for triangle in triangles.chunks_exact(3) {
+            let member = whole.member_of(triangle) as usize;
+            if is_left(triangle) {
+                count += 1;
+                left.extend(triangle.iter().map(|vertex| into[*vertex as usize]));
+            } else if !has[member] && points[member].is_none() {
+                points[member] = Some(triangle[0]);
+                left.extend([triangle[0]; 3]);
             }
         }
-        left
+        for (vertex, member) in whole.member.iter().enumerate() {
+            if let Some(point) = points[*member as usize].filter(|_| used[vertex]) {
+                into[vertex] = point;
+            }
+        }
+        (left, into, count)
+    }
+
+    fn corner(&self, whole: &Whole<'_>, remap: &[u32], used: &[bool], vertex: u32) -> u32 {
+        let normal = |vertex: u32| Vec3::from(whole.normals[vertex as usize]);
+        let target = remap[vertex as usize];
+        if target == self.first[vertex as usize] {
+            return vertex;
+        }
+        let facing = |other: &&u32| normal(**other).dot(normal(vertex));
+        let others = self.all[&target].iter().filter(|other| used[**other as usize]);
+        // Takes the first of several equally close ones.
+        others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(target)
     }
 }

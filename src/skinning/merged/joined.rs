@@ -74,6 +74,7 @@ pub(super) fn joined(
         weights: if is_morphed { first.weights.clone() } else { Vec::new() },
         weight_keys: if is_morphed { first.weight_keys.clone() } else { Vec::new() },
         levels: levels.map(|level| MeshLevel { indices: all(level), error: errors[level - 1] }).collect(),
+        partners: partners(meshes, own, &starts),
     })
 }
 
@@ -90,6 +91,33 @@ fn starts(meshes: &[&Mesh]) -> Result<Vec<u32>, InputError> {
         next - mesh.vertices() as u32
     };
     Ok(meshes.iter().map(start).collect())
+}
+
+/// The partners of all vertices, which skip the own levels that no level of the object has; none if a mesh has levels and no
+/// partners.
+fn partners(meshes: &[&Mesh], own: &[Vec<u32>], starts: &[u32]) -> Vec<u32> {
+    let is_lacking = |mesh: &&Mesh| mesh.partners.is_empty() && !mesh.levels.is_empty();
+    if meshes.iter().any(is_lacking) || meshes.iter().all(|mesh| mesh.partners.is_empty()) {
+        return Vec::new();
+    }
+    let of_mesh = |((mesh, own), start): ((&&Mesh, &Vec<u32>), &u32)| {
+        let coarsest = mesh.coarsest_levels();
+        let partner = |vertex: u32| {
+            let Some(next) = own.iter().find(|level| **level > coarsest[vertex as usize]) else {
+                return vertex;
+            };
+            let mut partner = vertex;
+            // A chain goes to coarser levels until a vertex is its own partner (`Mesh::validate`).
+            while coarsest[partner as usize] < *next && mesh.partners[partner as usize] != partner {
+                partner = mesh.partners[partner as usize];
+            }
+            partner
+        };
+        let known = 0..mesh.vertices() as u32;
+        let partner = |vertex: u32| start + if mesh.partners.is_empty() { vertex } else { partner(vertex) };
+        known.map(partner).collect::<Vec<u32>>()
+    };
+    meshes.iter().zip(own).zip(starts).flat_map(of_mesh).collect()
 }
 
 fn concatenated<T: Copy>(meshes: &[&Mesh], of: impl Fn(&Mesh) -> &[T]) -> Vec<T> {

@@ -45,9 +45,9 @@ impl MorphWeightsPass {
         let mut steps = Vec::new();
         if pairs > 0 {
             let entries: Vec<_> = set.entries.iter().map(WeightEntry::packed).collect();
-            let entries = Buffer::from_slice(gpu, "weight keys", &entries)?;
-            let times = Buffer::from_slice(gpu, "weight times", &set.times)?;
-            let values = Buffer::from_slice(gpu, "weight values", &set.values)?;
+            let entries = Buffer::constant(gpu, "weight keys", &entries)?;
+            let times = Buffer::constant(gpu, "weight times", &set.times)?;
+            let values = Buffer::constant(gpu, "weight values", &set.values)?;
             let group = bindings::Group {
                 params: &uniform,
                 instances: instances.slice(),

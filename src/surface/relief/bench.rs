@@ -1,7 +1,7 @@
 //! Benchmark cases of `surface/relief`: each method, on lists of rays and in the fragment pass, against `plain`
 //! and against the same number of bare texel loads.
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec3, Vec4};
 
 use crate::asset::Light;
 use crate::gpu::{Buffer, Gpu};
@@ -127,13 +127,9 @@ impl Drawing {
         renderer.prepare(&scene)?;
         let mut view = scene.view(Quality { pixels: 0.0 })?;
         view.set(camera())?;
-        let mut recorded = Ok(());
-        gpu.run("record", |encoder| recorded = scene.record(encoder, &mut [&mut view]))?;
-        recorded?;
+        gpu.try_run("record", |encoder| scene.record(encoder, &mut [&mut view]))?;
         let drawing = Self { scene, view, renderer };
-        let mut drawn = Ok(());
-        gpu.run("draw", |encoder| drawn = drawing.draw(encoder, target))?;
-        drawn?;
+        gpu.try_run("draw", |encoder| Ok(drawing.draw(encoder, target)?))?;
         Ok(drawing)
     }
 
@@ -152,24 +148,7 @@ impl Drawing {
 fn camera() -> Camera {
     let [x, y, z] = towards();
     // Across the picture nothing changes along the rays.
-    let slant = Mat4::from_cols_array(&[
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        -x / z,
-        y / z,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ]);
+    let slant = Mat4 { z_axis: Vec4::new(-x / z, y / z, 1.0, 0.0), ..Mat4::IDENTITY };
     let clip_from_view =
         Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(2.0, 2.0, -0.25)) * slant;
     let view_from_world = Mat4::IDENTITY;

@@ -130,17 +130,7 @@ fn upload(gpu: &Gpu, map: &HeightMap) -> Result<wgpu::Texture, GpuError> {
         if mip > 0 {
             level = level.halved();
         }
-        let to = wgpu::TexelCopyTextureInfo { mip_level: mip, ..heights.as_image_copy() };
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(4 * level.width()),
-            rows_per_image: None,
-        };
-        let extent =
-            wgpu::Extent3d { width: level.width(), height: level.height(), depth_or_array_layers: 1 };
-        gpu.scoped(|| {
-            gpu.queue().write_texture(to, bytemuck::cast_slice(level.heights()), layout, extent);
-        })?;
+        gpu.scoped(|| gpu.fill_level(&heights, [mip, 0], bytemuck::cast_slice(level.heights())))?;
     }
     Ok(heights)
 }

@@ -2,6 +2,7 @@
 //! texels under a moving camera; and pictures without a shadow as before.
 
 mod occluders;
+mod panes;
 mod stage;
 
 use glam::{DMat4, Vec3};

@@ -11,7 +11,7 @@ use crate::frame::device;
 use crate::rays::{cube, matrix, model, plain};
 
 /// A cube at one bone, which a clip moves, turns and stretches.
-fn animated() -> Model {
+pub(super) fn animated() -> Model {
     let mut model = model(&cube(), plain([1.0; 4], Alpha::Opaque), false);
     let turn = |angle: f32| Quat::from_rotation_z(angle).to_array();
     let vector = |x: f32, y: f32| [x, y, 0.0, 0.0];
@@ -28,7 +28,7 @@ fn animated() -> Model {
 }
 
 /// The bone's transform at a time of the clip.
-fn posed(time: f64) -> DMat4 {
+pub(super) fn posed(time: f64) -> DMat4 {
     let part = time.min(1.0);
     DMat4::from_rotation_translation(DQuat::from_rotation_z(0.6 * part), DVec3::new(part, 0.5 * part, 0.0))
 }

@@ -75,6 +75,9 @@ fn crowd(a: &Crowd) -> Result<CrowdOptions, InputError> {
 
 /// The gate that the arguments name. Weights of `analyze` are derived later, from the model.
 fn gate(a: &Crowd) -> Result<GateMode, InputError> {
+    if let Some(budget) = a.budget.filter(|_| !matches!(a.gate, Some(Gate::Budget))) {
+        return Err(InputError::new("budget", budget, "must come with --gate budget"));
+    }
     Ok(match a.gate {
         None | Some(Gate::Off) => GateMode::Off,
         Some(Gate::SkipPeriod) => GateMode::SkipPeriod { period: a.period, weights: Weights::default() },

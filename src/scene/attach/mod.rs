@@ -1,25 +1,24 @@
-//! Meshes that are attached to bones of characters: what the host keeps of them, and their lists on the device.
+//! Meshes that are attached to bones of characters.
+
+mod lists;
 
 use std::collections::{BTreeMap, HashMap};
 
 use glam::{DAffine3, Vec3};
 
-use crate::Error;
 use crate::InputError;
 use crate::animation::local_to_model::reference::affine;
 use crate::asset::Transform;
-use crate::gpu::{Buffer, Gpu, Staged, Uniform, Upload as _};
-use crate::lod::attach::{AttachParams, Attachment};
 use crate::lod::{INSTANCE_CARRIES, INSTANCE_FOLLOWS, SceneInstance};
 use crate::scene::Scene;
-use crate::scene::handles::{InstanceId, ObjectId, Slots};
+use crate::scene::handles::{InstanceId, ObjectId};
 use crate::scene::instances;
-use crate::scene::layout::Layout;
 use crate::scene::matrices::affine_of;
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::Kind;
 use crate::scene::placement::Placement;
 use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
+use lists::List;
 
 /// A character, its clip, whether layers are above it, a bone, and the bits of the sphere that the bone carries.
 type PathKey = (ObjectId, (u32, bool), usize, [u32; 4]);
@@ -38,6 +37,10 @@ pub(super) struct Attachments {
     pub version: u64,
     /// The layout for which the lists were written; `None` if attachments have changed since.
     written: Option<u64>,
+    /// Number of attachments ever made.
+    made: u32,
+    /// Whether nothing counts of what was before the next frame.
+    starts_afresh: bool,
 }
 
 /// A mesh that is attached.
@@ -51,13 +54,8 @@ struct Attached {
     sphere: BoundingSphere,
     /// Where the mesh stands when it is detached.
     own: Placement,
-}
-
-/// The meshes of a character on the device.
-#[derive(Debug)]
-pub(super) struct List {
-    pub params: Uniform<AttachParams>,
-    pub attachments: Buffer<Attachment>,
+    /// Its number among all attachments ever made.
+    key: u32,
 }
 
 impl Scene {
@@ -69,8 +67,12 @@ impl Scene {
     /// and takes a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. The bones of a character
     /// that carries a mesh are sampled in every frame in which it is seen, so that the mesh is at its place but for
     /// rounding. Where no view of a frame sees the character (it is hidden, or masks leave it out), the mesh is not drawn
-    /// either. Despawning the character detaches the mesh. [`Layer::Velocity`](crate::render::Layer::Velocity) shows what is
-    /// attached as if it did not move.
+    /// either. Despawning the character detaches the mesh.
+    ///
+    /// [`Layer::Velocity`](crate::render::Layer::Velocity) shows it moving with its bone, and in the frame in which it is
+    /// attached from where it stood. When it changes to another bone, when its character was not seen in the last frame, or
+    /// when more meshes are attached to characters of the object than ever before, it moves for one frame with its character
+    /// alone; when it is detached, it does not move.
     ///
     /// It takes sampling each clip that the character plays, once for each bone.
     ///
@@ -100,7 +102,9 @@ impl Scene {
         let sphere = BoundingSphere { center, radius: largest * radius };
         let own = self.placement(mesh)?;
         self.release(mesh);
-        self.attachments.all.insert(mesh, Attached { character, bone, offset, sphere, own });
+        self.attachments.made = self.attachments.made.wrapping_add(1);
+        let key = self.attachments.made;
+        self.attachments.all.insert(mesh, Attached { character, bone, offset, sphere, own, key });
         self.attachments.carried.entry(character).or_default().push(mesh);
         self.attachments.written = None;
         self.carry(character)
@@ -236,104 +240,4 @@ fn follow(mesh: &mut SceneInstance, leader: &SceneInstance, path: &BonePath, off
 fn renamed(error: InputError, path: &str) -> InputError {
     let path = if error.path == "instance" { path.to_owned() } else { error.path };
     InputError { path, ..error }
-}
-
-impl Attachments {
-    /// The lists of chunks of characters, by slot and generation of the object and number of the chunk.
-    pub fn lists(&self) -> impl Iterator<Item = (([u32; 2], usize), &List)> {
-        self.lists.iter().map(|(key, list)| (*key, list))
-    }
-
-    /// Forgets all lists: their device is lost.
-    pub fn forget_device(&mut self) {
-        self.lists.clear();
-        self.written = None;
-        self.version += 1;
-    }
-
-    /// Writes the lists anew, if attachments or the layout have changed.
-    pub fn fit(
-        &mut self,
-        gpu: &Gpu,
-        objects: &Slots<Object>,
-        layout: &Layout,
-        staged: &mut Staged,
-    ) -> Result<(), Error> {
-        if self.written == Some(layout.version) || self.lists.is_empty() && self.all.is_empty() {
-            return Ok(());
-        }
-        let mut of_chunk: BTreeMap<([u32; 2], usize), Vec<Attachment>> =
-            self.lists.keys().map(|key| (*key, Vec::new())).collect();
-        for (mesh, attached) in &self.all {
-            if let Some((key, attachment)) = on_device(objects, *mesh, attached) {
-                of_chunk.entry(key).or_default().push(attachment);
-            }
-        }
-        for (key, mut attachments) in of_chunk {
-            let (object, chunk) = key;
-            let Some(first) = first_of(objects, object, chunk) else {
-                self.lists.remove(&key);
-                self.version += 1;
-                continue;
-            };
-            attachments.sort_by_key(|attachment| (attachment.character, attachment.mesh));
-            self.write(gpu, (key, first), &attachments, staged)?;
-        }
-        self.written = Some(layout.version);
-        Ok(())
-    }
-
-    fn write(
-        &mut self,
-        gpu: &Gpu,
-        (key, [first, bones]): (([u32; 2], usize), [u32; 2]),
-        attachments: &[Attachment],
-        staged: &mut Staged,
-    ) -> Result<(), Error> {
-        let params = AttachParams { attached: attachments.len() as u32, bones, first };
-        let room = self.lists.get(&key).map_or(0, |list| list.attachments.len());
-        if room < attachments.len() {
-            let room = attachments.len().next_power_of_two().max(16);
-            let list = List {
-                params: Uniform::new(gpu, "attached meshes", &params)?,
-                attachments: Buffer::new(gpu, "attached meshes", room)?,
-            };
-            self.lists.insert(key, list);
-            self.version += 1;
-        }
-        if let Some(list) = self.lists.get(&key) {
-            staged.uniform(&list.params, &params)?;
-            staged.elements(&list.attachments, 0, attachments)?;
-        }
-        Ok(())
-    }
-}
-
-/// An attachment as kernels see it, with the chunk of the character in which it is listed.
-fn on_device(
-    objects: &Slots<Object>,
-    mesh: InstanceId,
-    attached: &Attached,
-) -> Option<(([u32; 2], usize), Attachment)> {
-    let Attached { character, bone, offset, .. } = attached;
-    let ObjectId { index, generation, .. } = character.object;
-    let slot = character.index as usize;
-    let chunks = &objects.existing(*character)?.chunks;
-    let chunk = chunks.iter().position(|chunk| chunk.slots.contains(&slot))?;
-    let attachment = Attachment {
-        mesh: objects.existing(mesh)?.place(mesh.index)? as u32,
-        character: (slot - chunks[chunk].slots.start) as u32,
-        bone: *bone as u32,
-        unused: 0,
-        offset: affine(offset),
-    };
-    Some((([index, generation], chunk), attachment))
-}
-
-/// The index in the scene of the first instance of a character's chunk, and the number of the character's bones.
-fn first_of(objects: &Slots<Object>, object: [u32; 2], chunk: usize) -> Option<[u32; 2]> {
-    let object = objects.get(object)?;
-    let Kind::Character(character) = &object.kind else { return None };
-    let bones = character.model().skeleton.len() as u32;
-    Some([object.chunks.get(chunk)?.range.first, bones])
 }

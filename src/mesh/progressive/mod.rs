@@ -1,0 +1,255 @@
+//! Progressive meshes: a mesh and its coarser levels in one order of vertices, so that a level is the first vertices and a
+//! list of triangles, and the difference between two levels is a run of vertices and a [`IndexPatch`] of the list (B section 3.2,
+//! after Hoppe, "Progressive Meshes", SIGGRAPH 1996).
+//!
+//! Vertices come in the order of the coarsest level that has them. Within a level they are sorted by the bones that they
+//! follow, so that clusters of vertices follow few bones, and otherwise by the time at which they collapsed, the last one
+//! first. Triangles keep the mesh's order at every level.
+//!
+//! Every vertex knows its *partner*, which takes its place in the first level that lacks it. [`ProgressiveMesh::morphed`]
+//! moves the vertices of a level towards their partners (A section 7.5; Hoppe's geomorph): all the way, the level looks like
+//! the next coarser one, and its list of triangles with partners in its corners is that level's, with triangles without area
+//! in between.
+
+mod level_hash;
+mod order;
+mod partners;
+mod patch;
+mod record;
+mod stored;
+
+pub(crate) use partners::{Became, partners};
+pub use patch::IndexPatch;
+pub use record::Chosen;
+pub use stored::VERSION;
+
+use serde::{Deserialize, Serialize};
+
+use super::simplify::Simplified;
+use crate::InputError;
+use crate::asset::Mesh;
+use stored::Stored;
+
+/// A mesh with its levels of detail; level 0 is the finest.
+///
+/// It is stored with serde: floats as their bits, so that every format keeps them. What is read is checked completely, the
+/// hashes of all levels included.
+///
+/// ```
+/// # #[cfg(feature = "samples")] {
+/// use relievo::mesh::progressive::Chosen;
+/// use relievo::mesh::{Options, ProgressiveMesh, Surface, simplify};
+///
+/// let rock = relievo::samples::rock()?.meshes.remove(0);
+/// let surface =
+///     Surface { poses: &[rock.positions.clone()], indices: &rock.indices, attributes: &[], stride: 0 };
+/// let simplified = simplify(&surface, &Options::default())?;
+/// let chosen = [0.5, 0.1].map(|share| {
+///     let collapses = simplified.collapses_to((share * rock.indices.len() as f64 / 3.0) as usize);
+///     Chosen { collapses, error: simplified.collapses()[collapses - 1].error }
+/// });
+/// let progressive = ProgressiveMesh::new(&rock, &simplified, &chosen)?;
+///
+/// // A client that has the coarsest level receives a run of vertices and a patch.
+/// let mut triangles = progressive.indices(2).to_vec();
+/// progressive.refine(1, &mut triangles)?;
+/// assert!(triangles == progressive.indices(1));
+/// assert!(progressive.vertices(2) < progressive.vertices(1));
+/// # }
+/// # Ok::<(), relievo::InputError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Stored", into = "Stored")]
+pub struct ProgressiveMesh {
+    /// In the order of this module, with levels and partners.
+    mesh: Mesh,
+    sources: Vec<u32>,
+    /// For each level, the number of its vertices.
+    vertices: Vec<u32>,
+    /// For each level but the coarsest, what it adds to the next coarser one.
+    patches: Vec<IndexPatch>,
+    /// For each level.
+    hashes: Vec<String>,
+}
+
+impl ProgressiveMesh {
+    /// The levels of a mesh after some of the collapses of one recorded sequence, which was made from the mesh's own
+    /// triangles. `chosen` are the levels 1, 2 …; the mesh's own levels and partners do not matter.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Mesh::validate`], for a sequence of another mesh, for more than 15 levels or levels that do not
+    /// ascend in collapses and errors, and for a level without triangles.
+    pub fn new(mesh: &Mesh, simplified: &Simplified, chosen: &[Chosen]) -> Result<Self, InputError> {
+        let (mesh, times) = record::levelled(mesh, simplified, chosen)?;
+        Self::ordered(&mesh, &times)
+    }
+
+    /// The levels that a mesh has, with its partners ([`Mesh::levels`], [`Mesh::partners`]), such as those of
+    /// [`add_levels`](crate::skinning::levels::add_levels). Vertices that follow the same bones keep the mesh's order within
+    /// a level.
+    ///
+    /// # Errors
+    /// [`InputError`] as [`Mesh::validate`], for a mesh with levels and without partners, and for a level whose triangles are
+    /// not those of the level before with partners in their corners.
+    pub fn of_levels(mesh: &Mesh) -> Result<Self, InputError> {
+        mesh.validate_alone()?;
+        if mesh.partners.is_empty() && !mesh.levels.is_empty() {
+            return Err(InputError::new("mesh.partners.len", 0, format!("must be {}", mesh.vertices())));
+        }
+        Self::ordered(mesh, &[])
+    }
+
+    /// `times` has for each vertex the number of its collapse; empty if that is not known.
+    fn ordered(mesh: &Mesh, times: &[u32]) -> Result<Self, InputError> {
+        let sources = order::order(mesh, times);
+        Self::assembled(order::permuted(mesh, &sources)?, sources)
+    }
+
+    /// From a mesh that is in order already.
+    fn assembled(mesh: Mesh, sources: Vec<u32>) -> Result<Self, InputError> {
+        let coarsest = mesh.coarsest_levels();
+        if let Some(at) = coarsest.windows(2).position(|pair| pair[0] < pair[1]) {
+            let bound = "must be a vertex that no coarser level has than those before it";
+            return Err(InputError::new("vertices", at + 1, bound));
+        }
+        let levels = mesh.levels.len() as u32 + 1;
+        let count = |level: u32| coarsest.partition_point(|own| *own >= level) as u32;
+        let vertices: Vec<u32> = (0..levels).map(count).collect();
+        let patch = |level: u32| {
+            let lists = [level, level + 1].map(|level| mesh.triangles(level));
+            IndexPatch::between(lists, vertices[level as usize + 1]..vertices[level as usize], &mesh.partners)
+                .ok_or_else(|| {
+                    let bound = "must be those of the level before with partners in their corners";
+                    let path = format!("mesh.levels[{level}].indices");
+                    InputError::new(path, format!("{} triangles", lists[1].len() / 3), bound)
+                })
+        };
+        let patches = (0..levels - 1).map(patch).collect::<Result<_, _>>()?;
+        let hashes =
+            (0..levels).map(|level| level_hash::hash(&mesh, level, vertices[level as usize])).collect();
+        Ok(Self { mesh, sources, vertices, patches, hashes })
+    }
+
+    /// Number of levels, level 0 included: 1 to 16.
+    pub fn levels(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// The mesh with its vertices in order, to be drawn: its levels are those of this, and it has partners.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// For each vertex, its index in the mesh from which this was made.
+    pub fn sources(&self) -> &[u32] {
+        &self.sources
+    }
+
+    /// The number of vertices of a level: it has the first ones.
+    ///
+    /// # Panics
+    /// If there is no such level, as all functions that take one and give no `Result`.
+    pub fn vertices(&self, level: usize) -> usize {
+        self.vertices[level] as usize
+    }
+
+    /// The triangles of a level, three indices each.
+    pub fn indices(&self, level: usize) -> &[u32] {
+        assert!(level < self.levels(), "level {level} of {}", self.levels());
+        self.mesh.triangles(level as u32)
+    }
+
+    /// The error of a level, in the unit of the one that made it; 0 for level 0.
+    pub fn error(&self, level: usize) -> f32 {
+        level.checked_sub(1).map_or(0.0, |before| self.mesh.levels[before].error)
+    }
+
+    /// The SHA-256 of a level, as 64 hexadecimal digits: of all attributes of its vertices, and of its triangles. Two levels
+    /// with the same hash are the same to the bit.
+    pub fn hash(&self, level: usize) -> &str {
+        &self.hashes[level]
+    }
+
+    /// What a level adds to the next coarser one.
+    pub fn patch(&self, level: usize) -> &IndexPatch {
+        &self.patches[level]
+    }
+
+    /// Turns the triangles of level `level` + 1 into those of `level`.
+    ///
+    /// # Errors
+    /// [`InputError`] for the coarsest level and for other triangles, which are left as they are.
+    pub fn refine(&self, level: usize, triangles: &mut Vec<u32>) -> Result<(), InputError> {
+        *triangles = self.checked_patch(level)?.applied(triangles, &self.mesh.partners)?;
+        Ok(())
+    }
+
+    /// Turns the triangles of `level` into those of level `level` + 1.
+    ///
+    /// # Errors
+    /// As [`ProgressiveMesh::refine`].
+    pub fn coarsen(&self, level: usize, triangles: &mut Vec<u32>) -> Result<(), InputError> {
+        *triangles = self.checked_patch(level)?.undone(triangles, &self.mesh.partners)?;
+        Ok(())
+    }
+
+    fn checked_patch(&self, level: usize) -> Result<&IndexPatch, InputError> {
+        let bound = || format!("must be below {}, that of the coarsest level", self.levels() - 1);
+        self.patches.get(level).ok_or_else(|| InputError::new("level", level, bound()))
+    }
+
+    /// For each vertex of a level, the vertex of the next coarser level towards which it moves; a vertex that this level has
+    /// too, and all of the coarsest level, stay.
+    pub fn partners(&self, level: usize) -> Vec<u32> {
+        let kept = self.vertices.get(level + 1).copied().unwrap_or(u32::MAX);
+        let partner = |vertex: u32| if vertex < kept { vertex } else { self.mesh.partners[vertex as usize] };
+        (0..self.vertices[level]).map(partner).collect()
+    }
+
+    /// The triangles of a level with the partners of its vertices in their corners: those of the next coarser level in the
+    /// same order, and triangles without area.
+    pub fn morphed_indices(&self, level: usize) -> Vec<u32> {
+        let partners = self.partners(level);
+        self.indices(level).iter().map(|vertex| partners[*vertex as usize]).collect()
+    }
+
+    /// The values of a level's vertices on the way to the next coarser one: `a · (1 − t) + b · t` for a vertex with the value
+    /// a and a partner with b. `values` are positions in any pose, normals or texture coordinates, at least one for each
+    /// vertex of the level. At t = 0 they are the level's, and at 1 those of partners, to the bit (but for the sign of 0).
+    /// Influences are not blended: positions move after they are skinned.
+    ///
+    /// # Errors
+    /// [`InputError`] for a factor t outside of 0..=1, and for too few values.
+    pub fn morphed<const N: usize>(
+        &self,
+        level: usize,
+        t: f32,
+        values: &[[f32; N]],
+    ) -> Result<Vec<[f32; N]>, InputError> {
+        if !(0.0..=1.0).contains(&t) {
+            return Err(InputError::new("t", t, "must be in 0..=1"));
+        }
+        if values.len() < self.vertices(level) {
+            let bound = format!("must be at least {}, one a vertex", self.vertices(level));
+            return Err(InputError::new("values.len", values.len(), bound));
+        }
+        let between = |(a, partner): (&[f32; N], &u32)| {
+            let b = values[*partner as usize];
+            std::array::from_fn(|at| a[at] * (1.0 - t) + b[at] * t)
+        };
+        Ok(values.iter().zip(&self.partners(level)).map(between).collect())
+    }
+
+    /// Reads what serde_json wrote.
+    ///
+    /// # Errors
+    /// [`InputError`] for what is no JSON, with the place; for another [`VERSION`]; and for values that contradict each other.
+    pub fn from_json(json: &[u8]) -> Result<Self, InputError> {
+        let mut reader = serde_json::Deserializer::from_slice(json);
+        let stored: Stored = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+            InputError::new(error.path().to_string(), "JSON", format!("cannot be read: {}", error.inner()))
+        })?;
+        reader.end().map_err(|error| InputError::new(".", "JSON", format!("cannot be read: {error}")))?;
+        stored.try_into()
+    }
+}

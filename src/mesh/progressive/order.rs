@@ -1,0 +1,58 @@
+//! The order of vertices in which levels are prefixes, and meshes in another order.
+
+use std::cmp::Reverse;
+
+use crate::InputError;
+use crate::asset::{Influences, Mesh, MeshLevel, MorphTarget};
+
+/// The vertices, those of coarse levels first, then by strongest bone, by number of influences, by the other bones, by the
+/// time of their collapse, the last one first, and by index. `times` may be empty.
+pub(super) fn order(mesh: &Mesh, times: &[u32]) -> Vec<u32> {
+    let coarsest = mesh.coarsest_levels();
+    let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
+    order.sort_by_cached_key(|vertex| {
+        let at = *vertex as usize;
+        let bones: Vec<u32> = mesh.influences.of(at).iter().map(|influence| influence.bone).collect();
+        let time = Reverse(times.get(at).copied());
+        (Reverse(coarsest[at]), bones.first().copied(), bones.len(), bones, time)
+    });
+    order
+}
+
+/// A mesh whose vertices lie in another order: for each place, the vertex there.
+pub(super) fn permuted(mesh: &Mesh, order: &[u32]) -> Result<Mesh, InputError> {
+    let mut place = vec![0; order.len()];
+    (0..).zip(order).for_each(|(at, vertex)| place[*vertex as usize] = at);
+    let placed = |indices: &[u32]| indices.iter().map(|vertex| place[*vertex as usize]).collect::<Vec<u32>>();
+    let level = |level: &MeshLevel| MeshLevel { indices: placed(&level.indices), error: level.error };
+    let influences = order.iter().map(|vertex| mesh.influences.of(*vertex as usize).to_vec());
+    Ok(Mesh {
+        name: mesh.name.clone(),
+        skin: mesh.skin,
+        positions: taken(&mesh.positions, order),
+        normals: taken(&mesh.normals, order),
+        tangents: taken(&mesh.tangents, order),
+        uv: taken(&mesh.uv, order),
+        indices: placed(&mesh.indices),
+        double_sided: mesh.double_sided,
+        material: mesh.material,
+        influences: Influences::stored("mesh.influences", influences)?,
+        targets: mesh.targets.iter().map(|target| moved(target, &place)).collect(),
+        weights: mesh.weights.clone(),
+        weight_keys: mesh.weight_keys.clone(),
+        levels: mesh.levels.iter().map(level).collect(),
+        partners: if mesh.levels.is_empty() { Vec::new() } else { placed(&taken(&mesh.partners, order)) },
+    })
+}
+
+fn taken<T: Copy>(values: &[T], order: &[u32]) -> Vec<T> {
+    order.iter().map(|vertex| values[*vertex as usize]).collect()
+}
+
+fn moved(target: &MorphTarget, place: &[u32]) -> MorphTarget {
+    let all = target.vertices.iter().zip(&target.deltas);
+    let mut all: Vec<_> = all.map(|(vertex, delta)| (place[*vertex as usize], *delta)).collect();
+    all.sort_by_key(|(vertex, _)| *vertex);
+    let (vertices, deltas) = all.into_iter().unzip();
+    MorphTarget { vertices, deltas }
+}

@@ -1,0 +1,113 @@
+//! The difference between the triangles of a level and those of the next coarser one.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use crate::InputError;
+
+/// What a level adds to the next coarser one: vertices, triangles, and corners that move from a vertex's partner to the
+/// vertex itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IndexPatch {
+    first: u32,
+    end: u32,
+    added: Vec<[u32; 4]>,
+    corners: Vec<[u32; 2]>,
+}
+
+impl IndexPatch {
+    /// The run of vertices that the level adds.
+    pub fn vertices(&self) -> Range<u32> {
+        self.first..self.end
+    }
+
+    /// The triangles that the level adds, ascending: the number of each in the level's list, and its corners.
+    pub fn added(&self) -> &[[u32; 4]] {
+        &self.added
+    }
+
+    /// The corners of other triangles that change, ascending: the place in the level's list of indices, and the vertex there.
+    /// The coarser level has that vertex's partner in the corner.
+    pub fn corners(&self) -> &[[u32; 2]] {
+        &self.corners
+    }
+
+    /// The patch between the lists of a level and of the next coarser one, which lacks the vertices of `run`; `None` if the
+    /// coarser list is not the other with partners in its corners and some triangles left out.
+    pub(super) fn between([fine, coarse]: [&[u32]; 2], run: Range<u32>, partners: &[u32]) -> Option<Self> {
+        let mut patch = Self { first: run.start, end: run.end, added: Vec::new(), corners: Vec::new() };
+        let mut left = coarse.as_chunks::<3>().0.iter().peekable();
+        for (at, triangle) in (0..).zip(fine.as_chunks::<3>().0) {
+            let moved =
+                triangle.map(|vertex| if run.contains(&vertex) { partners[vertex as usize] } else { vertex });
+            if left.next_if(|next| **next == moved).is_none() {
+                let [a, b, c] = *triangle;
+                patch.added.push([at, a, b, c]);
+                continue;
+            }
+            let corners = (3 * at..).zip(triangle).filter(|(_, vertex)| run.contains(vertex));
+            patch.corners.extend(corners.map(|(place, vertex)| [place, *vertex]));
+        }
+        left.next().is_none().then_some(patch)
+    }
+
+    /// The triangles of the level, from those of the coarser one.
+    pub(super) fn applied(&self, coarse: &[u32], partners: &[u32]) -> Result<Vec<u32>, InputError> {
+        if !coarse.len().is_multiple_of(3) {
+            return Err(InputError::new("triangles.len", coarse.len(), "must be a multiple of 3"));
+        }
+        let mut fine: Vec<u32> = Vec::with_capacity(coarse.len() + 3 * self.added.len());
+        let mut others = coarse;
+        for (at, [number, a, b, c]) in self.added.iter().enumerate() {
+            let until = (3 * *number as usize).checked_sub(fine.len());
+            let Some((before, after)) = until.and_then(|until| others.split_at_checked(until)) else {
+                let bound = "must ascend, and be at most the number of triangles before it";
+                return Err(InputError::new(format!("added[{at}]"), number, bound));
+            };
+            fine.extend(before);
+            fine.extend([a, b, c]);
+            others = after;
+        }
+        fine.extend(others);
+        for (at, [place, vertex]) in self.corners.iter().enumerate() {
+            let partner = partners.get(*vertex as usize);
+            match fine.get_mut(*place as usize) {
+                Some(corner) if Some(&*corner) == partner => *corner = *vertex,
+                _ => {
+                    let bound = "must be a corner that has the vertex's partner";
+                    return Err(InputError::new(format!("corners[{at}]"), place, bound));
+                }
+            }
+        }
+        Ok(fine)
+    }
+
+    /// The triangles of the coarser level, from those of the level.
+    pub(super) fn undone(&self, fine: &[u32], partners: &[u32]) -> Result<Vec<u32>, InputError> {
+        let mut moved = fine.to_vec();
+        for (at, [place, vertex]) in self.corners.iter().enumerate() {
+            match (moved.get_mut(*place as usize), partners.get(*vertex as usize)) {
+                (Some(corner), Some(partner)) if corner == vertex => *corner = *partner,
+                _ => {
+                    let bound = format!("must have the vertex {vertex}, as the level has");
+                    return Err(InputError::new(format!("triangles[{place}] (corners[{at}])"), place, bound));
+                }
+            }
+        }
+        let mut added = self.added.iter().peekable();
+        let mut coarse = Vec::with_capacity(fine.len().saturating_sub(3 * self.added.len()));
+        for (number, [a, b, c]) in (0..).zip(moved.as_chunks::<3>().0) {
+            if added.next_if(|triangle| **triangle == [number, *a, *b, *c]).is_none() {
+                coarse.extend([a, b, c]);
+            }
+        }
+        match added.next() {
+            None => Ok(coarse),
+            Some([number, ..]) => {
+                Err(InputError::new("triangles", *number, "must have the triangle that the level adds there"))
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Levels from a recorded sequence of collapses.
+
+use super::partners::{Became, partners};
+use crate::InputError;
+use crate::asset::mesh::MAX_LEVELS;
+use crate::asset::{Mesh, MeshLevel};
+use crate::mesh::simplify::Simplified;
+
+/// A level that is taken from a sequence of collapses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chosen {
+    /// How many collapses, from the first one on, make the level; at least one more than for the level before.
+    pub collapses: usize,
+    /// The error of the level, finite and at least that of the level before.
+    pub error: f32,
+}
+
+/// The mesh with these levels and their partners, and for each vertex the number of its collapse, `u32::MAX` if it stays.
+pub(super) fn levelled(
+    mesh: &Mesh,
+    simplified: &Simplified,
+    chosen: &[Chosen],
+) -> Result<(Mesh, Vec<u32>), InputError> {
+    let remaps = remaps(mesh, simplified, chosen)?;
+    let mut levels = Vec::with_capacity(chosen.len());
+    for (at, Chosen { collapses, error }) in chosen.iter().enumerate() {
+        let indices = simplified.triangles(&mesh.indices, *collapses);
+        let left = simplified.collapses()[collapses - 1].triangles as usize;
+        if indices.len() != 3 * left {
+            let bound = format!("must be {left} triangles after {collapses} collapses of the sequence");
+            return Err(InputError::new(format!("chosen[{at}].triangles"), indices.len() / 3, bound));
+        }
+        levels.push(MeshLevel { indices, error: *error });
+    }
+    let became: Vec<Became<'_>> = (levels.iter().zip(&remaps))
+        .map(|(level, remap)| Became { indices: &level.indices, remap })
+        .collect();
+    let place = |vertex: u32| (0, simplified.point(vertex));
+    let partners = partners(&mesh.indices, &became, place, mesh.vertices());
+    let mesh = Mesh { levels, partners, ..mesh.clone() };
+    // Errors and numbers of triangles are checked here, as those of any other mesh.
+    mesh.validate_alone()?;
+    Ok((mesh, times(simplified)))
+}
+
+/// For each level, the vertex into which each vertex has collapsed.
+fn remaps(mesh: &Mesh, simplified: &Simplified, chosen: &[Chosen]) -> Result<Vec<Vec<u32>>, InputError> {
+    mesh.validate_alone()?;
+    let vertices = simplified.remap(0).len();
+    if mesh.vertices() != vertices {
+        let bound = format!("must be {vertices}, as of the mesh that was simplified");
+        return Err(InputError::new("mesh.positions.len", mesh.vertices(), bound));
+    }
+    if chosen.len() >= MAX_LEVELS {
+        let bound = format!("must be at most {}", MAX_LEVELS - 1);
+        return Err(InputError::new("chosen.len", chosen.len(), bound));
+    }
+    let mut least = 1;
+    let most = simplified.collapses().len();
+    for (at, Chosen { collapses, .. }) in chosen.iter().enumerate() {
+        if !(least..=most).contains(collapses) {
+            let bound = format!("must be in {least}..={most}");
+            return Err(InputError::new(format!("chosen[{at}].collapses"), collapses, bound));
+        }
+        least = collapses + 1;
+    }
+    Ok(chosen.iter().map(|level| simplified.remap(level.collapses)).collect())
+}
+
+fn times(simplified: &Simplified) -> Vec<u32> {
+    let mut times = vec![u32::MAX; simplified.remap(0).len()];
+    for collapse in 0..simplified.collapses().len() {
+        simplified.moved(collapse).iter().for_each(|[from, _]| times[*from as usize] = collapse as u32);
+    }
+    times
+}

@@ -1,0 +1,109 @@
+//! The meshes of a model that share borders, as one surface: what is closed across them stays closed at every level.
+
+mod shared;
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use crate::asset::Model;
+use crate::asset::mesh::Mesh;
+use crate::skinning::pose::{Moment, Pose};
+pub(super) use shared::{Shared, shared};
+
+/// Meshes of a model, one after the other.
+pub(super) struct Whole<'a> {
+    model: &'a Model,
+    /// Indices in the model.
+    pub meshes: Vec<usize>,
+    /// Index of the first vertex of each mesh, and the number of all vertices.
+    starts: Vec<u32>,
+    /// For each vertex the number of its mesh here.
+    pub member: Vec<u32>,
+    /// For each vertex, the vertex whose position it takes: that of another mesh at the border, or its own.
+    pub shared: Vec<u32>,
+    /// The triangles of all meshes, in their order.
+    pub indices: Vec<u32>,
+    pub uv: Vec<[f32; 2]>,
+    /// Before skinning.
+    pub normals: Vec<[f32; 3]>,
+}
+
+impl<'a> Whole<'a> {
+    pub fn new(model: &'a Model, meshes: &[usize], borders: &Shared) -> Self {
+        let mut starts = vec![0];
+        for mesh in meshes {
+            starts.push(starts[starts.len() - 1] + model.meshes[*mesh].vertices() as u32);
+        }
+        let members = || meshes.iter().map(|mesh| &model.meshes[*mesh]).zip(&starts);
+        let start_of = |mesh: usize| meshes.iter().position(|other| *other == mesh).map(|at| starts[at]);
+        let shared = (meshes.iter().zip(&starts)).flat_map(|(mesh, start)| {
+            let own = (0..model.meshes[*mesh].vertices() as u32).map(move |vertex| (vertex, start + vertex));
+            own.map(|(vertex, own)| match borders.get(&(*mesh, vertex)) {
+                Some((other, vertex)) => start_of(*other).map_or(own, |start| start + vertex),
+                None => own,
+            })
+        });
+        let own = |(at, mesh): (u32, &Mesh)| std::iter::repeat_n(at, mesh.vertices());
+        Self {
+            model,
+            meshes: meshes.to_vec(),
+            member: (0..).zip(members().map(|(mesh, _)| mesh)).flat_map(own).collect(),
+            shared: shared.collect(),
+            indices: members()
+                .flat_map(|(mesh, start)| mesh.indices.iter().map(move |at| start + at))
+                .collect(),
+            uv: members().flat_map(|(mesh, _)| &mesh.uv).copied().collect(),
+            normals: members().flat_map(|(mesh, _)| &mesh.normals).copied().collect(),
+            starts,
+        }
+    }
+
+    /// Number of vertices.
+    pub fn vertices(&self) -> usize {
+        self.member.len()
+    }
+
+    /// The vertices of one of the meshes.
+    pub fn range(&self, member: usize) -> Range<usize> {
+        self.starts[member] as usize..self.starts[member + 1] as usize
+    }
+
+    /// The mesh to which a triangle belongs.
+    pub fn member_of(&self, triangle: &[u32]) -> u32 {
+        self.member[triangle[0] as usize]
+    }
+
+    /// Of a list of triangles those of one mesh, with the mesh's own indices.
+    pub fn own(&self, indices: &[u32], member: usize) -> Vec<u32> {
+        let of_member = |triangle: &&[u32]| self.member_of(triangle) as usize == member;
+        let own = indices.chunks_exact(3).filter(of_member).flatten();
+        own.map(|vertex| vertex - self.starts[member]).collect()
+    }
+
+    /// A list that is as one of a mesh, of the mesh's own indices.
+    pub fn local(&self, vertex: u32) -> u32 {
+        vertex - self.starts[self.member[vertex as usize] as usize]
+    }
+
+    fn all<T>(&self, of_mesh: impl Fn(&Mesh) -> Vec<T>) -> Vec<T> {
+        self.meshes.iter().flat_map(|mesh| of_mesh(&self.model.meshes[*mesh])).collect()
+    }
+
+    /// The positions of all vertices, in multiples of `unit`.
+    pub fn points(&self, moment: Moment, unit: f32) -> Vec<Vec3> {
+        let points = |mesh: &Mesh| Pose::new(self.model, mesh, moment).positions(mesh);
+        self.all(points).into_iter().map(|point| point / unit).collect()
+    }
+
+    /// The same, where meshes that share a border have the same positions there to the bit.
+    pub fn joined_points(&self, moment: Moment) -> Vec<[f32; 3]> {
+        let points = self.points(moment, 1.0);
+        self.shared.iter().map(|vertex| points[*vertex as usize].to_array()).collect()
+    }
+
+    /// The normals of all vertices, in the model's space.
+    pub fn posed_normals(&self, moment: Moment) -> Vec<[f32; 3]> {
+        self.all(|mesh| Pose::new(self.model, mesh, moment).normals(mesh))
+    }
+}
