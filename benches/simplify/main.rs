@@ -16,8 +16,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use meshopt::{SimplifyOptions, VertexDataAdapter};
 use meshes::Mesh;
+use meshopt::{SimplifyOptions, VertexDataAdapter};
 use peak_alloc::PeakAlloc;
 use relievo::mesh::{Options, Surface, simplify};
 
@@ -50,15 +50,26 @@ fn ours(mesh: &Mesh, triangles: usize, with_normals: bool) -> Result<Vec<u32>, B
 }
 
 fn theirs(mesh: &Mesh, triangles: usize, with_normals: bool) -> Result<Vec<u32>, Box<dyn Error>> {
-    let bytes: Vec<u8> = mesh.positions.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
+    let bytes: Vec<u8> =
+        mesh.positions.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
     let vertices = VertexDataAdapter::new(&bytes, 12, 0)?;
     let (count, error, options) = (triangles * 3, f32::MAX, SimplifyOptions::None);
     if !with_normals {
         return Ok(meshopt::simplify(&mesh.indices, &vertices, count, error, options, None));
     }
-    let (normals, weights, locks) = (mesh.normals.as_flattened(), [NORMALS; 3], vec![false; mesh.positions.len()]);
+    let (normals, weights, locks) =
+        (mesh.normals.as_flattened(), [NORMALS; 3], vec![false; mesh.positions.len()]);
     Ok(meshopt::simplify_with_attributes_and_locks(
-        &mesh.indices, &vertices, normals, &weights, 12, &locks, count, error, options, None,
+        &mesh.indices,
+        &vertices,
+        normals,
+        &weights,
+        12,
+        &locks,
+        count,
+        error,
+        options,
+        None,
     ))
 }
 
@@ -148,7 +159,11 @@ fn compare(
     let left = levels.each_ref().map(|level| level.len() / 3);
     println!(
         "| {} | {} | {} | {} / {} | {ours:.1} | {theirs:.1} | {ratio:.2} |",
-        mesh.name, mesh.triangles(), if with_normals { "yes" } else { "no" }, left[0], left[1]
+        mesh.name,
+        mesh.triangles(),
+        if with_normals { "yes" } else { "no" },
+        left[0],
+        left[1]
     );
     if let Some(out) = out {
         let normals = if with_normals { "_normals" } else { "" };
@@ -161,7 +176,9 @@ fn compare(
 
 /// Time and memory from 10,000 to 2 million triangles, to 10 %.
 fn growth(rounds: usize) -> Result<(), Box<dyn Error>> {
-    println!("| triangles | ours, ms | ns / (n log2 n) | meshoptimizer, ms | ratio | peak beyond the mesh, MiB |");
+    println!(
+        "| triangles | ours, ms | ns / (n log2 n) | meshoptimizer, ms | ratio | peak beyond the mesh, MiB |"
+    );
     println!("|---|---|---|---|---|---|");
     for triangles in [10_000, 50_000, 200_000, 800_000, 2_000_000] {
         let mesh = meshes::generated(triangles)?;

@@ -1,11 +1,15 @@
 //! Simplified meshes.
 
+mod alike;
 mod attributes;
 mod closed;
 mod creature;
+mod damaged;
+mod everywhere;
 mod input;
 mod measure;
 mod progressive;
 mod quality;
 mod reduce;
 mod shapes;
+mod thin;

@@ -40,7 +40,8 @@ pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bo
 
 /// The unit normal of a triangle in a pose; 0 for a triangle without area.
 fn unit_normal(points: &Points, corners: [u32; 3], pose: usize) -> DVec3 {
-    normal(corners.map(|corner| points.position(corner, pose))).map_or(DVec3::ZERO, |normal| normal / normal.length())
+    normal(corners.map(|corner| points.position(corner, pose)))
+        .map_or(DVec3::ZERO, |normal| normal / normal.length())
 }
 
 #[cfg(test)]

@@ -46,7 +46,12 @@ impl<'a> Quadrics<'a> {
     /// The cheapest of the collapses of a point with one vertex, and its target; the lower target if costs are equal.
     /// `None` if the point has no neighbour, or if attributes count and a neighbour has several vertices.
     #[inline]
-    pub(crate) fn cheapest(&self, points: &Points, [point, vertex]: [u32; 2], ring: &[[u32; 2]]) -> Option<(f32, u32)> {
+    pub(crate) fn cheapest(
+        &self,
+        points: &Points,
+        [point, vertex]: [u32; 2],
+        ring: &[[u32; 2]],
+    ) -> Option<(f32, u32)> {
         if points.poses() > 1 {
             return self.cheapest_in_all(points, [point, vertex], ring);
         }
@@ -222,7 +227,8 @@ fn is_held(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -
     let is_shorter = topology.ring(from).len() < topology.ring(to).len();
     let [near, far] = if is_shorter { [from, to] } else { [to, from] };
     let [near_vertex, far_vertex] = if is_shorter { ends } else { [ends[1], ends[0]] };
-    let mut others = topology.one_ring(near).filter(|ring| ![ring.next.point, ring.last.point].contains(&across));
+    let mut others =
+        topology.one_ring(near).filter(|ring| ![ring.next.point, ring.last.point].contains(&across));
     let beside = others.find_map(|ring| {
         let end = [ring.next, ring.last].into_iter().find(|end| end.point == far)?;
         Some([ring.vertex, end.vertex])

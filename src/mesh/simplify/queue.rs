@@ -1,4 +1,4 @@
-//! The queue of points, by the cost of each point's best collapse: a bucket for every sixteenth of an octave, so that
+//! The queue of points, by the cost of each point's best collapse: four buckets for each octave of squared costs, so that
 //! putting and taking are a step each. Costs whose buckets are the same count as equal, and are taken in the order in
 //! which they were put.
 
@@ -12,7 +12,7 @@ pub(crate) struct Best {
     pub is_second: bool,
 }
 
-/// Bits of a cost that choose its bucket: eight of the exponent, four of the mantissa.
+/// Bits of a cost that choose its bucket: eight of the exponent, two of the mantissa.
 const BITS: u32 = 10;
 const BUCKETS: usize = 1 << BITS;
 /// Number of points of which [`Queue::ahead`] tells at once.

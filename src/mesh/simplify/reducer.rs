@@ -2,11 +2,12 @@
 
 mod search;
 
+use super::marks::Marks;
 use super::neighbors::Neighbors;
 use super::points::Points;
 use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
-use super::topology::{Change, Kind, Marks, Topology};
+use super::topology::{Change, Kind, Topology};
 use super::tracked_samples::TrackedSamples;
 use super::{Collapse, Cost, Options, Simplified, Stopped, Surface};
 
@@ -162,7 +163,9 @@ impl<'a> Reducer<'a> {
             }
             if let Some(best) = queue.best(point) {
                 read ^= self.topology.touch(best.neighbor);
-                read ^= self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, best.neighbor)) as u32;
+                read ^=
+                    self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, best.neighbor))
+                        as u32;
             }
         }
         std::hint::black_box(read);
@@ -281,32 +284,40 @@ mod tests {
         (positions, uv, indices)
     }
 
-    /// Simplifies until nothing is legal. Returns the number of steps, and how often the collapse taken was not
-    /// the cheapest of its point.
-    fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 2] {
-        let points = Points::new(surface.poses);
-        let topology = Topology::new(&points, surface.indices);
-        let mut reducer = Reducer::new(surface, points, topology, cost, distance < f32::INFINITY);
-        reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(distance));
+    /// Simplifies until nothing is legal, and compares each collapse with the cheapest that a full search finds. Returns
+    /// the number of steps, how often the collapse was more than a tenth above that, and how often it was not the
+    /// cheapest of its point.
+    fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
+        let mut reducer = Reducer::new(surface, cost, distance < f32::INFINITY);
+        let most = (f64::from(distance) * reducer.points.scale()) as f32;
+        reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(most));
         let mut queue = reducer.queue();
-        let (mut moved, mut seconds, mut steps) = (Vec::new(), 0, 0);
+        let (mut moved, [mut steps, mut dearer, mut seconds]) = (Vec::new(), [0; 3]);
+        let find = |reducer: &mut Reducer<'_>, point: u32| {
+            reducer.topology.refresh(point);
+            reducer.find_legal(point)
+        };
         while let Some((point, best)) = reducer.next(&mut queue) {
             let all = 0..reducer.points.len() as u32;
-            let all = all.filter_map(|point| Some((reducer.find_legal(point)?, point)));
-            let cheapest = all.min_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.1.cmp(&b.1)));
-            let cheapest = cheapest.map(|(best, point)| (point, best.neighbor, best.cost));
-            assert_eq!(cheapest, Some((point, best.neighbor, best.cost)), "{cost:?} after {steps}");
+            let costs = all.filter_map(|point| Some(find(&mut reducer, point)?.cost));
+            let cheapest = costs.fold(f32::INFINITY, f32::min);
+            assert!(best.cost >= cheapest, "{cost:?} after {steps}");
+            dearer += usize::from(best.cost.sqrt() > 1.1 * cheapest.sqrt() + 1e-6);
             seconds += usize::from(best.is_second);
             steps += 1;
             reducer.step(&mut queue, point, best.neighbor, &mut moved);
         }
-        assert!((0..reducer.points.len() as u32).all(|point| reducer.find_legal(point).is_none()));
-        [steps, seconds]
+        assert!(
+            (0..reducer.points.len() as u32).all(|point| find(&mut reducer, point).is_none()),
+            "{cost:?}"
+        );
+        [steps, dearer, seconds]
     }
 
-    /// The queue always returns the cheapest of all legal collapses, as a full search finds it.
+    /// Collapses come in the order of their costs, up to the width of a bucket and to what became cheaper since the queue
+    /// last looked; nothing that is legal is left.
     #[test]
-    fn the_cheapest_legal_collapse_is_always_next() {
+    fn a_cheapest_legal_collapse_is_nearly_always_next() {
         for (cost, distance) in [
             (Cost::Quadric, f32::INFINITY),
             (Cost::Quadric, 0.25),
@@ -315,17 +326,18 @@ mod tests {
             (Cost::Melax { check_normals: false }, f32::INFINITY),
             (Cost::Melax { check_normals: true }, f32::INFINITY),
         ] {
-            let mut sums = [0, 0];
+            let mut sums = [0; 3];
             for seed in 0..6 {
                 let (positions, uv, indices) = pipe([0.03, 0.2][seed % 2], seed);
                 let surface = Surface { poses: &positions, indices: &indices, attributes: &[], stride: 0 };
                 let first = Surface { poses: &positions[..1], attributes: &uv, stride: 2, ..surface };
-                for [steps, seconds] in [surface, first].map(|surface| check(cost, &surface, distance)) {
-                    sums = [sums[0] + steps, sums[1] + seconds];
+                for found in [surface, first].map(|surface| check(cost, &surface, distance)) {
+                    sums = [0, 1, 2].map(|at| sums[at] + found[at]);
                 }
             }
-            let [steps, seconds] = sums;
-            assert!(steps > 200 && seconds > 5, "{cost:?} within {distance}: {steps}, {seconds}");
+            let [steps, dearer, seconds] = sums;
+            assert!(steps > 200 && seconds > 3, "{cost:?} within {distance}: {steps}, {seconds}");
+            assert!(10 * dearer < steps, "{cost:?} within {distance}: {dearer} of {steps}");
         }
     }
 }

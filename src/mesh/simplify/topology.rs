@@ -1,44 +1,9 @@
 //! The connectivity of the mesh: the triangles around each point.
 
+mod change;
+mod link;
+
 use super::points::Points;
-
-/// A sparse map from indices to numbers that can be cleared in constant time.
-pub(crate) struct Marks {
-    current: u32,
-    stamps: Vec<u32>,
-    values: Vec<u32>,
-}
-
-impl Marks {
-    pub(crate) fn new(count: usize) -> Self {
-        Self { current: 0, stamps: vec![0; count], values: vec![0; count] }
-    }
-
-    /// Removes all entries.
-    pub(crate) fn clear(&mut self) {
-        if self.current == u32::MAX {
-            self.stamps.fill(0);
-            self.current = 0;
-        }
-        self.current += 1;
-    }
-
-    pub(crate) fn get(&self, at: u32) -> Option<u32> {
-        (self.stamps[at as usize] == self.current).then(|| self.values[at as usize])
-    }
-
-    pub(crate) fn set(&mut self, at: u32, value: u32) {
-        self.stamps[at as usize] = self.current;
-        self.values[at as usize] = value;
-    }
-
-    /// Marks an index. Returns whether it had no mark.
-    pub(crate) fn insert(&mut self, at: u32) -> bool {
-        let is_new = self.get(at).is_none();
-        self.set(at, 0);
-        is_new
-    }
-}
 
 /// A corner of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,7 +103,8 @@ impl Topology {
     /// Triangles are numbered if `is_numbered`, or if several vertices share a position.
     pub(crate) fn new(points: &Points, indices: &[u32], is_numbered: bool) -> Self {
         let is_numbered = is_numbered || !points.are_vertices();
-        let triangle = |corners: &[u32]| [points.of(corners[0]), points.of(corners[1]), points.of(corners[2])];
+        let triangle =
+            |corners: &[u32]| [points.of(corners[0]), points.of(corners[1]), points.of(corners[2])];
         let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
         let mut spans = vec![Span::default(); points.len()];
         for [a, b, c] in indices.chunks_exact(3).map(triangle).filter(has_area) {
@@ -197,7 +163,8 @@ impl Topology {
         if !(1..ring.len()).all(is_unique) {
             return Kind::Locked;
         }
-        let border = ring.iter().map(|[next, _]| *next).find(|next| ring.iter().all(|other| other[1] != *next));
+        let border =
+            ring.iter().map(|[next, _]| *next).find(|next| ring.iter().all(|other| other[1] != *next));
         let first = border.unwrap_or(some[0]);
         let (mut at, mut passed) = (first, 0);
         while let Some([_, last]) = ring.iter().find(|[next, _]| *next == at) {
@@ -221,43 +188,6 @@ impl Topology {
     #[inline]
     pub(crate) fn kind(&self, point: u32) -> Kind {
         self.kinds[point as usize]
-    }
-
-    /// Brings the triangles of a point up to date. What is read of a point afterwards is right until the next collapse.
-    #[inline]
-    pub(crate) fn refresh(&mut self, point: u32) {
-        if !std::mem::take(&mut self.touched[point as usize]) {
-            return;
-        }
-        let change = &mut self.changes[point as usize];
-        *change = (*change).max(Change::Around);
-        let span = &mut self.spans[point as usize];
-        let ring = &mut self.rings[span.range()];
-        let remap = &self.remap;
-        let latest = |mut at: u32| loop {
-            let to = remap[at as usize];
-            if to == at {
-                return at;
-            }
-            at = to;
-        };
-        let mut at = 0;
-        let mut len = ring.len();
-        while at < len {
-            let before = ring[at];
-            let [next, last] = [latest(before[0]), latest(before[1])];
-            if next == last || next == point || last == point {
-                len -= 1;
-                ring[at] = ring[len];
-                if !self.numbers.is_empty() {
-                    self.numbers[span.start + at] = self.numbers[span.start + len];
-                }
-                continue;
-            }
-            ring[at] = [next, last];
-            at += 1;
-        }
-        span.len = len as u32;
     }
 
     /// What has changed at a point since this was asked for the last time.
@@ -308,120 +238,5 @@ impl Topology {
             };
             RingTriangle { triangle, vertex: own.vertex, next, last }
         })
-    }
-
-    /// Whether a collapse keeps the topology (the link condition): every common neighbour of the two points
-    /// lies across a triangle that both share, and no two of these common neighbours share a triangle with each
-    /// of the two points.
-    pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32) -> bool {
-        let (ring, far) = (self.ring(point), self.ring(neighbor));
-        let mut across = [u32::MAX; 2];
-        let mut shared = 0;
-        for &[next, last] in far {
-            if next != point && last != point {
-                continue;
-            }
-            let other = if next == point { last } else { next };
-            if shared == 2 || across[0] == other {
-                return false;
-            }
-            across[shared] = other;
-            shared += 1;
-        }
-        let is_across = |other: u32| other == across[0] || other == across[1];
-        let both_across = |ring: &[[u32; 2]]| ring.iter().any(|[next, last]| is_across(*next) && is_across(*last));
-        if shared == 1 && ring.len() == 1 && far.len() == 1
-            || shared == 2 && both_across(ring) && both_across(far)
-        {
-            return false;
-        }
-        let [is_inside, far_is_inside] = [point, neighbor].map(|point| self.kind(point) == Kind::Interior);
-        let is_common = |other: u32| {
-            other != neighbor
-                && !is_across(other)
-                && far.iter().any(|[next, last]| *next == other || !far_is_inside && *last == other)
-        };
-        // Around a point inside the surface, each neighbour is next once.
-        !ring.iter().any(|[next, last]| is_common(*next) || !is_inside && is_common(*last))
-    }
-
-    /// Merges a point into its neighbour; `moved` has the replacement of each of its vertices. Both must be up to
-    /// date, and the neighbour is afterwards.
-    pub(crate) fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        scratch.clear();
-        let numbers = self.around(point).iter().copied().chain(std::iter::repeat(0));
-        scratch.extend(self.ring(point).iter().copied().zip(numbers));
-        self.remap[point as usize] = neighbor;
-        self.remove(neighbor, point);
-        self.changes[neighbor as usize] = Change::Merged;
-        for ([next, last], _) in &scratch {
-            self.touched[*next as usize] = true;
-            self.touched[*last as usize] = true;
-        }
-        self.touched[neighbor as usize] = false;
-        let before = scratch.len();
-        scratch.retain(|([next, last], _)| *next != neighbor && *last != neighbor);
-        self.triangles -= before - scratch.len();
-        if !self.corners.is_empty() {
-            scratch.iter().for_each(|(_, number)| self.move_corner(*number, point, neighbor, moved));
-        }
-        self.append(neighbor, &scratch);
-        self.spans[point as usize].len = 0;
-        self.kinds[point as usize] = Kind::Locked;
-        self.scratch = scratch;
-    }
-
-    /// Removes those triangles of a point that have another.
-    fn remove(&mut self, point: u32, other: u32) {
-        let span = &mut self.spans[point as usize];
-        let mut at = span.start;
-        while at < span.range().end {
-            let [next, last] = self.rings[at];
-            if next != other && last != other {
-                at += 1;
-                continue;
-            }
-            span.len -= 1;
-            let end = span.range().end;
-            self.rings[at] = self.rings[end];
-            if !self.numbers.is_empty() {
-                self.numbers[at] = self.numbers[end];
-            }
-        }
-    }
-
-    fn move_corner(&mut self, number: u32, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
-        let Some(corners) = self.corners.get_mut(number as usize) else { return };
-        for corner in corners.iter_mut().filter(|corner| corner.point == point) {
-            let to = moved.iter().find(|[from, _]| *from == corner.vertex);
-            *corner = Corner { vertex: to.map_or(corner.vertex, |[_, to]| *to), point: neighbor };
-        }
-    }
-
-    /// Adds triangles to a point, in another place if there is no room.
-    fn append(&mut self, point: u32, more: &[([u32; 2], u32)]) {
-        let is_numbered = !self.numbers.is_empty();
-        let span = &mut self.spans[point as usize];
-        let len = span.len as usize + more.len();
-        if len > span.room as usize {
-            let before = span.range();
-            let room = len + len / 4 + 1;
-            *span = Span { start: self.rings.len(), len: span.len, room: room as u32 };
-            self.rings.extend_from_within(before.clone());
-            self.rings.resize(span.start + room, [0; 2]);
-            if is_numbered {
-                self.numbers.extend_from_within(before);
-                self.numbers.resize(span.start + room, 0);
-            }
-        }
-        for (others, number) in more {
-            let at = span.range().end;
-            span.len += 1;
-            self.rings[at] = *others;
-            if is_numbered {
-                self.numbers[at] = *number;
-            }
-        }
     }
 }

@@ -7,8 +7,9 @@ use super::super::topology::Kind;
 use super::super::turned::deviation;
 use super::{Cost, Reducer};
 
-/// How much the square of the distance counts by which a collapse leaves the point off its triangles, beside the mean of
-/// squares: a mean over many triangles hides a single spot. Found by trial on meshes of several kinds.
+/// How much the square of the distance counts by which a collapse leaves the point off the planes of its triangles, beside
+/// the mean of squares, which hides a single spot among many triangles. Found by trial: with half of it the largest errors
+/// grow on terrain and on closed shapes, with twice of it the mean ones.
 const DEVIATION: f64 = 1.0 / 16.0;
 
 impl Reducer<'_> {
