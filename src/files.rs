@@ -4,6 +4,8 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest as _, Sha256};
+
 use crate::Error;
 
 /// Files of one folder, staged until all are written. Staged files that are never published are deleted.
@@ -179,6 +181,11 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let mut staged = Staged::new(folder)?;
     staged.write(name.to_string_lossy(), bytes)?;
     staged.publish()
+}
+
+/// The SHA-256 of bytes, in hexadecimal digits, as `sha256sum` prints it.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Writes a value as indented JSON, as [`write_file`] writes bytes.

@@ -4,7 +4,8 @@
 //! # The map
 //!
 //! [`asset`] is plain data, independent of any device: models with their skeletons, skins, clips, meshes and
-//! materials, and their import from glTF. [`mesh`] simplifies meshes.
+//! materials, their import from glTF and Wavefront OBJ, and their export. [`mesh`] simplifies meshes and measures how far they
+//! are apart.
 //!
 //! [`terrain`] generates heights from a seed, the same bits on every device, and has injected features, erosion,
 //! normals and colour maps.

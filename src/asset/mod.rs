@@ -3,6 +3,8 @@
 
 pub mod clip;
 pub mod gltf;
+pub(crate) mod images;
+pub mod import;
 pub(crate) mod indices;
 pub mod influences;
 pub mod keyframe;
@@ -11,7 +13,7 @@ pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod morph;
-pub(crate) mod obj;
+pub mod obj;
 pub mod skeleton;
 pub mod tangents;
 pub mod transform;

@@ -8,6 +8,8 @@
 //! | [`drawn`] | the same, and the crowd as a scene draws it, within some pixels and in full detail: whole frames, displacements | GPU |
 //! | [`scene()`] | whole frames of a scene without level of detail; with it in animation, in skinning (A section 8.4), and in both; and in the meshes too | GPU |
 //! | [`pareto()`] | every gate at many settings: errors against the number of bones interpolated, and the gates' curves with each other | CPU |
+//! | [`reduction::reduction`] | a model with its levels of detail by some reducer: distances between their surfaces, both ways | CPU |
+//! | [`reduction::ReducerComparison`] | all reducers beside each other | CPU |
 //!
 //! [`DisplacementMeter`] measures frames of the caller's own [`Scene`](crate::scene::Scene): how many pixels what a view
 //! draws is off, with the caller's camera, however it moves. [`ScenePlay`] draws the frames of a scene file, counts what is
@@ -63,6 +65,7 @@ mod pareto;
 mod placement;
 mod play;
 mod progress;
+pub mod reduction;
 pub mod relief;
 mod scene;
 mod setting;

@@ -1,6 +1,8 @@
-//! Simplification of meshes: the same surface with fewer triangles (A sections 2 to 5, B sections 3.2 and 4.3).
+//! Simplification of meshes: the same surface with fewer triangles (A sections 2 to 5, B sections 3.2 and 4.3), and the
+//! distance that it leaves.
 
 pub mod cluster;
+pub mod distance;
 pub mod nearest;
 pub mod progressive;
 pub mod ray;

@@ -1,8 +1,6 @@
 //! The nearest point on a triangle.
 
-#[cfg(any(test, feature = "verify"))]
-use glam::DVec3;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Defines the search for vectors of one kind.
 macro_rules! nearest_on_triangle {
@@ -62,7 +60,6 @@ nearest_on_triangle! {
 
 nearest_on_triangle! {
     /// As [`nearest_on_triangle()`], in double precision.
-    #[cfg(any(test, feature = "verify"))]
     precise_nearest_on_triangle, DVec3, f64
 }
 

@@ -4,6 +4,7 @@
 mod axis;
 mod letters;
 mod picture;
+mod strip;
 
 use image::RgbImage;
 use image::imageops::FilterType;
@@ -12,6 +13,7 @@ use plotters::backend::BitMapBackend;
 use crate::InputError;
 use axis::Axis;
 use picture::Picture;
+pub use strip::strip;
 
 /// Number of pixels that are drawn for each pixel of the picture, along each axis: plotters does not
 /// antialias polygons.

@@ -21,7 +21,7 @@ pub use format::{DepthFormat, TargetFormat};
 pub use layer::Layer;
 pub use offscreen::Offscreen;
 #[cfg(not(target_arch = "wasm32"))]
-pub use portrait::portrait;
+pub use portrait::{portrait, portraits};
 pub use renderer::{Renderer, ScenePass};
 pub use sun_shadow::SunShadow;
 

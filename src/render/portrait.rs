@@ -1,5 +1,6 @@
 //! Square pictures of a model as it stands, drawn by a scene.
 
+use glam::Mat4;
 use image::RgbaImage;
 
 use super::Offscreen;
@@ -7,7 +8,7 @@ use crate::asset::material::{Alpha, Material, Texture};
 use crate::asset::{Mesh, Model};
 use crate::gpu::Gpu;
 use crate::scene::{Camera, Depth, Placement, Scene};
-use crate::skinning::picture::framing_camera;
+use crate::skinning::picture::{framing_camera, framing_of};
 use crate::skinning::{Portrait, Vertex, still};
 use crate::{Error, InputError};
 
@@ -25,6 +26,26 @@ pub fn portrait(
     vertices: &[Vec<Vertex>],
     portrait: &Portrait,
 ) -> Result<RgbaImage, Error> {
+    drawn(gpu, &still(model, vertices)?, framing_camera(vertices.iter().flatten()), portrait)
+}
+
+/// Draws models that stand still, such as those of [`still`] and [`at_rest`](crate::skinning::at_rest()), as [`portrait`] does,
+/// a picture each. One camera sees all of them, with the first in the middle. Waits for the device.
+///
+/// # Errors
+/// As [`portrait`].
+pub fn portraits(gpu: &Gpu, models: &[&Model], portrait: &Portrait) -> Result<Vec<RgbaImage>, Error> {
+    let camera = framing_of(models);
+    models.iter().map(|model| drawn(gpu, model, camera, portrait)).collect()
+}
+
+/// Draws a model that stands still, seen by a camera: the matrices from the world to its space, and from there to the picture.
+fn drawn(
+    gpu: &Gpu,
+    standing: &Model,
+    [view_from_world, clip_from_view]: [Mat4; 2],
+    portrait: &Portrait,
+) -> Result<RgbaImage, Error> {
     for (path, number) in [("portrait.edge", portrait.edge), ("portrait.finer", portrait.finer)] {
         if number == 0 {
             return Err(InputError::new(path, number, "must be at least 1").into());
@@ -33,13 +54,11 @@ pub fn portrait(
     let size = [portrait.finer.saturating_mul(portrait.edge); 2];
     let target = Offscreen::linear(gpu, size)?;
     let mut scene = Scene::new(gpu)?;
-    let standing = still(model, vertices)?;
     // Each mesh is an object, so that no texture shares its size with another.
     for mesh in standing.meshes.iter().filter(|mesh| !mesh.indices.is_empty()) {
-        let object = scene.add_mesh(&alone(&standing, mesh, portrait)?, 1)?;
+        let object = scene.add_mesh(&alone(standing, mesh, portrait)?, 1)?;
         scene.spawn(object, Placement::default())?;
     }
-    let [view_from_world, clip_from_view] = framing_camera(vertices.iter().flatten());
     let depth = Depth::Forward;
     let camera = Camera { cell: [0; 3], view_from_world, clip_from_view, viewport: size, depth };
     target.draw(&mut scene, camera, portrait.background)?;

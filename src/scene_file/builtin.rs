@@ -16,10 +16,8 @@ pub(super) use nothing::{CHARACTERS, MAPS, MODELS, map, model};
 mod there {
     use super::*;
     use crate::asset::Material;
-    use crate::samples::{BuiltInMap, creature, rock, wall};
-
-    /// Models that a mesh may be.
-    pub const MODELS: [&str; 3] = ["creature", "rock", "wall"];
+    pub use crate::samples::MODELS;
+    use crate::samples::{self, BuiltInMap};
 
     /// Models that a character may be.
     pub const CHARACTERS: [&str; 1] = ["creature"];
@@ -36,9 +34,8 @@ mod there {
     /// The model of this name.
     pub fn model(name: &str) -> Result<Model, InputError> {
         match name {
-            "creature" => creature().map(of_clay),
-            "rock" => rock(),
-            _ => wall(),
+            "creature" => samples::model(name).map(of_clay),
+            _ => samples::model(name),
         }
     }
 

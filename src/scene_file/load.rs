@@ -131,7 +131,7 @@ impl Files<'_> {
             Source::File(file) => {
                 let bytes = self.bytes(path, file)?;
                 let folder = file.parent().unwrap_or(Path::new(""));
-                Model::from_gltf_beside(&bytes, &|name| (self.read)(&folder.join(name)))
+                Model::from_bytes_beside(file, &bytes, &|name| (self.read)(&folder.join(name)))
             }
         };
         let model = Arc::new(model.map_err(|error| within(path, source, &error))?);

@@ -12,6 +12,7 @@ use super::json::{At, Fields};
 use super::limits::{COORDINATE, scale};
 use crate::InputError;
 use crate::animation::Wrap;
+use crate::asset::import::ENDINGS;
 use crate::surface::Shadow;
 use crate::surface::relief::{MAX_SCALE, Method};
 
@@ -66,13 +67,12 @@ fn placed(
 
 /// The model's `file`.
 fn model(fields: &Fields<'_>, built_in: &[&str]) -> Result<Source, InputError> {
-    let at = fields.need("file", "a .glb or .gltf file, or a built-in model")?;
+    let at = fields.need("file", "a .glb, .gltf or .obj file, or a built-in model")?;
     let found = source(&at, built_in)?;
     let Source::File(path) = &found else { return Ok(found) };
     match extension(path).as_str() {
-        "glb" | "gltf" => Ok(found),
-        "obj" => Err(at.error("is a Wavefront OBJ, which is not read yet: convert it to glTF")),
-        _ => Err(at.error("must be a .glb or .gltf file")),
+        ending if ENDINGS.contains(&ending) => Ok(found),
+        _ => Err(at.error("must be a .glb, .gltf or .obj file")),
     }
 }
 

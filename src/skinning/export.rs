@@ -21,6 +21,7 @@ pub fn write_obj(out: &mut impl Write, meshes: &[(&Mesh, &[Vertex])]) -> io::Res
         let normals: Vec<_> = vertices.iter().map(|vertex| vertex.normal).collect();
         writer.object(Object {
             name: Some(&mesh.name),
+            material: None,
             positions: vertices.iter().map(|vertex| vertex.position),
             uv: &mesh.uv,
             normals: &normals,

@@ -29,6 +29,7 @@ pub mod palette;
 pub mod picture;
 mod pose;
 pub mod posed;
+pub mod reduced;
 pub mod select;
 pub mod skin;
 #[cfg(feature = "verify")]
@@ -44,4 +45,5 @@ pub use levels::{Coarsened, MeshLevels, add_levels, coarsen};
 pub use merged::{Merged, merged};
 pub use pose::poses_of;
 pub use posed::{Portrait, PosedModel};
+pub use reduced::{Normals, ReducedModel, reduce_model};
 pub use vertex::{Blend, Vertex};

@@ -1,6 +1,7 @@
 //! Computes the vertices of a whole model at one time of a clip, on the host or on the device, and draws a picture of them on
 //! the host; `render::portrait` draws the same by a scene.
 
+use glam::Mat4;
 use image::RgbaImage;
 
 use super::InstanceLod;
@@ -8,11 +9,11 @@ use super::InstanceLod;
 use super::frame::SkinFrame;
 use super::morph::reference::morph;
 use super::palette::reference::palette_for;
-use super::picture::framing;
 use super::picture::texture::Surface;
 use super::picture::{Part, Scene};
+use super::picture::{framing, framing_of};
 use super::skin::reference::skin;
-use super::vertex::{Blend, Vertex};
+use super::vertex::{Blend, Vertex, vertices_of};
 use crate::InputError;
 use crate::animation::Pose;
 use crate::asset::Light;
@@ -47,6 +48,41 @@ pub struct Portrait {
     pub clay: [f32; 3],
 }
 
+impl Portrait {
+    /// Draws models that stand still, such as those of [`at_rest`](super::at_rest()), a picture each, on the host. One camera sees
+    /// all of them, with the first in the middle.
+    ///
+    /// # Errors
+    /// [`InputError`] for a material or an image that a model lacks.
+    pub fn on_host(&self, models: &[&Model]) -> Result<Vec<RgbaImage>, InputError> {
+        let [view_from_model, clip_from_view] = framing_of(models);
+        let drawn = |model: &&Model| {
+            let vertices: Vec<_> = model.meshes.iter().map(vertices_of).collect();
+            self.drawn(model, &vertices, clip_from_view * view_from_model)
+        };
+        models.iter().map(drawn).collect()
+    }
+
+    fn drawn(
+        &self,
+        model: &Model,
+        vertices: &[Vec<Vertex>],
+        clip_from_model: Mat4,
+    ) -> Result<RgbaImage, InputError> {
+        let size = [self.finer * self.edge; 2];
+        let scene = Scene { clip_from_model, light: Light::default(), size };
+        let surface = |mesh: &Mesh| {
+            let material = model.material(mesh)?;
+            Ok(material.map_or(Surface::plain(self.clay), |material| Surface::of(model, material)))
+        };
+        let surfaces = model.meshes.iter().map(surface).collect::<Result<Vec<_>, InputError>>()?;
+        let parts: Vec<_> = (model.meshes.iter().zip(vertices).zip(&surfaces))
+            .map(|((mesh, vertices), surface)| Part { mesh, level: 0, vertices, surface })
+            .collect();
+        Ok(scene.draw(&parts, self.background).reduced(self.finer).encoded())
+    }
+}
+
 impl PosedModel<'_> {
     /// Skins every mesh, and draws all of them in the middle of a picture. Returns the vertices of each mesh
     /// in its own order, in the model's space, and the picture.
@@ -56,20 +92,7 @@ impl PosedModel<'_> {
     /// an image that the model lacks.
     pub fn on_host(&self, portrait: &Portrait) -> Result<(Vec<Vec<Vertex>>, RgbaImage), InputError> {
         let vertices = self.vertices()?;
-        let scene = Scene {
-            clip_from_model: framing(vertices.iter().flatten()),
-            light: Light::default(),
-            size: [portrait.finer * portrait.edge; 2],
-        };
-        let surface = |mesh: &Mesh| {
-            let material = self.model.material(mesh)?;
-            Ok(material.map_or(Surface::plain(portrait.clay), |material| Surface::of(self.model, material)))
-        };
-        let surfaces = self.model.meshes.iter().map(surface).collect::<Result<Vec<_>, InputError>>()?;
-        let parts: Vec<_> = (self.model.meshes.iter().zip(&vertices).zip(&surfaces))
-            .map(|((mesh, vertices), surface)| Part { mesh, level: 0, vertices, surface })
-            .collect();
-        let picture = scene.draw(&parts, portrait.background).reduced(portrait.finer).encoded();
+        let picture = portrait.drawn(self.model, &vertices, framing(vertices.iter().flatten()))?;
         Ok((vertices, picture))
     }
 

@@ -220,7 +220,14 @@ fn write_obj<T: Display>(
 ) -> io::Result<()> {
     let mut writer = ObjWriter::new(out);
     writer.comment(format_args!("relievo terrain: {} points", mesh.uvs.len()))?;
-    writer.object(Object { name: None, positions, uv: &mesh.uvs, normals: &[], triangles: mesh.triangles() })
+    writer.object(Object {
+        name: None,
+        material: None,
+        positions,
+        uv: &mesh.uvs,
+        normals: &[],
+        triangles: mesh.triangles(),
+    })
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ mod rest;
 mod scene;
 mod scene_file;
 mod scene_mistakes;
+mod simplify;
 mod skin;
 mod terrain;
 

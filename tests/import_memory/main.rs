@@ -359,3 +359,33 @@ fn damaged_documents_allocate_little() {
     assert!(numbers.len() > 130 && read > 300 && failed > 300, "{} {read} {failed}", numbers.len());
     println!("{read} read, {failed} refused, at most {largest} bytes");
 }
+
+/// What OBJ takes at most for each byte of the file: a mesh a face, whose name takes a letter, is the worst.
+const OBJ: usize = 200;
+
+#[test]
+fn obj_takes_memory_for_its_bytes() {
+    let _alone = alone();
+    let start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 1 0\n";
+    let lines = |line: fn(usize) -> String| -> String { (0..20_000).map(line).collect() };
+    let texts = [
+        lines(|_| "f 1 2 3\n".to_owned()),
+        lines(|at| format!("f 1/{}/1 2/1/{} 3/2/2\n", 1 + at % 2, 1 + at / 2 % 2)),
+        lines(|_| "v 1 1 1\n".to_owned()) + "f -1 -2 -3\n",
+        lines(|_| "v 1 1 1\nvt 0 0\nf -1/-1 -2/-1 -3/-1\n".to_owned()),
+        format!("f {}\n", lines(|at| format!("{} ", 1 + at % 4))),
+        lines(|at| format!("g {at}\nf 1 2 3\n")),
+        lines(|at| format!("usemtl {at}\n")) + "f 1 2 3\n",
+        lines(|at| format!("g {at}\n")) + "f 1 2 3\n",
+        lines(|_| "\\\n".to_owned()) + "f 1 2 3\n",
+    ];
+    for text in texts {
+        let bytes = (start.to_owned() + &text).into_bytes();
+        let before = MEMORY.current_usage();
+        MEMORY.reset_peak_usage();
+        let outcome = Model::from_obj(&bytes, None).map(|_| ());
+        let peak = MEMORY.peak_usage().saturating_sub(before);
+        let shown = &text[..30.min(text.len())];
+        assert!(peak < OBJ * bytes.len(), "{shown:?}: {peak} bytes for {}, {outcome:?}", bytes.len());
+    }
+}

@@ -5,6 +5,7 @@ mod attributes;
 mod closed;
 mod creature;
 mod damaged;
+mod distance;
 mod everywhere;
 mod input;
 mod measure;

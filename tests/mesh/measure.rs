@@ -85,7 +85,7 @@ fn from_triangles(shape: &Shape, pose: usize, other: &Shape, indices: &[u32]) ->
 }
 
 /// The point of a triangle that is nearest to another (Ericson, "Real-Time Collision Detection", section 5.1.5).
-fn nearest(p: DVec3, [a, b, c]: &[DVec3; 3]) -> DVec3 {
+pub fn nearest(p: DVec3, [a, b, c]: &[DVec3; 3]) -> DVec3 {
     let (ab, ac, ap, bp, cp) = (b - a, c - a, p - a, p - b, p - c);
     let [d1, d2, d3, d4, d5, d6] = [ab.dot(ap), ac.dot(ap), ab.dot(bp), ac.dot(bp), ab.dot(cp), ac.dot(cp)];
     if d1 <= 0.0 && d2 <= 0.0 {

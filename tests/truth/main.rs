@@ -1,6 +1,8 @@
 //! Compares poses, vertices and normals with those that three.js computes, for files in the manner of other exporters.
 //! `README.md` in this folder says how the files and the numbers were made.
 
+mod obj;
+
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;

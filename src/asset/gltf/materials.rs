@@ -126,8 +126,9 @@ impl Materials {
     }
 }
 
-/// The content of the bytes decides the format, whatever `mimeType` says.
-fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
+/// Decodes a PNG or JPEG. The content of the bytes decides the format, whatever `mimeType` says. Texels are charged to the
+/// budget; `path` names the image in errors.
+pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
     let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
     let format = image::guess_format(bytes).ok();
     let Some(format) = format.filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) else {

@@ -48,24 +48,25 @@
 //! texels per byte, or 16 million, and 8192 in width and height.
 
 mod accessor;
-mod budget;
+pub(super) mod budget;
 mod clips;
 mod container;
 mod document;
-mod materials;
+pub(super) mod materials;
 mod meshes;
 mod nodes;
 mod primitive;
 mod rigid;
 mod scene;
-mod tangents;
+pub(super) mod tangents;
 mod weights;
 mod winding;
+mod write;
 
 use std::path::Path;
 
 use super::model::Model;
-use crate::{Error, InputError};
+use crate::InputError;
 use document::Document;
 use materials::Materials;
 
@@ -73,31 +74,6 @@ use materials::Materials;
 pub type Beside<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
 
 impl Model {
-    /// Reads a `.gltf` or `.glb` file, and the buffers and images beside it.
-    ///
-    /// # Errors
-    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`], with the path in the file, for
-    /// everything that glTF forbids or that this crate does not read.
-    pub fn from_file(path: &Path) -> Result<Self, Error> {
-        Self::read(path, Materials::default())
-    }
-
-    /// As [`Model::from_file`], without materials and images. Use it when nothing is drawn: missing textures
-    /// and extensions for materials and images then do not matter. No vertex is repeated for its tangents.
-    ///
-    /// # Errors
-    /// As [`Model::from_file`], except those about materials and images.
-    pub fn from_file_bare(path: &Path) -> Result<Self, Error> {
-        Self::read(path, Materials::unread())
-    }
-
-    fn read(path: &Path, materials: Materials) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        Self::import(&bytes, Some(&|name: &Path| std::fs::read(folder.join(name))), materials)
-            .map_err(|source| Error::InputFile { path: path.to_owned(), source })
-    }
-
     /// Reads glTF from memory. External buffers are read from `folder`; without a folder they are refused.
     ///
     /// # Errors
@@ -116,6 +92,11 @@ impl Model {
     /// [`InputError`] with the path in the file.
     pub fn from_gltf_beside(bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
         Self::import(bytes, Some(beside), Materials::default())
+    }
+
+    /// As [`Model::from_gltf_beside`], without materials and images.
+    pub(super) fn from_gltf_bare(bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
+        Self::import(bytes, Some(beside), Materials::unread())
     }
 
     fn import(

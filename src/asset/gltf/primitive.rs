@@ -303,6 +303,6 @@ impl Reader<'_, '_> {
 }
 
 /// Converts between glTF's handedness and this crate's: glTF's bitangent points up in the image.
-fn flipped([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+pub(super) fn flipped([x, y, z, w]: [f32; 4]) -> [f32; 4] {
     [x, y, z, if w < 0.0 { 1.0 } else { -1.0 }]
 }

@@ -1,69 +1,62 @@
-//! Wavefront OBJ, written.
+//! Import and export of Wavefront OBJ, with its material libraries (MTL).
+//!
+//! - Every object (`o`) and every group (`g`) becomes a bone that never moves, a group below its object. Faces of one
+//!   object, group and material (`usemtl`) become one [`Mesh`](crate::asset::Mesh), in the order of their first faces.
+//!   Its name is that of its group or object, followed by a number. Faces without object and group belong to the bone
+//!   `mesh`.
+//! - Corners with the same position, texture coordinates and normal, by their numbers in the file, become one vertex.
+//!   Vertices have the order of these numbers.
+//! - Polygons become triangles: convex ones fans around their first corner, others by ear clipping, which leaves no corner
+//!   out. Triangles that name a position twice are left out, and so are points, lines and free-form surfaces.
+//! - Corners without a normal get the smooth normal of their position, of all such faces around it in the whole file,
+//!   weighted by area. Smoothing groups are not read. Tangents are computed as for glTF.
+//! - Texture coordinates have their origin at the bottom in the file, and at the top in the model.
+//! - Of materials, the import reads colour (`Kd`, as sRGB), opacity (`d` or `Tr`, which becomes a
+//!   [screen-door pattern](crate::asset::material::Alpha::Dithered)), `map_Kd`, `map_d` and the normal map, which is `norm`,
+//!   or else `map_Bump` or `bump` if it has colours: a grey image there is a height map, which is left out. Of the options
+//!   of maps it reads `-o`, `-s`, `-clamp` and `-bm`. Offset and scale of `map_Kd` are applied to the texture coordinates.
+//! - A library that does not exist is left out, and so is a material that no library has. The meshes have no material then.
+//!   Everything else that the file names must exist.
+//!
+//! Every error names the line, which counts from 1, with its text. No file causes a panic. Memory grows linearly with the
+//! file; images have the limits of those of glTF ([`crate::asset::gltf`]).
 
-use std::fmt::Display;
-use std::io::{self, Write};
+mod joined;
+mod library;
+mod maps;
+mod materials;
+mod model;
+mod parsed;
+mod polygons;
+mod statements;
+mod write;
 
-/// What becomes an object of a file: vertices, and triangles that count them from 0.
-pub(crate) struct Object<'a, P, T> {
-    /// Without one, the triangles belong to the object before. Whitespace becomes `_`: a space would end the name, a line
-    /// the object.
-    pub name: Option<&'a str>,
-    /// Where each vertex is.
-    pub positions: P,
-    /// Texture coordinates of each vertex, v down the image.
-    pub uv: &'a [[f32; 2]],
-    /// The normal of each vertex, or none at all.
-    pub normals: &'a [[f32; 3]],
-    /// Corners, counter-clockwise seen from outside.
-    pub triangles: T,
-}
+use std::path::Path;
 
-/// Writes objects into one file, one after the other. Numbers have every digit that their type needs.
-pub(crate) struct ObjWriter<W> {
-    out: W,
-    /// The number of the next vertex; the file's first is 1.
-    next: u64,
-}
+use super::gltf::Beside;
+use super::model::Model;
+use crate::InputError;
+pub(crate) use write::{ObjWriter, Object};
 
-impl<W: Write> ObjWriter<W> {
-    pub fn new(out: W) -> Self {
-        Self { out, next: 1 }
+impl Model {
+    /// Reads Wavefront OBJ from memory. Material libraries and images are read from `folder`; without a folder they are
+    /// left out.
+    ///
+    /// # Errors
+    /// [`InputError`] with the line. Its path is `line 12`, for a line of a library `wood.mtl line 12`.
+    pub fn from_obj(bytes: &[u8], folder: Option<&Path>) -> Result<Self, InputError> {
+        match folder {
+            Some(folder) => Self::from_obj_beside(bytes, &|name| std::fs::read(folder.join(name))),
+            None => model::import(bytes, None),
+        }
     }
 
-    /// A line that readers skip.
-    pub fn comment(&mut self, text: impl Display) -> io::Result<()> {
-        writeln!(self.out, "# {text}")
-    }
-
-    /// An object with as many texture coordinates as positions.
-    pub fn object<N: Display>(
-        &mut self,
-        object: Object<'_, impl IntoIterator<Item = [N; 3]>, impl IntoIterator<Item = [u32; 3]>>,
-    ) -> io::Result<()> {
-        let Object { name, positions, uv, normals, triangles } = object;
-        let out = &mut self.out;
-        if let Some(name) = name {
-            let name: String = name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect();
-            writeln!(out, "o {name}")?;
-        }
-        for [x, y, z] in positions {
-            writeln!(out, "v {x} {y} {z}")?;
-        }
-        for [u, v] in uv {
-            // OBJ's texture origin is the bottom.
-            writeln!(out, "vt {u} {}", 1.0 - v)?;
-        }
-        for [x, y, z] in normals {
-            writeln!(out, "vn {x} {y} {z}")?;
-        }
-        for triangle in triangles {
-            let [a, b, c] = triangle.map(|corner| self.next + u64::from(corner));
-            match normals {
-                [] => writeln!(out, "f {a}/{a} {b}/{b} {c}/{c}")?,
-                _ => writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?,
-            }
-        }
-        self.next += uv.len() as u64;
-        Ok(())
+    /// Reads Wavefront OBJ from memory, and its material libraries and images through `beside`, which gets their paths
+    /// relative to the file's folder. It works without a file system.
+    ///
+    /// # Errors
+    /// As [`Model::from_obj`].
+    pub fn from_obj_beside(bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
+        model::import(bytes, Some(beside))
     }
 }

@@ -3,7 +3,6 @@
 mod detail;
 mod pareto;
 mod plan;
-mod progress;
 mod report;
 mod scene;
 
@@ -66,7 +65,7 @@ use plan::Plan;
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub struct Crowd {
-    /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
     #[arg(long, value_name = "FILE|builtin")]
     model: PathBuf,
     /// The clip to play: its name, or its number, counted from 0.

@@ -6,6 +6,7 @@ mod collapse;
 mod crowd;
 mod demo;
 mod info;
+mod measuring;
 mod memory;
 mod output;
 mod pose;
@@ -14,6 +15,7 @@ mod progress;
 mod relief;
 mod scene;
 mod shaders;
+mod simplify;
 mod skin;
 mod terrain;
 mod verify;
@@ -49,6 +51,7 @@ enum Command {
     Pose(pose::Pose),
     Priorities(priorities::Priorities),
     Skin(skin::Skin),
+    Simplify(Box<simplify::Simplify>),
     Crowd(Box<crowd::Crowd>),
     Verify(verify::Verify),
     Bench(bench::Bench),
@@ -59,7 +62,15 @@ enum Command {
 impl Command {
     /// Whether the command takes `--backend`.
     fn has_backend(&self) -> bool {
-        matches!(self, Self::Terrain(_) | Self::Relief(_) | Self::Pose(_) | Self::Skin(_) | Self::Crowd(_))
+        matches!(
+            self,
+            Self::Terrain(_)
+                | Self::Relief(_)
+                | Self::Pose(_)
+                | Self::Skin(_)
+                | Self::Simplify(_)
+                | Self::Crowd(_)
+        )
     }
 }
 
@@ -96,6 +107,7 @@ fn main() -> ExitCode {
         Command::Pose(command) => command.run(&context),
         Command::Priorities(command) => command.run(),
         Command::Skin(command) => command.run(&context),
+        Command::Simplify(command) => command.run(&context),
         Command::Crowd(command) => command.run(&context),
         Command::Verify(command) => command.run(&context),
         Command::Bench(command) => command.run(&context),

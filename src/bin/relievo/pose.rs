@@ -30,7 +30,7 @@ pub const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clam
 /// clip in seconds. "clip" and "time" are null at rest.
 #[derive(Args)]
 pub struct Pose {
-    /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
     #[arg(long, value_name = "FILE|builtin")]
     model: PathBuf,
     #[command(flatten)]
@@ -127,26 +127,12 @@ fn report<'a>(model: &'a Model, moment: Option<(&'a str, f32)>, pose: &animation
 
 /// Opens a model as [`open`] does, but without materials and images.
 pub fn open_bare(path: &Path) -> Result<Model, Error> {
-    check_kind(path)?;
     if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file_bare(path) }
 }
 
 /// Opens the model of a file, or the built-in one.
 pub fn open(path: &Path) -> Result<Model, Error> {
-    check_kind(path)?;
     if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file(path) }
-}
-
-/// Refuses a kind of file whose contents would be taken for damaged glTF.
-fn check_kind(path: &Path) -> Result<(), Error> {
-    let is_obj = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj"));
-    match is_obj {
-        true => {
-            let bound = "must be glTF 2.0: convert a Wavefront OBJ, which is not read yet";
-            Err(InputError::new("model", path.display(), bound).into())
-        }
-        false => Ok(()),
-    }
 }
 
 /// The index of `clip`, which is one of the model's clips, among these.

@@ -23,7 +23,7 @@ use crate::pose::{WRAPS, find, open_bare};
 /// bones. The priority is the weighted mean of these terms.
 #[derive(Args)]
 pub struct Priorities {
-    /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
     #[arg(long, value_name = "FILE|builtin")]
     model: PathBuf,
     /// The clip: its name, or its number, counted from 0.

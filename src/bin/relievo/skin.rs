@@ -31,7 +31,7 @@ use crate::progress::during;
 /// textures of their materials; a mesh without a material is clay.
 #[derive(Args)]
 pub struct Skin {
-    /// A .gltf or .glb file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
     #[arg(long, value_name = "FILE|builtin")]
     model: PathBuf,
     #[command(flatten)]

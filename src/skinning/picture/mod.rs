@@ -7,7 +7,8 @@ pub use scene::{Part, Scene};
 
 use glam::{DVec3, Mat4, Vec2, Vec3, camera};
 
-use crate::skinning::vertex::Vertex;
+use crate::asset::Model;
+use crate::skinning::vertex::{Vertex, vertices_of};
 
 /// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space,
 /// seen from outside, then run clockwise on the screen. For a parallel view, whose depth must grow with
@@ -42,6 +43,13 @@ pub fn framing_camera<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) ->
     let middle = low.midpoint(high) * zoom;
     let crop = Mat4::from_translation(-middle.extend(0.0)) * Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
     [view, crop * wide]
+}
+
+/// The camera of [`framing`] for the first of some models that stand still.
+pub(crate) fn framing_of(models: &[&Model]) -> [Mat4; 2] {
+    let vertices: Vec<Vertex> =
+        models.iter().take(1).flat_map(|model| &model.meshes).flat_map(vertices_of).collect();
+    framing_camera(vertices.iter())
 }
 
 /// A camera that sees a sphere around the points: the matrix to its space, and the projection.

@@ -8,8 +8,8 @@ use relievo::files::Staged;
 use relievo::measure::{AtCost, AtError, Comparisons, Errors, ParetoPoint, ParetoReport, pareto};
 
 use super::plan::Plan;
-use super::progress::shown;
 use super::report::{self, picture};
+use crate::measuring::shown;
 use crate::output::say;
 use relievo::plot::{Chart, Series};
 

@@ -10,10 +10,10 @@ use relievo::measure::{AnimationReport, AnimationRow, Errors, animation, drawn};
 use relievo::{Error, InputError};
 
 use super::plan::Plan;
-use super::progress::shown;
 use super::{pareto, scene};
 use crate::Context;
 use crate::arguments::Backend;
+use crate::measuring::shown;
 use crate::output::say;
 use relievo::plot::{Chart, Series, grid};
 

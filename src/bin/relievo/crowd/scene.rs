@@ -8,9 +8,9 @@ use relievo::files::Staged;
 use relievo::measure::{Cheaper, SceneReport, SceneRow, scene};
 
 use super::plan::Plan;
-use super::progress::shown;
 use super::report::{clock, file_name, is_ours, picture};
 use crate::Context;
+use crate::measuring::shown;
 use crate::output::say;
 use relievo::plot::{Chart, Series};
 

@@ -1,0 +1,68 @@
+//! The buffer of a document, with its views and accessors.
+
+use serde_json::{Value, json};
+
+/// glTF's numbers of component types.
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+
+/// The bytes of the buffer, and what describes them.
+#[derive(Default)]
+pub(super) struct Binary {
+    pub bytes: Vec<u8>,
+    pub views: Vec<Value>,
+    pub accessors: Vec<Value>,
+}
+
+impl Binary {
+    /// Appends bytes as a view of their own, aligned to four; returns its index.
+    pub fn view(&mut self, bytes: impl IntoIterator<Item = u8>) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let start = self.bytes.len();
+        self.bytes.extend(bytes);
+        self.views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": self.bytes.len() - start }));
+        self.views.len() - 1
+    }
+
+    fn accessor(
+        &mut self,
+        bytes: impl IntoIterator<Item = u8>,
+        kind: &str,
+        component: u32,
+        count: usize,
+    ) -> usize {
+        let view = self.view(bytes);
+        let accessor =
+            json!({ "bufferView": view, "componentType": component, "type": kind, "count": count });
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    /// Appends vectors of floats; returns the index of their accessor. `kind` is glTF's `VEC3` and the like; `has_bounds`
+    /// states the least and largest components, as glTF requires of positions and times.
+    pub fn floats<const N: usize>(&mut self, kind: &str, vectors: &[[f32; N]], has_bounds: bool) -> usize {
+        let bytes = vectors.as_flattened().iter().flat_map(|number| number.to_le_bytes());
+        let index = self.accessor(bytes, kind, FLOAT, vectors.len());
+        if has_bounds {
+            let of = |start: f32, choose: fn(f32, f32) -> f32| -> Vec<f32> {
+                (0..N).map(|axis| vectors.iter().map(|vector| vector[axis]).fold(start, choose)).collect()
+            };
+            self.accessors[index]["min"] = json!(of(f32::INFINITY, f32::min));
+            self.accessors[index]["max"] = json!(of(f32::NEG_INFINITY, f32::max));
+        }
+        index
+    }
+
+    /// Appends indices of triangles; returns the index of their accessor.
+    pub fn indices(&mut self, indices: &[u32]) -> usize {
+        let bytes = indices.iter().flat_map(|index| index.to_le_bytes());
+        self.accessor(bytes, "SCALAR", UNSIGNED_INT, indices.len())
+    }
+
+    /// Appends vectors of four numbers of joints; returns the index of their accessor.
+    pub fn joints(&mut self, joints: &[[u16; 4]]) -> usize {
+        let bytes = joints.as_flattened().iter().flat_map(|joint| joint.to_le_bytes());
+        self.accessor(bytes, "VEC4", UNSIGNED_SHORT, joints.len())
+    }
+}

@@ -1,0 +1,133 @@
+//! Materials of a document, with their textures, samplers and images.
+
+use serde_json::{Value, json};
+
+use super::binary::Binary;
+use crate::InputError;
+use crate::asset::images::png;
+use crate::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
+use crate::asset::{Material, Mesh, Model};
+
+/// What meshes use, each once.
+#[derive(Default)]
+pub(super) struct Materials {
+    pub materials: Vec<Value>,
+    pub textures: Vec<Value>,
+    pub samplers: Vec<Value>,
+    pub images: Vec<Value>,
+    /// The materials of the model that were written, and whether triangles are visible from inside.
+    known: Vec<(Option<usize>, bool)>,
+    known_textures: Vec<Texture>,
+    known_samplers: Vec<Sampling>,
+    known_images: Vec<usize>,
+}
+
+impl Materials {
+    /// The index of a mesh's material. A mesh that has none needs one if its triangles are visible from inside.
+    pub fn index(
+        &mut self,
+        model: &Model,
+        mesh: &Mesh,
+        binary: &mut Binary,
+    ) -> Result<Option<usize>, InputError> {
+        let key = (mesh.material, mesh.double_sided);
+        if key == (None, false) {
+            return Ok(None);
+        }
+        if let Some(known) = self.known.iter().position(|known| *known == key) {
+            return Ok(Some(known));
+        }
+        let mut written = match model.material(mesh)? {
+            Some(material) => self.material(model, material, binary)?,
+            None => json!({}),
+        };
+        if mesh.double_sided {
+            written["doubleSided"] = true.into();
+        }
+        self.known.push(key);
+        self.materials.push(written);
+        Ok(Some(self.materials.len() - 1))
+    }
+
+    fn material(
+        &mut self,
+        model: &Model,
+        material: &Material,
+        binary: &mut Binary,
+    ) -> Result<Value, InputError> {
+        let mut written = json!({
+            "name": material.name,
+            "pbrMetallicRoughness": {
+                "baseColorFactor": material.color,
+                "metallicFactor": 0.0,
+                "roughnessFactor": 1.0,
+            },
+        });
+        if let Some(texture) = material.texture {
+            let index = self.texture(model, texture, binary)?;
+            written["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": index });
+        }
+        if let Some(texture) = material.normal {
+            let index = self.texture(model, texture, binary)?;
+            written["normalTexture"] = json!({ "index": index, "scale": material.normal_scale });
+        }
+        match material.alpha {
+            Alpha::Opaque => {}
+            Alpha::Mask(cutoff) => {
+                written["alphaMode"] = "MASK".into();
+                written["alphaCutoff"] = json!(cutoff);
+            }
+            Alpha::Dithered | Alpha::Blended => written["alphaMode"] = "BLEND".into(),
+        }
+        Ok(written)
+    }
+
+    fn texture(&mut self, model: &Model, texture: Texture, binary: &mut Binary) -> Result<usize, InputError> {
+        if let Some(known) = self.known_textures.iter().position(|known| *known == texture) {
+            return Ok(known);
+        }
+        let source = match self.known_images.iter().position(|known| *known == texture.image) {
+            Some(known) => known,
+            None => {
+                let view = binary.view(png(model, texture.image)?);
+                self.images.push(json!({ "bufferView": view, "mimeType": "image/png" }));
+                self.known_images.push(texture.image);
+                self.images.len() - 1
+            }
+        };
+        let sampler = match self.known_samplers.iter().position(|known| *known == texture.sampling) {
+            Some(known) => known,
+            None => {
+                self.samplers.push(sampler(&texture.sampling));
+                self.known_samplers.push(texture.sampling);
+                self.samplers.len() - 1
+            }
+        };
+        self.textures.push(json!({ "source": source, "sampler": sampler }));
+        self.known_textures.push(texture);
+        Ok(self.textures.len() - 1)
+    }
+}
+
+/// A sampler in OpenGL's numbers, which are glTF's.
+fn sampler(sampling: &Sampling) -> Value {
+    const NEAREST: u32 = 9728;
+    const LINEAR: u32 = 9729;
+    const NEAREST_MIPMAP_NEAREST: u32 = 9984;
+    let filter = |filter: Filter| if filter == Filter::Linear { LINEAR } else { NEAREST };
+    let minified = match (sampling.minified, sampling.mips) {
+        (minified, None) => filter(minified),
+        // Bit 0: between texels; bit 1: between mip levels.
+        (minified, Some(mips)) => {
+            NEAREST_MIPMAP_NEAREST
+                + u32::from(minified == Filter::Linear)
+                + 2 * u32::from(mips == Filter::Linear)
+        }
+    };
+    let [s, t] = sampling.wrap.map(|wrapping| match wrapping {
+        Wrapping::Repeat => 10497,
+        Wrapping::Mirror => 33648,
+        Wrapping::Clamp => 33071,
+    });
+    json!({ "magFilter": filter(sampling.magnified), "minFilter": minified, "wrapS": s, "wrapT": t })
+}

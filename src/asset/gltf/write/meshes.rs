@@ -1,0 +1,111 @@
+//! Meshes of a document: primitives with attributes, influences and morph targets.
+
+use std::ops::Range;
+
+use serde_json::{Value, json};
+
+use super::super::primitive::flipped;
+use super::super::winding::turn_mirrored;
+use super::binary::Binary;
+use crate::asset::morph::MorphTarget;
+use crate::asset::{Influences, Mesh, Model};
+
+/// Consecutive meshes of a model that are primitives of one node.
+pub(super) struct Group {
+    /// The node's name.
+    pub name: String,
+    /// The meshes of the model.
+    pub meshes: Range<usize>,
+    /// Whether the node has a skin; otherwise it follows one bone.
+    pub is_skinned: bool,
+}
+
+/// The groups of a model's meshes: those with one skin that are named as the import names primitives, a name with the numbers
+/// from 0. Their morph weights must be the same.
+pub(super) fn groups(model: &Model) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for (at, mesh) in model.meshes.iter().enumerate() {
+        let is_skinned = at < model.skinned || model.skins[mesh.skin].bones.len() != 1;
+        let parts =
+            mesh.name.rsplit_once('_').and_then(|(name, number)| Some((name, number.parse::<usize>().ok()?)));
+        if let (Some(group), Some((name, number))) = (groups.last_mut(), parts) {
+            let first = &model.meshes[group.meshes.start];
+            let is_next = number == group.meshes.len() && number > 0 && name == group.name;
+            let is_alike = (first.skin, &first.weights) == (mesh.skin, &mesh.weights)
+                && first.weight_keys == mesh.weight_keys
+                && group.is_skinned == is_skinned;
+            if is_next && is_alike {
+                group.meshes.end = at + 1;
+                continue;
+            }
+        }
+        let name = match parts {
+            Some((name, 0)) => name,
+            _ => &mesh.name,
+        };
+        groups.push(Group { name: name.to_owned(), meshes: at..at + 1, is_skinned });
+    }
+    groups
+}
+
+/// A primitive. `mirrors` says which bones of its skin mirror: the file's triangles are reversed there, as the import
+/// reverses them back.
+pub(super) fn primitive(
+    mesh: &Mesh,
+    is_skinned: bool,
+    mirrors: &[bool],
+    material: Option<usize>,
+    binary: &mut Binary,
+) -> Value {
+    let mut attributes = json!({ "POSITION": binary.floats("VEC3", &mesh.positions, true) });
+    attributes["NORMAL"] = binary.floats("VEC3", &mesh.normals, false).into();
+    let tangents: Vec<_> = mesh.tangents.iter().map(|tangent| flipped(*tangent)).collect();
+    attributes["TANGENT"] = binary.floats("VEC4", &tangents, false).into();
+    attributes["TEXCOORD_0"] = binary.floats("VEC2", &mesh.uv, false).into();
+    if is_skinned {
+        add_influences(&mesh.influences, &mut attributes, binary);
+    }
+    let mut turned = Mesh { levels: Vec::new(), targets: Vec::new(), ..mesh.clone() };
+    turn_mirrored(&mut turned, mirrors);
+    let mut primitive = json!({ "attributes": attributes, "indices": binary.indices(&turned.indices) });
+    if let Some(material) = material {
+        primitive["material"] = material.into();
+    }
+    if !mesh.targets.is_empty() {
+        let targets = mesh.targets.iter().map(|target| morph_target(target, mesh.vertices(), binary));
+        primitive["targets"] = targets.collect();
+    }
+    primitive
+}
+
+/// Adds sets of four joints and weights, as many as the vertex with the most influences needs.
+fn add_influences(influences: &Influences, attributes: &mut Value, binary: &mut Binary) {
+    for set in 0..influences.most().div_ceil(4).max(1) {
+        let of = |vertex: usize, at: usize| influences.of(vertex).get(4 * set + at);
+        let vertices = 0..influences.vertices();
+        let joints: Vec<[u16; 4]> = vertices
+            .clone()
+            .map(|vertex| [0, 1, 2, 3].map(|at| of(vertex, at).map_or(0, |influence| influence.bone as u16)))
+            .collect();
+        let weights: Vec<[f32; 4]> = vertices
+            .map(|vertex| [0, 1, 2, 3].map(|at| of(vertex, at).map_or(0.0, |influence| influence.weight)))
+            .collect();
+        attributes[format!("JOINTS_{set}")] = binary.joints(&joints).into();
+        attributes[format!("WEIGHTS_{set}")] = binary.floats("VEC4", &weights, false).into();
+    }
+}
+
+/// A target with a displacement of every vertex.
+fn morph_target(target: &MorphTarget, vertices: usize, binary: &mut Binary) -> Value {
+    let mut all = [(); 3].map(|()| vec![[0.0_f32; 3]; vertices]);
+    for (vertex, delta) in target.vertices.iter().zip(&target.deltas) {
+        let deltas = [delta.position, delta.normal, delta.tangent];
+        all.iter_mut().zip(deltas).for_each(|(all, delta)| all[*vertex as usize] = delta);
+    }
+    let [positions, normals, tangents] = all;
+    json!({
+        "POSITION": binary.floats("VEC3", &positions, true),
+        "NORMAL": binary.floats("VEC3", &normals, false),
+        "TANGENT": binary.floats("VEC3", &tangents, false),
+    })
+}

@@ -1,0 +1,59 @@
+//! Import of models from files, by the ending of their names.
+
+use std::path::Path;
+
+use super::model::Model;
+use crate::asset::gltf::Beside;
+use crate::{Error, InputError};
+
+/// The endings of files that can be read, in lower case.
+pub const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
+
+impl Model {
+    /// Reads a `.gltf`, `.glb` or `.obj` file, and the buffers, material libraries and images beside it.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`], with the path in the file or its line, for
+    /// everything that the format forbids or that this crate does not read.
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        Self::read(path, |bytes, beside| Self::from_bytes_beside(path, bytes, beside))
+    }
+
+    /// As [`Model::from_file`], without materials and images. Use it when nothing is drawn: missing textures
+    /// and extensions for materials and images then do not matter. No vertex is repeated for its tangents.
+    ///
+    /// # Errors
+    /// As [`Model::from_file`], except those about materials and images.
+    pub fn from_file_bare(path: &Path) -> Result<Self, Error> {
+        Self::read(path, |bytes, beside| match is_obj(path) {
+            true => Self::from_obj(bytes, None),
+            false => Self::from_gltf_bare(bytes, beside),
+        })
+    }
+
+    /// Reads a model from memory: Wavefront OBJ if its name ends in `.obj`, and otherwise glTF. `beside` reads the files
+    /// beside it, and gets their paths relative to the model's folder. It works without a file system.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path in the file, or its line.
+    pub fn from_bytes_beside(name: &Path, bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
+        match is_obj(name) {
+            true => Self::from_obj_beside(bytes, beside),
+            false => Self::from_gltf_beside(bytes, beside),
+        }
+    }
+
+    fn read(
+        path: &Path,
+        import: impl FnOnce(&[u8], Beside<'_>) -> Result<Self, InputError>,
+    ) -> Result<Self, Error> {
+        let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        import(&bytes, &|name: &Path| std::fs::read(folder.join(name)))
+            .map_err(|source| Error::InputFile { path: path.to_owned(), source })
+    }
+}
+
+fn is_obj(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
+}

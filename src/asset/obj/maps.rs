@@ -1,0 +1,162 @@
+//! The map statements of material libraries: options, and the name of an image.
+
+use std::path::{Component, Path, PathBuf};
+
+use super::statements::Statement;
+use crate::InputError;
+
+/// An image that a material names.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Map {
+    /// The image's name as the file has it.
+    pub name: String,
+    /// The image's path relative to the library.
+    pub path: PathBuf,
+    /// What is added to texture coordinates, v up, after they are scaled.
+    pub offset: [f64; 2],
+    /// The factors of texture coordinates.
+    pub scale: [f64; 2],
+    /// Whether the texels at the edge lie beyond it, and not the image again.
+    pub is_clamped: bool,
+    /// The factor of bumps.
+    pub bump: f32,
+    /// The line, for errors.
+    pub at: InputError,
+}
+
+/// The number of words after options that have no use here.
+const SKIPPED: [(&str, usize); 8] = [
+    ("-blendu", 1),
+    ("-blendv", 1),
+    ("-boost", 1),
+    ("-cc", 1),
+    ("-imfchan", 1),
+    ("-mm", 2),
+    ("-texres", 1),
+    ("-type", 1),
+];
+
+impl Map {
+    /// Reads a statement of a library.
+    ///
+    /// # Errors
+    /// [`InputError`] for options without their values, and for a name that is missing, or of a file outside the
+    /// library's folder.
+    pub fn new(statement: &Statement<'_>, file: &str) -> Result<Self, InputError> {
+        let refused = |bound: &str| statement.refused(Some(file), bound);
+        let mut words = Words(&statement.rest);
+        let (mut offset, mut scale) = ([0.0; 2], [1.0; 2]);
+        let (mut is_clamped, mut bump) = (false, 1.0);
+        let name = loop {
+            let here = words.0;
+            let word = words.next().ok_or_else(|| refused("must name an image"))?;
+            match word {
+                "-o" => words.numbers(&mut offset).ok_or_else(|| refused("-o must have numbers"))?,
+                "-s" => words.numbers(&mut scale).ok_or_else(|| refused("-s must have numbers"))?,
+                "-t" => words.numbers(&mut [0.0; 2]).ok_or_else(|| refused("-t must have numbers"))?,
+                "-clamp" => is_clamped = words.next() == Some("on"),
+                "-bm" => {
+                    let mut number = [1.0];
+                    words.numbers(&mut number).ok_or_else(|| refused("-bm must have a number"))?;
+                    bump = number[0] as f32;
+                }
+                _ => match SKIPPED.iter().find(|(option, _)| *option == word) {
+                    Some((_, values)) => (0..*values).for_each(|_| {
+                        words.next();
+                    }),
+                    None => break here.trim(),
+                },
+            }
+        };
+        let bound = "must be a file in the folder of the library or below";
+        let path = path_below(name).ok_or_else(|| refused(bound))?;
+        let at = refused("");
+        Ok(Self { name: name.to_owned(), path, offset, scale, is_clamped, bump, at })
+    }
+
+    /// An error at the map's line.
+    pub fn refused(&self, bound: impl Into<String>) -> InputError {
+        InputError { bound: bound.into(), ..self.at.clone() }
+    }
+}
+
+/// The rest of a statement, word by word.
+struct Words<'a>(&'a str);
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Option<&'a str> {
+        let text = self.0.trim_start();
+        let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+        self.0 = rest;
+        (!word.is_empty()).then_some(word)
+    }
+
+    /// Reads up to three numbers, at least one; what there is no number for stays. `None` without a finite number.
+    fn numbers(&mut self, to: &mut [f64]) -> Option<()> {
+        for at in 0..3 {
+            let before = self.0;
+            match self.next().and_then(|word| word.parse::<f64>().ok()) {
+                Some(number) if number.is_finite() => {
+                    if let Some(to) = to.get_mut(at) {
+                        *to = number;
+                    }
+                }
+                _ if at == 0 => return None,
+                _ => {
+                    self.0 = before;
+                    break;
+                }
+            }
+            if to.len() == 1 {
+                break;
+            }
+        }
+        Some(())
+    }
+}
+
+/// A path that does not lead out of its folder; `None` for others. Backslashes separate folders, too.
+pub(super) fn path_below(name: &str) -> Option<PathBuf> {
+    let name = name.replace('\\', "/");
+    let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    if name.is_empty() || name.contains(':') || !Path::new(&name).components().all(is_plain) {
+        return None;
+    }
+    let parts = Path::new(&name).components().filter(|part| *part != Component::CurDir);
+    Some(parts.collect::<PathBuf>()).filter(|path| !path.as_os_str().is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::statements::Statements;
+    use super::*;
+
+    fn map(text: &str) -> Result<Map, InputError> {
+        Map::new(&Statements::new(text.as_bytes()).next().expect("a statement"), "a.mtl")
+    }
+
+    #[test]
+    fn options_come_before_names_with_spaces() {
+        let found =
+            map("map_Kd -blendu on -o 0.5 -s 2 3 4 -mm 0 1 -clamp on tex\\old oak 1.png ").expect("valid");
+        assert_eq!((&*found.name, &*found.path), ("tex\\old oak 1.png", Path::new("tex/old oak 1.png")));
+        assert_eq!((found.offset, found.scale, found.is_clamped), ([0.5, 0.0], [2.0, 3.0], true));
+        assert_eq!(map("norm -bm 0.25 ./n.png").map(|map| (map.bump, map.path)), Ok((0.25, "n.png".into())));
+    }
+
+    #[test]
+    fn what_is_no_map_is_refused() {
+        for text in [
+            "map_Kd",
+            "map_Kd -s 1",
+            "map_Kd ../a.png",
+            "map_Kd /a.png",
+            "map_Kd C:\\a.png",
+            "bump -bm a.png",
+        ] {
+            let error = map(text).expect_err(text);
+            assert_eq!((&*error.path, &*error.value), ("a.mtl line 1", text));
+        }
+        assert_eq!(map("map_Kd a.png").expect("valid").refused("why").bound, "why");
+    }
+}

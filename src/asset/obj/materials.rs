@@ -1,0 +1,255 @@
+//! Materials of OBJ models: what their libraries say, with images.
+
+use std::collections::HashMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use image::RgbaImage;
+use image::imageops::{FilterType, resize};
+
+use super::library::{Entry, entries};
+use super::maps::{Map, path_below};
+use crate::InputError;
+use crate::asset::gltf::Beside;
+use crate::asset::gltf::budget::Budget;
+use crate::asset::gltf::materials::decode;
+use crate::asset::material::{Alpha, Material, Sampling, Texture, Wrapping};
+use crate::asset::mesh::COORDINATE_LIMIT;
+
+/// The materials of the libraries that a model names. Those that it uses are read, with their images, each once.
+pub(super) struct Materials<'a> {
+    beside: Option<Beside<'a>>,
+    budget: Budget,
+    entries: HashMap<String, Entry>,
+    known: HashMap<String, usize>,
+    of_images: HashMap<[Option<PathBuf>; 2], usize>,
+    pub materials: Vec<Material>,
+    /// Images, the top row first.
+    pub images: Vec<RgbaImage>,
+    /// For each material, the map whose offset and scale change texture coordinates, if there is one.
+    moves: Vec<Option<Map>>,
+}
+
+impl<'a> Materials<'a> {
+    /// Reads libraries; each is given as its line and the text after `mtllib`.
+    ///
+    /// # Errors
+    /// [`InputError`] for a library that exists and cannot be read.
+    pub fn new(beside: Option<Beside<'a>>, libraries: &[(usize, String)]) -> Result<Self, InputError> {
+        let mut found = Self {
+            beside,
+            budget: Budget::default(),
+            entries: HashMap::new(),
+            known: HashMap::new(),
+            of_images: HashMap::new(),
+            materials: Vec::new(),
+            images: Vec::new(),
+            moves: Vec::new(),
+        };
+        for (line, text) in libraries {
+            // A statement has several names, or one with spaces.
+            if !found.library(*line, text)? && text.contains(char::is_whitespace) {
+                for name in text.split_whitespace() {
+                    found.library(*line, name)?;
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Reads a library; false if there is none of this name. The first material of a name counts.
+    fn library(&mut self, line: usize, name: &str) -> Result<bool, InputError> {
+        let Some(beside) = self.beside else { return Ok(false) };
+        let refused = |bound: String| {
+            let shown: String = name.chars().take(60).collect();
+            InputError::new(format!("line {line}"), format!("mtllib {shown}"), bound)
+        };
+        let Some(path) = path_below(name) else {
+            return Err(refused("must be a file in the folder of the model or below".to_owned()));
+        };
+        let bytes = match beside(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+            Err(error) => return Err(refused(format!("cannot be read: {error}"))),
+        };
+        self.budget.add_bytes(bytes.len());
+        for entry in entries(&path.to_string_lossy(), &bytes)? {
+            self.entries.entry(entry.name.clone()).or_insert(entry);
+        }
+        Ok(true)
+    }
+
+    /// Reads a material unless it has been read already: its index in the list; `None` if no library has it.
+    ///
+    /// # Errors
+    /// [`InputError`] with the line, for an image that cannot be read.
+    pub fn read(&mut self, name: &str) -> Result<Option<usize>, InputError> {
+        if let Some(known) = self.known.get(name) {
+            return Ok(Some(*known));
+        }
+        let Some(entry) = self.entries.get(name).cloned() else { return Ok(None) };
+        let (texture, has_alpha) = self.texture(&entry)?;
+        let (normal, normal_scale) = self.normal(&entry)?;
+        let [red, green, blue] = entry.color.map(|channel| linear(channel) as f32);
+        let alpha = if has_alpha || entry.opacity < 1.0 { Alpha::Dithered } else { Alpha::Opaque };
+        let color = [red, green, blue, entry.opacity as f32];
+        self.materials.push(Material {
+            name: entry.name.clone(),
+            color,
+            texture,
+            normal,
+            normal_scale,
+            alpha,
+        });
+        let map = entry.color_map.or(entry.opacity_map);
+        self.moves.push(map.filter(|map| map.offset != [0.0; 2] || map.scale != [1.0; 2]));
+        self.known.insert(name.to_owned(), self.materials.len() - 1);
+        Ok(Some(self.materials.len() - 1))
+    }
+
+    /// Changes texture coordinates, v down, to those at which a material's images are read.
+    ///
+    /// # Errors
+    /// [`InputError`] with the line of the material's map, for coordinates that leave the range.
+    pub fn move_coordinates(&self, material: usize, all: &mut [[f32; 2]]) -> Result<(), InputError> {
+        let Some(map) = &self.moves[material] else { return Ok(()) };
+        let ([right, up], [wide, high]) = (map.offset, map.scale);
+        for uv in all {
+            let [u, v] = uv.map(f64::from);
+            let moved = [(u * wide + right) as f32, (1.0 - ((1.0 - v) * high + up)) as f32];
+            if !moved.iter().all(|x| x.abs() <= COORDINATE_LIMIT) {
+                return Err(
+                    map.refused(format!("must keep texture coordinates within ±{COORDINATE_LIMIT:e}"))
+                );
+            }
+            *uv = moved;
+        }
+        Ok(())
+    }
+
+    /// The image of the colour with the opacity of its own map, and whether it has one.
+    fn texture(&mut self, entry: &Entry) -> Result<(Option<Texture>, bool), InputError> {
+        let (color, opacity) = (&entry.color_map, &entry.opacity_map);
+        let Some(first) = color.as_ref().or(opacity.as_ref()) else { return Ok((None, false)) };
+        let key = [color, opacity].map(|map| map.as_ref().map(|map| entry.folder.join(&map.path)));
+        let image = match self.of_images.get(&key) {
+            Some(known) => *known,
+            None => {
+                let mut image = match color {
+                    Some(map) => opaque(self.image(entry, map)?),
+                    None => RgbaImage::from_pixel(1, 1, image::Rgba([u8::MAX; 4])),
+                };
+                if let Some(map) = opacity {
+                    let opacity = self.image(entry, map)?;
+                    if color.is_none() {
+                        image = RgbaImage::from_pixel(
+                            opacity.width(),
+                            opacity.height(),
+                            image::Rgba([u8::MAX; 4]),
+                        );
+                    }
+                    set_opacity(&mut image, opacity);
+                }
+                self.push(key, image)
+            }
+        };
+        Ok((Some(Texture { image, sampling: sampling(first) }), opacity.is_some()))
+    }
+
+    /// The normal map and its scale: `norm`, or a bump map with colours.
+    fn normal(&mut self, entry: &Entry) -> Result<(Option<Texture>, f32), InputError> {
+        let (map, is_certain) = match (&entry.normal_map, &entry.bump_map) {
+            (Some(map), _) => (map, true),
+            (None, Some(map)) => (map, false),
+            (None, None) => return Ok((None, 1.0)),
+        };
+        let key = [Some(entry.folder.join(&map.path)), None];
+        let is_heights = |image: &RgbaImage| {
+            !is_certain && image.pixels().all(|texel| texel[0] == texel[1] && texel[1] == texel[2])
+        };
+        let image = match self.of_images.get(&key) {
+            Some(known) if is_heights(&self.images[*known]) => return Ok((None, 1.0)),
+            Some(known) => *known,
+            None => {
+                let image = self.image(entry, map)?;
+                if is_heights(&image) {
+                    return Ok((None, 1.0));
+                }
+                self.push(key, opaque(image))
+            }
+        };
+        Ok((Some(Texture { image, sampling: sampling(map) }), map.bump))
+    }
+
+    fn push(&mut self, key: [Option<PathBuf>; 2], image: RgbaImage) -> usize {
+        self.images.push(image);
+        self.of_images.insert(key, self.images.len() - 1);
+        self.images.len() - 1
+    }
+
+    fn image(&self, entry: &Entry, map: &Map) -> Result<RgbaImage, InputError> {
+        let read = |path: &Path| match self.beside {
+            Some(beside) => beside(path),
+            None => Err(ErrorKind::NotFound.into()),
+        };
+        let bytes = read(&entry.folder.join(&map.path));
+        let bytes = bytes.map_err(|error| map.refused(format!("the image cannot be read: {error}")))?;
+        self.budget.add_bytes(bytes.len());
+        decode(&self.budget, &map.at.path, &bytes)
+            .map_err(|error| map.refused(format!("the image {} {}", map.name, error.bound)))
+    }
+}
+
+fn sampling(map: &Map) -> Sampling {
+    let wrap = if map.is_clamped { Wrapping::Clamp } else { Wrapping::Repeat };
+    Sampling { wrap: [wrap; 2], ..Sampling::default() }
+}
+
+/// The image without transparency, which is `map_d`'s alone.
+fn opaque(mut image: RgbaImage) -> RgbaImage {
+    image.pixels_mut().for_each(|texel| texel[3] = u8::MAX);
+    image
+}
+
+/// Takes alpha from an image of opacities: its own alpha if it has any, otherwise its brightness. It gets the size of the
+/// image that it is for.
+fn set_opacity(image: &mut RgbaImage, mut opacity: RgbaImage) {
+    if opacity.dimensions() != image.dimensions() {
+        opacity = resize(&opacity, image.width(), image.height(), FilterType::Triangle);
+    }
+    let has_alpha = opacity.pixels().any(|texel| texel[3] < u8::MAX);
+    for (texel, opacity) in image.pixels_mut().zip(opacity.pixels()) {
+        let sum: u32 = opacity.0[..3].iter().map(|channel| u32::from(*channel)).sum();
+        texel[3] = if has_alpha { opacity[3] } else { (sum / 3) as u8 };
+    }
+}
+
+/// A channel in sRGB, from 0 to 1, as linear light, in double precision: what is written is read back unchanged.
+pub(super) fn linear(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+}
+
+/// The inverse of [`linear`].
+pub(super) fn encoded(linear: f64) -> f64 {
+    match linear {
+        _ if linear <= 0.040_45 / 12.92 => 12.92 * linear,
+        // Without rounding.
+        1.0 => 1.0,
+        _ => 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_survive_encoding() {
+        for at in 0..=100_000 {
+            let value = at as f32 / 100_000.0;
+            assert!(linear(encoded(value.into())) as f32 == value, "{value}");
+        }
+        assert_eq!((linear(1.0), encoded(1.0), linear(0.0)), (1.0, 1.0, 0.0));
+        assert!((linear(0.5) - 0.214_041_140_482_232_55).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,226 @@
+//! Makes a model of what an OBJ file contains: a mesh for each object, group and material.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::joined::Joined;
+use super::materials::Materials;
+use super::parsed::{Corner, NONE, Parsed, Run};
+use super::polygons::{MAX_CONCAVE, triangles};
+use crate::InputError;
+use crate::asset::gltf::Beside;
+use crate::asset::gltf::tangents::Surface;
+use crate::asset::mesh::{MAX_VERTICES, Mesh, smooth_normals};
+use crate::asset::skeleton::{Bone, Skeleton, Skin};
+use crate::asset::{Influence, Influences, Model, Transform};
+
+/// The most meshes of a file.
+const MAX_MESHES: usize = 1 << 16;
+
+/// The name of the bone of faces without object and group.
+const UNNAMED: &str = "mesh";
+
+/// Reads a model; `beside` reads its libraries and images. Without it, there are no materials, and no vertex is repeated for
+/// its tangents.
+pub(super) fn import(bytes: &[u8], beside: Option<Beside<'_>>) -> Result<Model, InputError> {
+    let parsed = Parsed::new(bytes)?;
+    let triangles = Triangles::new(&parsed)?;
+    let parts = parsed.parts();
+    if parts.len() > MAX_MESHES {
+        let bound = format!("must be at most {MAX_MESHES} objects, groups and materials");
+        return Err(InputError::new("OBJ", parts.len(), bound));
+    }
+    let normals = Normals::new(&parsed, &triangles.corners);
+    let mut materials = Materials::new(beside, &parsed.libraries)?;
+    let mut nodes = Nodes::default();
+    let mut meshes = Vec::new();
+    for (run, faces) in parts {
+        let corners: Vec<Corner> = faces.into_iter().flat_map(|faces| triangles.of(faces)).copied().collect();
+        if corners.is_empty() {
+            continue;
+        }
+        let material = run.material.as_deref().map(|name| materials.read(name)).transpose()?.flatten();
+        let (name, skin) = nodes.mesh(run);
+        let mut mesh = mesh(&parsed, &normals, &corners)?;
+        if let Some(material) = material {
+            materials.move_coordinates(material, &mut mesh.uv)?;
+        }
+        let mesh = Mesh { name, skin, material, ..mesh };
+        meshes.push(with_tangents(mesh, beside.is_none())?);
+    }
+    if meshes.is_empty() {
+        let bound = "must have at least one face with three different positions";
+        return Err(InputError::new("OBJ", format!("[{} faces]", parsed.faces.len()), bound));
+    }
+    let Nodes { bones, skins, .. } = nodes;
+    Ok(Model {
+        skeleton: Skeleton::of_joints(bones)?,
+        skins,
+        clips: Vec::new(),
+        meshes,
+        skinned: 0,
+        materials: materials.materials,
+        images: materials.images,
+    })
+}
+
+/// The triangles of all faces.
+struct Triangles {
+    /// Three corners each.
+    corners: Vec<Corner>,
+    /// For each face, the number of corners before its triangles; then the number of all.
+    first: Vec<usize>,
+}
+
+impl Triangles {
+    fn new(parsed: &Parsed) -> Result<Self, InputError> {
+        let (mut corners, mut first) = (Vec::new(), Vec::with_capacity(parsed.faces.len() + 1));
+        for (face, line) in parsed.faces.iter().zip(&parsed.lines) {
+            first.push(corners.len());
+            let positions: Vec<DVec3> = face.iter().map(|corner| position(parsed, corner)).collect();
+            let Some(found) = triangles(&positions) else {
+                let bound = format!("must have at most {MAX_CONCAVE} corners, or be convex");
+                return Err(InputError::new(
+                    format!("line {line}"),
+                    format!("f [{} corners]", face.len()),
+                    bound,
+                ));
+            };
+            for triangle in found {
+                let [a, b, c] = triangle.map(|place| face[place]);
+                if a[0] != b[0] && b[0] != c[0] && c[0] != a[0] {
+                    corners.extend([a, b, c]);
+                }
+            }
+        }
+        first.push(corners.len());
+        Ok(Self { corners, first })
+    }
+
+    fn of(&self, faces: std::ops::Range<usize>) -> &[Corner] {
+        &self.corners[self.first[faces.start]..self.first[faces.end]]
+    }
+}
+
+fn position(parsed: &Parsed, corner: &Corner) -> DVec3 {
+    DVec3::from(parsed.positions[corner[0] as usize].map(f64::from))
+}
+
+/// The normals of corners: the file's, with length 1, or those that it lacks.
+struct Normals {
+    given: Vec<Option<[f32; 3]>>,
+    /// For each position, the smooth normal of the faces that lack some.
+    smooth: Vec<[f32; 3]>,
+}
+
+impl Normals {
+    fn new(parsed: &Parsed, corners: &[Corner]) -> Self {
+        let given: Vec<_> = parsed.normals.iter().map(unit).collect();
+        let lacks = |corner: &Corner| corner[2] == NONE || given[corner[2] as usize].is_none();
+        let lacking = corners.chunks_exact(3).filter(|triangle| triangle.iter().any(lacks));
+        let indices: Vec<u32> = lacking.flatten().map(|corner| corner[0]).collect();
+        let smooth = match indices.is_empty() {
+            true => Vec::new(),
+            false => smooth_normals(&parsed.positions, &indices),
+        };
+        Self { given, smooth }
+    }
+
+    fn of(&self, corner: &Corner) -> [f32; 3] {
+        let given = self.given.get(corner[2] as usize).copied().flatten();
+        given.unwrap_or_else(|| self.smooth[corner[0] as usize])
+    }
+}
+
+/// The vector with length 1; `None` for one without a direction.
+fn unit(normal: &[f32; 3]) -> Option<[f32; 3]> {
+    match normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt() {
+        // Normals of about unit length are kept as they are, to avoid a second rounding.
+        length if (length - 1.0).abs() < 1e-3 => Some(*normal),
+        length if length > 1e-6 => Some(normal.map(|x| (f64::from(x) / length) as f32)),
+        _ => None,
+    }
+}
+
+/// The mesh of corners, three a triangle, without name, skin, material and tangents.
+fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, InputError> {
+    let Joined { vertices, indices } = Joined::new(corners);
+    if vertices.len() > MAX_VERTICES {
+        let bound = format!("must be at most {MAX_VERTICES} in a mesh");
+        return Err(InputError::new("vertices.len", vertices.len(), bound));
+    }
+    let one = Influence { bone: 0, weight: 1.0 };
+    Ok(Mesh {
+        name: String::new(),
+        skin: 0,
+        positions: vertices.iter().map(|corner| parsed.positions[corner[0] as usize]).collect(),
+        normals: vertices.iter().map(|corner| normals.of(corner)).collect(),
+        tangents: Vec::new(),
+        uv: vertices
+            .iter()
+            .map(|corner| parsed.uv.get(corner[1] as usize).copied().unwrap_or([0.0; 2]))
+            .collect(),
+        indices,
+        double_sided: false,
+        material: None,
+        influences: Influences::new("v", 1, vertices.iter().map(|_| vec![one]))?,
+        targets: Vec::new(),
+        weights: Vec::new(),
+        weight_keys: Vec::new(),
+        levels: Vec::new(),
+        partners: Vec::new(),
+    })
+}
+
+/// The mesh with tangents; `is_bare` keeps its number of vertices.
+fn with_tangents(mut mesh: Mesh, is_bare: bool) -> Result<Mesh, InputError> {
+    let Mesh { positions, normals, uv, indices, .. } = &mesh;
+    let surface = Surface { positions, normals, uv, indices };
+    let has_uv = uv.iter().any(|uv| *uv != [0.0; 2]);
+    let tangents = if has_uv && !is_bare { surface.generated()? } else { surface.solved()? };
+    if mesh.vertices() + tangents.copied.len() > MAX_VERTICES {
+        let bound =
+            format!("with {} copies for tangents must be at most {MAX_VERTICES}", tangents.copied.len());
+        return Err(InputError::new("vertices.len", mesh.vertices(), bound));
+    }
+    tangents.apply(&mut mesh);
+    Ok(mesh)
+}
+
+/// Bones for objects and groups, with a skin each.
+#[derive(Default)]
+struct Nodes {
+    bones: Vec<Bone>,
+    skins: Vec<Skin>,
+    known: HashMap<(Option<String>, Option<String>), usize>,
+    /// For each bone, the number of its meshes.
+    meshes: Vec<usize>,
+}
+
+impl Nodes {
+    /// The name and the skin of the next mesh of a run's object and group.
+    fn mesh(&mut self, run: &Run) -> (String, usize) {
+        let node = self.node(&run.object, &run.group);
+        self.meshes[node] += 1;
+        (format!("{}_{}", self.bones[node].name, self.meshes[node] - 1), node)
+    }
+
+    fn node(&mut self, object: &Option<String>, group: &Option<String>) -> usize {
+        if let Some(known) = self.known.get(&(object.clone(), group.clone())) {
+            return *known;
+        }
+        let parent = match (object, group) {
+            (Some(_), Some(_)) => Some(self.node(object, &None) as u32),
+            _ => None,
+        };
+        let name = group.as_ref().or(object.as_ref()).map_or(UNNAMED, |name| name);
+        let bone = self.bones.len();
+        self.bones.push(Bone { name: name.to_owned(), parent, rest: Transform::IDENTITY });
+        let inverse_binds = vec![glam::Mat4::IDENTITY.to_cols_array()];
+        self.skins.push(Skin { name: name.to_owned(), bones: vec![bone as u32], inverse_binds });
+        self.meshes.push(0);
+        self.known.insert((object.clone(), group.clone()), bone);
+        bone
+    }
+}

@@ -1,0 +1,162 @@
+//! Divides polygons into triangles: fans where they are convex, and ear clipping elsewhere (Meisters, "Polygons Have
+//! Ears", 1975). Every corner stays, also where it lies on a straight line between its neighbours, so that polygons
+//! that share an edge still share all of its points.
+
+use glam::{DVec2, DVec3};
+
+/// The most corners of a polygon that is not convex: the time of ear clipping grows with the square of their number.
+pub(super) const MAX_CONCAVE: usize = 4096;
+
+/// The triangles of a polygon, three places in the list of its corners each; as many as it has corners, less two. They
+/// turn as the polygon does. `None` for a polygon that is not convex and has too many corners.
+pub(super) fn triangles(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
+    let count = corners.len();
+    let fan = || (1..count.saturating_sub(1)).map(|at| [0, at, at + 1]).collect();
+    if count <= 3 {
+        return Some(fan());
+    }
+    let flat = projected(corners);
+    let turn = |at: usize| area(flat[(at + count - 1) % count], flat[at], flat[(at + 1) % count]);
+    let least = (0..count).map(turn).fold(f64::INFINITY, f64::min);
+    if least > 0.0 {
+        return Some(fan());
+    }
+    // A fan of a convex polygon with straight angles has triangles without area, which are kept out if that takes no time.
+    match count <= MAX_CONCAVE {
+        true => Some(clipped(&flat)),
+        false => (least == 0.0).then(fan),
+    }
+}
+
+/// The polygon on the plane of two axes on which it is largest, turned so that it is counter-clockwise.
+fn projected(corners: &[DVec3]) -> Vec<DVec2> {
+    // Twice the area of the projection on each plane (Newell). Differences keep large coordinates from cancelling.
+    let from = corners[0];
+    let edges = corners.windows(2).map(|pair| (pair[0] - from).cross(pair[1] - from));
+    let normal: DVec3 = edges.sum();
+    let size = normal.abs();
+    let (keep, sign): (fn(DVec3) -> DVec2, f64) = if size.z >= size.x && size.z >= size.y {
+        (|p| DVec2::new(p.x, p.y), normal.z)
+    } else if size.y >= size.x {
+        (|p| DVec2::new(p.z, p.x), normal.y)
+    } else {
+        (|p| DVec2::new(p.y, p.z), normal.x)
+    };
+    let turned = |p: DVec2| if sign < 0.0 { DVec2::new(p.y, p.x) } else { p };
+    corners.iter().map(|corner| turned(keep(*corner - from))).collect()
+}
+
+/// Twice the area of a triangle, positive if it is counter-clockwise.
+fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Cuts ears off: corners that turn left and whose triangle contains no other corner. Where rounding or a polygon that
+/// crosses itself leaves none, any corner is cut off.
+fn clipped(flat: &[DVec2]) -> Vec<[usize; 3]> {
+    let mut left: Vec<usize> = (0..flat.len()).collect();
+    let mut triangles = Vec::with_capacity(flat.len() - 2);
+    let mut at = 0;
+    let mut tried = 0;
+    while left.len() > 3 {
+        let count = left.len();
+        let ear = [(at + count - 1) % count, at, (at + 1) % count].map(|place| left[place]);
+        if tried < count && !is_ear(flat, &left, ear) {
+            (at, tried) = ((at + 1) % count, tried + 1);
+            continue;
+        }
+        triangles.push(ear);
+        left.remove(at);
+        // The corner before has changed, too. Steps of two give triangles that are less thin than a fan's.
+        (at, tried) = ((at + 1) % left.len(), 0);
+    }
+    triangles.push([left[0], left[1], left[2]]);
+    triangles
+}
+
+fn is_ear(flat: &[DVec2], left: &[usize], ear: [usize; 3]) -> bool {
+    let [a, b, c] = ear.map(|corner| flat[corner]);
+    if area(a, b, c) <= 0.0 {
+        return false;
+    }
+    let is_inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
+    // Copies of the ear's corners, as at bridges to holes, do not count.
+    let is_corner = |p: DVec2| p == a || p == b || p == c;
+    !left.iter().map(|corner| flat[*corner]).any(|p| is_inside(p) && !is_corner(p))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The area of a polygon's triangles in the plane z = 0, each of which must turn as the polygon does.
+    fn covered(corners: &[[f64; 2]]) -> f64 {
+        let corners: Vec<DVec3> = corners.iter().map(|[x, y]| DVec3::new(*x, *y, 7.0)).collect();
+        let triangles = triangles(&corners).expect("small");
+        assert_eq!(triangles.len(), corners.len() - 2);
+        let areas = triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|corner| corners[corner].truncate());
+            area(a, b, c) / 2.0
+        });
+        areas.inspect(|area| assert!(*area >= 0.0, "{area}")).sum()
+    }
+
+    #[test]
+    fn polygons_are_covered_once() {
+        assert_eq!(covered(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), 2.0);
+        // An arrowhead, begun at every corner: a fan from three of them leaves it.
+        let arrow = [[0.0, 0.0], [2.0, 3.0], [0.0, 2.0], [-2.0, 3.0]];
+        for turn in 0..4 {
+            let mut arrow = arrow;
+            arrow.rotate_left(turn);
+            assert_eq!(covered(&arrow), 4.0);
+        }
+        // A comb, with a corner on a straight edge.
+        let comb =
+            [[0.0, 0.0], [3.0, 0.0], [6.0, 0.0], [6.0, 4.0], [4.0, 1.0], [3.0, 4.0], [2.0, 1.0], [0.0, 4.0]];
+        assert_eq!(covered(&comb), 15.0);
+        // A square with a square hole, joined by a bridge of two equal edges.
+        let outer = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [0.0, 0.0]];
+        let hole = [[1.0, 1.0], [1.0, 2.0], [2.0, 2.0], [2.0, 1.0], [1.0, 1.0]];
+        assert_eq!(covered(&[outer, hole].concat()), 15.0);
+    }
+
+    #[test]
+    fn polygons_in_space_turn_as_given() {
+        let arrow = [[0.0, 0.0], [2.0, 3.0], [0.0, 2.0], [-2.0, 3.0]];
+        let spaces: [fn(f64, f64) -> DVec3; 3] = [
+            |x, y| DVec3::new(x, y, 0.1 * x),
+            |x, y| DVec3::new(x, 0.2 * y, -y),
+            |x, y| DVec3::new(1e3 + 0.1 * x, x, y),
+        ];
+        for space in spaces {
+            for backwards in [false, true] {
+                let mut corners: Vec<_> = arrow.iter().map(|[x, y]| space(*x, *y)).collect();
+                if backwards {
+                    corners.reverse();
+                }
+                let of = |all: &[DVec3]| -> DVec3 {
+                    all.windows(2).map(|p| (p[0] - all[0]).cross(p[1] - all[0])).sum()
+                };
+                let normal = of(&corners);
+                for triangle in triangles(&corners).expect("small") {
+                    let turned = of(&triangle.map(|corner| corners[corner]));
+                    assert!(turned.dot(normal) > 0.0, "{backwards}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn only_large_ones_that_are_not_convex_are_refused() {
+        let circle = |count: usize, dent: f64| -> Vec<DVec3> {
+            let angle = |at: usize| at as f64 * std::f64::consts::TAU / count as f64;
+            let corner = |at: usize| DVec3::new(libm::cos(angle(at)), libm::sin(angle(at)), 0.0);
+            (0..count).map(|at| corner(at) * if at == 5 { dent } else { 1.0 }).collect()
+        };
+        assert_eq!(triangles(&circle(10_000, 1.0)).map(|all| all.len()), Some(9998));
+        assert_eq!(triangles(&circle(10_000, 0.5)), None);
+        assert_eq!(triangles(&circle(300, 0.5)).map(|all| all.len()), Some(298));
+        assert_eq!(triangles(&[DVec3::ZERO; 5]).map(|all| all.len()), Some(3));
+    }
+}

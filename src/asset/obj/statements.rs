@@ -1,0 +1,135 @@
+//! Splits the text of OBJ and MTL files into statements.
+
+use std::borrow::Cow;
+
+use crate::InputError;
+
+/// A statement: a line, or several that are joined by backslashes at their ends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Statement<'a> {
+    /// The number of its first line, counted from 1.
+    pub line: usize,
+    /// The first word.
+    pub keyword: Cow<'a, str>,
+    /// What follows it, without surrounding space.
+    pub rest: Cow<'a, str>,
+}
+
+impl Statement<'_> {
+    /// The words after the keyword, up to a comment.
+    pub fn words(&self) -> impl Iterator<Item = &str> {
+        self.rest.split_whitespace().take_while(|word| !word.starts_with('#'))
+    }
+
+    /// An error at this line; `file` names a material library.
+    pub fn refused(&self, file: Option<&str>, bound: impl Into<String>) -> InputError {
+        let path = match file {
+            Some(file) => format!("{file} line {}", self.line),
+            None => format!("line {}", self.line),
+        };
+        let text = format!("{} {}", self.keyword, self.rest);
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let mut shown: String = text.chars().take(60).filter(|c| !c.is_control()).collect();
+        if text.chars().count() > 60 {
+            shown.push('…');
+        }
+        InputError::new(path, shown, bound)
+    }
+}
+
+/// The statements of a file, without empty lines and comments. Bytes that are not UTF-8 become replacement characters:
+/// they occur in names and comments.
+pub(super) struct Statements<'a> {
+    left: &'a [u8],
+    line: usize,
+}
+
+impl<'a> Statements<'a> {
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Self { left: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), line: 0 }
+    }
+
+    /// The next line without its end; ends are those of any system.
+    fn next_line(&mut self) -> Option<&'a [u8]> {
+        if self.left.is_empty() {
+            return None;
+        }
+        self.line += 1;
+        let end = self.left.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(self.left.len());
+        let (line, rest) = self.left.split_at(end);
+        let feed = match rest {
+            [b'\r', b'\n', ..] => 2,
+            [_, ..] => 1,
+            [] => 0,
+        };
+        self.left = &rest[feed..];
+        Some(line)
+    }
+}
+
+impl<'a> Iterator for Statements<'a> {
+    type Item = Statement<'a>;
+
+    fn next(&mut self) -> Option<Statement<'a>> {
+        loop {
+            let mut text = String::from_utf8_lossy(self.next_line()?);
+            let line = self.line;
+            // Comments end with their line, also where it ends in a path of folders.
+            while text.ends_with('\\') && !text.trim_start().starts_with('#') {
+                let Some(more) = self.next_line() else { break };
+                let mut joined = text.trim_end_matches('\\').to_owned();
+                joined.push(' ');
+                joined.push_str(&String::from_utf8_lossy(more));
+                text = Cow::Owned(joined);
+            }
+            let is_nothing = |text: &str| text.is_empty() || text.starts_with('#');
+            let split = |text: &str| {
+                let text = text.trim();
+                let (keyword, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+                (keyword.len(), rest.trim_start().len(), text.len())
+            };
+            if is_nothing(text.trim()) {
+                continue;
+            }
+            return Some(match text {
+                Cow::Borrowed(text) => {
+                    let (text, (keyword, rest, all)) = (text.trim(), split(text));
+                    Statement { line, keyword: text[..keyword].into(), rest: text[all - rest..].into() }
+                }
+                Cow::Owned(text) => {
+                    let (text, (keyword, rest, all)) = (text.trim(), split(&text));
+                    let [keyword, rest] = [&text[..keyword], &text[all - rest..]].map(str::to_owned);
+                    Statement { line, keyword: keyword.into(), rest: rest.into() }
+                }
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_joined_counted_and_stripped() {
+        let text = b"\xef\xbb\xbf# a comment\r\n v 1  2 3 \\\n4 # w\n\n\rusemtl caf\xe9 1\ng\nf 1 2 3\\";
+        let found: Vec<_> = Statements::new(text)
+            .map(|found| (found.line, found.keyword.clone().into_owned(), found.rest.clone().into_owned()))
+            .collect();
+        let expected =
+            [(2, "v", "1  2 3  4 # w"), (6, "usemtl", "caf\u{fffd} 1"), (7, "g", ""), (8, "f", "1 2 3\\")];
+        let expected = expected.map(|(line, keyword, rest)| (line, keyword.to_owned(), rest.to_owned()));
+        assert_eq!(found, expected);
+        let first = Statements::new(text).next().expect("a statement");
+        assert_eq!(first.words().collect::<Vec<_>>(), ["1", "2", "3", "4"]);
+    }
+
+    #[test]
+    fn errors_show_the_beginning_of_a_line() {
+        let text = format!("f {}", "1 ".repeat(100));
+        let error =
+            Statements::new(text.as_bytes()).next().expect("a statement").refused(Some("a.mtl"), "no");
+        assert_eq!(error.path, "a.mtl line 1");
+        assert!(error.value.chars().count() == 61 && error.value.ends_with('…'), "{error}");
+    }
+}

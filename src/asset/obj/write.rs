@@ -1,0 +1,242 @@
+//! Writes Wavefront OBJ, and the material library and images of a model.
+
+use std::collections::HashMap;
+use std::fmt::Display;
+use std::io::{self, Write};
+
+use super::materials::encoded;
+use crate::InputError;
+use crate::asset::images::png;
+use crate::asset::material::{Alpha, Material, Texture, Wrapping};
+use crate::asset::{Mesh, Model};
+
+/// What becomes an object of a file: vertices, and triangles that count them from 0.
+pub(crate) struct Object<'a, P, T> {
+    /// Without one, the triangles belong to the object before. Whitespace becomes `_`: a space would end the name, a line
+    /// the object.
+    pub name: Option<&'a str>,
+    /// The name of the material, in a library that was named before.
+    pub material: Option<&'a str>,
+    /// Where each vertex is.
+    pub positions: P,
+    /// Texture coordinates of each vertex, v down the image.
+    pub uv: &'a [[f32; 2]],
+    /// The normal of each vertex, or none at all.
+    pub normals: &'a [[f32; 3]],
+    /// Corners, counter-clockwise seen from outside.
+    pub triangles: T,
+}
+
+/// Writes objects into one file, one after the other. Numbers have every digit that their type needs.
+pub(crate) struct ObjWriter<W> {
+    out: W,
+    /// The number of the next vertex; the file's first is 1.
+    next: u64,
+}
+
+impl<W: Write> ObjWriter<W> {
+    pub fn new(out: W) -> Self {
+        Self { out, next: 1 }
+    }
+
+    /// A line that readers skip.
+    pub fn comment(&mut self, text: impl Display) -> io::Result<()> {
+        writeln!(self.out, "# {text}")
+    }
+
+    /// Names a material library beside the file.
+    pub fn library(&mut self, name: &str) -> io::Result<()> {
+        writeln!(self.out, "mtllib {name}")
+    }
+
+    /// An object with as many texture coordinates as positions.
+    pub fn object<N: Display>(
+        &mut self,
+        object: Object<'_, impl IntoIterator<Item = [N; 3]>, impl IntoIterator<Item = [u32; 3]>>,
+    ) -> io::Result<()> {
+        let Object { name, material, positions, uv, normals, triangles } = object;
+        let out = &mut self.out;
+        if let Some(name) = name {
+            writeln!(out, "o {}", word(name))?;
+        }
+        for [x, y, z] in positions {
+            writeln!(out, "v {x} {y} {z}")?;
+        }
+        for [u, v] in uv {
+            writeln!(out, "vt {u} {}", Upwards(*v))?;
+        }
+        for [x, y, z] in normals {
+            writeln!(out, "vn {x} {y} {z}")?;
+        }
+        if let Some(material) = material {
+            writeln!(out, "usemtl {material}")?;
+        }
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|corner| self.next + u64::from(corner));
+            match normals {
+                [] => writeln!(out, "f {a}/{a} {b}/{b} {c}/{c}")?,
+                _ => writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?,
+            }
+        }
+        self.next += uv.len() as u64;
+        Ok(())
+    }
+}
+
+/// A texture coordinate that points down, as OBJ has it: from the bottom. 1 − v has as many digits as a reader needs that
+/// subtracts it from 1 in double precision.
+struct Upwards(f32);
+
+impl Display for Upwards {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let short = (1.0 - self.0).to_string();
+        match short.parse::<f64>().is_ok_and(|read| (1.0 - read) as f32 == self.0) {
+            true => out.write_str(&short),
+            false => write!(out, "{}", 1.0 - f64::from(self.0)),
+        }
+    }
+}
+
+fn word(name: &str) -> String {
+    let word: String = name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect();
+    // A name that begins a comment would be none.
+    if word.is_empty() || word.starts_with('#') { format!("_{word}") } else { word }
+}
+
+impl Model {
+    /// The model as Wavefront OBJ: the files' names and bytes, first `{name}.obj`, then, if meshes have materials, the library
+    /// `{name}.mtl` and its images as PNG.
+    ///
+    /// Each mesh is an object of its name, with positions, normals and texture coordinates as they are, in the space of its
+    /// own: take the model [at rest](crate::skinning::at_rest()) if it has a skeleton. [`Model::from_obj`] reads equal numbers
+    /// back: positions, normals and triangles to the bit, texture coordinates too where v is 0 or above 2⁻²⁹, and otherwise
+    /// within 2⁻⁵³. Colours, opacity, textures and normal maps are written. Skins, clips, morph targets, levels of detail,
+    /// tangents, the sides from which triangles are visible, filters, and the limit of [`Alpha::Mask`] are not: OBJ has
+    /// no words for them.
+    ///
+    /// # Errors
+    /// [`InputError`] for a name that is not a plain file name, for a mesh or a material that is not valid, and for images
+    /// that PNG cannot hold.
+    pub fn to_obj(&self, name: &str) -> Result<Vec<(String, Vec<u8>)>, InputError> {
+        if name.is_empty()
+            || name.contains(|c: char| c.is_whitespace() || c.is_control() || "/\\:#".contains(c))
+        {
+            return Err(InputError::new(
+                "name",
+                name,
+                "must be a file name without spaces and any of / \\ : #",
+            ));
+        }
+        let library = Library::new(self, name)?;
+        let mut text = Vec::new();
+        let mut writer = ObjWriter::new(&mut text);
+        // Writing to memory does not fail.
+        let failed = |error: io::Error| InputError::new("OBJ", name, error.to_string());
+        if !library.names.is_empty() {
+            writer.library(&format!("{name}.mtl")).map_err(failed)?;
+        }
+        for mesh in &self.meshes {
+            mesh.validate(&self.skins)?;
+            writer.object(object(mesh, library.material(mesh))).map_err(failed)?;
+        }
+        let mut files = vec![(format!("{name}.obj"), text)];
+        if !library.names.is_empty() {
+            files.push((format!("{name}.mtl"), library.text.into_bytes()));
+            files.extend(library.images);
+        }
+        Ok(files)
+    }
+}
+
+fn object<'a>(
+    mesh: &'a Mesh,
+    material: Option<&'a str>,
+) -> Object<'a, impl Iterator<Item = [f32; 3]>, impl Iterator<Item = [u32; 3]>> {
+    Object {
+        name: Some(&mesh.name),
+        material,
+        positions: mesh.positions.iter().copied(),
+        uv: &mesh.uv,
+        normals: &mesh.normals,
+        triangles: mesh.indices.as_chunks().0.iter().copied(),
+    }
+}
+
+/// A material library.
+#[derive(Default)]
+struct Library {
+    text: String,
+    /// The name of each material that meshes use.
+    names: HashMap<usize, String>,
+    /// A name that no material has.
+    none: String,
+    /// Names and bytes of images.
+    images: Vec<(String, Vec<u8>)>,
+}
+
+impl Library {
+    fn new(model: &Model, name: &str) -> Result<Self, InputError> {
+        let mut library = Self::default();
+        let mut known = HashMap::new();
+        for mesh in &model.meshes {
+            let (Some(index), Some(material)) = (mesh.material, model.material(mesh)?) else { continue };
+            if library.names.contains_key(&index) {
+                continue;
+            }
+            let mut own = word(&material.name);
+            if library.names.values().any(|other| *other == own) {
+                own = format!("{own}_{index}");
+            }
+            let mut image = |texture: Texture| -> Result<String, InputError> {
+                if let Some(known) = known.get(&texture.image) {
+                    return Ok(String::clone(known));
+                }
+                let file = format!("{name}_{}.png", texture.image);
+                library.images.push((file.clone(), png(model, texture.image)?));
+                known.insert(texture.image, file.clone());
+                Ok(file)
+            };
+            let files =
+                [material.texture, material.normal].map(|texture| texture.map(&mut image).transpose());
+            let [color, normal] = files;
+            library.text += &entry(&own, material, color?, normal?);
+            library.names.insert(index, own);
+        }
+        library.none = "none".to_owned();
+        while library.names.values().any(|name| *name == library.none) {
+            library.none.push('_');
+        }
+        Ok(library)
+    }
+
+    /// The name of a mesh's material. A mesh without one must end the material before it, by a name that the library lacks.
+    fn material(&self, mesh: &Mesh) -> Option<&str> {
+        let named = mesh.material.and_then(|material| self.names.get(&material));
+        named.or_else(|| (!self.names.is_empty()).then_some(&self.none)).map(String::as_str)
+    }
+}
+
+/// The statements of a material, with the files of its texture and its normal map.
+fn entry(name: &str, material: &Material, texture: Option<String>, normal: Option<String>) -> String {
+    let [red, green, blue] = [0, 1, 2].map(|channel: usize| encoded(material.color[channel].into()));
+    let mut text = format!("newmtl {name}\nKd {red} {green} {blue}\n");
+    let is_transparent = material.alpha != Alpha::Opaque;
+    if is_transparent {
+        text += &format!("d {}\n", material.color[3]);
+    }
+    let clamp = |texture: Option<Texture>| {
+        let is_clamped = texture.is_some_and(|texture| texture.sampling.wrap == [Wrapping::Clamp; 2]);
+        if is_clamped { "-clamp on " } else { "" }
+    };
+    if let Some(file) = texture {
+        let clamp = clamp(material.texture);
+        text += &format!("map_Kd {clamp}{file}\n");
+        if is_transparent {
+            text += &format!("map_d {clamp}{file}\n");
+        }
+    }
+    if let Some(file) = normal {
+        text += &format!("norm {}-bm {} {file}\n", clamp(material.normal), material.normal_scale);
+    }
+    text + "\n"
+}

@@ -1,0 +1,167 @@
+//! A tree of boxes around triangles, for the nearest triangle of points.
+
+use glam::DVec3;
+
+use crate::mesh::nearest::precise_nearest_on_triangle;
+
+/// The most triangles of a leaf.
+const LEAF: usize = 4;
+
+/// Triangles in a tree of boxes.
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    /// In the order of the leaves.
+    triangles: Vec<[DVec3; 3]>,
+}
+
+/// A box, and what lies in it.
+#[derive(Clone, Copy)]
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// The first triangle of a leaf; the second child of an inner node, whose first child follows it.
+    at: u32,
+    /// The number of triangles of a leaf; 0 for inner nodes.
+    count: u32,
+}
+
+impl Node {
+    /// The square of the distance of a point from the box.
+    fn distance_squared(&self, point: DVec3) -> f64 {
+        point.distance_squared(point.clamp(self.low, self.high))
+    }
+}
+
+/// A triangle of a tree, and the square of a distance from it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Near {
+    pub triangle: u32,
+    pub squared: f64,
+}
+
+impl Tree {
+    /// A tree of at least one triangle, divided at the median along the longest side of each box.
+    pub fn new(triangles: &[[DVec3; 3]]) -> Self {
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let middles: Vec<DVec3> = triangles.iter().map(|[a, b, c]| *a + *b + *c).collect();
+        let mut nodes = Vec::with_capacity(triangles.len());
+        // Ranges of triangles whose nodes are still to come, with the parents whose second children they are.
+        let mut waiting = vec![(0, triangles.len(), None)];
+        while let Some((start, end, parent)) = waiting.pop() {
+            let at = nodes.len();
+            if let Some(parent) = parent {
+                let parent: &mut Node = &mut nodes[parent];
+                parent.at = at as u32;
+            }
+            let here = &mut order[start..end];
+            let corners = || here.iter().flat_map(|triangle| triangles[*triangle as usize]);
+            let low = corners().fold(DVec3::INFINITY, DVec3::min);
+            let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+            if here.len() <= LEAF {
+                nodes.push(Node { low, high, at: start as u32, count: here.len() as u32 });
+                continue;
+            }
+            nodes.push(Node { low, high, at: 0, count: 0 });
+            let size = high - low;
+            let axis = (1..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
+            let half = here.len() / 2;
+            here.select_nth_unstable_by(half, |a, b| {
+                let of = |triangle: &u32| middles[*triangle as usize][axis];
+                of(a).total_cmp(&of(b)).then(a.cmp(b))
+            });
+            waiting.push((start + half, end, Some(at)));
+            waiting.push((start, start + half, None));
+        }
+        let triangles = order.iter().map(|triangle| triangles[*triangle as usize]).collect();
+        Self { nodes, triangles }
+    }
+
+    /// The corners of a triangle.
+    pub fn triangle(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize]
+    }
+
+    /// The triangle that is nearest to a point. `hint` is any triangle; the search is shorter if it is near.
+    pub fn nearest(&self, point: DVec3, hint: u32) -> Near {
+        self.nearest_to_all(&[point], self.furthest(&[point], hint), 0.0)
+    }
+
+    /// A triangle, and the distance of the point from it that is furthest from it.
+    pub fn furthest(&self, points: &[DVec3], triangle: u32) -> Near {
+        let corners = self.triangle(triangle);
+        let squared = |point: &DVec3| point.distance_squared(precise_nearest_on_triangle(*point, corners));
+        Near { triangle, squared: points.iter().map(squared).fold(0.0, f64::max) }
+    }
+
+    /// The triangle from which the furthest of `points` is least far, beginning with `best`. The search ends early where a
+    /// triangle is found within a distance whose square is `enough`.
+    pub fn nearest_to_all(&self, points: &[DVec3], mut best: Near, enough: f64) -> Near {
+        let bound = |node: u32| {
+            let node = &self.nodes[node as usize];
+            points.iter().map(|point| node.distance_squared(*point)).fold(0.0, f64::max)
+        };
+        let mut waiting = [(0_u32, 0.0_f64); 64];
+        let mut count = 1;
+        waiting[0] = (0, bound(0));
+        while count > 0 && best.squared > enough {
+            count -= 1;
+            let (at, least) = waiting[count];
+            if least >= best.squared {
+                continue;
+            }
+            let node = self.nodes[at as usize];
+            if node.count > 0 {
+                for triangle in node.at..node.at + node.count {
+                    let found = self.furthest(points, triangle);
+                    if found.squared < best.squared {
+                        best = found;
+                    }
+                }
+                continue;
+            }
+            let [near, far] = [at + 1, node.at].map(|child| (child, bound(child)));
+            let [near, far] = if near.1 <= far.1 { [near, far] } else { [far, near] };
+            // Medians keep the depth below 32: each level waits with one node at most.
+            [waiting[count], waiting[count + 1]] = [far, near];
+            count += 2;
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(seed: u32, count: usize) -> Vec<DVec3> {
+        let mut state = u64::from(seed);
+        let mut next = || {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        (0..count).map(|_| DVec3::new(next(), next(), next())).collect()
+    }
+
+    #[test]
+    fn searches_find_what_a_loop_finds() {
+        let corners = noise(1, 3 * 200);
+        let triangles: Vec<[DVec3; 3]> = (corners.chunks_exact(3))
+            .map(|all| [all[0], all[0] + 0.1 * all[1], all[0] + 0.1 * all[2]])
+            .collect();
+        let tree = Tree::new(&triangles);
+        for points in noise(2, 300).chunks_exact(3) {
+            let points = points.iter().map(|point| 2.0 * *point - 0.5).collect::<Vec<_>>();
+            for some in [&points[..1], &points[..]] {
+                let start = tree.furthest(some, 0);
+                let found = tree.nearest_to_all(some, start, 0.0);
+                let all = (0..200).map(|triangle| tree.furthest(some, triangle).squared);
+                assert_eq!(found.squared, all.fold(f64::INFINITY, f64::min));
+                assert_eq!(tree.furthest(some, found.triangle).squared, found.squared);
+            }
+            let start = tree.furthest(&points, 0);
+            let (least, early) =
+                (tree.nearest_to_all(&points, start, 0.0), tree.nearest_to_all(&points, start, 0.5));
+            assert!(early.squared <= least.squared.max(0.5), "{early:?} {least:?}");
+        }
+    }
+}

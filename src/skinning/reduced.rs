@@ -1,0 +1,284 @@
+//! Whole models with fewer triangles: all meshes are reduced together, as one surface, and every triangle keeps its mesh and
+//! material.
+
+use std::collections::HashMap;
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::at_rest;
+use crate::InputError;
+use crate::asset::mesh::{smooth_normals, solved_tangents};
+use crate::asset::{Influence, Influences, Mesh, Model};
+use crate::mesh::distance::{self, Distance, Triangles};
+use crate::mesh::reduce::{Limits, Reduced, Reducer};
+use crate::mesh::simplify::{Stopped, Surface};
+
+/// The cost of a difference of 1 in a normal, as a fraction of the diagonal of the box around the model.
+const NORMAL: f64 = 5e-3;
+
+/// What normals of a reduced model are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Normals {
+    /// Those of the model. They count in the cost, and hard edges stay as seams do: corners that differ in normals
+    /// are not merged.
+    #[default]
+    Carry,
+    /// Computed again: the normalized sums of the normals of the triangles around each vertex, weighted by area. Corners that
+    /// differ in normals alone are joined before, so that hard edges are lost.
+    Recompute,
+}
+
+/// A model with fewer triangles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReducedModel {
+    /// The model at rest. Meshes without triangles are left out.
+    pub model: Model,
+    /// How far it is off, as the reducer estimates it; see [`Reduced::error`].
+    pub estimate: f32,
+    /// Why the reducer stopped.
+    pub stopped: Stopped,
+}
+
+impl ReducedModel {
+    /// Number of triangles of all meshes.
+    pub fn triangles(&self) -> usize {
+        self.model.meshes.iter().map(|mesh| mesh.indices.len() / 3).sum()
+    }
+
+    /// Number of vertices of all meshes.
+    pub fn vertices(&self) -> usize {
+        self.model.meshes.iter().map(Mesh::vertices).sum()
+    }
+
+    /// The distance between the surfaces of `whole`, the model at rest before it was reduced, and this one, forward and
+    /// backward ([`distance::distance`]).
+    ///
+    /// # Errors
+    /// [`InputError`] for a model without triangles, and for options out of range.
+    pub fn distance(&self, whole: &Model, options: &distance::Options) -> Result<Distance, InputError> {
+        let [from, to] = [whole, &self.model].map(joined);
+        let [from, to] = [&from, &to].map(|(positions, indices)| Triangles { positions, indices });
+        distance::distance(&from, &to, options)
+    }
+}
+
+/// Positions and triangles of all meshes.
+fn joined(model: &Model) -> (Vec<[f32; 3]>, Vec<u32>) {
+    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    for mesh in &model.meshes {
+        let first = positions.len() as u32;
+        indices.extend(mesh.indices.iter().map(|index| first + index));
+        positions.extend_from_slice(&mesh.positions);
+    }
+    (positions, indices)
+}
+
+/// Reduces a model to several limits, as it stands [at rest](at_rest()). All meshes together are one surface: where two of
+/// them share a border, the reducer sees a seam, and what it guarantees for seams holds ([`Reducer`]).
+///
+/// Costs count positions; texture coordinates, scaled by the size of the texture's texels on each mesh; and normals if they
+/// are carried. Tangents are computed again.
+///
+/// # Errors
+/// [`InputError`] for a model that is not valid or has no triangles, as [`Reducer::reduce_each`] for the limits, and for
+/// limits at which no triangle is left.
+pub fn reduce_model(
+    model: &Model,
+    reducer: &Reducer,
+    limits: &[Limits],
+    normals: Normals,
+) -> Result<Vec<ReducedModel>, InputError> {
+    let whole = at_rest(model)?;
+    let input = Input::new(&whole, normals);
+    if input.indices.is_empty() {
+        let bound = "must be at least 1 (meshes that are compressed with Draco are not read)";
+        return Err(InputError::new("model.triangles.len", 0, bound));
+    }
+    let surface = Surface {
+        poses: &input.poses,
+        indices: &input.indices,
+        attributes: &input.attributes,
+        stride: input.stride(),
+    };
+    let reduced = reducer.reduce_each(&surface, limits)?;
+    reduced.iter().enumerate().map(|(at, reduced)| input.output(at, reduced)).collect()
+}
+
+/// A model as one surface.
+struct Input<'a> {
+    model: &'a Model,
+    normals: Normals,
+    poses: [Vec<[f32; 3]>; 1],
+    indices: Vec<u32>,
+    attributes: Vec<f32>,
+    /// For each vertex, its mesh and its number there.
+    vertices: Vec<[u32; 2]>,
+    /// For each triangle, its mesh.
+    meshes: Vec<u32>,
+    /// The factor of normals.
+    normal: f32,
+    /// For each mesh, the factor of texture coordinates.
+    texture: Vec<f32>,
+}
+
+impl<'a> Input<'a> {
+    fn new(model: &'a Model, normals: Normals) -> Self {
+        let positions = || {
+            model.meshes.iter().flat_map(|mesh| &mesh.positions).map(|place| Vec3::from(*place).as_dvec3())
+        };
+        let low = positions().fold(DVec3::INFINITY, DVec3::min);
+        let high = positions().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let mut input = Self {
+            model,
+            normals,
+            poses: [Vec::new()],
+            indices: Vec::new(),
+            attributes: Vec::new(),
+            vertices: Vec::new(),
+            meshes: Vec::new(),
+            normal: (NORMAL * low.distance(high)) as f32,
+            texture: model.meshes.iter().map(texture_scale).collect(),
+        };
+        for (at, mesh) in model.meshes.iter().enumerate() {
+            input.add(at, mesh);
+        }
+        input
+    }
+
+    /// Numbers per vertex: normals if they are carried, and texture coordinates.
+    fn stride(&self) -> usize {
+        if self.normals == Normals::Carry { 5 } else { 2 }
+    }
+
+    fn add(&mut self, index: usize, mesh: &Mesh) {
+        let mut known = HashMap::new();
+        let slots: Vec<u32> = (0..mesh.vertices())
+            .map(|vertex| {
+                let slot = self.vertices.len() as u32;
+                let slot = match self.normals {
+                    Normals::Carry => slot,
+                    Normals::Recompute => {
+                        let (place, uv) = (mesh.positions[vertex], mesh.uv[vertex]);
+                        *known.entry((place.map(bits), uv.map(bits))).or_insert(slot)
+                    }
+                };
+                if slot as usize == self.vertices.len() {
+                    self.add_vertex(index, mesh, vertex);
+                }
+                slot
+            })
+            .collect();
+        self.indices.extend(mesh.indices.iter().map(|vertex| slots[*vertex as usize]));
+        self.meshes.resize(self.indices.len() / 3, index as u32);
+    }
+
+    fn add_vertex(&mut self, index: usize, mesh: &Mesh, vertex: usize) {
+        self.poses[0].push(mesh.positions[vertex]);
+        if self.normals == Normals::Carry {
+            self.attributes.extend(mesh.normals[vertex].map(|x| self.normal * x));
+        }
+        self.attributes.extend(mesh.uv[vertex].map(|x| self.texture[index] * x));
+        self.vertices.push([index as u32, vertex as u32]);
+    }
+
+    /// The model of a result; `at` is the number of its limit.
+    fn output(&self, at: usize, reduced: &Reduced) -> Result<ReducedModel, InputError> {
+        let mut triangles: Vec<Vec<u32>> = vec![Vec::new(); self.model.meshes.len()];
+        for (corners, from) in reduced.indices.as_chunks::<3>().0.iter().zip(&reduced.triangles) {
+            triangles[self.meshes[*from as usize] as usize].extend(corners);
+        }
+        let meshes = self.model.meshes.iter().zip(triangles).filter(|(_, corners)| !corners.is_empty());
+        let meshes = meshes
+            .map(|(mesh, corners)| self.mesh(mesh, &corners, reduced))
+            .collect::<Result<Vec<_>, _>>()?;
+        if meshes.is_empty() {
+            let bound = "must leave at least one triangle";
+            return Err(InputError::new(format!("limits[{at}]"), "0 triangles left", bound));
+        }
+        let model = Model { meshes, ..self.model.clone() };
+        Ok(ReducedModel { model, estimate: reduced.error, stopped: reduced.stopped })
+    }
+
+    /// A mesh of the vertices of `corners`, three a triangle, in their order.
+    fn mesh(&self, mesh: &Mesh, corners: &[u32], reduced: &Reduced) -> Result<Mesh, InputError> {
+        let mut used: Vec<u32> = corners.to_vec();
+        used.sort_unstable();
+        used.dedup();
+        let slots: HashMap<u32, u32> = used.iter().copied().zip(0..).collect();
+        let indices: Vec<u32> = corners.iter().map(|corner| slots[corner]).collect();
+        let positions: Vec<[f32; 3]> = used.iter().map(|at| reduced.poses[0][*at as usize]).collect();
+        let uv: Vec<[f32; 2]> = used.iter().map(|at| self.uv(*at, reduced)).collect();
+        let normals = match self.normals {
+            Normals::Carry => used.iter().map(|at| self.normal(*at, reduced)).collect(),
+            Normals::Recompute => smooth_normals(&positions, &indices),
+        };
+        let tangents = solved_tangents(&positions, &normals, &uv, &indices)?;
+        let one = Influence { bone: 0, weight: 1.0 };
+        Ok(Mesh {
+            influences: Influences::new("influences", 1, used.iter().map(|_| vec![one]))?,
+            positions,
+            normals,
+            tangents,
+            uv,
+            indices,
+            name: mesh.name.clone(),
+            skin: 0,
+            double_sided: mesh.double_sided,
+            material: mesh.material,
+            targets: Vec::new(),
+            weights: Vec::new(),
+            weight_keys: Vec::new(),
+            levels: Vec::new(),
+            partners: Vec::new(),
+        })
+    }
+
+    /// The mesh and the vertex from which a vertex comes, and whether its attributes are still the same.
+    fn source(&self, at: u32, reduced: &Reduced) -> (usize, usize, bool) {
+        let from = reduced.vertices[at as usize] as usize;
+        let [mesh, vertex] = self.vertices[from].map(|number| number as usize);
+        let of = |all: &[f32], at: usize| {
+            all[self.stride() * at..][..self.stride()].iter().map(|x| bits(*x)).collect::<Vec<_>>()
+        };
+        (mesh, vertex, of(&reduced.attributes, at as usize) == of(&self.attributes, from))
+    }
+
+    fn uv(&self, at: u32, reduced: &Reduced) -> [f32; 2] {
+        let (mesh, vertex, is_same) = self.source(at, reduced);
+        let scale = self.texture[mesh];
+        if is_same || scale == 0.0 {
+            return self.model.meshes[mesh].uv[vertex];
+        }
+        let end = self.stride() * (at as usize + 1);
+        [reduced.attributes[end - 2] / scale, reduced.attributes[end - 1] / scale]
+    }
+
+    fn normal(&self, at: u32, reduced: &Reduced) -> [f32; 3] {
+        let (mesh, vertex, is_same) = self.source(at, reduced);
+        let own = self.model.meshes[mesh].normals[vertex];
+        if is_same {
+            return own;
+        }
+        let scaled = Vec3::from_slice(&reduced.attributes[self.stride() * at as usize..]);
+        scaled.as_dvec3().try_normalize().map_or(own, |normal| normal.as_vec3().to_array())
+    }
+}
+
+fn bits(number: f32) -> u32 {
+    // −0 is 0.
+    (number + 0.0).to_bits()
+}
+
+/// The factor that makes a difference in texture coordinates as large as the way on the surface to which it belongs, on
+/// average; 0 without texture coordinates.
+fn texture_scale(mesh: &Mesh) -> f32 {
+    let (mut surface, mut texture) = (0.0, 0.0);
+    for triangle in mesh.indices.as_chunks::<3>().0 {
+        let [a, b, c] = triangle.map(|corner| DVec3::from(mesh.positions[corner as usize].map(f64::from)));
+        surface += (b - a).cross(c - a).length();
+        let [d, e, f] = triangle.map(|corner| DVec2::from(mesh.uv[corner as usize].map(f64::from)));
+        texture += (e - d).perp_dot(f - d).abs();
+    }
+    let scale = (surface / texture).sqrt() as f32;
+    if scale.is_finite() { scale } else { 0.0 }
+}
