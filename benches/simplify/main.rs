@@ -24,8 +24,8 @@ use relievo::mesh::{Options, Surface, simplify};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// How much a difference of 1 in a normal counts, as a fraction of the mesh's largest edge: meshoptimizer's own example
-/// weighs normals so.
+/// The weight of normals in meshoptimizer's own example. There the square of a difference counts times the area over which
+/// it is, and here as the square of a distance; so ours is scaled by the edge of a square as large as a triangle that is left.
 const NORMALS: f32 = 0.5;
 const PERCENT: [usize; 4] = [50, 20, 10, 2];
 
@@ -33,7 +33,7 @@ const PERCENT: [usize; 4] = [50, 20, 10, 2];
 type Simplify = fn(&Mesh, usize, bool) -> Result<Vec<u32>, Box<dyn Error>>;
 
 fn ours(mesh: &Mesh, triangles: usize, with_normals: bool) -> Result<Vec<u32>, Box<dyn Error>> {
-    let weight = NORMALS * mesh.extent();
+    let weight = NORMALS * (mesh.area() / triangles.max(1) as f32).sqrt();
     let scaled: Vec<f32> = if with_normals {
         mesh.normals.as_flattened().iter().map(|number| number * weight).collect()
     } else {
@@ -134,7 +134,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Compares one level: both simplify to the number of triangles that meshoptimizer reaches.
+/// Compares one level: both simplify to the number of triangles that both reach.
 fn compare(
     mesh: &Mesh,
     with_normals: bool,
@@ -143,7 +143,10 @@ fn compare(
     out: Option<&Path>,
 ) -> Result<(), Box<dyn Error>> {
     let target = mesh.triangles() * percent / 100;
+    // Either may stop early, where nothing more is legal.
     let reached = theirs(mesh, target, with_normals)?.len() / 3;
+    let reached = ours(mesh, reached, with_normals)?.len() / 3;
+    let target = if reached > target + 2 { reached } else { target };
     let both: [Simplify; 2] = [ours, theirs];
     let (mut times, mut levels) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
     for round in 0..rounds {

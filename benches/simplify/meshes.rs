@@ -36,11 +36,13 @@ impl Mesh {
         self.indices.len() / 3
     }
 
-    /// The largest edge of the box around the mesh.
-    pub fn extent(&self) -> f32 {
-        let all = || self.positions.iter().map(|position| Vec3::from(*position));
-        let (low, high) = (all().fold(Vec3::MAX, Vec3::min), all().fold(Vec3::MIN, Vec3::max));
-        (high - low).max_element()
+    /// The area of all triangles.
+    pub fn area(&self) -> f32 {
+        let area = |triangle: &[u32]| {
+            let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(self.positions[triangle[corner] as usize]));
+            0.5 * (b - a).cross(c - a).length()
+        };
+        self.indices.chunks_exact(3).map(area).sum()
     }
 }
 

@@ -12,6 +12,8 @@ pub(crate) struct Points {
     /// Positions times `scale`, point by point, each in all poses.
     positions: Vec<[f32; 3]>,
     scale: f64,
+    /// The largest edge of the box around any pose, times `scale`.
+    extent: f64,
     are_vertices: bool,
 }
 
@@ -31,13 +33,23 @@ impl Points {
             next[*point as usize] += 1;
         }
         let firsts = starts[..count].iter().map(|start| wedges[*start as usize] as usize);
-        let scale = scale(poses);
+        let extent = extent(poses);
+        let scale = scale(extent);
         let scaled = |position: [f32; 3]| position.map(|x| (f64::from(x) * scale) as f32);
         let positions =
             firsts.flat_map(|vertex| poses.iter().map(move |pose| scaled(pose[vertex]))).collect();
         let ranges = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
         let are_vertices = count == of.len();
-        Self { of, ranges, wedges, poses: poses.len(), positions, scale, are_vertices }
+        Self {
+            of,
+            ranges,
+            wedges,
+            poses: poses.len(),
+            positions,
+            scale,
+            extent: extent * scale,
+            are_vertices,
+        }
     }
 
     /// Number of points.
@@ -63,6 +75,11 @@ impl Points {
     /// What positions are multiplied by: with it the mesh is between 1 and 2 units large.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
+    }
+
+    /// The largest edge of the box around any pose, in units of 1 / `scale`: between 1 and 2, or 0.
+    pub(crate) fn extent(&self) -> f64 {
+        self.extent
     }
 
     /// A number that depends on the position of a point.
@@ -137,9 +154,8 @@ fn hash(words: [u32; 3]) -> u32 {
     mixed ^ (mixed >> 15)
 }
 
-/// The power of two that brings the largest edge of the box around all poses to between 1 and 2: multiplying by it
-/// rounds nothing.
-fn scale(poses: &[Vec<[f32; 3]>]) -> f64 {
+/// The largest edge of the box around any pose.
+fn extent(poses: &[Vec<[f32; 3]>]) -> f64 {
     let mut largest = 0.0_f64;
     for pose in poses {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
@@ -152,7 +168,12 @@ fn scale(poses: &[Vec<[f32; 3]>]) -> f64 {
         let edges = (0..3).map(|axis| f64::from(high[axis]) - f64::from(low[axis]));
         largest = edges.fold(largest, f64::max);
     }
-    if largest == 0.0 {
+    largest
+}
+
+/// The power of two that brings a length to between 1 and 2: multiplying by it rounds nothing.
+fn scale(largest: f64) -> f64 {
+    if largest <= 0.0 {
         return 1.0;
     }
     // 2^(1023 − e) for a number between 2^(e − 1023) and twice that; f32 never reaches the ends of f64's range.

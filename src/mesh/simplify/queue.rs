@@ -40,14 +40,17 @@ pub(crate) struct Queue {
     filled: [u64; BUCKETS / 64],
     /// No bucket in words of `filled` before this one has entries.
     first: usize,
+    /// What costs are multiplied by, so that meshes of any size have the same buckets.
+    unit: f32,
 }
 
 impl Queue {
-    /// A queue of this many points, without collapses.
-    pub(crate) fn new(points: usize) -> Self {
+    /// A queue of this many points, without collapses, of a mesh of this size.
+    pub(crate) fn new(points: usize, extent: f64) -> Self {
+        let unit = if extent > 0.0 { (1.0 / (extent * extent)) as f32 } else { 1.0 };
         let state = State { neighbor: 0, cost: 0.0, bucket: NONE, is_second: false };
         let (buckets, taken) = (vec![Vec::new(); BUCKETS], vec![0; BUCKETS]);
-        Self { states: vec![state; points], buckets, taken, filled: [0; BUCKETS / 64], first: 0 }
+        Self { states: vec![state; points], buckets, taken, filled: [0; BUCKETS / 64], first: 0, unit }
     }
 
     /// The best collapse of a point; as it was set last.
@@ -60,12 +63,12 @@ impl Queue {
     /// Replaces the best collapse of a point.
     #[inline]
     pub(crate) fn set(&mut self, point: u32, best: Option<Best>) {
-        let state = &mut self.states[point as usize];
         let Some(Best { neighbor, cost, is_second }) = best else {
-            state.bucket = NONE;
+            self.states[point as usize].bucket = NONE;
             return;
         };
-        let bucket = bucket_of(cost);
+        let bucket = self.bucket_of(cost);
+        let state = &mut self.states[point as usize];
         let is_there = state.bucket == bucket;
         *state = State { neighbor, cost, bucket, is_second };
         if !is_there {
@@ -95,8 +98,8 @@ impl Queue {
 
     /// Whether a collapse is in a later bucket than another.
     #[inline]
-    pub(crate) fn is_later(best: &Best, than: &Best) -> bool {
-        bucket_of(best.cost) > bucket_of(than.cost)
+    pub(crate) fn is_later(&self, best: &Best, than: &Best) -> bool {
+        self.bucket_of(best.cost) > self.bucket_of(than.cost)
     }
 
     /// Takes the next point out.
@@ -124,10 +127,10 @@ impl Queue {
             return Some((point, Best { neighbor, cost, is_second }));
         }
     }
-}
 
-/// The bits of non-negative floats have the order of the floats.
-#[inline]
-fn bucket_of(cost: f32) -> u16 {
-    (cost.to_bits() >> (31 - BITS)) as u16
+    /// The bits of non-negative floats have the order of the floats.
+    #[inline]
+    fn bucket_of(&self, cost: f32) -> u16 {
+        ((cost * self.unit).to_bits() >> (31 - BITS)) as u16
+    }
 }

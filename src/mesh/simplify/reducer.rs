@@ -94,7 +94,7 @@ impl<'a> Reducer<'a> {
     }
 
     fn queue(&mut self) -> Queue {
-        let mut queue = Queue::new(self.points.len());
+        let mut queue = Queue::new(self.points.len(), self.points.extent());
         (0..self.points.len() as u32).for_each(|point| self.set(&mut queue, point));
         queue
     }
@@ -121,7 +121,7 @@ impl<'a> Reducer<'a> {
                 let Some(found) = found else { continue };
                 best = found;
             }
-            if !Queue::is_later(&best, &queued) {
+            if !queue.is_later(&best, &queued) {
                 match self.check(point, best) {
                     None => {
                         self.watched[point as usize] = true;
@@ -132,7 +132,7 @@ impl<'a> Reducer<'a> {
                     Some(checked) => best = checked,
                 }
             }
-            if !Queue::is_later(&best, &queued) {
+            if !queue.is_later(&best, &queued) {
                 return Some((point, best));
             }
             queue.set(point, Some(best));
@@ -177,7 +177,8 @@ impl<'a> Reducer<'a> {
         self.collect(point, &mut changed);
         self.collapse(point, neighbor, moved);
         for &other in &changed {
-            if self.watched[other as usize] {
+            // Melax's costs fall as well as rise when triangles around a point change.
+            if self.watched[other as usize] || self.quadrics.is_none() {
                 self.set(queue, other);
             }
         }
