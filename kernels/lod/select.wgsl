@@ -1,7 +1,7 @@
 // Decides for each instance of a scene whether a view sees it, and with which level of detail. A workgroup takes a block of
 // instances, a thread one of them.
 import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, Axes, SceneInstance, instance_axes, instance_position};
-import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS};
+import package::wgsl::lod::object::{BLOCK, DECISION_LIST, DECISION_MORPH_SHIFT, LodObject, MORPH_SHIFT, MORPH_STEPS, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, OBJECT_MORPHS, OBJECT_SHOWN};
 import package::wgsl::lod::view::{LodCamera, POSITION_SLACK, SelectView, VIEW_CAMERAS, camera_allows};
 
 // Of an instance that no view has seen in the frame.
@@ -19,7 +19,8 @@ const LEAST_SCALE: f32 = 1e-9;
 // For each instance the smallest displacement that a view of the frame which sees it allows, in the model's units;
 // `UNSEEN_ALLOWED` if none sees it.
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
-// For each instance 0 if the view does not see it, else 1 + its list: 1 + 2 · level + mirrored.
+// For each instance 0 if the view does not see it, else 1 + its list, 1 + 2 · level + mirrored, and from bit
+// `DECISION_MORPH_SHIFT` on how far the level has moved to the next one.
 @group(0) @binding(5) var<storage, read_write> decisions: array<u32>;
 // Three rows for each instance that is seen: the transform from the model's space to the corner of the view's cell.
 @group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
@@ -30,7 +31,7 @@ var<workgroup> tally: array<atomic<u32>, 16>;
 
 // Whether the view may see the instance at all, wherever it is.
 fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
-    let is_alive = object.shown != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
+    let is_alive = (object.shown & OBJECT_SHOWN) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
     let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
     return is_alive && casts && ((instance.flags >> INSTANCE_MASK_SHIFT) & view.mask) != 0u;
 }
@@ -57,16 +58,41 @@ fn view_allows(center: vec3<f32>, radius: f32, scale: f32) -> f32 {
     return min(least / max(scale, LEAST_SCALE), MAX_ALLOWED);
 }
 
-// The list of an instance: 2 · level + mirrored.
-fn list_of(object: LodObject, scale: vec3<f32>, allowed_here: f32) -> u32 {
+fn error_of(object: LodObject, level: u32) -> f32 {
+    return object.errors[level >> 2u][level & 3u];
+}
+
+// The coarsest level whose error is at most `within`.
+fn level_within(object: LodObject, within: f32) -> u32 {
     var level = 0u;
     for (var coarser = 1u; coarser < min(object.levels, OBJECT_LEVELS); coarser++) {
-        if object.errors[coarser >> 2u][coarser & 3u] <= object.mesh_fraction * allowed_here {
+        if error_of(object, coarser) <= within {
             level = coarser;
         }
     }
+    return level;
+}
+
+// How far a level has moved to the next coarser one, with the level: the bits above a list in a decision.
+fn morph_within(object: LodObject, level: u32, within: f32) -> u32 {
+    if (object.shown & OBJECT_MORPHS) == 0u || level + 1u >= min(object.levels, OBJECT_LEVELS) {
+        return 0u;
+    }
+    let begin = error_of(object, level);
+    if within <= begin {
+        return 0u;
+    }
+    // The next level's error is above `within`.
+    let way = min((within - begin) / (error_of(object, level + 1u) - begin), 1.0);
+    let steps = u32(f32(MORPH_STEPS) * way + 0.5);
+    return select(0u, level | (steps << MORPH_SHIFT), steps > 0u);
+}
+
+// The decision for an instance that the view sees.
+fn decision_within(object: LodObject, scale: vec3<f32>, within: f32) -> u32 {
+    let level = level_within(object, within);
     let is_mirrored = ((scale.x < 0.0) != (scale.y < 0.0)) != (scale.z < 0.0);
-    return 2u * level + u32(is_mirrored);
+    return (1u + 2u * level + u32(is_mirrored)) | (morph_within(object, level, within) << DECISION_MORPH_SHIFT);
 }
 
 // The decision for an instance. Writes its rows and its allowed displacement.
@@ -87,7 +113,7 @@ fn decide(index: u32, object: LodObject) -> u32 {
             rows[3u * index + 2u] = vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z);
             let allowed_here = view_allows(center, radius, scale);
             allowed[index] = select(allowed_here, min(before, allowed_here), before >= 0.0);
-            return 1u + list_of(object, instance.scale, allowed_here);
+            return decision_within(object, instance.scale, object.mesh_fraction * allowed_here);
         }
     }
     allowed[index] = before;
@@ -116,7 +142,7 @@ fn main(
     let decision = decide(index, objects[owner]);
     decisions[index] = decision;
     if decision > 0u {
-        atomicAdd(&tally[decision - 1u], 1u);
+        atomicAdd(&tally[(decision & DECISION_LIST) - 1u], 1u);
     }
     workgroupBarrier();
     if lane < OBJECT_LISTS {

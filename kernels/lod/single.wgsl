@@ -1,6 +1,6 @@
 // Draws of single instances, for objects that are drawn instance by instance: a thread writes the draw of a part of an
 // instance, of the level of detail at which the view sees it.
-import package::wgsl::lod::object::SceneDraw;
+import package::wgsl::lod::object::{DECISION_LIST, SceneDraw};
 
 // A part of an instance.
 struct Single {
@@ -17,7 +17,7 @@ struct SingleParams {
 
 @group(0) @binding(0) var<uniform> params: SingleParams;
 @group(0) @binding(1) var<storage, read> singles: array<Single>;
-// For each instance 0 if it is not seen, else 1 + its list.
+// For each instance 0 if it is not seen, else 1 + its list in the bits of `DECISION_LIST`.
 @group(0) @binding(2) var<storage, read> decisions: array<u32>;
 // For each part of each object a draw for each list.
 @group(0) @binding(3) var<storage, read> arguments: array<SceneDraw>;
@@ -40,6 +40,6 @@ fn main(
         draws[index] = SceneDraw(0u, 0u, 0u, 0u, 0u);
         return;
     }
-    let draw = arguments[single.first_draw + decision - 1u];
+    let draw = arguments[single.first_draw + (decision & DECISION_LIST) - 1u];
     draws[index] = SceneDraw(draw.indices, 1u, draw.first_index, draw.base_vertex, 0u);
 }

@@ -6,28 +6,28 @@
 // One of the constants below.
 override STAGE: u32 = 0u;
 
-// A thread for each entry of the table and each vertex.
-const CLEAR: u32 = 0u;
 // A thread for each vertex finds its cell's entry, and the cell's leader.
-const INSERT: u32 = 1u;
+const INSERT: u32 = 0u;
 // A thread for each vertex adds it to its cell's sum.
-const SUM: u32 = 2u;
-// A thread for each vertex divides the sum of a cell that it leads, and one for each block counts what it keeps.
-const MEAN: u32 = 3u;
+const SUM: u32 = 1u;
+// A thread for each vertex divides the sum of a cell that it leads, and one for each block marks what it keeps.
+const MEAN: u32 = 2u;
 // A thread for each vertex: the least distance of a cell's vertices to their mean.
-const NEAREST: u32 = 4u;
+const NEAREST: u32 = 3u;
 // A thread for each vertex: the lowest vertex at that distance.
-const SOURCE: u32 = 5u;
+const SOURCE: u32 = 4u;
 // One workgroup turns the counts of blocks into the places of what they keep.
-const SCAN: u32 = 6u;
+const SCAN: u32 = 5u;
 // A thread for each block of vertices writes the representatives of the cells that they lead.
-const REPRESENT: u32 = 7u;
+const REPRESENT: u32 = 6u;
 // A thread for each block of triangles writes those that keep three cells.
-const CONNECT: u32 = 8u;
+const CONNECT: u32 = 7u;
 
 const LANES = 64u;
 // Vertices or triangles of a block.
 const BLOCK: u32 = 64u;
+// Words of a block: how many it keeps, which SCAN replaces by what those before it keep; and a bit for each that it keeps.
+const BLOCK_WORDS: u32 = 3u;
 
 // Words of a vertex's record. The first is its entry in the table, then the leader of its cell.
 const RECORD: u32 = 8u;
@@ -56,7 +56,7 @@ struct ClusterParams {
     exponent: i32,
     vertices: u32,
     triangles: u32,
-    // Entries of the table minus 1; their number is a power of two, at least twice that of the vertices.
+    // Entries of the table minus 1; their number is a power of two, larger than that of the vertices.
     mask: u32,
     // How far a hash is shifted to the right.
     shift: u32,
@@ -82,11 +82,11 @@ struct ClusterCounts {
 // The bits of three floats for each vertex.
 @group(0) @binding(1) var<storage, read> positions: array<u32>;
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
-// Two words for each entry: 1 + the cell, or 0, and the complement of the leader.
+// Two words for each entry: 1 + the cell, or 0, and the complement of the leader. All are 0 at first.
 @group(0) @binding(3) var<storage, read_write> table: array<atomic<u32>>;
-// `RECORD` words for each vertex.
+// `RECORD` words for each vertex, 0 at first.
 @group(0) @binding(4) var<storage, read_write> records: array<atomic<u32>>;
-// What each block of vertices keeps, then each block of triangles; after SCAN what those before it keep.
+// `BLOCK_WORDS` for each block of vertices, then for each block of triangles.
 @group(0) @binding(5) var<storage, read_write> blocks: array<u32>;
 // The bits of a position, and the vertex that is nearest to it.
 @group(0) @binding(6) var<storage, read_write> representatives: array<vec4<u32>>;
@@ -122,18 +122,6 @@ fn offset_of(vertex: u32) -> vec3<u32> {
 
 fn cell_of(offset: vec3<u32>) -> vec3<u32> {
     return offset / vec3<u32>(params.size);
-}
-
-fn clear(item: u32) {
-    if item <= params.mask {
-        atomicStore(&table[2u * item], 0u);
-        atomicStore(&table[2u * item + 1u], 0u);
-    }
-    if item < params.vertices {
-        for (var word = 0u; word < RECORD; word++) {
-            atomicStore(&records[RECORD * item + word], 0u);
-        }
-    }
 }
 
 fn insert(vertex: u32) {
@@ -218,26 +206,31 @@ fn blocks_of(count: u32) -> u32 {
     return count / BLOCK + u32(count % BLOCK > 0u);
 }
 
-// What a block keeps.
-fn count_of(block: u32) {
+// Marks what a block keeps.
+fn mark(block: u32) {
     let vertex_blocks = blocks_of(params.vertices);
     if block >= vertex_blocks + blocks_of(params.triangles) {
         return;
     }
-    var kept = 0u;
+    var kept = vec2<u32>(0u);
     if block < vertex_blocks {
-        let end = min(BLOCK * block + BLOCK, params.vertices);
-        for (var vertex = BLOCK * block; vertex < end; vertex++) {
-            kept += u32(atomicLoad(&records[RECORD * vertex + LEADER]) == vertex);
+        let first = BLOCK * block;
+        let count = min(BLOCK, params.vertices - first);
+        for (var at = 0u; at < count; at++) {
+            let bit = u32(atomicLoad(&records[RECORD * (first + at) + LEADER]) == first + at) << (at % 32u);
+            kept |= select(vec2<u32>(bit, 0u), vec2<u32>(0u, bit), at >= 32u);
         }
     } else {
         let first = BLOCK * (block - vertex_blocks);
-        let end = min(first + BLOCK, params.triangles);
-        for (var triangle = first; triangle < end; triangle++) {
-            kept += corners_of(triangle).w;
+        let count = min(BLOCK, params.triangles - first);
+        for (var at = 0u; at < count; at++) {
+            let bit = corners_of(first + at).w << (at % 32u);
+            kept |= select(vec2<u32>(bit, 0u), vec2<u32>(0u, bit), at >= 32u);
         }
     }
-    blocks[block] = kept;
+    blocks[BLOCK_WORDS * block] = countOneBits(kept.x) + countOneBits(kept.y);
+    blocks[BLOCK_WORDS * block + 1u] = kept.x;
+    blocks[BLOCK_WORDS * block + 2u] = kept.y;
 }
 
 // The largest distance along an axis between a vertex and the mean of its cell.
@@ -272,7 +265,7 @@ fn scan(first: u32, length: u32, lane: u32) -> u32 {
     let end = first + min(lane * run + run, length);
     var own = 0u;
     for (var block = begin; block < end; block++) {
-        own += blocks[block];
+        own += blocks[BLOCK_WORDS * block];
     }
     workgroupBarrier();
     sums[lane] = own;
@@ -284,8 +277,8 @@ fn scan(first: u32, length: u32, lane: u32) -> u32 {
         all += sums[other];
     }
     for (var block = begin; block < end; block++) {
-        let kept = blocks[block];
-        blocks[block] = before;
+        let kept = blocks[BLOCK_WORDS * block];
+        blocks[BLOCK_WORDS * block] = before;
         before += kept;
     }
     return all;
@@ -316,37 +309,41 @@ fn float_of(quanta: i32) -> u32 {
     return select(bits | select(0u, 0x80000000u, quanta < 0), 0u, mantissa == 0u);
 }
 
-fn represent(block: u32) {
-    if block >= blocks_of(params.vertices) {
-        return;
-    }
-    var slot = blocks[block];
-    let end = min(BLOCK * block + BLOCK, params.vertices);
-    for (var vertex = BLOCK * block; vertex < end; vertex++) {
-        let record = RECORD * vertex;
-        if atomicLoad(&records[record + LEADER]) == vertex {
-            let x = bitcast<i32>(atomicLoad(&records[record + LOW])) + params.origin.x;
-            let y = bitcast<i32>(atomicLoad(&records[record + LOW + 1u])) + params.origin.y;
-            let z = bitcast<i32>(atomicLoad(&records[record + LOW + 2u])) + params.origin.z;
-            let source = atomicLoad(&records[record + FROM]);
-            representatives[slot] = vec4<u32>(float_of(x), float_of(y), float_of(z), source);
-            atomicStore(&records[record + COUNT], slot);
-            slot++;
-        }
+// Writes the representative of a cell, which a vertex leads.
+fn represent(vertex: u32, slot: u32) {
+    let record = RECORD * vertex;
+    let x = bitcast<i32>(atomicLoad(&records[record + LOW])) + params.origin.x;
+    let y = bitcast<i32>(atomicLoad(&records[record + LOW + 1u])) + params.origin.y;
+    let z = bitcast<i32>(atomicLoad(&records[record + LOW + 2u])) + params.origin.z;
+    let source = atomicLoad(&records[record + FROM]);
+    representatives[slot] = vec4<u32>(float_of(x), float_of(y), float_of(z), source);
+    atomicStore(&records[record + COUNT], slot);
+}
+
+// Writes a triangle that stays.
+fn connect(triangle: u32, slot: u32) {
+    for (var corner = 0u; corner < 3u; corner++) {
+        let leader = atomicLoad(&records[RECORD * indices[3u * triangle + corner] + LEADER]);
+        clustered[3u * slot + corner] = atomicLoad(&records[RECORD * leader + COUNT]);
     }
 }
 
-fn connect(block: u32) {
-    if block >= blocks_of(params.triangles) {
+// Writes what a block keeps, of `length` blocks from `first` on, in order.
+fn write(block: u32, first: u32, length: u32) {
+    if block >= length {
         return;
     }
-    var slot = blocks[blocks_of(params.vertices) + block];
-    let end = min(BLOCK * block + BLOCK, params.triangles);
-    for (var triangle = BLOCK * block; triangle < end; triangle++) {
-        let corners = corners_of(triangle);
-        if corners.w == 1u {
-            for (var corner = 0u; corner < 3u; corner++) {
-                clustered[3u * slot + corner] = atomicLoad(&records[RECORD * corners[corner] + COUNT]);
+    let words = BLOCK_WORDS * (first + block);
+    var slot = blocks[words];
+    for (var half = 0u; half < 2u; half++) {
+        var kept = blocks[words + 1u + half];
+        while kept != 0u {
+            let item = BLOCK * block + 32u * half + firstTrailingBit(kept);
+            kept &= kept - 1u;
+            if STAGE == REPRESENT {
+                represent(item, slot);
+            } else {
+                connect(item, slot);
             }
             slot++;
         }
@@ -360,19 +357,17 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let item = (group.y * groups.x + group.x) * LANES + lane;
-    if STAGE == CLEAR {
-        clear(item);
-    } else if STAGE == MEAN {
+    if STAGE == MEAN {
         if item < params.vertices {
             mean(item);
         }
-        count_of(item);
+        mark(item);
     } else if STAGE == SCAN {
         scan_all(lane);
     } else if STAGE == REPRESENT {
-        represent(item);
+        write(item, 0u, blocks_of(params.vertices));
     } else if STAGE == CONNECT {
-        connect(item);
+        write(item, blocks_of(params.vertices), blocks_of(params.triangles));
     } else if item < params.vertices {
         if STAGE == INSERT {
             insert(item);

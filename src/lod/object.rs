@@ -2,9 +2,15 @@
 
 use super::{BLOCK, LodObject, OBJECT_LEVELS};
 use crate::InputError;
+use crate::shared::lod::object::OBJECT_MORPHS;
 
-/// Checks the errors of an object's levels and the number of levels.
-pub(super) fn check_levels(path: &str, levels: u32, errors: &[f32]) -> Result<(), InputError> {
+/// Checks the errors of an object's levels and the number of levels; that of level 0 is 0 if `begins_at_0`.
+pub(super) fn check_levels(
+    path: &str,
+    levels: u32,
+    errors: &[f32],
+    begins_at_0: bool,
+) -> Result<(), InputError> {
     if !(1..=OBJECT_LEVELS).contains(&levels) {
         return Err(InputError::new(
             format!("{path}.levels"),
@@ -14,7 +20,7 @@ pub(super) fn check_levels(path: &str, levels: u32, errors: &[f32]) -> Result<()
     }
     let mut least = 0.0;
     for (level, error) in errors.iter().enumerate().take(levels as usize) {
-        if !(least..f32::INFINITY).contains(error) || level == 0 && *error > 0.0 {
+        if !(least..f32::INFINITY).contains(error) || begins_at_0 && level == 0 && *error > 0.0 {
             let bound = "must be finite, ascending, and 0 at level 0";
             return Err(InputError::new(format!("{path}.errors[{level}]"), error, bound));
         }
@@ -58,7 +64,8 @@ impl LodObject {
                 return Err(InputError::new(format!("{path}.{field}"), value, bound));
             }
         }
-        check_levels(path, self.levels, self.errors.as_flattened())?;
+        let begins_at_0 = self.shown & OBJECT_MORPHS == 0;
+        check_levels(path, self.levels, self.errors.as_flattened(), begins_at_0)?;
         check_fraction(format!("{path}.mesh_fraction"), self.mesh_fraction)
     }
 }
@@ -92,6 +99,8 @@ mod tests {
         assert_eq!(refused(LodObject { levels: 4, ..right }), "objects[3].errors[3]");
         let first = |error| [[error, 0.1, 0.1, 0.2], [0.0; 4]];
         assert_eq!(refused(LodObject { errors: first(0.1), ..right }), "objects[3].errors[0]");
+        let morphs = LodObject { shown: 3, errors: first(0.05), ..right };
+        assert_eq!(morphs.validate("objects[3]"), Ok(()));
         assert_eq!(refused(LodObject { errors: first(-0.1), ..right }), "objects[3].errors[0]");
         assert_eq!(refused(LodObject { levels: 5, errors: first(0.0), ..right }), "objects[3].errors[4]");
         assert_eq!(refused(LodObject { mesh_fraction: 1.5, ..right }), "objects[3].mesh_fraction");

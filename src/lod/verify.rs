@@ -6,6 +6,7 @@ use super::{BLOCK, LodCamera, LodObject, NO_OBJECT, SceneInstance, SelectView, V
 use super::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, OBJECT_LEVELS, OBJECT_LISTS};
 use crate::InputError;
 use crate::animation::verify::Draw;
+use crate::shared::lod::object::OBJECT_MORPHS;
 
 /// The cell of random views, around which random instances lie.
 pub(crate) const CELL: IVec3 = IVec3::new(5, 0, -2_000_000);
@@ -38,10 +39,15 @@ impl Blocks {
                 first_draw,
                 parts: draw.word() % 4,
                 mesh_fraction: 0.5,
-                shown: u32::from(index != 2),
+                shown: u32::from(index != 2) | ((index as u32 + case) % 2 * OBJECT_MORPHS),
                 errors: std::array::from_fn(|four| {
                     std::array::from_fn(|lane| {
-                        if four + lane == 0 { 0.0 } else { 2e-3 * (1 << (4 * four + lane)) as f32 }
+                        let is_still = (index as u32 + case).is_multiple_of(2);
+                        if four + lane == 0 && is_still {
+                            0.0
+                        } else {
+                            2e-3 * (1 << (4 * four + lane)) as f32
+                        }
                     })
                 }),
             };

@@ -44,8 +44,10 @@ pub(crate) struct MeshGeometry {
     pub page_table: Buffer<u32>,
     /// Texture coordinates, one pair per vertex of the mesh.
     pub uv: Buffer<[f32; 2]>,
-    /// For each vertex of the mesh, the index of its material in its part's table.
+    /// For each vertex of the mesh, the index of its material in its part's table; then from `partners` on its partner.
     pub material_of: Buffer<u32>,
+    /// Where partners begin in `material_of`; 0 if there are none, so that levels cannot move into each other.
+    pub partners: u32,
     /// Triangles, level by level, and in each level part by part.
     pub indices: Buffer<u32>,
 }
@@ -105,8 +107,14 @@ impl MeshDrawable {
     /// # Errors
     /// [`GpuError`].
     pub fn beside(&self, gpu: &Gpu, layouts: &SceneLayouts, pages: &PageBuffers) -> Result<Self, GpuError> {
-        let none =
-            MeshParams { first_instance: 0, clusters: self.clusters, object: 0, last: 0, first_slot: 0 };
+        let none = MeshParams {
+            first_instance: 0,
+            clusters: self.clusters,
+            object: 0,
+            last: 0,
+            first_slot: 0,
+            partners: 0,
+        };
         let params = Uniform::new(gpu, "mesh", &none)?;
         let geometry = MeshGeometry { params, ..self.geometry.clone() };
         Self { geometry, ..self.clone() }.with_pages(gpu, layouts, pages)
@@ -150,6 +158,8 @@ pub(crate) struct SurfaceKind {
     pub blended: bool,
     /// Whether both sides of triangles are seen.
     pub double_sided: bool,
+    /// Whether levels of detail move into each other.
+    pub morphed: bool,
 }
 
 /// The buffers of a terrain.

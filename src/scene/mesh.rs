@@ -7,12 +7,13 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::scene::pieces::{Most, indices_of_levels, pieces};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
-use crate::shared::render::scene_vertex::MeshParams;
+use crate::shared::render::scene_vertex::{MeshParams, PARTNER_LEVEL_SHIFT};
 use crate::skinning::at_rest::at_rest;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::{Merged, Part, PartKey, merged};
+use crate::skinning::own_levels;
 use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
@@ -135,11 +136,14 @@ pub(super) fn drawable(
     let entries: Vec<u32> = (part_of.iter().zip(&merged.materials[index]))
         .map(|(part, material)| entry(&mut tables[*part], *material))
         .collect();
-    let placed: Vec<u32> = clusters.order.iter().map(|vertex| entries[*vertex as usize]).collect();
+    let mut placed: Vec<u32> = clusters.order.iter().map(|vertex| entries[*vertex as usize]).collect();
+    let words = partner_words(mesh, &merged.errors, clusters);
+    let partners = if words.is_empty() { 0 } else { placed.len() as u32 };
+    placed.extend(words);
     let parts = (own.iter().zip(&tables))
         .map(|(part, table)| {
             let PartKey { cut_out, blended, double_sided, sampling, normal_sampling } = part.key;
-            let surface = SurfaceKind { cut_out, blended, double_sided };
+            let surface = SurfaceKind { cut_out, blended, double_sided, morphed: false };
             let samplings = [sampling, normal_sampling].map(Option::unwrap_or_default);
             let materials = PartMaterials::new(gpu, layouts, looks, table, samplings)?;
             Ok(MeshPart { surface, materials: MeshMaterials::Plain(materials) })
@@ -151,16 +155,32 @@ pub(super) fn drawable(
         params: Uniform::new(
             gpu,
             "mesh",
-            &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0, first_slot: 0 },
+            &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0, first_slot: 0, partners },
         )?,
         vertices: pages.map_or(&buffers.vertices, |pages| &pages.skinned).clone(),
         last: pages.map_or(0, |pages| pages.last),
         page_table: pages.map_or(&material_of, |pages| &pages.table).clone(),
         uv: buffers.uv.clone(),
         material_of,
+        partners,
         indices: buffers.indices.clone(),
     };
     Ok(Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, count, parts)?))
+}
+
+/// For each slot, that of the vertex's partner and the coarsest level of the object that has the vertex; none if the mesh has no
+/// levels or no partners.
+fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
+    if mesh.levels.is_empty() || mesh.partners.is_empty() {
+        return Vec::new();
+    }
+    let (own, coarsest, slots) = (own_levels(mesh, errors), mesh.coarsest_levels(), clusters.slots());
+    let word = |vertex: &u32| {
+        let vertex = *vertex as usize;
+        let level = own.iter().rposition(|level| *level <= coarsest[vertex]).unwrap_or(0) as u32;
+        slots[mesh.partners[vertex] as usize] | level << PARTNER_LEVEL_SHIFT
+    };
+    clusters.order.iter().map(word).collect()
 }
 
 /// For each vertex, the part whose triangles use it.

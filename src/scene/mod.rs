@@ -48,6 +48,7 @@ mod spawned;
 mod stage;
 mod statistics;
 pub(crate) mod terrain;
+mod transition;
 mod uploads;
 mod view;
 mod watch;
@@ -66,6 +67,7 @@ pub use statistics::{
     CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
 };
 pub use terrain::TerrainSource;
+pub use transition::Transition;
 pub use view::View;
 pub(crate) use view::ViewShadow;
 pub use watch::{WatchedBone, WatchedBones};

@@ -8,6 +8,7 @@ use crate::scene::object::Object;
 use crate::scene::options::CharacterOptions;
 use crate::scene::relief::Relief;
 use crate::scene::terrain::TerrainSource;
+use crate::scene::transition::Transition;
 use crate::{Error, InputError};
 
 impl Scene {
@@ -198,6 +199,34 @@ impl Scene {
             }
         }
         Ok(())
+    }
+
+    /// Sets how the levels of detail of an object change, from the next recording on. Compile renderers for it
+    /// ([`Renderer::prepare`](crate::render::Renderer::prepare)). Objects change levels at once unless this is called.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene and, with [`Transition::Geomorph`], for one without levels of
+    /// detail or whose meshes have no partners ([`add_levels`](crate::skinning::add_levels) finds them): terrain, reliefs, and
+    /// meshes beyond a binding of the device.
+    pub fn set_transition(&mut self, object: ObjectId, transition: Transition) -> Result<(), Error> {
+        let entry = self.object_mut(object)?;
+        if transition == Transition::Geomorph && !entry.can_morph() {
+            let bound = "must have levels of detail with partners";
+            return Err(InputError::new("object.levels", entry.errors.len(), bound).into());
+        }
+        if std::mem::replace(&mut entry.transition, transition) != transition {
+            entry.mark_transition();
+            self.layout = None;
+        }
+        Ok(())
+    }
+
+    /// How the levels of detail of an object change.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene.
+    pub fn transition(&self, object: ObjectId) -> Result<Transition, InputError> {
+        Ok(self.object_at(object)?.transition)
     }
 
     pub(super) fn object_mut(&mut self, object: ObjectId) -> Result<&mut Object, InputError> {

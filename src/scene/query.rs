@@ -69,9 +69,11 @@ mod drawn {
     use crate::Error;
     use crate::asset::Affine;
     use crate::lod::OBJECT_LISTS;
+    use crate::scene::Transition;
     use crate::scene::View;
     use crate::scene::drawable::{Drawable, MeshDrawable};
     use crate::scene::view::lists::ViewLists;
+    use crate::shared::lod::object::LIST_INSTANCE;
     use crate::skinning::vertex::Vertex;
 
     /// An instance that a view may show, as the view's last frame drew it.
@@ -107,9 +109,10 @@ mod drawn {
                 for list in 0..2 * entry.errors.len() {
                     let count = draws[range.first_draw as usize + list].instances as usize;
                     for index in &lists[range.first_list as usize + list * room..][..count] {
+                        let index = index & LIST_INSTANCE;
                         let first = 3 * (range.first + index) as usize;
                         let placed: Affine = [0, 1, 2].map(|row| rows[first + row]);
-                        drawn[chunk.slots.start + *index as usize] = Some((list as u32, placed));
+                        drawn[chunk.slots.start + index as usize] = Some((list as u32, placed));
                     }
                 }
             }
@@ -139,6 +142,10 @@ mod drawn {
             list: u32,
         ) -> Result<Vec<Vec<[u32; 3]>>, Error> {
             let object = self.object_at(object)?;
+            if object.transition == Transition::Geomorph {
+                let bound = "must change levels of detail at once: triangles on their way are not measured";
+                return Err(InputError::new("object.transition", "geomorph", bound).into());
+            }
             let draws = self.lists_of(view)?.arguments.read_blocking(&self.gpu)?;
             let mut all = Vec::new();
             // All chunks draw the same triangles.

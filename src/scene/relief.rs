@@ -153,16 +153,18 @@ pub(super) fn drawn(
         params: Uniform::new(
             gpu,
             "mesh",
-            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0, first_slot: 0 },
+            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0, first_slot: 0, partners: 0 },
         )?,
         vertices: Buffer::constant(gpu, "mesh vertices", &vertices)?,
         last: 0,
         page_table: material_of.clone(),
         uv: Buffer::constant(gpu, "mesh uv", &uv)?,
         material_of,
+        partners: 0,
         indices: Buffer::constant(gpu, "mesh indices", &relief.mesh.indices)?,
     };
-    let surface = SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided };
+    let surface =
+        SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided, morphed: false };
     let materials = MeshMaterials::Relief(material(gpu, layouts, relief)?);
     let parts = vec![MeshPart { surface, materials }];
     let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);

@@ -1,10 +1,6 @@
 //! How levels of detail change.
 
-use super::drawable::{Drawable, MeshDrawable};
-use super::object::Object;
-use super::{ObjectId, Scene};
 use crate::shared::lod::object::OBJECT_MORPHS;
-use crate::{Error, InputError};
 
 /// How the levels of detail of an object's instances change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -15,6 +11,9 @@ pub enum Transition {
     /// By a geomorph: the vertices of a level move to their partners in the next coarser one
     /// ([`Mesh::partners`](crate::asset::Mesh::partners)), the further the more is allowed, in each view by itself. Once they
     /// are there, the picture is the coarser level's, and stays so where levels change.
+    ///
+    /// Both levels keep to what is allowed. The surface in between is not measured by itself: in the tests of
+    /// [`ProgressiveMesh::morphed`](crate::mesh::ProgressiveMesh::morphed) it was never further off than the worse of the two.
     ///
     /// A level begins to move once the error of the coarser one is allowed, and has arrived when that of the one after it
     /// is. So the level that is drawn is finer by one than with [`Transition::Hard`]: it costs about 1.4 times the triangles,
@@ -36,54 +35,6 @@ impl Transition {
         match (self, errors.last()) {
             (Self::Geomorph, Some(last)) => errors.iter().skip(1).copied().chain([2.0 * last]).collect(),
             _ => errors.to_vec(),
-        }
-    }
-}
-
-impl Scene {
-    /// Sets how the levels of detail of an object change, from the next recording on. Compile renderers for it
-    /// ([`Renderer::prepare`](crate::render::Renderer::prepare)). Objects change levels at once unless this is called.
-    ///
-    /// # Errors
-    /// [`InputError`] for an object that is not of this scene and, with [`Transition::Geomorph`], for one without levels of
-    /// detail or whose meshes have no partners ([`add_levels`](crate::skinning::add_levels) finds them): terrain, reliefs, and
-    /// meshes beyond a binding of the device.
-    pub fn set_transition(&mut self, object: ObjectId, transition: Transition) -> Result<(), Error> {
-        let entry = self.object_mut(object)?;
-        if transition == Transition::Geomorph && !entry.can_morph() {
-            let bound = "must have levels of detail with partners";
-            return Err(InputError::new("object.levels", entry.errors.len(), bound).into());
-        }
-        if std::mem::replace(&mut entry.transition, transition) != transition {
-            entry.mark_transition();
-            self.layout = None;
-        }
-        Ok(())
-    }
-
-    /// How the levels of detail of an object change.
-    ///
-    /// # Errors
-    /// [`InputError`] for an object that is not of this scene.
-    pub fn transition(&self, object: ObjectId) -> Result<Transition, InputError> {
-        Ok(self.object_at(object)?.transition)
-    }
-}
-
-impl Object {
-    fn can_morph(&self) -> bool {
-        let has = |drawable: &Drawable| matches!(drawable, Drawable::Mesh(MeshDrawable { geometry, .. }) if geometry.partners > 0);
-        self.errors.len() > 1 && self.drawables().any(has)
-    }
-
-    /// Tells what is drawn of the object how its levels change.
-    pub(super) fn mark_transition(&mut self) {
-        let morphs = self.transition == Transition::Geomorph;
-        for drawable in self.chunks.iter_mut().flat_map(|chunk| &mut chunk.drawables) {
-            if let Drawable::Mesh(mesh) = drawable {
-                let own = morphs && mesh.geometry.partners > 0;
-                mesh.parts.iter_mut().for_each(|part| part.surface.morphed = own);
-            }
         }
     }
 }

@@ -65,7 +65,8 @@ impl SceneFile {
     }
 
     /// The files that the scene names, relative to its own, in ascending order, each once. A browser can fetch them before
-    /// it loads the scene. Buffers and images beside `.gltf` files are not among them; `.glb` files need none.
+    /// it loads the scene. Buffers, images and material libraries beside `.gltf` and `.obj` files are
+    /// not among them; `.glb` files need none.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut found = BTreeSet::new();
         let mut add = |source: &Source| {

@@ -19,12 +19,14 @@ const NORMAL: f64 = 5e-3;
 /// What normals of a reduced model are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Normals {
-    /// Those of the model. They count in the cost, and hard edges stay as seams do: corners that differ in normals
-    /// are not merged.
+    /// Those of the model. They count in the cost. Edges that are hard in normals only do not hinder reducers: vertices that
+    /// differ in nothing else are one for them, with the mean of their normals, and afterwards every corner gets the normal
+    /// that is closest to those of the triangle from which its own comes. Where a reducer places a vertex anew,
+    /// all corners have the normal that it gives.
     #[default]
     Carry,
-    /// Computed again: the normalized sums of the normals of the triangles around each vertex, weighted by area. Corners that
-    /// differ in normals alone are joined before, so that hard edges are lost.
+    /// Computed again: the normalized sums of the normals of the triangles around each vertex, weighted by area. Hard edges
+    /// are lost.
     Recompute,
 }
 
@@ -111,8 +113,10 @@ struct Input<'a> {
     poses: [Vec<[f32; 3]>; 1],
     indices: Vec<u32>,
     attributes: Vec<f32>,
-    /// For each vertex, its mesh and its number there.
-    vertices: Vec<[u32; 2]>,
+    /// For each vertex, its mesh, and the vertices there that it stands for: they differ in normals alone.
+    vertices: Vec<(usize, Vec<u32>)>,
+    /// For each mesh, the number of triangles before it.
+    first: Vec<usize>,
     /// For each triangle, its mesh.
     meshes: Vec<u32>,
     /// The factor of normals.
@@ -135,6 +139,7 @@ impl<'a> Input<'a> {
             indices: Vec::new(),
             attributes: Vec::new(),
             vertices: Vec::new(),
+            first: Vec::new(),
             meshes: Vec::new(),
             normal: (NORMAL * low.distance(high)) as f32,
             texture: model.meshes.iter().map(texture_scale).collect(),
@@ -152,42 +157,46 @@ impl<'a> Input<'a> {
 
     fn add(&mut self, index: usize, mesh: &Mesh) {
         let mut known = HashMap::new();
-        let slots: Vec<u32> = (0..mesh.vertices())
-            .map(|vertex| {
-                let slot = self.vertices.len() as u32;
-                let slot = match self.normals {
-                    Normals::Carry => slot,
-                    Normals::Recompute => {
-                        let (place, uv) = (mesh.positions[vertex], mesh.uv[vertex]);
-                        *known.entry((place.map(bits), uv.map(bits))).or_insert(slot)
-                    }
-                };
-                if slot as usize == self.vertices.len() {
-                    self.add_vertex(index, mesh, vertex);
-                }
-                slot
-            })
-            .collect();
+        let mut slots = Vec::with_capacity(mesh.vertices());
+        for vertex in 0..mesh.vertices() {
+            let (place, uv) = (mesh.positions[vertex], mesh.uv[vertex]);
+            let slot = *known.entry((place.map(bits), uv.map(bits))).or_insert(self.vertices.len());
+            if slot == self.vertices.len() {
+                self.vertices.push((index, Vec::new()));
+                self.poses[0].push(place);
+            }
+            self.vertices[slot].1.push(vertex as u32);
+            slots.push(slot as u32);
+        }
+        self.first.push(self.meshes.len());
         self.indices.extend(mesh.indices.iter().map(|vertex| slots[*vertex as usize]));
         self.meshes.resize(self.indices.len() / 3, index as u32);
+        let from = self.attributes.len() / self.stride();
+        for at in from..self.vertices.len() {
+            self.add_attributes(at);
+        }
     }
 
-    fn add_vertex(&mut self, index: usize, mesh: &Mesh, vertex: usize) {
-        self.poses[0].push(mesh.positions[vertex]);
+    fn add_attributes(&mut self, at: usize) {
+        let (index, members) = &self.vertices[at];
+        let mesh = &self.model.meshes[*index];
         if self.normals == Normals::Carry {
-            self.attributes.extend(mesh.normals[vertex].map(|x| self.normal * x));
+            let normal = mean(members.iter().map(|member| mesh.normals[*member as usize]));
+            self.attributes.extend(normal.map(|x| self.normal * x));
         }
-        self.attributes.extend(mesh.uv[vertex].map(|x| self.texture[index] * x));
-        self.vertices.push([index as u32, vertex as u32]);
+        let scale = self.texture[*index];
+        self.attributes.extend(mesh.uv[members[0] as usize].map(|x| scale * x));
     }
 
     /// The model of a result; `at` is the number of its limit.
     fn output(&self, at: usize, reduced: &Reduced) -> Result<ReducedModel, InputError> {
-        let mut triangles: Vec<Vec<u32>> = vec![Vec::new(); self.model.meshes.len()];
-        for (corners, from) in reduced.indices.as_chunks::<3>().0.iter().zip(&reduced.triangles) {
-            triangles[self.meshes[*from as usize] as usize].extend(corners);
+        let mut corners: Vec<Vec<Corner>> = vec![Vec::new(); self.model.meshes.len()];
+        for (triangle, from) in reduced.indices.as_chunks::<3>().0.iter().zip(&reduced.triangles) {
+            let mesh = self.meshes[*from as usize] as usize;
+            let normal = self.normal_of(mesh, *from as usize);
+            corners[mesh].extend(triangle.map(|vertex| self.corner(vertex, normal, reduced)));
         }
-        let meshes = self.model.meshes.iter().zip(triangles).filter(|(_, corners)| !corners.is_empty());
+        let meshes = self.model.meshes.iter().zip(corners).filter(|(_, corners)| !corners.is_empty());
         let meshes = meshes
             .map(|(mesh, corners)| self.mesh(mesh, &corners, reduced))
             .collect::<Result<Vec<_>, _>>()?;
@@ -199,17 +208,41 @@ impl<'a> Input<'a> {
         Ok(ReducedModel { model, estimate: reduced.error, stopped: reduced.stopped })
     }
 
-    /// A mesh of the vertices of `corners`, three a triangle, in their order.
-    fn mesh(&self, mesh: &Mesh, corners: &[u32], reduced: &Reduced) -> Result<Mesh, InputError> {
-        let mut used: Vec<u32> = corners.to_vec();
+    /// The sum of the normals of a triangle's corners in the model.
+    fn normal_of(&self, mesh: usize, triangle: usize) -> Vec3 {
+        let mesh_of = &self.model.meshes[mesh];
+        let corners = &mesh_of.indices[3 * (triangle - self.first[mesh])..][..3];
+        corners.iter().map(|corner| Vec3::from(mesh_of.normals[*corner as usize])).sum()
+    }
+
+    /// The corner of a triangle with this normal at a vertex of the result.
+    fn corner(&self, vertex: u32, normal: Vec3, reduced: &Reduced) -> Corner {
+        let from = reduced.vertices[vertex as usize] as usize;
+        let (mesh, members) = &self.vertices[from];
+        if self.normals == Normals::Recompute || !self.is_same(vertex, reduced) {
+            return Corner { vertex, member: None };
+        }
+        let along = |member: &u32| normal.dot(Vec3::from(self.model.meshes[*mesh].normals[*member as usize]));
+        // The first of equal ones.
+        let best = members
+            .iter()
+            .copied()
+            .reduce(|best, other| if along(&other) > along(&best) { other } else { best });
+        Corner { vertex, member: best }
+    }
+
+    /// A mesh of `corners`, three a triangle, with a vertex for all that are equal.
+    fn mesh(&self, mesh: &Mesh, corners: &[Corner], reduced: &Reduced) -> Result<Mesh, InputError> {
+        let mut used: Vec<Corner> = corners.to_vec();
         used.sort_unstable();
         used.dedup();
-        let slots: HashMap<u32, u32> = used.iter().copied().zip(0..).collect();
+        let slots: HashMap<Corner, u32> = used.iter().copied().zip(0..).collect();
         let indices: Vec<u32> = corners.iter().map(|corner| slots[corner]).collect();
-        let positions: Vec<[f32; 3]> = used.iter().map(|at| reduced.poses[0][*at as usize]).collect();
-        let uv: Vec<[f32; 2]> = used.iter().map(|at| self.uv(*at, reduced)).collect();
+        let positions: Vec<[f32; 3]> =
+            used.iter().map(|corner| reduced.poses[0][corner.vertex as usize]).collect();
+        let uv: Vec<[f32; 2]> = used.iter().map(|corner| self.uv(corner.vertex, reduced)).collect();
         let normals = match self.normals {
-            Normals::Carry => used.iter().map(|at| self.normal(*at, reduced)).collect(),
+            Normals::Carry => used.iter().map(|corner| self.normal(corner, reduced)).collect(),
             Normals::Recompute => smooth_normals(&positions, &indices),
         };
         let tangents = solved_tangents(&positions, &normals, &uv, &indices)?;
@@ -233,35 +266,52 @@ impl<'a> Input<'a> {
         })
     }
 
-    /// The mesh and the vertex from which a vertex comes, and whether its attributes are still the same.
-    fn source(&self, at: u32, reduced: &Reduced) -> (usize, usize, bool) {
-        let from = reduced.vertices[at as usize] as usize;
-        let [mesh, vertex] = self.vertices[from].map(|number| number as usize);
-        let of = |all: &[f32], at: usize| {
-            all[self.stride() * at..][..self.stride()].iter().map(|x| bits(*x)).collect::<Vec<_>>()
-        };
-        (mesh, vertex, of(&reduced.attributes, at as usize) == of(&self.attributes, from))
+    /// Whether a vertex of the result has the attributes of the vertex from which it comes.
+    fn is_same(&self, vertex: u32, reduced: &Reduced) -> bool {
+        let stride = self.stride();
+        let from = reduced.vertices[vertex as usize] as usize;
+        let now = &reduced.attributes[stride * vertex as usize..][..stride];
+        let before = &self.attributes[stride * from..][..stride];
+        now.iter().zip(before).all(|(now, before)| bits(*now) == bits(*before))
     }
 
-    fn uv(&self, at: u32, reduced: &Reduced) -> [f32; 2] {
-        let (mesh, vertex, is_same) = self.source(at, reduced);
-        let scale = self.texture[mesh];
-        if is_same || scale == 0.0 {
-            return self.model.meshes[mesh].uv[vertex];
+    fn uv(&self, vertex: u32, reduced: &Reduced) -> [f32; 2] {
+        let (mesh, members) = &self.vertices[reduced.vertices[vertex as usize] as usize];
+        let scale = self.texture[*mesh];
+        if scale == 0.0 || self.is_same(vertex, reduced) {
+            return self.model.meshes[*mesh].uv[members[0] as usize];
         }
-        let end = self.stride() * (at as usize + 1);
+        let end = self.stride() * (vertex as usize + 1);
         [reduced.attributes[end - 2] / scale, reduced.attributes[end - 1] / scale]
     }
 
-    fn normal(&self, at: u32, reduced: &Reduced) -> [f32; 3] {
-        let (mesh, vertex, is_same) = self.source(at, reduced);
-        let own = self.model.meshes[mesh].normals[vertex];
-        if is_same {
-            return own;
-        }
-        let scaled = Vec3::from_slice(&reduced.attributes[self.stride() * at as usize..]);
-        scaled.as_dvec3().try_normalize().map_or(own, |normal| normal.as_vec3().to_array())
+    fn normal(&self, corner: &Corner, reduced: &Reduced) -> [f32; 3] {
+        let (mesh, members) = &self.vertices[reduced.vertices[corner.vertex as usize] as usize];
+        let own = |member: u32| self.model.meshes[*mesh].normals[member as usize];
+        let Some(member) = corner.member else {
+            let scaled = Vec3::from_slice(&reduced.attributes[self.stride() * corner.vertex as usize..]);
+            let unit = scaled.as_dvec3().try_normalize();
+            return unit.map_or_else(|| own(members[0]), |normal| normal.as_vec3().to_array());
+        };
+        own(member)
     }
+}
+
+/// A corner of a reduced mesh: a vertex of the result, and the vertex of the model that gives the normal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+struct Corner {
+    vertex: u32,
+    member: Option<u32>,
+}
+
+/// The normalized sum of normals; the first of them where they cancel.
+fn mean(normals: impl Iterator<Item = [f32; 3]> + Clone) -> [f32; 3] {
+    let first = normals.clone().next().unwrap_or_default();
+    if normals.clone().all(|normal| normal == first) {
+        return first;
+    }
+    let sum: DVec3 = normals.map(|normal| Vec3::from(normal).as_dvec3()).sum();
+    sum.try_normalize().map_or(first, |normal| normal.as_vec3().to_array())
 }
 
 fn bits(number: f32) -> u32 {

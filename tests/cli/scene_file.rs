@@ -19,6 +19,7 @@ impl Folder {
             std::fs::copy(truth.join(name), folder.path(name)).expect("copied");
         }
         folder.write("cut.glb", b"glTF\x02\0\0\0\xff\xff\0\0");
+        folder.write("cow.obj", b"v 0 0 0\nf 1 2 3\n");
         folder.write("cycle.gltf", CYCLE.as_bytes());
         folder.write("points.gltf", br#"{"asset": {"version": "2.0"}, "nodes": [{}]}"#);
         folder.write("broken.png", b"no picture");
@@ -243,6 +244,30 @@ fn surfaces_have_normals_colors_and_numbers() {
     assert!(
         !folder.path("out/frame_0000_id.png").exists() && !folder.path("out/frame_0000_albedo.png").exists()
     );
+}
+
+/// The same model in both formats, as this crate writes them.
+#[test]
+fn obj_is_drawn_as_glb_is() {
+    let folder = Folder::new();
+    let rock = relievo::samples::rock().expect("valid");
+    folder.write("rock.glb", &rock.to_glb().expect("valid"));
+    for (name, bytes) in rock.to_obj("rock").expect("valid") {
+        folder.write(&name, &bytes);
+    }
+    let pictures = ["rock.glb", "rock.obj"].map(|file| {
+        let scene = json!({
+            "meshes": [{"file": file, "instances": [{"at": [0, 0, 0]}]}],
+            "camera": {"at": [1, 2, 4], "look": [0, 0, 0]},
+        });
+        let run = folder.run(&scene.to_string(), &["--size", "96x96", "--full"]);
+        assert_eq!(run.code, Some(0), "{file}: {}", run.stderr);
+        folder.frame(0).to_rgb8()
+    });
+    let pairs = || pictures[0].as_raw().iter().zip(pictures[1].as_raw());
+    assert!(pairs().all(|(a, b)| a.abs_diff(*b) <= 3), "the pictures differ");
+    let corner = pictures[0].get_pixel(0, 0);
+    assert!(pictures[0].pixels().filter(|pixel| *pixel != corner).count() > 500, "the rock is not drawn");
 }
 
 #[test]

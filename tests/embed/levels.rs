@@ -148,7 +148,8 @@ impl Posed {
         let palette = palette_for(&model.skins[mesh.skin], &models, Blend::Linear);
         let vertices = skin(&morph(mesh, &mesh.weights), &mesh.influences, &palette, InstanceLod::FULL);
         let bare = Mesh { levels: Vec::new(), partners: Vec::new(), ..mesh.clone() };
-        let model = still(&Model { meshes: vec![bare], ..model }, &[vertices.clone()]).expect("in range");
+        let model =
+            still(&Model { meshes: vec![bare], ..model }, std::slice::from_ref(&vertices)).expect("in range");
         Self { model, progressive, vertices }
     }
 

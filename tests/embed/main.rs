@@ -11,6 +11,7 @@ mod chunks;
 mod cost;
 mod counts;
 mod frame;
+mod geomorph;
 mod health;
 mod host;
 #[path = "../skinning/hull.rs"]

@@ -9,6 +9,25 @@ const BLOCK = 64u;
 // What stands for the object of a block that belongs to none.
 const NO_OBJECT = 0xffffffffu;
 
+// A bit of `LodObject.shown`: the object is visible as a whole.
+const OBJECT_SHOWN = 1u;
+// A bit of `LodObject.shown`: its levels of detail move into each other.
+const OBJECT_MORPHS = 2u;
+// The bits of a decision that have 1 + its list.
+const DECISION_LIST = 255u;
+// The first bit of a decision that tells how far its level of detail has moved to the next coarser one.
+const DECISION_MORPH_SHIFT = 8u;
+// The bits of a list's entry that have the index of the instance.
+const LIST_INSTANCE = 1048575u;
+// The first bit of a list's entry that tells how far the level has moved.
+const LIST_MORPH_SHIFT = 20u;
+// Of what tells how far a level has moved, the bits that have the level; all are 0 where it has not moved.
+const MORPH_LEVEL = 7u;
+// The first bit that has the steps that it has moved.
+const MORPH_SHIFT = 3u;
+// Number of steps from a level to the next one.
+const MORPH_STEPS = 511u;
+
 // How the instances of an object are selected and listed.
 struct LodObject {
     // The index of its first instance, and the number of its instances, multiples of `BLOCK`.
@@ -25,9 +44,10 @@ struct LodObject {
     parts: u32,
     // The fraction of the allowed displacement that its levels of detail may use, 0 to 1.
     mesh_fraction: f32,
-    // The visibility of the object as a whole: 0 hides it.
+    // `OBJECT_SHOWN`, without which it is hidden, and `OBJECT_MORPHS`.
     shown: u32,
-    // The error of each level in the model's units, ascending from 0.
+    // The error of each level in the model's units, ascending from 0. If levels move into each other, the displacement from
+    // which on each begins to move, which for all but level 0 is also that from which on it is drawn.
     errors: array<vec4<f32>, 2>,
 }
 

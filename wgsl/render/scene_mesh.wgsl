@@ -3,7 +3,7 @@
 import package::wgsl::render::scene_motion::last_position;
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
-import package::wgsl::render::scene_vertex::{PlacedVertex, instances, mesh, placed_vertex};
+import package::wgsl::render::scene_vertex::{PlacedVertex, entry_instance, instances, material_of, mesh, placed_vertex};
 import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::surface::dither::surface_dither_threshold;
 
@@ -38,8 +38,6 @@ struct SceneMaterial {
     normal_scale: f32,
 }
 
-// For each vertex of the mesh, the index of its material in the table of its part.
-@group(1) @binding(3) var<storage, read> material_of: array<u32>;
 // The table of the part.
 @group(2) @binding(0) var<storage, read> materials: array<SceneMaterial>;
 // Colours and alpha, a layer a texture.
@@ -97,8 +95,8 @@ struct WholeVertex {
 }
 
 @vertex
-fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> PlainVertex {
-    let placed = placed_vertex(instance, vertex);
+fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> PlainVertex {
+    let placed = placed_vertex(entry, vertex);
     var index = 0u;
     if SEVERAL {
         index = material_of[vertex];
@@ -112,20 +110,20 @@ fn vertex_plain(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) 
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Vertex {
-    return without_tangent(bumpy(placed_vertex(instance, vertex), vertex));
+fn vertex(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> Vertex {
+    return without_tangent(bumpy(placed_vertex(entry, vertex), vertex));
 }
 
 @vertex
-fn vertex_bumpy(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> BumpyVertex {
-    return bumpy(placed_vertex(instance, vertex), vertex);
+fn vertex_bumpy(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> BumpyVertex {
+    return bumpy(placed_vertex(entry, vertex), vertex);
 }
 
 @vertex
-fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> WholeVertex {
-    let placed = placed_vertex(instance, vertex);
+fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> WholeVertex {
+    let placed = placed_vertex(entry, vertex);
     let out = bumpy(placed, vertex);
-    return WholeVertex(out.clip, out.normal, out.surface, out.color, out.tangent, placed.position, instance);
+    return WholeVertex(out.clip, out.normal, out.surface, out.color, out.tangent, placed.position, entry_instance(entry));
 }
 
 // A vertex with what there is to know of its motion.
@@ -139,9 +137,9 @@ struct MovingVertex {
 }
 
 @vertex
-fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
-    let out = bumpy(placed_vertex(instance, vertex), vertex);
-    let last = view.last_clip_from_world * vec4<f32>(last_position(instance, vertex), 1.0);
+fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> MovingVertex {
+    let out = bumpy(placed_vertex(entry, vertex), vertex);
+    let last = view.last_clip_from_world * vec4<f32>(last_position(entry, vertex), 1.0);
     return MovingVertex(out.clip, out.surface, out.color, scene_place(out.clip), scene_place(last));
 }
 

@@ -1,6 +1,6 @@
 // Where the instances of a scene were in the last frame, and how far their surfaces moved on the screen since.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
-import package::wgsl::render::scene_vertex::{instances, mesh, rows, vertex_index_of, vertices};
+import package::wgsl::render::scene_vertex::{MORPHED, entry_instance, instances, mesh, morphed, rows, vertex_index_of, vertex_morph, vertices};
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_position};
 import package::wgsl::skinning::vertex::vertex_position;
@@ -28,12 +28,23 @@ fn last_rows(index: u32) -> Rows {
         vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z));
 }
 
-// Where a vertex of an instance was, relative to the corner of the view's cell.
-fn last_position(instance: u32, vertex: u32) -> vec3<f32> {
+// Where a vertex of an instance was in the model's space.
+fn last_local(instance: u32, vertex: u32) -> vec3<f32> {
     let at = vertex_index_of(instance, vertex);
     let first = select(5u * at, mesh.last + 2u * at, mesh.last != 0u);
-    return placed_position(
-        last_rows(mesh.first_instance + instance), vertex_position(vertices[first], vertices[first + 1u]));
+    return vertex_position(vertices[first], vertices[first + 1u]);
+}
+
+// Where a vertex of an instance, given by the entry of its list, was, relative to the corner of the view's cell. Levels of
+// detail that move into each other count as if they had been as they are.
+fn last_position(entry: u32, vertex: u32) -> vec3<f32> {
+    let instance = entry_instance(entry);
+    var position = last_local(instance, vertex);
+    if MORPHED {
+        let to = vertex_morph(entry, vertex);
+        position = morphed(position, last_local(instance, to.partner), to.way);
+    }
+    return placed_position(last_rows(mesh.first_instance + instance), position);
 }
 
 // The transform from where an instance is to where it was, for what does not move in the model's space.

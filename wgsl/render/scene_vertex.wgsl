@@ -1,8 +1,16 @@
 // Vertices of the meshes of a scene, static or skinned, at the placement of an instance.
 import package::wgsl::lod::instance::SceneInstance;
+import package::wgsl::lod::object::{LIST_INSTANCE, LIST_MORPH_SHIFT, MORPH_LEVEL, MORPH_SHIFT, MORPH_STEPS};
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_tangent};
+
+// Whether levels of detail of the mesh move into each other.
+override MORPHED: bool = false;
+
+// Of a vertex's partner, the bits that have its index; those above have the coarsest level of detail that has the vertex itself.
+const PARTNER_INDEX: u32 = 16777215u;
+const PARTNER_LEVEL_SHIFT: u32 = 24u;
 
 // Where the instances and the vertices of a mesh lie.
 struct MeshParams {
@@ -16,6 +24,8 @@ struct MeshParams {
     last: u32,
     // The number in the object of its first instance here.
     first_slot: u32,
+    // The index in `material_of` of the vertices' partners; 0 if there are none.
+    partners: u32,
 }
 
 // Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the
@@ -30,6 +40,9 @@ struct MeshParams {
 @group(1) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
 // The page of each cluster of each instance of the object, if vertices lie in pages.
 @group(1) @binding(4) var<storage, read> page_table: array<u32>;
+// For each vertex of the mesh, the index of its material in the table of its part; then, from `MeshParams.partners` on, its
+// partner, towards which it moves, with the coarsest level that has the vertex.
+@group(1) @binding(3) var<storage, read> material_of: array<u32>;
 // One pair per vertex of the mesh.
 @group(1) @binding(2) var<storage, read> texture_coordinates: array<vec2<f32>>;
 
@@ -58,23 +71,66 @@ fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
     return CLUSTER * page_table[instance * mesh.clusters + vertex / CLUSTER] + vertex % CLUSTER;
 }
 
-// A vertex of an instance; `instance` counts those of the object, `vertex` those of the mesh.
-fn placed_vertex(instance: u32, vertex: u32) -> PlacedVertex {
+// The instance of a list's entry, counted in the object.
+fn entry_instance(entry: u32) -> u32 {
+    return entry & LIST_INSTANCE;
+}
+
+// Where a vertex goes in the next coarser level, and how far it has moved there, 0 to 1.
+struct VertexMorph {
+    partner: u32,
+    way: f32,
+}
+
+// The vertices that the next coarser level has too stay, and so do all if the entry's level has not moved.
+fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
+    let word = material_of[mesh.partners + vertex];
+    let moved = entry >> LIST_MORPH_SHIFT;
+    let steps = moved >> MORPH_SHIFT;
+    if steps == 0u || mesh.partners == 0u || (word >> PARTNER_LEVEL_SHIFT) != (moved & MORPH_LEVEL) {
+        return VertexMorph(vertex, 0.0);
+    }
+    // Division may round: all the way is 1.
+    return VertexMorph(word & PARTNER_INDEX, select(f32(steps) / f32(MORPH_STEPS), 1.0, steps == MORPH_STEPS));
+}
+
+// Between two vectors; at 0 and 1 one of them, to the bit.
+fn morphed(a: vec3<f32>, b: vec3<f32>, way: f32) -> vec3<f32> {
+    return a * (1.0 - way) + b * way;
+}
+
+// A vertex of an instance, given by the entry of its list; `vertex` counts those of the mesh.
+fn placed_vertex(entry: u32, vertex: u32) -> PlacedVertex {
+    let instance = entry_instance(entry);
     let index = mesh.first_instance + instance;
     let placement = Rows(rows[3u * index], rows[3u * index + 1u], rows[3u * index + 2u]);
     let at = 5u * vertex_index_of(instance, vertex);
     let middle = vertices[at + 1u];
-    let tangent = vertex_tangent(vertices[at + 3u], vertices[at + 4u]);
+    var position = vertex_position(vertices[at], middle);
+    var normal = vertex_normal(middle, vertices[at + 2u]);
+    var tangent = vertex_tangent(vertices[at + 3u], vertices[at + 4u]);
+    var uv = texture_coordinates[vertex];
+    if MORPHED {
+        let to = vertex_morph(entry, vertex);
+        let other = 5u * vertex_index_of(instance, to.partner);
+        let other_middle = vertices[other + 1u];
+        let other_tangent = vertex_tangent(vertices[other + 3u], vertices[other + 4u]);
+        position = morphed(position, vertex_position(vertices[other], other_middle), to.way);
+        normal = morphed(normal, vertex_normal(other_middle, vertices[other + 2u]), to.way);
+        tangent = vec4<f32>(
+            morphed(tangent.xyz, other_tangent.xyz, to.way), select(tangent.w, other_tangent.w, to.way >= 0.5));
+        uv = uv * (1.0 - to.way) + texture_coordinates[to.partner] * to.way;
+    }
     let along = vec3<f32>(
         dot(placement.x.xyz, tangent.xyz), dot(placement.y.xyz, tangent.xyz), dot(placement.z.xyz, tangent.xyz));
     let determinant = dot(placement.x.xyz, cross(placement.y.xyz, placement.z.xyz));
     // Cofactors turn the normal inwards where the placement mirrors, which also changes the bitangent's side.
     let side = select(1.0, -1.0, determinant < 0.0);
     return PlacedVertex(
-        placed_position(placement, vertex_position(vertices[at], middle)),
-        side * placed_normal(placement, vertex_normal(middle, vertices[at + 2u])),
+        placed_position(placement, position),
+        side * placed_normal(placement, normal),
         vec4<f32>(along, side * tangent.w),
-        texture_coordinates[vertex],
+        uv,
         instances[index].tint,
         side,
         length(along));

@@ -27,7 +27,7 @@ impl AssignParams {
     /// [`InputError`] that names the field; for fractions that add up to more than 1, `params.influence_fraction`.
     pub fn validate(&self) -> Result<(), InputError> {
         let errors: Vec<f32> = self.errors.iter().flat_map(|errors| errors.to_array()).collect();
-        check_levels("params", self.levels, &errors)?;
+        check_levels("params", self.levels, &errors, true)?;
         check_fraction("params.mesh_fraction".to_owned(), self.mesh_fraction)?;
         check_fraction("params.bone_fraction".to_owned(), self.bone_fraction)?;
         check_fraction("params.influence_fraction".to_owned(), self.influence_fraction)?;

@@ -1,16 +1,19 @@
 //! Lists of instances: the CPU reference of `kernels/lod/list.wgsl`.
 
 use crate::lod::{LodObject, OBJECT_LISTS};
+use crate::shared::lod::object::{DECISION_LIST, DECISION_MORPH_SHIFT, LIST_MORPH_SHIFT};
 
-/// The lists of an object from the decisions of its instances: indices relative to the object's first instance, ascending.
+/// The lists of an object from the decisions of its instances: indices relative to the object's first instance, ascending, and
+/// in the bits from `LIST_MORPH_SHIFT` on how far levels have moved to the next ones.
 ///
 /// # Panics
 /// If the object's instances are not all in `decisions`.
 pub fn lists(object: &LodObject, decisions: &[u32]) -> [Vec<u32>; OBJECT_LISTS as usize] {
-    let mut lists = std::array::from_fn(|_| Vec::new());
+    let mut lists: [Vec<u32>; OBJECT_LISTS as usize] = std::array::from_fn(|_| Vec::new());
     let own = &decisions[object.first as usize..][..object.instances as usize];
     for (instance, decision) in (0..).zip(own).filter(|(_, decision)| **decision > 0) {
-        lists[*decision as usize - 1].push(instance);
+        let moved = (decision >> DECISION_MORPH_SHIFT) << LIST_MORPH_SHIFT;
+        lists[(decision & DECISION_LIST) as usize - 1].push(instance | moved);
     }
     lists
 }
@@ -41,6 +44,9 @@ mod tests {
         assert_eq!(lists[1], (0..20).map(|at| 3 * at + 1).collect::<Vec<u32>>());
         assert_eq!(lists.iter().map(Vec::len).sum::<usize>(), 60);
         assert!(lists[8].is_empty(), "another object's instances");
+        // A level that has moved by 5 of 511 steps.
+        decisions[67] |= (2 | 5 << 3) << 8;
+        assert_eq!(super::lists(&object, &decisions)[0][1], 3 | (2 | 5 << 3) << 20);
     }
 
     #[test]

@@ -12,6 +12,7 @@ use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::reference::counts;
 use crate::lod::verify::{Blocks, SIZES};
 use crate::lod::{BLOCK, OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::object::DECISION_MORPH_SHIFT;
 
 /// How instances are spread over lists.
 const KINDS: [&str; 4] = ["none seen", "all in one list", "some in every list", "few"];
@@ -51,6 +52,11 @@ fn with_threads(cases: &mut Cases<'_>, threads: Threads) -> Result<(), Error> {
 /// Decisions of all instances, also of those in blocks of no object.
 fn random_decisions(case: u32, kind: &str, blocks: &Blocks) -> Vec<u32> {
     let mut draw = Draw::new(case ^ 0x1157);
+    // Lists keep what is above, of every other instance.
+    let moved = |index: usize, decision: u32| match decision {
+        0 => 0,
+        decision => decision | if index.is_multiple_of(2) { 0x5a3 << DECISION_MORPH_SHIFT } else { 0 },
+    };
     let mut decision = |index: usize| match kind {
         _ if blocks.object_of(index).is_none() => 1 + draw.word() % OBJECT_LISTS,
         "none seen" => 0,
@@ -58,7 +64,7 @@ fn random_decisions(case: u32, kind: &str, blocks: &Blocks) -> Vec<u32> {
         "few" if !draw.word().is_multiple_of(40) => 0,
         _ => draw.word() % (1 + OBJECT_LISTS),
     };
-    (0..BLOCK as usize * blocks.block_objects.len()).map(&mut decision).collect()
+    (0..BLOCK as usize * blocks.block_objects.len()).map(|index| moved(index, decision(index))).collect()
 }
 
 /// What the kernel wrote, and in it poison where it did not.

@@ -4,7 +4,11 @@ use glam::{IVec3, Vec3};
 
 use crate::lod::object::level_within;
 use crate::lod::{
-    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, LodObject, SceneInstance, SelectView,
+    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, LodObject, OBJECT_LEVELS, SceneInstance,
+    SelectView,
+};
+use crate::shared::lod::object::{
+    DECISION_LIST, DECISION_MORPH_SHIFT, MORPH_SHIFT, MORPH_STEPS, OBJECT_MORPHS, OBJECT_SHOWN,
 };
 use crate::shared::lod::select::{LEAST_SCALE, MAX_ALLOWED, UNSEEN_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
@@ -12,7 +16,7 @@ use crate::shared::lod::view::POSITION_SLACK;
 /// What a view makes of an instance that it sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selected {
-    /// 1 + 2 · level + mirrored.
+    /// 1 + 2 · level + mirrored, and from bit `DECISION_MORPH_SHIFT` on [`morph_within`].
     pub decision: u32,
     /// The displacement that the view allows, in the model's units.
     pub allowed: f32,
@@ -31,7 +35,7 @@ pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
 
 /// Whether a view may see an instance at all, wherever it is.
 pub fn is_shown(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> bool {
-    let is_alive = object.shown != 0 && instance.flags & INSTANCE_ALIVE != 0;
+    let is_alive = object.shown & OBJECT_SHOWN != 0 && instance.flags & INSTANCE_ALIVE != 0;
     let casts = view.casters == 0 || instance.flags & INSTANCE_CASTS != 0;
     is_alive && casts && (instance.flags >> INSTANCE_MASK_SHIFT) & view.mask != 0
 }
@@ -65,10 +69,26 @@ pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -
         return None;
     }
     let allowed = view_allows(view, center, radius, instance.largest_scale());
-    let level = level_within(object.levels, &object.errors, object.mesh_fraction * allowed);
+    let within = object.mesh_fraction * allowed;
+    let level = level_within(object.levels, &object.errors, within);
+    let moved = morph_within(object, level, within) << DECISION_MORPH_SHIFT;
     let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
     let rows = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
-    Some(Selected { decision: 1 + 2 * level + u32::from(instance.is_mirrored()), allowed, rows })
+    let list = 2 * level + u32::from(instance.is_mirrored());
+    Some(Selected { decision: (1 + list) | moved, allowed, rows })
+}
+
+/// How far a level of an object has moved to the next coarser one: the level, and from bit `MORPH_SHIFT` on how many of
+/// `MORPH_STEPS`; 0 where it has not moved. `within` is the displacement that levels may use.
+pub fn morph_within(object: &LodObject, level: u32, within: f32) -> u32 {
+    let errors = object.errors.as_flattened();
+    let begin = errors[level as usize];
+    if object.shown & OBJECT_MORPHS == 0 || level + 1 >= object.levels.min(OBJECT_LEVELS) || within <= begin {
+        return 0;
+    }
+    let way = ((within - begin) / (errors[level as usize + 1] - begin)).min(1.0);
+    let steps = (MORPH_STEPS as f32 * way + 0.5) as u32;
+    if steps > 0 { level | steps << MORPH_SHIFT } else { 0 }
 }
 
 /// The displacement that is allowed an instance after another view of the frame. `before` is what the views before it
@@ -90,7 +110,7 @@ pub fn counts(decisions: &[u32]) -> Vec<u32> {
         block
             .iter()
             .filter(|decision| **decision > 0)
-            .for_each(|decision| tally[*decision as usize - 1] += 1);
+            .for_each(|decision| tally[(*decision & DECISION_LIST) as usize - 1] += 1);
         counts.extend(tally);
     }
     counts

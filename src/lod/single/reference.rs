@@ -2,6 +2,7 @@
 
 use super::Single;
 use crate::lod::SceneDraw;
+use crate::shared::lod::object::DECISION_LIST;
 
 /// The draw of each of `singles`, from the decisions of all instances and the draws of all lists.
 ///
@@ -11,7 +12,7 @@ pub fn draws(singles: &[Single], decisions: &[u32], arguments: &[SceneDraw]) -> 
     let draw = |single: &Single| match decisions[single.instance as usize] {
         0 => SceneDraw { indices: 0, instances: 0, first_index: 0, base_vertex: 0, first_instance: 0 },
         decision => {
-            let draw = arguments[(single.first_draw + decision - 1) as usize];
+            let draw = arguments[(single.first_draw + (decision & DECISION_LIST) - 1) as usize];
             SceneDraw { instances: 1, first_instance: 0, ..draw }
         }
     };

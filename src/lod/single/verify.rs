@@ -8,6 +8,7 @@ use crate::gpu::Buffer;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::lod::{OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::object::DECISION_MORPH_SHIFT;
 
 /// Random singles with decisions of which a part sees nothing, and random draws.
 pub(crate) struct Given {
@@ -34,7 +35,13 @@ impl Given {
         };
         Self {
             singles: (0..count).map(|_| single(&mut draw)).collect(),
-            decisions: (0..count).map(|_| (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2)).collect(),
+            // What is above a list means nothing here.
+            decisions: (0..count)
+                .map(|at| match (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2) {
+                    0 => 0,
+                    list => list | (at as u32 % 3) << DECISION_MORPH_SHIFT,
+                })
+                .collect(),
             arguments: (0..3 + OBJECT_LISTS * parts).map(|_| argument(&mut draw)).collect(),
         }
     }

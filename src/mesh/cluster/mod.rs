@@ -8,9 +8,9 @@
 //!
 //! # What is promised
 //!
-//! - Every device gives the same mesh to the bit. Positions are rounded to quanta of 2⁻³⁰ of the largest coordinate, or half
-//!   as coarse; a mean is that of integers, and becomes the nearest float.
-//! - No vertex moves farther than the diagonal of a cell, and a quantum.
+//! - Every device gives the same mesh to the bit. Positions are rounded to whole numbers of a quantum, a power of two between
+//!   2⁻³⁰ and 2⁻²⁹ of the grid's largest coordinate; a mean is that of integers, and becomes the nearest float.
+//! - No vertex inside of the grid moves farther than the diagonal of a cell, and a quantum.
 //! - A closed mesh stays closed in this sense: each edge of the result has as many triangles on one side as on the other.
 //!   Dropping a triangle with two corners in one cell takes away both directions of one edge.
 //!

@@ -3,6 +3,7 @@
 //! points of the highest grades.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::DVec3;
 
@@ -11,10 +12,32 @@ use super::{Limits, Reduced};
 use crate::mesh::simplify::{Stopped, Surface, weld};
 
 /// Steps of the search for a radius; each halves what is left of the diagonal.
-const STEPS: usize = 26;
+const STEPS: usize = 20;
 
 /// The number of edges of a point that its grade compares with each other; of more, every second, third, … one.
 const MAX_EDGES: usize = 64;
+
+/// The centers in each cell of a grid.
+type Grid = HashMap<[i64; 3], Vec<u32>, BuildHasherDefault<CellHasher>>;
+
+/// A hash of three coordinates that takes a product for each of them: most of the time goes into looking up cells.
+#[derive(Default)]
+struct CellHasher(u64);
+
+impl Hasher for CellHasher {
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 29)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for part in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..part.len()].copy_from_slice(part);
+            let mixed = self.0.rotate_left(21) ^ u64::from_le_bytes(word);
+            self.0 = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        }
+    }
+}
 
 /// The mesh, and its points from the highest grade to the lowest.
 pub(super) struct Graded<'a> {
@@ -83,7 +106,7 @@ impl<'a> Graded<'a> {
         // A little more, so that rounding cannot put a near center two cells away; and numbers of cells fit into f64.
         let edge = (radius * 1.001).max(self.largest * 1e-15);
         let cell = |place: DVec3| (place / edge).floor().to_array().map(|x| x as i64);
-        let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        let mut grid = Grid::default();
         let square = radius * radius;
         for point in &self.order {
             let at = self.places[*point as usize];
@@ -144,7 +167,7 @@ impl<'a> Graded<'a> {
 }
 
 /// The centers in a cell of a grid and in those around it.
-fn around(grid: &HashMap<[i64; 3], Vec<u32>>, [x, y, z]: [i64; 3]) -> impl Iterator<Item = u32> {
+fn around(grid: &Grid, [x, y, z]: [i64; 3]) -> impl Iterator<Item = u32> {
     let cells = (0..27).map(move |at| {
         [x.saturating_add(at % 3 - 1), y.saturating_add(at / 3 % 3 - 1), z.saturating_add(at / 9 - 1)]
     });

@@ -34,7 +34,7 @@ impl Program {
                     Layer::Color | Layer::Transparent if !is_whole => own_color(surface, normal_mapped),
                     layer => whole(layer),
                 };
-                let SurfaceKind { double_sided, cut_out, blended } = surface;
+                let SurfaceKind { double_sided, cut_out, blended, morphed } = surface;
                 let textured = alike.is_some_and(|alike| alike.textured);
                 let several = alike.is_some_and(|alike| alike.several);
                 let constants = scene_mesh::Constants {
@@ -45,6 +45,7 @@ impl Program {
                     blended,
                     normal_mapped,
                     shadowed,
+                    morphed,
                 };
                 Self { shader: &RENDER_SCENE_MESH, vertex, fragment, constants: constants.list() }
             }
@@ -109,5 +110,7 @@ fn relief_constants(options: &ReliefOptions, [reversed, shadowed]: [bool; 2]) ->
         own_depth: options.depth,
         reversed,
         shadowed,
+        // Reliefs have one level of detail.
+        morphed: false,
     }
 }

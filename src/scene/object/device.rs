@@ -84,6 +84,7 @@ impl Object {
             character.adopt(on_device);
         }
         self.chunks = chunks;
+        self.mark_transition();
         self.coarsening = 1.0;
         self.pending = None;
         (self.is_retuned, self.is_rebound, self.fitted) = (false, false, 0);

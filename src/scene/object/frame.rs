@@ -101,7 +101,10 @@ impl Object {
         }
         let mesh_fraction = self.coarsening * self.mesh_fraction;
         if let Kind::Character(character) = &mut self.kind {
-            let object = (&*self.chunks, &*self.errors);
+            // Level 0 has no error that counts.
+            let mut errors = self.transition.begins(&self.errors);
+            errors[0] = 0.0;
+            let object = (&*self.chunks, &*errors);
             character.fit(gpu, layout, pass, object, (shares, mesh_fraction))?;
         }
         self.fitted = layout.version;
@@ -130,7 +133,9 @@ fn stage_params(staged: &mut Staged, chunk: &Chunk, object: u32) -> Result<(), E
         if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
             let (first_instance, last) = (chunk.range.first, geometry.last);
             let first_slot = chunk.slots.start as u32;
-            let params = MeshParams { first_instance, clusters: *clusters, object, last, first_slot };
+            let partners = geometry.partners;
+            let params =
+                MeshParams { first_instance, clusters: *clusters, object, last, first_slot, partners };
             staged.uniform(&geometry.params, &params)?;
         }
     }

@@ -2,6 +2,7 @@
 
 mod device;
 mod frame;
+mod morph;
 mod slots;
 
 use glam::Vec3;
@@ -21,7 +22,8 @@ use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, SeenTerrain, Terrain, TerrainSource};
-use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw};
+use crate::scene::transition::Transition;
+use crate::shared::lod::object::{LodObject, OBJECT_LISTS, OBJECT_SHOWN, SceneDraw};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
@@ -41,6 +43,8 @@ pub(crate) struct Object {
     /// The error of each level in the model's units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
+    /// How its levels change.
+    pub(super) transition: Transition,
     /// The factor by which its levels are coarser than the views ask for: 1 unless memory has ended.
     pub(super) coarsening: f32,
     /// Whether the device does not know the factor yet, or whether the object is drawn.
@@ -109,6 +113,7 @@ impl Object {
             sphere,
             errors,
             mesh_fraction,
+            transition: Transition::Hard,
             coarsening: 1.0,
             is_retuned: false,
             is_rebound: false,
@@ -207,8 +212,8 @@ impl Object {
             first_draw: chunk.range.first_draw,
             parts: self.draws.len() as u32 / OBJECT_LISTS,
             mesh_fraction: self.coarsening * self.mesh_fraction,
-            shown: u32::from(self.is_drawn()),
-            errors: error_vectors(&self.errors).map(Into::into),
+            shown: (u32::from(self.is_drawn()) * OBJECT_SHOWN) | self.transition.flag(),
+            errors: error_vectors(&self.transition.begins(&self.errors)).map(Into::into),
         }
     }
 

@@ -20,7 +20,8 @@ pub struct Coarsened {
 /// any pose of a clip, which is looked at 60 times a second, or at rest.
 ///
 /// # Errors
-/// [`InputError`] for a distance that is negative or not finite, and as [`poses_of`] and [`MeshLevels::new`].
+/// [`InputError`] for a distance that is negative or not finite, and as [`poses_of`] and
+/// [`MeshLevels::new`](super::MeshLevels::new).
 pub fn coarsen(model: &mut Model, clip: usize, within: f32) -> Result<Vec<Coarsened>, InputError> {
     if !(within >= 0.0 && within.is_finite()) {
         return Err(InputError::new("within", within, "must be finite, and not negative"));

@@ -80,7 +80,7 @@ const HASHES: [(&str, &str); 5] = [
     ("full-edge", "9c67a05e582d5cf6"),
     ("vertex-pair", "68aeb4eb1b4bf4aa"),
     ("uniform-clustering", "937b38038a9fb22c"),
-    ("importance-clustering", "a3477636e0398d5e"),
+    ("importance-clustering", "1c50aa777e571ffd"),
     ("vertex-removal", "0689a289b1f800f7"),
 ];
 

@@ -6,10 +6,15 @@ use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Cases, compare};
 use crate::lod::object::level_within;
-use crate::lod::select::reference::{counts, depth_inside, is_shown, placed_sphere, select, view_allows};
+use crate::lod::select::reference::{
+    counts, depth_inside, is_shown, morph_within, placed_sphere, select, view_allows,
+};
 use crate::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
 use crate::lod::verify::{Blocks, SIZES, frame, random_instances};
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
+use crate::shared::lod::object::{
+    DECISION_LIST, DECISION_MORPH_SHIFT, MORPH_LEVEL, MORPH_SHIFT, MORPH_STEPS,
+};
 use crate::shared::lod::view::POSITION_SLACK;
 
 /// How far rounding may move a level or an allowed displacement beyond what it does to positions: kernel and reference
@@ -25,7 +30,7 @@ const POSITION_BOUND: f32 = 2.4e-7;
 /// The fraction of instances for which rounding may decide either way.
 const MAY_TOUCH: f64 = 1.0 / 200.0;
 
-/// The cases cover one object and several, one without instances and one that is not shown, blocks of no object and blocks
+/// The cases cover one object and several, some whose levels move into each other, one without instances and one that is not shown, blocks of no object and blocks
 /// beyond the view's, and the four views of a frame one after another. Where rounding may decide either way, both
 /// decisions are accepted and counted.
 ///
@@ -153,6 +158,8 @@ struct Range {
     may_be_unseen: bool,
     may_be_seen: bool,
     levels: [u32; 2],
+    /// How far the first of these may have moved at least, and the last at most, in steps.
+    steps: [u32; 2],
     allowed: [f32; 2],
 }
 
@@ -169,13 +176,15 @@ impl Range {
         let [less, more] =
             [radius + slack, radius - slack].map(|radius| view_allows(view, center, radius, scale));
         let allowed = [less * (1.0 - FORMULA), more * (1.0 + FORMULA)];
-        let level =
-            |allowed: f32| level_within(object.levels, &object.errors, object.mesh_fraction * allowed);
+        let within = allowed.map(|allowed| object.mesh_fraction * allowed);
+        let levels = within.map(|within| level_within(object.levels, &object.errors, within));
+        let steps = [0, 1].map(|at| morph_within(object, levels[at], within[at]) >> MORPH_SHIFT);
         let is_shown = is_shown(view, object, instance);
         Self {
             may_be_seen: is_shown && depth_inside(view, center, radius + slack) >= 0.0,
             may_be_unseen: !is_shown || depth_inside(view, center, radius - slack) < 0.0,
-            levels: allowed.map(level),
+            levels,
+            steps,
             allowed,
         }
     }
@@ -187,9 +196,22 @@ impl Range {
 
     /// Whether a decision is one of those that are right.
     fn permits(&self, decision: u32, instance: &SceneInstance) -> bool {
-        let Some(list) = decision.checked_sub(1) else { return self.may_be_unseen };
+        let Some(list) = (decision & DECISION_LIST).checked_sub(1) else {
+            return self.may_be_unseen && decision == 0;
+        };
         let is_right = list % 2 == u32::from(instance.is_mirrored());
-        self.may_be_seen && is_right && (self.levels[0]..=self.levels[1]).contains(&(list / 2))
+        let level = list / 2;
+        let is_right = is_right && (self.levels[0]..=self.levels[1]).contains(&level);
+        self.may_be_seen && is_right && self.permits_morph(level, decision >> DECISION_MORPH_SHIFT)
+    }
+
+    /// Whether a level may have moved so far. Steps are judged by an interval, and none counts as one that touches.
+    fn permits_morph(&self, level: u32, morph: u32) -> bool {
+        let steps = morph >> MORPH_SHIFT;
+        let least = if level == self.levels[0] { self.steps[0] } else { 0 };
+        let most = if level == self.levels[1] { self.steps[1] } else { MORPH_STEPS };
+        let is_named = morph & MORPH_LEVEL == if steps > 0 { level } else { 0 };
+        is_named && (least..=most).contains(&steps)
     }
 }
 
@@ -238,7 +260,7 @@ impl Found {
         let mut expected = Vec::with_capacity(self.counts.len());
         for (block, decisions) in self.decisions.chunks(BLOCK as usize).enumerate() {
             match scene.object_of(view, block * BLOCK as usize) {
-                Some(_) if decisions.iter().all(|decision| *decision <= OBJECT_LISTS) => {
+                Some(_) if decisions.iter().all(|decision| decision & DECISION_LIST <= OBJECT_LISTS) => {
                     expected.extend(counts(decisions))
                 }
                 _ => expected.extend([POISON; OBJECT_LISTS as usize]),

@@ -49,7 +49,10 @@ fn what_is_wrong_of_one_instance_is_seen() {
     let count = scene.instances.len();
     let right = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
     assert_eq!(faults(&scene, &view, &right), Vec::<&str>::new());
-    let seen = right.decisions.iter().position(|decision| (1..=16).contains(decision)).expect("some");
+    let seen =
+        right.decisions.iter().position(|decision| (1..=16).contains(&(decision & 0xff))).expect("some");
+    let moved =
+        right.decisions.iter().position(|decision| decision >> 11 > 1 && *decision != POISON).expect("some");
     let unseen = right.decisions.iter().position(|decision| *decision == 0).expect("some");
     let foreign = right.decisions.iter().position(|decision| *decision == POISON).expect("some");
     let with = |change: &dyn Fn(&mut Found)| {
@@ -60,6 +63,9 @@ fn what_is_wrong_of_one_instance_is_seen() {
     assert_eq!(with(&|found| found.decisions[seen] ^= 3)[0], "decisions");
     assert_eq!(with(&|found| found.decisions[unseen] = 1)[0], "decisions");
     assert_eq!(with(&|found| found.decisions[foreign] = 0), ["decisions"]);
+    assert_eq!(with(&|found| found.decisions[moved] ^= 1 << 8), ["decisions"]);
+    assert_eq!(with(&|found| found.decisions[moved] &= 0xff), ["decisions"]);
+    assert_eq!(with(&|found| found.decisions[moved] ^= 1 << 13), ["decisions"]);
     assert_eq!(with(&|found| found.counts[seen / 4] += 1), ["counts"]);
     assert_eq!(with(&|found| found.counts[foreign / 64 * 16] = 0), ["counts"]);
     assert_eq!(with(&|found| found.rows[3 * seen + 1][3] += 1e-3), ["rows"]);

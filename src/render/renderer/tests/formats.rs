@@ -20,7 +20,7 @@ use crate::surface::{Green, Method, ReliefOptions, Shadow};
 fn kinds() -> Vec<Kind> {
     let flags = || [false, true].into_iter();
     let surfaces = flags().flat_map(|cut_out| {
-        flags().map(move |double_sided| SurfaceKind { cut_out, blended: false, double_sided })
+        flags().map(move |double_sided| SurfaceKind { cut_out, blended: false, morphed: false, double_sided })
     });
     let meshes = surfaces.flat_map(|surface| {
         let mesh = move |normal_mapped, alike| Kind::Mesh { surface, normal_mapped, alike };

@@ -50,7 +50,14 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];
     let count = buffers.clusters();
-    let params = MeshParams { first_instance: 64, clusters: count as u32, object: 1, last: 0, first_slot: 0 };
+    let params = MeshParams {
+        first_instance: 64,
+        clusters: count as u32,
+        object: 1,
+        last: 0,
+        first_slot: 0,
+        partners: 0,
+    };
     let mut pages = clusters.vertices.clone();
     pages.resize(64 * count, Vertex::default());
     let pages: Vec<Vertex> = pages.chunks(64).rev().flatten().copied().collect();
@@ -64,6 +71,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
         last: 0,
         page_table: Buffer::from_slice(gpu, "page table", &table).expect("uploaded"),
         uv: buffers.uv.clone(),
+        partners: 0,
         material_of: Buffer::from_slice(gpu, "material of", &vec![1; clusters.vertices.len()])
             .expect("uploaded"),
         indices: buffers.indices.clone(),
@@ -78,7 +86,12 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
     .expect("uploaded");
     let cut_out = material.alpha != Alpha::Opaque;
     let part = MeshPart {
-        surface: SurfaceKind { cut_out, blended: false, double_sided: model.meshes[0].double_sided },
+        surface: SurfaceKind {
+            cut_out,
+            blended: false,
+            double_sided: model.meshes[0].double_sided,
+            morphed: false,
+        },
         materials: MeshMaterials::Plain(table),
     };
     let drawable = MeshDrawable::new(gpu, layouts, geometry, params.clusters, vec![part]).expect("bound");

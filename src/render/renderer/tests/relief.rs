@@ -87,7 +87,8 @@ fn mesh_of(
         color: [1.0; 3],
     };
     let up = "uploaded";
-    let params = MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0 };
+    let params =
+        MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0, partners: 0 };
     let uv: Vec<_> = square.vertices.iter().map(|vertex| vertex.uv).collect();
     let vertices: Vec<_> = square.vertices.iter().map(vertex).collect();
     let geometry = MeshGeometry {
@@ -96,12 +97,13 @@ fn mesh_of(
         last: 0,
         page_table: Buffer::from_slice(gpu, "no pages", &[0]).expect(up),
         uv: Buffer::from_slice(gpu, "uv", &uv).expect(up),
+        partners: 0,
         material_of: Buffer::from_slice(gpu, "material of", &[0; 4]).expect(up),
         indices: Buffer::from_slice(gpu, "indices", &square.indices).expect(up),
     };
     let relief = ReliefMaterial::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
     let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, blended: false, double_sided: true },
+        surface: SurfaceKind { cut_out: false, blended: false, double_sided: true, morphed: false },
         materials: MeshMaterials::Relief(relief),
     };
     Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))

@@ -63,19 +63,20 @@ fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided:
         params: Uniform::new(
             gpu,
             "mesh",
-            &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0 },
+            &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0, partners: 0 },
         )
         .expect(up),
         last: 0,
         page_table: Buffer::from_slice(gpu, "no pages", &[0]).expect(up),
         vertices: Buffer::from_slice(gpu, "vertices", &corners.map(vertex)).expect(up),
         uv: Buffer::from_slice(gpu, "uv", &corners.map(|[x, y]| [0.5 * x + 0.5, 0.5 - 0.5 * y])).expect(up),
+        partners: 0,
         material_of: Buffer::from_slice(gpu, "material of", &[1; 4]).expect(up),
         indices: Buffer::from_slice(gpu, "indices", &[0, 2, 1, 1, 2, 3]).expect(up),
     };
     let table = [Some(0), Some(1)];
     let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, blended: false, double_sided },
+        surface: SurfaceKind { cut_out: false, blended: false, double_sided, morphed: false },
         materials: MeshMaterials::Plain(
             PartMaterials::new(gpu, layouts, &Looks::taken(model), &table, Default::default()).expect(up),
         ),

@@ -23,6 +23,9 @@ pub(crate) type Shared = HashMap<(usize, u32), (usize, u32)>;
 /// mesh, meshes that share nothing included. Vertices inside of two meshes are not shared: a copy of a surface is another
 /// surface.
 pub(crate) fn shared(model: &Model, moments: &[Moment]) -> (Shared, Vec<Vec<usize>>) {
+    if model.meshes.len() < 2 {
+        return (Shared::new(), (0..model.meshes.len()).map(|mesh| vec![mesh]).collect());
+    }
     let places: Vec<Places> =
         (0..model.meshes.len()).into_par_iter().map(|at| Places::new(model, at, moments)).collect();
     let tolerances: Vec<f32> = (0..moments.len())

@@ -1,13 +1,13 @@
 //! Progressive meshes: levels are prefixes, patches apply and undo to the bit, and a level that has moved all the way is the
 //! next coarser one.
 
-use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+mod stored;
+
+use relievo::InputError;
 use relievo::asset::morph::MorphDelta;
 use relievo::asset::{Influence, Influences, Interpolation, Mesh, MorphTarget, WeightKeys};
 use relievo::mesh::progressive::Chosen;
 use relievo::mesh::{Options, ProgressiveMesh, Simplified, simplify};
-use serde_json::Value;
 
 use crate::measure::distances;
 use crate::shapes::{Shape, bumps, cube, ground, sphere, torus};
@@ -58,6 +58,14 @@ fn halves(simplified: &Simplified, triangles: usize) -> Vec<Chosen> {
         }
     }
     chosen
+}
+
+/// The error, without a word of what was not refused.
+fn error_of<T>(result: Result<T, InputError>) -> InputError {
+    match result {
+        Ok(_) => panic!("was not refused"),
+        Err(error) => error,
+    }
 }
 
 struct Case {
@@ -168,7 +176,7 @@ fn patches_apply_and_undo_to_the_bit() {
             assert!(progressive.coarsen(level, &mut triangles).is_err(), "{name}: {level}");
         }
         assert!(progressive.refine(0, &mut triangles).is_err());
-        assert_eq!(progressive.refine(coarsest, &mut triangles).err().expect("refused").path, "level");
+        assert_eq!(error_of(progressive.refine(coarsest, &mut triangles)).path, "level");
         assert!(triangles == before);
     }
 }
@@ -208,8 +216,8 @@ fn a_level_that_has_moved_is_the_next_coarser_one() {
             let middle = |a: &[f32; 3], b: &[f32; 3]| [0, 1, 2].map(|at| a[at] * 0.5 + b[at] * 0.5);
             assert!(between.into_iter().all(|((half, a), b)| *half == middle(a, b)));
         }
-        assert_eq!(progressive.morphed(0, 1.5, &mesh.positions).err().expect("refused").path, "t");
-        assert_eq!(progressive.morphed(0, 0.5, &mesh.uv[1..]).err().expect("refused").path, "values.len");
+        assert_eq!(error_of(progressive.morphed(0, 1.5, &mesh.positions)).path, "t");
+        assert_eq!(error_of(progressive.morphed(0, 0.5, &mesh.uv[1..])).path, "values.len");
     }
 }
 
@@ -223,21 +231,23 @@ fn off(progressive: &ProgressiveMesh, level: usize, t: f32) -> f64 {
     distances(&crate::shapes::bare(places, Vec::new()), 0, &indices)[1]
 }
 
-/// Half way, a level is further off than the worse of its ends by a small factor only: it has no error of its own.
+/// On its way a level is no further off than the worse of its ends.
 #[test]
-fn between_two_levels_it_is_hardly_further_off() {
+fn between_two_levels_it_is_not_further_off() {
     let mut worst = 0.0_f64;
     for Case { name, progressive, .. } in cases() {
         for level in 0..progressive.levels() - 1 {
             let ends = off(&progressive, level, 0.0).max(off(&progressive, level, 1.0));
             for t in [0.25, 0.5, 0.75] {
                 let between = off(&progressive, level, t);
-                println!("{name}: level {level} at {t}: {between:.5} of {ends:.5}");
-                worst = worst.max(if ends > 1e-6 { between / ends } else { between });
+                // Rounding alone puts a flat cube off.
+                let ratio = if ends > 1e-6 { between / ends } else { between };
+                assert!(ratio <= 1.0, "{name}: level {level} at {t}: {between} of {ends}");
+                worst = worst.max(ratio);
             }
         }
     }
-    assert!(worst < 1.5, "{worst}");
+    assert!(worst > 0.5, "it was measured: {worst}");
 }
 
 /// A partner that is not the one of the record, and a level that lacks a triangle of the one before, are found.
@@ -251,43 +261,30 @@ fn levels_and_partners_must_belong_together() {
         assert!(same, "{name}");
         let mut torn = whole.clone();
         torn.levels[1].indices.swap(0, 1);
-        assert_eq!(
-            ProgressiveMesh::of_levels(&torn).err().expect("refused").path,
-            "mesh.levels[1].indices",
-            "{name}"
-        );
+        assert_eq!(error_of(ProgressiveMesh::of_levels(&torn)).path, "mesh.levels[1].indices", "{name}");
         let mut astray = whole.clone();
         // A corner that changes.
         let [_, vertex] = progressive.patch(0).corners()[0];
         let other =
             (0..progressive.vertices(1) as u32).find(|other| *other != whole.partners[vertex as usize]);
         astray.partners[vertex as usize] = other.expect("there");
-        assert_eq!(
-            ProgressiveMesh::of_levels(&astray).err().expect("refused").path,
-            "mesh.levels[0].indices",
-            "{name}"
-        );
+        assert_eq!(error_of(ProgressiveMesh::of_levels(&astray)).path, "mesh.levels[0].indices", "{name}");
         let mut circle = whole.clone();
         let pair = [vertex, vertex - 1];
         circle.partners[pair[0] as usize] = pair[1];
         circle.partners[pair[1] as usize] = pair[0];
-        let error = ProgressiveMesh::of_levels(&circle).err().expect("refused");
+        let error = error_of(ProgressiveMesh::of_levels(&circle));
         assert!(error.path.starts_with("mesh.partners["), "{name}: {error}");
         let bare = Mesh { partners: Vec::new(), ..whole.clone() };
-        assert_eq!(
-            ProgressiveMesh::of_levels(&bare).err().expect("refused").path,
-            "mesh.partners.len",
-            "{name}"
-        );
+        assert_eq!(error_of(ProgressiveMesh::of_levels(&bare)).path, "mesh.partners.len", "{name}");
     }
 }
 
 #[test]
 fn chosen_levels_are_checked() {
     let Case { mesh, simplified, chosen, .. } = cases().remove(0);
-    let refused = |mesh: &Mesh, chosen: &[Chosen]| {
-        ProgressiveMesh::new(mesh, &simplified, chosen).err().expect("refused").path
-    };
+    let refused =
+        |mesh: &Mesh, chosen: &[Chosen]| error_of(ProgressiveMesh::new(mesh, &simplified, chosen)).path;
     let none = Chosen { collapses: 0, error: 0.0 };
     assert_eq!(refused(&mesh, &[none]), "chosen[0].collapses");
     assert_eq!(refused(&mesh, &[chosen[1], chosen[0]]), "chosen[1].collapses");
@@ -304,106 +301,4 @@ fn chosen_levels_are_checked() {
     assert_eq!(refused(&other, &chosen), "mesh.positions.len");
     let alone = ProgressiveMesh::new(&mesh, &simplified, &[]).expect("valid");
     assert_eq!((alone.levels(), alone.vertices(0)), (1, mesh.vertices()));
-}
-
-#[test]
-fn what_is_stored_is_read_to_the_bit() {
-    for Case { name, progressive, .. } in cases() {
-        let json = serde_json::to_vec(&progressive).expect("JSON");
-        let read = ProgressiveMesh::from_json(&json).expect("valid");
-        assert!(read == progressive, "{name}");
-        // Through serde alone.
-        let read: ProgressiveMesh = serde_json::from_slice(&json).expect("valid");
-        let hashes = (0..read.levels()).all(|level| read.hash(level) == progressive.hash(level));
-        assert!(read == progressive && hashes, "{name}");
-        let mut all: Vec<&str> = (0..read.levels()).map(|level| read.hash(level)).collect();
-        all.sort_unstable();
-        all.dedup();
-        assert_eq!(all.len(), read.levels(), "{name}: hashes differ");
-    }
-}
-
-/// The path of the error for what was stored and then changed.
-fn refused(stored: &Value, change: impl Fn(&mut Value)) -> String {
-    let mut stored = stored.clone();
-    change(&mut stored);
-    let json = serde_json::to_vec(&stored).expect("JSON");
-    ProgressiveMesh::from_json(&json).err().expect("refused").path
-}
-
-#[test]
-fn damage_is_told_with_its_place() {
-    let Case { progressive, .. } = cases().remove(2);
-    let stored = serde_json::to_value(&progressive).expect("JSON");
-    let refused = |change: &dyn Fn(&mut Value)| refused(&stored, change);
-    let huge = u64::from(u32::MAX);
-    assert_eq!(refused(&|all| all["version"] = 2.into()), "version");
-    assert_eq!(refused(&|all| all["levels"][1]["hash"] = "0".into()), "levels[1].hash");
-    assert_eq!(refused(&|all| all["levels"][1]["vertices"] = 1.into()), "levels[1].vertices");
-    assert_eq!(refused(&|all| all["levels"][0]["error"] = 1.into()), "levels[0].error");
-    assert_eq!(refused(&|all| all["levels"][2]["error"] = huge.into()), "mesh.levels[1].error");
-    assert_eq!(refused(&|all| all["sources"][0] = all["sources"][1].clone()), "sources[1]");
-    assert_eq!(refused(&|all| all["partners"][3] = huge.into()), "mesh.partners[3]");
-    assert_eq!(refused(&|all| all["triangles"][0] = huge.into()).split('[').next(), Some("patches"));
-    assert_eq!(refused(&|all| all["patches"][0]["added"][1][0] = huge.into()), "patches[0].added[1]");
-    assert_eq!(refused(&|all| all["patches"][1]["corners"][0][0] = huge.into()), "patches[1].corners[0]");
-    assert_eq!(refused(&|all| all["patches"][0]["first"] = 1.into()), "patches[0]");
-    assert_eq!(refused(&|all| all["influences"][4][0][1] = huge.into()), "influences[4]");
-    assert_eq!(refused(&|all| all["influences"][4] = Value::Array(Vec::new())), "influences[4]");
-    assert_eq!(refused(&|all| all["positions"][4][1] = 0x7f80_0000.into()), "mesh.positions[4][1]");
-    // One bit of a number that nothing but the hash knows.
-    let flip = |number: &mut Value| *number = (number.as_u64().expect("bits") ^ 1).into();
-    assert_eq!(refused(&|all| flip(&mut all["uv"][0][0])), "levels[0].hash");
-    assert_eq!(
-        refused(&|all| all["weight_keys"][0]["times"] = Value::Array(Vec::new())),
-        "weight_keys[0].times.len"
-    );
-    assert_eq!(refused(&|all| all["weight_keys"][0]["targets"] = huge.into()), "weight_keys[0].targets");
-    assert_eq!(refused(&|all| all["weights"][0] = 0x7fc0_0000.into()), "mesh.weights[0]");
-    assert_eq!(refused(&|all| all["patches"] = Value::Array(Vec::new())), "patches.len");
-    assert_eq!(refused(&|all| all["uv"] = "none".into()), "uv");
-}
-
-fn settings() -> ProptestConfig {
-    ProptestConfig {
-        cases: 1000,
-        rng_seed: RngSeed::Fixed(2026),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
-/// A small mesh, as JSON.
-fn small() -> Vec<u8> {
-    static SMALL: std::sync::OnceLock<Vec<u8>> = std::sync::OnceLock::new();
-    let make = || {
-        let shape = sphere(8, 6);
-        let simplified = simplify(&shape.with_uv(), &Options::default()).expect("valid");
-        let chosen = halves(&simplified, shape.triangles());
-        let progressive = ProgressiveMesh::new(&mesh(&shape, 3), &simplified, &chosen).expect("valid");
-        serde_json::to_vec(&progressive).expect("JSON")
-    };
-    SMALL.get_or_init(make).clone()
-}
-
-proptest! {
-    #![proptest_config(settings())]
-
-    /// Damaged bytes give an error, or a mesh whose levels are right: what the hash does not cover, such as a name.
-    #[test]
-    fn damaged_bytes_never_panic(damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4), digits in any::<bool>()) {
-        let mut json = small();
-        for (at, byte) in damage {
-            let at = at.index(json.len());
-            // Another digit instead of a digit reaches further than a syntax error.
-            let is_digit = digits && json[at].is_ascii_digit();
-            json[at] = if is_digit { b'0' + byte % 10 } else if digits { json[at] } else { byte };
-        }
-        if let Ok(read) = ProgressiveMesh::from_json(&json) {
-            let known = ProgressiveMesh::from_json(&small()).expect("valid");
-            for level in 0..read.levels() {
-                prop_assert!(read.hash(level) == known.hash(level), "level {level}");
-            }
-        }
-    }
 }
