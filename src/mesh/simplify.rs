@@ -31,7 +31,7 @@
 //! The cheapest collapse comes first, nearly. Costs whose squares lie in one quarter of an octave count as equal, and are
 //! taken in the order in which they were found. A point's cost is found anew when it is its turn, so that what has become
 //! cheaper since then comes late: in nine of ten steps the cost is within a tenth of the smallest there is. An exact order
-//! takes twice the time, and leaves no smaller error.
+//! takes longer, and left no smaller error where it was tried.
 //!
 //! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and
 //! square roots, in a fixed order. Time grows a little faster than the number of triangles, and linearly with poses.
