@@ -12,8 +12,8 @@
 //! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999): the surface keeps its topology.
 //!   Closed surfaces stay closed and manifold surfaces stay manifold. Points where the input is not manifold
 //!   are kept.
-//! - No triangle's normal turns by more than 90° in any pose (A section 4.1), and no triangle loses its area.
-//!   Triangles that have no area to begin with are not restricted.
+//! - No triangle's normal turns by more than 75° in any pose (A section 4.1 has 90°, which several collapses in a row may
+//!   add up to), and no triangle loses its area. Triangles that have no area to begin with are not restricted.
 //! - A point of a border moves only along that border.
 //! - Every wedge of the point becomes a wedge with which it shares an edge. Seams therefore collapse only along
 //!   themselves: no triangle leaves its chart of the texture, and no holes appear. Where wedges are split at
@@ -26,11 +26,19 @@
 //! (after DeCoro and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, who take
 //! the sum).
 //!
-//! The same input gives the same collapses on every machine: the code uses only `+ − × ÷` and square roots, in
-//! a fixed order, and ties go to the lower index. Time grows as n log n with triangles, and linearly with
-//! poses. Quadrics take 88 bytes per point and pose.
+//! # Order
+//!
+//! The cheapest collapse comes first, nearly. Costs whose squares lie in one quarter of an octave count as equal, and are
+//! taken in the order in which they were found. A point's cost is found anew when it is its turn, so that what has become
+//! cheaper since then comes late: in nine of ten steps the cost is within a tenth of the smallest there is. An exact order
+//! takes longer, and left no smaller error where it was tried.
+//!
+//! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and
+//! square roots, in a fixed order. Time grows a little faster than the number of triangles, and linearly with poses.
+//! Quadrics take 88 bytes per point and pose.
 
 mod attributes;
+mod marks;
 mod melax;
 mod neighbors;
 mod points;
@@ -44,7 +52,6 @@ mod turned;
 
 use crate::InputError;
 use points::Points;
-use topology::Topology;
 
 /// The mesh to simplify.
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +71,8 @@ pub struct Surface<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
     /// The root mean square distance from the planes of all triangles that were merged into the point, weighted
-    /// by area (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997).
+    /// by the square root of area so that details count, or a quarter of the point's own distance from the planes of its
+    /// triangles after the collapse, whichever is larger: a mean would hide a single spot (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997).
     /// Planes perpendicular to borders and seams hold these in place (their section 6). Attributes add a cost
     /// of their own, separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes with
     /// Appearance Attributes", Visualization 1999).
@@ -199,6 +207,17 @@ impl Simplified {
         a != b && b != c && c != a
     }
 
+    /// The SHA-256 of the sequence, in hexadecimal digits: of each collapse its number of triangles, the bits of its error
+    /// and distance, and its vertices with their replacements. It is the same on every machine.
+    pub fn hash(&self) -> String {
+        let mut words = vec![self.points.len() as u32, self.triangles as u32];
+        for (at, collapse) in self.collapses.iter().enumerate() {
+            words.extend([collapse.triangles, collapse.error.to_bits(), collapse.distance.to_bits()]);
+            words.extend(self.moved(at).as_flattened());
+        }
+        crate::hash::sha256(&words)
+    }
+
     /// For each vertex, the vertex that stands for it after the first `collapses` collapses: itself, or its
     /// replacement.
     ///
@@ -282,9 +301,7 @@ pub fn simplify_within(
     if options.error.is_nan() || options.error < 0.0 {
         return Err(InputError::new("error", options.error, "must be at least 0"));
     }
-    let points = Points::new(surface.poses);
-    let topology = Topology::new(&points, surface.indices);
-    Ok(reducer::reduce(surface, points, topology, options, distances))
+    Ok(reducer::reduce(surface, options, distances))
 }
 
 /// The point of each vertex, numbered in the order of the points' first vertices; see [`Simplified::point`].

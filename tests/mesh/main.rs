@@ -1,12 +1,16 @@
 //! Simplified meshes.
 
+mod alike;
 mod attributes;
 mod closed;
 mod creature;
+mod damaged;
 mod distance;
+mod everywhere;
 mod input;
 mod measure;
 mod progressive;
 mod quality;
 mod reduce;
 mod shapes;
+mod thin;

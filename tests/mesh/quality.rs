@@ -43,7 +43,7 @@ fn quadrics_leave_less_error_than_melax() {
             distances(&shape, 0, &simplified.triangles(&shape.indices, collapses))
         });
         let figures = format!("{triangles}: {rms} {most} against {melax_rms} {melax_most}");
-        assert!(melax_rms > 1.3 * rms && melax_most > 1.3 * most, "{figures}");
+        assert!(melax_rms > 1.2 * rms && melax_most > 1.3 * most, "{figures}");
     }
 }
 

@@ -183,11 +183,17 @@ fn rest_poses_of_another_size_do_not_matter() {
         model.clips = vec![Clip::new("walk", &skeleton, &all, clip.duration()).expect("valid")];
         let found = levels(model);
         assert!(found.len().abs_diff(wanted.len()) < 2, "{} levels, {scale}", found.len());
-        for (found, wanted) in found.iter().zip(&wanted) {
-            let [few, many] = [found, wanted].map(|level| level.indices.len() as f64);
-            assert!((few / many - 1.0).abs() < 0.1, "{few} of {many}, {scale}");
-            assert!((found.error / wanted.error - 1.0).abs() < 0.1, "{scale}");
+        // Of one chain a level may be worthwhile that the other leaves out.
+        let mut compared = 0;
+        for found in &found {
+            let alike = |level: &&MeshLevel| (found.error / level.error - 1.0).abs() < 0.1;
+            if let Some(wanted) = wanted.iter().find(alike) {
+                let [few, many] = [found, wanted].map(|level| level.indices.len() as f64);
+                assert!((few / many - 1.0).abs() < 0.1, "{few} of {many}, {scale}");
+                compared += 1;
+            }
         }
+        assert!(4 * compared >= 3 * wanted.len(), "{compared} of {}, {scale}", wanted.len());
     }
 }
 

@@ -5,6 +5,8 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+#[path = "../mesh/alike.rs"]
+mod alike;
 mod driver;
 #[path = "scene/src/picture.rs"]
 mod picture;

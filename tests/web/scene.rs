@@ -147,6 +147,16 @@ fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
     assert!(!Difference::of(&other, &native, TOLERANCE.levels).within(TOLERANCE), "another scene passes");
 }
 
+/// Levels that were made beforehand are those that the browser would make.
+#[test]
+fn meshes_are_simplified_alike_in_the_browser() {
+    let said = said();
+    assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
+    let hashes: Vec<&str> =
+        said["hashes"].as_array().expect("a list").iter().filter_map(|hash| hash.as_str()).collect();
+    assert_eq!(hashes, crate::alike::hashes());
+}
+
 /// A browser tells errors only after the call, and then to whoever asks.
 #[test]
 fn a_browser_tells_a_mistake_late_and_the_device_goes_on() {

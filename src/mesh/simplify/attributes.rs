@@ -3,8 +3,9 @@
 
 use glam::DVec3;
 
+use super::Surface;
+use super::points::Points;
 use super::quadric::Quadric;
-use super::topology::Topology;
 use super::turned::normal;
 
 /// For each vertex, the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
@@ -13,37 +14,62 @@ use super::turned::normal;
 pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
+    /// What positions are multiplied by; attributes count as much as they do.
+    scale: f64,
     /// The part without s, and the sums of weights.
     quadrics: Vec<Quadric>,
     /// For each attribute, the weighted sums of g and of k.
     sums: Vec<(DVec3, f64)>,
 }
 
+/// What the costs of replacing a vertex depend on.
+pub(crate) struct Own<'a> {
+    quadric: &'a Quadric,
+    inverse: f64,
+    sums: &'a [(DVec3, f64)],
+    values: &'a [f32],
+    scale: f64,
+}
+
+impl Own<'_> {
+    /// The sum of the means of a point's quadric and of the part of this one that does not depend on the replacement's
+    /// attributes.
+    #[inline]
+    pub(crate) fn with(&self, shape: &Quadric) -> Quadric {
+        shape.mixed(shape.inverse_weight(), self.quadric, self.inverse)
+    }
+
+    /// The part of the mean cost that depends on the attributes of the replacement, which is `d` away.
+    #[inline]
+    pub(crate) fn change(&self, values: &[f32], d: DVec3) -> f64 {
+        let mut cost = 0.0;
+        for ((to, from), (gradient, lost)) in values.iter().zip(self.values).zip(self.sums) {
+            let s = (f64::from(*to) - f64::from(*from)) * self.scale;
+            cost += s * (s * self.quadric.weight - 2.0 * (gradient.dot(d) + lost));
+        }
+        cost * self.inverse
+    }
+}
+
 impl<'a> Attributes<'a> {
-    /// Sums over the first `triangles` triangles; `position` gives the position of each point.
-    pub(crate) fn new(
-        topology: &Topology,
-        triangles: u32,
-        position: impl Fn(u32) -> DVec3,
-        values: &'a [f32],
-        stride: usize,
-    ) -> Self {
-        let vertices = values.len() / stride;
-        let quadrics = vec![Quadric::default(); vertices];
+    pub(crate) fn new(surface: &Surface<'a>, points: &Points) -> Self {
+        let (values, stride) = (surface.attributes, surface.stride);
+        let quadrics = vec![Quadric::default(); values.len() / stride];
         let sums = vec![(DVec3::ZERO, 0.0); values.len()];
-        let mut attributes = Self { values, stride, quadrics, sums };
-        for triangle in 0..triangles {
-            let corners = topology.corners(triangle);
-            let positions = corners.map(|corner| position(corner.point));
+        let mut attributes = Self { values, stride, scale: points.scale(), quadrics, sums };
+        for triangle in surface.indices.chunks_exact(3) {
+            let vertices = [0, 1, 2].map(|corner| triangle[corner]);
+            let positions = vertices.map(|vertex| points.position(points.of(vertex), 0));
             if let Ok(normal) = normal(positions) {
-                attributes.add_triangle(corners.map(|corner| corner.vertex), positions, normal);
+                attributes.add_triangle(vertices, positions, normal);
             }
         }
         attributes
     }
 
+    #[inline]
     fn value(&self, vertex: u32, attribute: usize) -> f64 {
-        f64::from(self.values[vertex as usize * self.stride + attribute])
+        f64::from(self.values[vertex as usize * self.stride + attribute]) * self.scale
     }
 
     /// Adds a triangle; `normal` has twice the triangle's area as its length.
@@ -80,6 +106,29 @@ impl<'a> Attributes<'a> {
         cost.max(0.0)
     }
 
+    /// The cost of replacing `vertex` by `target`, which is `d` away, divided by the vertex's weight.
+    pub(crate) fn mean(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
+        self.cost(vertex, target, d) * self.quadrics[vertex as usize].inverse_weight()
+    }
+
+    /// The attributes of a vertex, in no unit.
+    #[inline]
+    pub(crate) fn values_of(&self, vertex: u32) -> &[f32] {
+        &self.values[vertex as usize * self.stride..][..self.stride]
+    }
+
+    /// What the costs of replacing a vertex depend on.
+    #[inline]
+    pub(crate) fn of(&self, vertex: u32) -> Own<'_> {
+        Own {
+            quadric: &self.quadrics[vertex as usize],
+            inverse: self.quadrics[vertex as usize].inverse_weight(),
+            sums: &self.sums[vertex as usize * self.stride..][..self.stride],
+            values: self.values_of(vertex),
+            scale: self.scale,
+        }
+    }
+
     /// Replaces `vertex` by `target`, which is `d` away.
     pub(crate) fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
         let cost = self.cost(vertex, target, d);
@@ -102,7 +151,6 @@ impl<'a> Attributes<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::simplify::points::Points;
 
     /// The result equals the sum written out, for a vertex that is replaced twice.
     #[test]
@@ -112,10 +160,13 @@ mod tests {
         let values: [f32; 10] = [0.0, 1.0, 3.0, -1.0, 0.5, 0.25, -2.0, 1.5, 0.75, 2.0];
         let indices = [0, 1, 2, 0, 2, 3, 0, 3, 4];
         let points = Points::new(&[positions.to_vec()]);
-        let topology = Topology::new(&points, &indices);
         let position = |point| points.position(point, 0);
-        let mut attributes = Attributes::new(&topology, 3, position, &values, 2);
-        let value = |vertex: u32, attribute: usize| f64::from(values[vertex as usize * 2 + attribute]);
+        let surface =
+            Surface { poses: &[positions.to_vec()], indices: &indices, attributes: &values, stride: 2 };
+        let mut attributes = Attributes::new(&surface, &points);
+        let value = |vertex: u32, attribute: usize| {
+            f64::from(values[vertex as usize * 2 + attribute]) * points.scale()
+        };
         // The difference between each attribute's plane through a triangle's corners and the attribute at a
         // vertex, on the plane or off it.
         let off = |triangle: usize, to: u32| -> f64 {

@@ -3,52 +3,45 @@
 use glam::DVec3;
 
 use super::points::Points;
-use super::topology::{RingTriangle, Topology};
+use super::topology::Topology;
 use super::turned::normal;
 
 /// The square of the cost, so that costs are ordered and rooted as those of quadrics are; the largest over the
-/// poses. `None` if it is not below `most`.
-pub(crate) fn cost(
-    topology: &Topology,
-    points: &Points,
-    [point, neighbor]: [u32; 2],
-    most: f64,
-) -> Option<f64> {
+/// poses.
+pub(crate) fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
-        let unit = |ring: &RingTriangle| unit_normal(topology, points, ring.triangle, pose);
-        let is_at_edge = |ring: &RingTriangle| [ring.next.point, ring.last.point].contains(&neighbor);
+        let unit = |[next, last]: &[u32; 2]| unit_normal(points, [point, *next, *last], pose);
+        let is_at_edge = |others: &&[u32; 2]| others.contains(&neighbor);
         let mut at_edge = [DVec3::ZERO; 2];
-        let all = topology.one_ring(point).filter(is_at_edge);
-        let count = at_edge.iter_mut().zip(all).map(|(normal, ring)| *normal = unit(&ring)).count();
+        let all = topology.ring(point).iter().filter(is_at_edge);
+        let count = at_edge.iter_mut().zip(all).map(|(normal, ring)| *normal = unit(ring)).count();
         let mut curvature = 0.0_f64;
-        for normal in topology.one_ring(point).map(|ring| unit(&ring)) {
+        for normal in topology.ring(point).iter().map(unit) {
             let nearest = at_edge[..count].iter().map(|edge| (1.0 - normal.dot(*edge)) * 0.5);
             curvature = curvature.max(nearest.fold(1.0, f64::min));
         }
         let d = points.position(neighbor, pose) - points.position(point, pose);
         worst = worst.max(d.length_squared() * curvature * curvature);
-        if worst >= most {
-            return None;
-        }
     }
-    Some(worst)
+    worst
 }
 
 /// Whether the normals of two points, each the sum of the normals of its triangles, are more than 90° apart in
 /// the first pose.
 pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
     let sum = |point| -> DVec3 {
-        topology.one_ring(point).map(|ring| unit_normal(topology, points, ring.triangle, 0)).sum()
+        let ring = topology.ring(point).iter();
+        ring.map(|[next, last]| unit_normal(points, [point, *next, *last], 0)).sum()
     };
     let [a, b] = both.map(sum);
     a.dot(b) < 0.0
 }
 
 /// The unit normal of a triangle in a pose; 0 for a triangle without area.
-fn unit_normal(topology: &Topology, points: &Points, triangle: u32, pose: usize) -> DVec3 {
-    let positions = topology.corners(triangle).map(|corner| points.position(corner.point, pose));
-    normal(positions).map_or(DVec3::ZERO, |normal| normal / normal.length())
+fn unit_normal(points: &Points, corners: [u32; 3], pose: usize) -> DVec3 {
+    normal(corners.map(|corner| points.position(corner, pose)))
+        .map_or(DVec3::ZERO, |normal| normal / normal.length())
 }
 
 #[cfg(test)]
@@ -57,7 +50,7 @@ mod tests {
 
     fn of(positions: &[[f32; 3]], indices: &[u32]) -> (Points, Topology) {
         let points = Points::new(&[positions.to_vec()]);
-        let topology = Topology::new(&points, indices);
+        let topology = Topology::new(&points, indices, false);
         (points, topology)
     }
 
@@ -78,13 +71,12 @@ mod tests {
             }
         }
         let (points, topology) = of(&positions, &indices);
-        let cost = |from, to| cost(&topology, &points, [from, to], f64::INFINITY).map(f64::sqrt);
-        assert_eq!(cost(7, 2), Some(0.0));
-        assert_eq!(cost(7, 12), Some(0.0));
-        assert_eq!(cost(7, 6), Some(1.0));
-        assert_eq!(cost(7, 8), Some(1.5));
-        assert_eq!(cost(6, 7), Some(0.0));
-        assert_eq!(super::cost(&topology, &points, [7, 8], 2.25), None);
+        let cost = |from, to| cost(&topology, &points, [from, to]).sqrt() / points.scale();
+        assert_eq!(cost(7, 2), 0.0);
+        assert_eq!(cost(7, 12), 0.0);
+        assert_eq!(cost(7, 6), 1.0);
+        assert_eq!(cost(7, 8), 1.5);
+        assert_eq!(cost(6, 7), 0.0);
         assert!(!differ(&topology, &points, [6, 8]));
     }
 

@@ -1,6 +1,7 @@
 //! The neighbours into which a point may collapse, and the vertex that each of its wedges would become.
 
-use super::topology::{Kind, Marks, Topology};
+use super::marks::Marks;
+use super::topology::{Kind, Topology};
 
 /// The vertices that may replace a wedge: none, one or two.
 #[derive(Debug, Clone, Copy, Default)]

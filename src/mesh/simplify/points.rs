@@ -1,18 +1,20 @@
 //! Points: groups of vertices that share one position.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
-
 use glam::DVec3;
 
 /// Vertices grouped by their positions in all poses. Points are numbered in the order of their first vertices.
 pub(crate) struct Points {
     of: Vec<u32>,
-    starts: Vec<u32>,
+    /// For each point, the range of its vertices in `wedges`.
+    ranges: Vec<[u32; 2]>,
     wedges: Vec<u32>,
     poses: usize,
-    /// Positions, point by point, each in all poses.
+    /// Positions times `scale`, point by point, each in all poses.
     positions: Vec<[f32; 3]>,
+    scale: f64,
+    /// The largest edge of the box around any pose, times `scale`.
+    extent: f64,
+    are_vertices: bool,
 }
 
 impl Points {
@@ -31,13 +33,28 @@ impl Points {
             next[*point as usize] += 1;
         }
         let firsts = starts[..count].iter().map(|start| wedges[*start as usize] as usize);
-        let positions = firsts.flat_map(|vertex| poses.iter().map(move |pose| pose[vertex])).collect();
-        Self { of, starts, wedges, poses: poses.len(), positions }
+        let extent = extent(poses);
+        let scale = scale(extent);
+        let scaled = |position: [f32; 3]| position.map(|x| (f64::from(x) * scale) as f32);
+        let positions =
+            firsts.flat_map(|vertex| poses.iter().map(move |pose| scaled(pose[vertex]))).collect();
+        let ranges = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
+        let are_vertices = count == of.len();
+        Self {
+            of,
+            ranges,
+            wedges,
+            poses: poses.len(),
+            positions,
+            scale,
+            extent: extent * scale,
+            are_vertices,
+        }
     }
 
     /// Number of points.
     pub(crate) fn len(&self) -> usize {
-        self.starts.len() - 1
+        self.ranges.len()
     }
 
     pub(crate) fn poses(&self) -> usize {
@@ -51,11 +68,46 @@ impl Points {
 
     /// The vertices of a point, in ascending order.
     pub(crate) fn wedges(&self, point: u32) -> &[u32] {
-        &self.wedges[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
+        let [start, end] = self.ranges[point as usize];
+        &self.wedges[start as usize..end as usize]
     }
 
+    /// What positions are multiplied by: with it the mesh is between 1 and 2 units large.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The largest edge of the box around any pose, in units of 1 / `scale`: between 1 and 2, or 0.
+    pub(crate) fn extent(&self) -> f64 {
+        self.extent
+    }
+
+    /// A number that depends on the position of a point.
+    #[inline]
+    pub(crate) fn touch(&self, point: u32) -> u32 {
+        self.positions[point as usize * self.poses][0].to_bits()
+    }
+
+    /// Whether every vertex has a position of its own, so that the mesh has no seams.
+    pub(crate) fn are_vertices(&self) -> bool {
+        self.are_vertices
+    }
+
+    /// The vertex of a point that has just one.
+    #[inline]
+    pub(crate) fn only_wedge(&self, point: u32) -> Option<u32> {
+        if self.are_vertices {
+            return Some(point);
+        }
+        let [start, end] = self.ranges[point as usize];
+        (end == start + 1).then(|| self.wedges[start as usize])
+    }
+
+    /// The position in units of 1 / `scale`.
+    #[inline]
     pub(crate) fn position(&self, point: u32, pose: usize) -> DVec3 {
-        glam::Vec3::from(self.positions[point as usize * self.poses + pose]).as_dvec3()
+        let [x, y, z] = self.positions[point as usize * self.poses + pose];
+        DVec3::new(f64::from(x), f64::from(y), f64::from(z))
     }
 
     /// The point of each vertex.
@@ -67,27 +119,65 @@ impl Points {
 /// The point of each vertex.
 fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     // Adding 0 turns −0 into +0.
-    let bits = |pose: &Vec<[f32; 3]>, vertex: usize| pose[vertex].map(|x| (x + 0.0).to_bits());
-    let same = |a: usize, b: usize| poses[1..].iter().all(|pose| bits(pose, a) == bits(pose, b));
+    let bits = |pose: &[[f32; 3]], vertex: usize| pose[vertex].map(|x| (x + 0.0).to_bits());
+    let same = |a: usize, b: usize| poses.iter().all(|pose| bits(pose, a) == bits(pose, b));
     let vertices = poses[0].len();
-    // Maps a position in the first pose to its first vertex. From each such vertex a chain leads to the next
-    // one that differs in another pose.
-    let mut firsts: HashMap<[u32; 3], u32> = HashMap::with_capacity(vertices);
-    let mut others = vec![None; vertices];
+    // Open addressing: each slot has the first vertex at a position, and at most half of them are taken.
+    let slots = (2 * vertices).next_power_of_two();
+    let mut firsts = vec![u32::MAX; slots];
     let mut of = Vec::with_capacity(vertices);
     let mut count = 0;
     for vertex in 0..vertices {
-        let mut at = match firsts.entry(bits(&poses[0], vertex)) {
-            Entry::Occupied(first) => *first.get() as usize,
-            Entry::Vacant(first) => *first.insert(vertex as u32) as usize,
-        };
-        while at != vertex && !same(at, vertex) {
-            at = *others[at].get_or_insert(vertex as u32) as usize;
+        let mut slot = hash(bits(&poses[0], vertex)) as usize & (slots - 1);
+        while firsts[slot] != u32::MAX && !same(firsts[slot] as usize, vertex) {
+            slot = (slot + 1) & (slots - 1);
         }
-        of.push(if at == vertex { count } else { of[at] });
-        count += u32::from(at == vertex);
+        if firsts[slot] == u32::MAX {
+            firsts[slot] = vertex as u32;
+            of.push(count);
+            count += 1;
+        } else {
+            of.push(of[firsts[slot] as usize]);
+        }
     }
     of
+}
+
+/// Spreads positions over the slots of a table (multipliers and shifts of MurmurHash2, Austin Appleby, public domain).
+fn hash(words: [u32; 3]) -> u32 {
+    const MIX: u32 = 0x5bd1_e995;
+    let mixed = words.iter().fold(0_u32, |hash, word| {
+        let word = word.wrapping_mul(MIX);
+        hash.wrapping_mul(MIX) ^ (word ^ (word >> 24)).wrapping_mul(MIX)
+    });
+    let mixed = (mixed ^ (mixed >> 13)).wrapping_mul(MIX);
+    mixed ^ (mixed >> 15)
+}
+
+/// The largest edge of the box around any pose.
+fn extent(poses: &[Vec<[f32; 3]>]) -> f64 {
+    let mut largest = 0.0_f64;
+    for pose in poses {
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for position in pose {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(position[axis]);
+                high[axis] = high[axis].max(position[axis]);
+            }
+        }
+        let edges = (0..3).map(|axis| f64::from(high[axis]) - f64::from(low[axis]));
+        largest = edges.fold(largest, f64::max);
+    }
+    largest
+}
+
+/// The power of two that brings a length to between 1 and 2: multiplying by it rounds nothing.
+fn scale(largest: f64) -> f64 {
+    if largest <= 0.0 {
+        return 1.0;
+    }
+    // 2^(1023 − e) for a number between 2^(e − 1023) and twice that; f32 never reaches the ends of f64's range.
+    f64::from_bits((2046 - ((largest.to_bits() >> 52) & 0x7ff)) << 52)
 }
 
 #[cfg(test)]
@@ -104,7 +194,8 @@ mod tests {
         let points = Points::new(&[rest, posed]);
         assert_eq!(points.len(), 4);
         assert_eq!([0, 1, 2, 3].map(|point| points.wedges(point)), [&[0, 2][..], &[1, 4], &[3, 5], &[6]]);
-        assert_eq!([0, 1].map(|pose| points.position(2, pose)), [DVec3::ZERO, DVec3::splat(2.0)]);
+        assert_eq!([0, 1].map(|pose| points.position(2, pose)), [DVec3::ZERO, DVec3::splat(1.0)]);
+        assert_eq!(points.scale(), 0.5);
         assert_eq!(points.into_of(), [0, 1, 0, 2, 1, 2, 3]);
     }
 }

@@ -36,6 +36,14 @@ impl Quadric {
         self.weight += other.weight;
     }
 
+    /// As [`Self::add`], for a plane through the origin.
+    pub(crate) fn add_plane(&mut self, plane: &Self) {
+        for (sum, value) in self.a.iter_mut().zip(plane.a) {
+            *sum += value;
+        }
+        self.weight += plane.weight;
+    }
+
     /// As [`Self::add`], but leaves the weight as it is.
     pub(crate) fn add_unweighted(&mut self, other: &Self) {
         let weight = self.weight;
@@ -44,6 +52,7 @@ impl Quadric {
     }
 
     /// Half the gradient of the quadric at the offset d.
+    #[inline]
     fn slope(&self, d: DVec3) -> DVec3 {
         let [xx, xy, xz, yy, yz, zz] = self.a;
         let ad = DVec3::new(
@@ -55,8 +64,36 @@ impl Quadric {
     }
 
     /// The value at the offset d, clamped to 0 from below.
+    #[inline]
     pub(crate) fn at(&self, d: DVec3) -> f64 {
-        ((self.slope(d) + self.b).dot(d) + self.c).max(0.0)
+        let [xx, xy, xz, yy, yz, zz] = self.a;
+        let x = xx * d.x + 2.0 * (xy * d.y + xz * d.z + self.b.x);
+        let y = yy * d.y + 2.0 * (yz * d.z + self.b.y);
+        let z = zz * d.z + 2.0 * self.b.z;
+        (x * d.x + y * d.y + z * d.z + self.c).max(0.0)
+    }
+
+    /// The sum of two quadrics about one origin, each times a factor, without weight.
+    #[inline]
+    pub(crate) fn mixed(&self, factor: f64, other: &Self, by: f64) -> Self {
+        let mut a = self.a;
+        for (sum, value) in a.iter_mut().zip(other.a) {
+            *sum = *sum * factor + value * by;
+        }
+        let b = self.b * factor + other.b * by;
+        Self { a, b, c: self.c * factor + other.c * by, weight: 0.0 }
+    }
+
+    /// A number that depends on the quadric's first and last words.
+    #[inline]
+    pub(crate) fn touch(&self) -> u64 {
+        self.a[0].to_bits() ^ self.weight.to_bits()
+    }
+
+    /// One over the weight; 0 for no weight.
+    #[inline]
+    pub(crate) fn inverse_weight(&self) -> f64 {
+        if self.weight > 0.0 { 1.0 / self.weight } else { 0.0 }
     }
 
     /// The same quadric about another origin, at the offset d.

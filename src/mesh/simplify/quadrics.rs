@@ -5,8 +5,12 @@ use super::attributes::Attributes;
 use super::neighbors::{Neighbor, Neighbors, Wedge};
 use super::points::Points;
 use super::quadric::Quadric;
-use super::topology::{Corner, Topology};
+use super::topology::{Kind, Topology};
 use super::turned::normal;
+
+/// How much more the planes across held edges count than those of triangles: a border has one triangle for an edge, and
+/// whatever lies behind shows what it lacks.
+const BORDER: f64 = 3.0;
 
 /// The quadrics of a mesh.
 pub(crate) struct Quadrics<'a> {
@@ -18,24 +22,16 @@ pub(crate) struct Quadrics<'a> {
 impl<'a> Quadrics<'a> {
     pub(crate) fn new(surface: &Surface<'a>, points: &Points, topology: &Topology) -> Self {
         let mut shape = vec![Quadric::default(); points.len() * points.poses()];
-        let triangles = (surface.indices.len() / 3) as u32;
-        for triangle in 0..triangles {
-            add_triangle(&mut shape, points, topology, triangle);
+        for triangle in surface.indices.chunks_exact(3) {
+            add_triangle(&mut shape, points, topology, [0, 1, 2].map(|at| triangle[at]));
         }
-        let attributes = (surface.stride > 0).then(|| {
-            let position = |point| points.position(point, 0);
-            Attributes::new(topology, triangles, position, surface.attributes, surface.stride)
-        });
+        let attributes = (surface.stride > 0).then(|| Attributes::new(surface, points));
         Self { shape, attributes }
     }
 
-    pub(crate) fn has_attributes(&self) -> bool {
-        self.attributes.is_some()
-    }
-
-    /// The mean squared distance of a point's planes from its neighbour, in the worst pose. `None` if it is not
-    /// below `most`.
-    pub(crate) fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2], most: f64) -> Option<f64> {
+    /// The mean squared distance of a point's planes from its neighbour, in the worst pose.
+    #[inline]
+    pub(crate) fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
             let quadric = &self.shape[point as usize * points.poses() + pose];
@@ -43,11 +39,72 @@ impl<'a> Quadrics<'a> {
             if quadric.weight > 0.0 {
                 worst = worst.max(quadric.at(d) / quadric.weight);
             }
-            if worst >= most {
-                return None;
+        }
+        worst
+    }
+
+    /// The cheapest of the collapses of a point with one vertex, and its target; the lower target if costs are equal.
+    /// `None` if the point has no neighbour, or if attributes count and a neighbour has several vertices.
+    #[inline]
+    pub(crate) fn cheapest(
+        &self,
+        points: &Points,
+        [point, vertex]: [u32; 2],
+        ring: &[[u32; 2]],
+    ) -> Option<(f32, u32)> {
+        if points.poses() > 1 {
+            return self.cheapest_in_all(points, [point, vertex], ring);
+        }
+        let origin = points.position(point, 0);
+        let shape = self.shape[point as usize];
+        let mut best = Cheapest::default();
+        match &self.attributes {
+            None => {
+                let inverse = shape.inverse_weight();
+                for &[neighbor, _] in ring {
+                    best.add(shape.at(points.position(neighbor, 0) - origin) * inverse, neighbor);
+                }
+            }
+            Some(attributes) => {
+                let of = attributes.of(vertex);
+                let all = of.with(&shape);
+                for &[neighbor, _] in ring {
+                    let (target, d) = (points.only_wedge(neighbor)?, points.position(neighbor, 0) - origin);
+                    best.add((all.at(d) + of.change(attributes.values_of(target), d)).max(0.0), neighbor);
+                }
             }
         }
-        Some(worst)
+        best.found()
+    }
+
+    /// As [`Self::cheapest`], in several poses.
+    fn cheapest_in_all(
+        &self,
+        points: &Points,
+        [point, vertex]: [u32; 2],
+        ring: &[[u32; 2]],
+    ) -> Option<(f32, u32)> {
+        let mut best = Cheapest::default();
+        for &[neighbor, _] in ring {
+            let shape = self.shape_cost(points, [point, neighbor]);
+            let attributes = match &self.attributes {
+                None => 0.0,
+                Some(attributes) => {
+                    let d = points.position(neighbor, 0) - points.position(point, 0);
+                    attributes.mean(vertex, points.only_wedge(neighbor)?, d)
+                }
+            };
+            best.add(shape + attributes, neighbor);
+        }
+        best.found()
+    }
+
+    /// A number that depends on the first and last quadric of a point.
+    #[inline]
+    pub(crate) fn touch(&self, points: &Points, point: u32) -> u64 {
+        let first = point as usize * points.poses();
+        let quadric = &self.shape[first];
+        quadric.touch()
     }
 
     /// The mean squared difference in attributes if a point collapses and each of its wedges is replaced by the
@@ -99,45 +156,82 @@ impl<'a> Quadrics<'a> {
     }
 }
 
-/// Adds a triangle's plane to each corner, weighted by the area, and for each held edge the plane across it to
-/// both ends, weighted by the square of the edge's length: displacing a border by a distance costs about that
-/// distance. The planes of held edges do not count in the weight by which sums are divided; otherwise the ends
+/// The cheapest collapse of several.
+struct Cheapest {
+    cost: f32,
+    neighbor: u32,
+}
+
+impl Default for Cheapest {
+    fn default() -> Self {
+        Self { cost: f32::INFINITY, neighbor: u32::MAX }
+    }
+}
+
+impl Cheapest {
+    #[inline]
+    fn add(&mut self, cost: f64, neighbor: u32) {
+        let cost = cost as f32;
+        if cost < self.cost || cost == self.cost && neighbor < self.neighbor {
+            *self = Self { cost, neighbor };
+        }
+    }
+
+    fn found(self) -> Option<(f32, u32)> {
+        (self.neighbor != u32::MAX).then_some((self.cost, self.neighbor))
+    }
+}
+
+/// Adds a triangle's plane to each corner, weighted by the square root of the area, and for each held edge the plane
+/// across it to both ends, weighted by the edge's length. The planes of held edges do not count in the weight by which sums are divided; otherwise the ends
 /// of borders would seem closer to their triangles than they are.
-fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, triangle: u32) {
-    let corners = topology.corners(triangle);
-    let of = corners.map(|corner| corner.point);
+fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, vertices: [u32; 3]) {
+    let of = [points.of(vertices[0]), points.of(vertices[1]), points.of(vertices[2])];
     // The triangle has no area in any pose.
     if of[0] == of[1] || of[1] == of[2] || of[2] == of[0] {
         return;
     }
-    let held = [0, 1, 2].map(|at| is_held(topology, triangle, corners[at], corners[(at + 1) % 3]));
+    let is_held = |from: usize, to: usize, across: usize| {
+        is_held(points, topology, [of[from], of[to], of[across]], [vertices[from], vertices[to]])
+    };
+    let held = [is_held(0, 1, 2), is_held(1, 2, 0), is_held(2, 0, 1)];
     for pose in 0..points.poses() {
-        let positions = of.map(|point| points.position(point, pose));
+        let [a, b, c] = of;
+        let positions = [points.position(a, pose), points.position(b, pose), points.position(c, pose)];
         let Ok(normal) = normal(positions) else { continue };
         let length = normal.length();
-        let at = of.map(|point| point as usize * points.poses() + pose);
-        let plane = Quadric::linear(normal / length, length * 0.5);
-        at.iter().for_each(|at| shape[*at].add(&plane));
+        let at = |corner: usize| of[corner] as usize * points.poses() + pose;
+        let plane = Quadric::linear(normal / length, length.sqrt());
+        for corner in 0..3 {
+            shape[at(corner)].add_plane(&plane);
+        }
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
             if held[from] {
                 let edge = positions[to] - positions[from];
-                let across = Quadric::linear(edge.cross(normal).normalize(), edge.length_squared());
-                shape[at[from]].add_unweighted(&across);
-                shape[at[to]].add_unweighted(&across);
+                let across = Quadric::linear(edge.cross(normal).normalize(), BORDER * edge.length());
+                shape[at(from)].add_unweighted(&across);
+                shape[at(to)].add_unweighted(&across);
             }
         }
     }
 }
 
-/// Whether an edge is held: it is on a border, or the triangle on its other side has different wedges at both
-/// ends.
-fn is_held(topology: &Topology, triangle: u32, from: Corner, to: Corner) -> bool {
-    let is_shorter = topology.around(from.point).len() < topology.around(to.point).len();
+/// Whether the edge between the first two of a triangle's points is held: it is on a border, or the triangle on its
+/// other side has different wedges at both ends. `ends` are the triangle's vertices there.
+fn is_held(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -> bool {
+    let [from, to, across] = of;
+    let is_inside = |point: u32| topology.kind(point) == Kind::Interior && points.only_wedge(point).is_some();
+    if is_inside(from) || is_inside(to) {
+        return false;
+    }
+    let is_shorter = topology.ring(from).len() < topology.ring(to).len();
     let [near, far] = if is_shorter { [from, to] } else { [to, from] };
-    let mut others = topology.one_ring(near.point).filter(|ring| ring.triangle != triangle);
+    let [near_vertex, far_vertex] = if is_shorter { ends } else { [ends[1], ends[0]] };
+    let mut others =
+        topology.one_ring(near).filter(|ring| ![ring.next.point, ring.last.point].contains(&across));
     let beside = others.find_map(|ring| {
-        let end = [ring.next, ring.last].into_iter().find(|end| end.point == far.point)?;
+        let end = [ring.next, ring.last].into_iter().find(|end| end.point == far)?;
         Some([ring.vertex, end.vertex])
     });
-    beside.is_none_or(|[vertex, end]| vertex != near.vertex && end != far.vertex)
+    beside.is_none_or(|[vertex, end]| vertex != near_vertex && end != far_vertex)
 }

@@ -1,78 +1,136 @@
-//! The priority queue of points, ordered by the cost of each point's best collapse.
-
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+//! The queue of points, by the cost of each point's best collapse: four buckets for each octave of squared costs, so that
+//! putting and taking are a step each. Costs whose buckets are the same count as equal, and are taken in the order in
+//! which they were put.
 
 /// The best collapse of a point: the neighbour, and the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Best {
     pub neighbor: u32,
     /// The squared cost; at least 0.
-    pub cost: f64,
+    pub cost: f32,
     /// Whether a cheaper collapse exists that is not legal at the moment.
     pub is_second: bool,
 }
 
-/// An entry of the heap: cost, point, and the number of the point's change that made the entry.
-type Entry = Reverse<(u64, u32, u32)>;
+/// Bits of a cost that choose its bucket: eight of the exponent, two of the mantissa.
+const BITS: u32 = 10;
+const BUCKETS: usize = 1 << BITS;
+/// Number of points of which [`Queue::ahead`] tells at once.
+const AHEAD: usize = 16;
+/// The bucket of a point that is in none.
+const NONE: u16 = u16::MAX;
 
-/// The best collapse of each point, cheapest first. Stale entries are dropped when they reach the top, or when
-/// they are in the majority.
+/// What the queue knows of a point.
+#[derive(Debug, Clone, Copy)]
+struct State {
+    neighbor: u32,
+    cost: f32,
+    /// The bucket that has the point's valid entry. Entries elsewhere are stale, and dropped when they are reached.
+    bucket: u16,
+    is_second: bool,
+}
+
+/// The best collapse of each point.
 pub(crate) struct Queue {
-    heap: BinaryHeap<Entry>,
-    best: Vec<Option<Best>>,
-    changes: Vec<u32>,
-    /// Number of points that have a best collapse.
-    waiting: usize,
+    states: Vec<State>,
+    buckets: Vec<Vec<u32>>,
+    /// For each bucket, the number of entries that were taken.
+    taken: Vec<u32>,
+    /// A bit for each bucket that may have entries.
+    filled: [u64; BUCKETS / 64],
+    /// No bucket in words of `filled` before this one has entries.
+    first: usize,
+    /// What costs are multiplied by, so that meshes of any size have the same buckets.
+    unit: f32,
 }
 
 impl Queue {
-    pub(crate) fn new(best: Vec<Option<Best>>) -> Self {
-        let entries = (0_u32..).zip(&best).filter_map(|(point, best)| Some(entry(point, best.as_ref()?, 0)));
-        let heap: BinaryHeap<_> = entries.collect();
-        Self { waiting: heap.len(), heap, changes: vec![0; best.len()], best }
+    /// A queue of this many points, without collapses, of a mesh of this size.
+    pub(crate) fn new(points: usize, extent: f64) -> Self {
+        let unit = if extent > 0.0 { (1.0 / (extent * extent)) as f32 } else { 1.0 };
+        let state = State { neighbor: 0, cost: 0.0, bucket: NONE, is_second: false };
+        let (buckets, taken) = (vec![Vec::new(); BUCKETS], vec![0; BUCKETS]);
+        Self { states: vec![state; points], buckets, taken, filled: [0; BUCKETS / 64], first: 0, unit }
     }
 
-    pub(crate) fn best(&self, point: u32) -> Option<&Best> {
-        self.best[point as usize].as_ref()
+    /// The best collapse of a point; as it was set last.
+    #[inline]
+    pub(crate) fn best(&self, point: u32) -> Option<Best> {
+        let State { neighbor, cost, bucket, is_second, .. } = self.states[point as usize];
+        (bucket != NONE).then_some(Best { neighbor, cost, is_second })
     }
 
     /// Replaces the best collapse of a point.
+    #[inline]
     pub(crate) fn set(&mut self, point: u32, best: Option<Best>) {
-        let before = &mut self.best[point as usize];
-        self.waiting = self.waiting + usize::from(best.is_some()) - usize::from(before.is_some());
-        *before = best;
-        let change = &mut self.changes[point as usize];
-        *change = change.wrapping_add(1);
-        if let Some(best) = &best {
-            self.heap.push(entry(point, best, *change));
-        }
-        if self.heap.len() > 2 * self.waiting + 64 {
-            let Self { heap, best, changes, .. } = self;
-            heap.retain(|entry| holds(entry, best, changes));
+        let Some(Best { neighbor, cost, is_second }) = best else {
+            self.states[point as usize].bucket = NONE;
+            return;
+        };
+        let bucket = self.bucket_of(cost);
+        let state = &mut self.states[point as usize];
+        let is_there = state.bucket == bucket;
+        *state = State { neighbor, cost, bucket, is_second };
+        if !is_there {
+            self.put(point, bucket);
         }
     }
 
-    /// The cheapest collapse; of equal ones, that of the lower point. The point keeps it as its best, and the
-    /// caller must set it again.
+    fn put(&mut self, point: u32, bucket: u16) {
+        self.buckets[bucket as usize].push(point);
+        let word = bucket as usize / 64;
+        self.filled[word] |= 1 << (bucket % 64);
+        self.first = self.first.min(word);
+    }
+
+    /// Every few points, those that are likely to be next; none in between.
+    #[inline]
+    pub(crate) fn ahead(&self) -> &[u32] {
+        let Some(word) = self.filled.get(self.first).filter(|word| **word != 0) else { return &[] };
+        let bucket = self.first * 64 + word.trailing_zeros() as usize;
+        let taken = self.taken[bucket] as usize;
+        if !taken.is_multiple_of(AHEAD) {
+            return &[];
+        }
+        let entries = &self.buckets[bucket];
+        &entries[taken..entries.len().min(taken + AHEAD)]
+    }
+
+    /// Whether a collapse is in a later bucket than another.
+    #[inline]
+    pub(crate) fn is_later(&self, best: &Best, than: &Best) -> bool {
+        self.bucket_of(best.cost) > self.bucket_of(than.cost)
+    }
+
+    /// Takes the next point out.
     pub(crate) fn pop(&mut self) -> Option<(u32, Best)> {
-        while let Some(entry) = self.heap.pop() {
-            let Reverse((_, point, _)) = entry;
-            if holds(&entry, &self.best, &self.changes)
-                && let Some(best) = self.best[point as usize]
-            {
-                return Some((point, best));
+        loop {
+            while *self.filled.get(self.first)? == 0 {
+                self.first += 1;
             }
+            let word = self.first;
+            let bucket = word * 64 + self.filled[word].trailing_zeros() as usize;
+            let taken = self.taken[bucket] as usize;
+            let Some(&point) = self.buckets[bucket].get(taken) else {
+                self.buckets[bucket].clear();
+                self.taken[bucket] = 0;
+                self.filled[word] &= self.filled[word] - 1;
+                continue;
+            };
+            self.taken[bucket] += 1;
+            let state = &mut self.states[point as usize];
+            if usize::from(state.bucket) != bucket {
+                continue;
+            }
+            state.bucket = NONE;
+            let State { neighbor, cost, is_second, .. } = *state;
+            return Some((point, Best { neighbor, cost, is_second }));
         }
-        None
     }
-}
 
-fn holds(&Reverse((_, point, change)): &Entry, best: &[Option<Best>], changes: &[u32]) -> bool {
-    changes[point as usize] == change && best[point as usize].is_some()
-}
-
-/// The bits of non-negative floats have the order of the floats.
-fn entry(point: u32, best: &Best, change: u32) -> Entry {
-    Reverse((best.cost.to_bits(), point, change))
+    /// The bits of non-negative floats have the order of the floats.
+    #[inline]
+    fn bucket_of(&self, cost: f32) -> u16 {
+        ((cost * self.unit).to_bits() >> (31 - BITS)) as u16
+    }
 }

@@ -2,11 +2,12 @@
 
 mod search;
 
+use super::marks::Marks;
 use super::neighbors::Neighbors;
 use super::points::Points;
 use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
-use super::topology::{Kind, Marks, Topology};
+use super::topology::{Change, Kind, Topology};
 use super::tracked_samples::TrackedSamples;
 use super::{Collapse, Cost, Options, Simplified, Stopped, Surface};
 
@@ -20,6 +21,8 @@ struct Reducer<'a> {
     /// Only where distances are limited.
     tracked_samples: Option<TrackedSamples>,
     neighbors: Neighbors,
+    /// Points for which a cheaper collapse than the queue's may become legal when triangles around them change.
+    watched: Vec<bool>,
     /// Marks for points, and for vertices.
     marks: [Marks; 2],
     /// The points whose triangles the last collapse changed.
@@ -27,16 +30,10 @@ struct Reducer<'a> {
 }
 
 /// Collapses until a limit of `options` is reached, within one distance after the other.
-pub(crate) fn reduce(
-    surface: &Surface<'_>,
-    points: Points,
-    topology: Topology,
-    options: &Options,
-    distances: &[f32],
-) -> Simplified {
-    let triangles = topology.triangles();
+pub(crate) fn reduce(surface: &Surface<'_>, options: &Options, distances: &[f32]) -> Simplified {
     let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
-    let mut reducer = Reducer::new(surface, points, topology, options.cost, is_limited);
+    let mut reducer = Reducer::new(surface, options.cost, is_limited);
+    let triangles = reducer.topology.triangles();
     let mut done = Done::default();
     let mut stopped = Stopped::Exhausted;
     for distance in distances {
@@ -58,7 +55,9 @@ struct Done {
 }
 
 impl<'a> Reducer<'a> {
-    fn new(surface: &Surface<'a>, points: Points, topology: Topology, cost: Cost, is_limited: bool) -> Self {
+    fn new(surface: &Surface<'a>, cost: Cost, is_limited: bool) -> Self {
+        let points = Points::new(surface.poses);
+        let topology = Topology::new(&points, surface.indices, is_limited);
         let quadrics = match cost {
             Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
             Cost::Melax { .. } => None,
@@ -66,15 +65,15 @@ impl<'a> Reducer<'a> {
         let tracked_samples =
             is_limited.then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3));
         let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
-        let (neighbors, changed) = (Neighbors::default(), Vec::new());
-        Self { points, topology, cost, quadrics, tracked_samples, neighbors, marks, changed }
+        let (neighbors, changed, watched) = (Neighbors::default(), Vec::new(), vec![false; points.len()]);
+        Self { points, topology, cost, quadrics, tracked_samples, neighbors, watched, marks, changed }
     }
 
     /// Collapses until no legal collapse keeps every sample within `distance`, or until a limit of `options` is
     /// reached.
     fn run(&mut self, options: &Options, distance: f32, done: &mut Done) -> Stopped {
         if let Some(tracked_samples) = &mut self.tracked_samples {
-            tracked_samples.set_most(distance);
+            tracked_samples.set_most((f64::from(distance) * self.points.scale()) as f32);
         }
         let mut queue = self.queue();
         loop {
@@ -82,7 +81,7 @@ impl<'a> Reducer<'a> {
                 return Stopped::Triangles;
             }
             let Some((point, best)) = self.next(&mut queue) else { return Stopped::Exhausted };
-            let cost = best.cost.sqrt() as f32;
+            let cost = (f64::from(best.cost).sqrt() / self.points.scale()) as f32;
             if cost > options.error {
                 return Stopped::Error;
             }
@@ -95,36 +94,92 @@ impl<'a> Reducer<'a> {
     }
 
     fn queue(&mut self) -> Queue {
-        Queue::new((0..self.points.len() as u32).map(|point| self.find(point)).collect())
+        let mut queue = Queue::new(self.points.len(), self.points.extent());
+        (0..self.points.len() as u32).for_each(|point| self.set(&mut queue, point));
+        queue
     }
 
-    /// The cheapest legal collapse.
+    /// Finds the best collapse of a point anew.
+    fn set(&mut self, queue: &mut Queue, point: u32) {
+        self.topology.refresh(point);
+        self.topology.take_change(point);
+        let best = self.find(point);
+        self.watched[point as usize] = best.is_none();
+        queue.set(point, best);
+    }
+
+    /// The cheapest legal collapse, up to the width of the queue's buckets.
     fn next(&mut self, queue: &mut Queue) -> Option<(u32, Best)> {
         loop {
-            let (point, best) = queue.pop()?;
-            if self.is_legal(point, best.neighbor) {
+            self.fetch(queue);
+            let (point, queued) = queue.pop()?;
+            self.topology.refresh(point);
+            let mut best = queued;
+            if self.is_outdated(point, &queued) {
+                let found = self.find(point);
+                self.watched[point as usize] = found.is_none();
+                let Some(found) = found else { continue };
+                best = found;
+            }
+            if !queue.is_later(&best, &queued) {
+                match self.check(point, best) {
+                    None => {
+                        self.watched[point as usize] = true;
+                        let second = self.find_legal(point);
+                        queue.set(point, second);
+                        continue;
+                    }
+                    Some(checked) => best = checked,
+                }
+            }
+            if !queue.is_later(&best, &queued) {
                 return Some((point, best));
             }
-            queue.set(point, self.find_legal(point));
+            queue.set(point, Some(best));
         }
+    }
+
+    /// Whether the best collapse of a point, all of whose triangles are up to date, must be found anew. Where it is not
+    /// merged into, its other costs have not changed, and a new neighbour is hardly ever cheaper than the best old one.
+    fn is_outdated(&mut self, point: u32, best: &Best) -> bool {
+        match self.topology.take_change(point) {
+            Change::None => false,
+            Change::Around if self.quadrics.is_some() && self.topology.kind(point) == Kind::Interior => {
+                self.topology.is_gone(best.neighbor) || self.points.only_wedge(point).is_none()
+            }
+            Change::Around | Change::Merged => true,
+        }
+    }
+
+    /// Reads what the next few points need, so that the processor waits for all of it at once: points that follow each
+    /// other in cost lie anywhere.
+    fn fetch(&self, queue: &Queue) {
+        let mut read = 0;
+        for &point in queue.ahead() {
+            read ^= self.topology.touch(point);
+            read ^= self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, point)) as u32;
+            for &[other, _] in self.topology.ring(point) {
+                read ^= self.points.touch(other);
+            }
+            if let Some(best) = queue.best(point) {
+                read ^= self.topology.touch(best.neighbor);
+                read ^=
+                    self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, best.neighbor))
+                        as u32;
+            }
+        }
+        std::hint::black_box(read);
     }
 
     /// Performs a collapse, and updates the best collapses of the points around it.
     fn step(&mut self, queue: &mut Queue, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         let mut changed = std::mem::take(&mut self.changed);
-        self.collect(&[point], &mut changed);
+        self.collect(point, &mut changed);
         self.collapse(point, neighbor, moved);
-        queue.set(point, None);
         for &other in &changed {
-            let before = queue.best(other).copied();
-            let now = match before {
-                Some(before) if other != neighbor && self.is_plain(other, point, &before) => {
-                    self.nearer(other, neighbor, before)
-                }
-                _ => self.find(other),
-            };
-            if now != before {
-                queue.set(other, now);
+            // Melax's costs fall as well as rise when triangles around a point change.
+            if self.watched[other as usize] || self.quadrics.is_none() {
+                self.set(queue, other);
             }
         }
         if self.cost == (Cost::Melax { check_normals: true }) || self.tracked_samples.is_some() {
@@ -139,35 +194,43 @@ impl<'a> Reducer<'a> {
     /// before, and the set of points that neighbour both ends of an edge can only grow.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
-        self.collect(changed, &mut around);
+        changed.iter().for_each(|point| self.topology.refresh(*point));
+        let marks = &mut self.marks[0];
+        marks.clear();
+        let all = changed.iter().flat_map(|point| self.topology.ring(*point)).flatten();
+        around.extend(all.copied().filter(|other| marks.insert(*other)));
         for other in around {
-            if queue.best(other).is_none_or(|best| best.is_second) {
-                queue.set(other, self.find(other));
+            if self.watched[other as usize] {
+                self.set(queue, other);
             }
         }
     }
 
-    /// Whether the best collapse of `point` is still valid and its other costs are unchanged, except the cost
-    /// of collapsing into the neighbour that replaced `collapsed`.
-    fn is_plain(&self, point: u32, collapsed: u32, best: &Best) -> bool {
-        self.quadrics.as_ref().is_some_and(|quadrics| !quadrics.has_attributes())
-            && self.topology.kind(point) == Kind::Interior
-            && self.points.wedges(point).len() == 1
-            && !best.is_second
-            && best.neighbor != collapsed
+    /// Collects the neighbours of a point, each once.
+    fn collect(&self, point: u32, around: &mut Vec<u32>) {
+        around.clear();
+        let ring = self.topology.ring(point);
+        around.extend(ring.iter().map(|[next, _]| *next));
+        if self.topology.kind(point) != Kind::Interior {
+            let first = |last: &u32| ring.iter().all(|[next, _]| next != last);
+            around.extend(ring.iter().map(|[_, last]| *last).filter(first));
+        }
     }
 
-    /// Collects the neighbours of some points, each once.
-    fn collect(&mut self, points: &[u32], around: &mut Vec<u32>) {
-        around.clear();
-        let marks = &mut self.marks[0];
-        marks.clear();
-        for ring in points.iter().flat_map(|point| self.topology.one_ring(*point)) {
-            for other in [ring.next.point, ring.last.point] {
-                if marks.insert(other) {
-                    around.push(other);
-                }
-            }
+    /// Lists the vertices of a point that belong to triangles, each with the one that is to replace it.
+    fn replace(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
+        if let [Some(vertex), Some(target)] = [point, neighbor].map(|point| self.points.only_wedge(point)) {
+            moved.push([vertex, target]);
+            return;
+        }
+        self.neighbors.look(&self.topology, point, &mut self.marks);
+        let Some(to) = self.neighbors.all().iter().find(|other| other.point == neighbor) else { return };
+        for wedge in self.neighbors.wedges() {
+            let target = match &self.quadrics {
+                Some(quadrics) => quadrics.target(&self.points, &self.neighbors, point, to, wedge).0,
+                None => self.neighbors.remap(to, wedge).into_iter().next().unwrap_or(wedge.vertex),
+            };
+            moved.push([wedge.vertex, target]);
         }
     }
 
@@ -175,16 +238,7 @@ impl<'a> Reducer<'a> {
     /// triangle.
     fn collapse(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         let start = moved.len();
-        self.neighbors.look(&self.topology, point, &mut self.marks);
-        if let Some(to) = self.neighbors.all().iter().find(|other| other.point == neighbor) {
-            for wedge in self.neighbors.wedges() {
-                let target = match &self.quadrics {
-                    Some(quadrics) => quadrics.target(&self.points, &self.neighbors, point, to, wedge).0,
-                    None => self.neighbors.remap(to, wedge).into_iter().next().unwrap_or(wedge.vertex),
-                };
-                moved.push([wedge.vertex, target]);
-            }
-        }
+        self.replace(point, neighbor, moved);
         let live = moved.len();
         if let Some(tracked_samples) = &mut self.tracked_samples {
             tracked_samples.collapse(&self.topology, &self.points, point, neighbor);
@@ -231,32 +285,40 @@ mod tests {
         (positions, uv, indices)
     }
 
-    /// Simplifies until nothing is legal. Returns the number of steps, and how often the collapse taken was not
-    /// the cheapest of its point.
-    fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 2] {
-        let points = Points::new(surface.poses);
-        let topology = Topology::new(&points, surface.indices);
-        let mut reducer = Reducer::new(surface, points, topology, cost, distance < f32::INFINITY);
-        reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(distance));
+    /// Simplifies until nothing is legal, and compares each collapse with the cheapest that a full search finds. Returns
+    /// the number of steps, how often the collapse was more than a tenth above that, and how often it was not the
+    /// cheapest of its point.
+    fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
+        let mut reducer = Reducer::new(surface, cost, distance < f32::INFINITY);
+        let most = (f64::from(distance) * reducer.points.scale()) as f32;
+        reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(most));
         let mut queue = reducer.queue();
-        let (mut moved, mut seconds, mut steps) = (Vec::new(), 0, 0);
+        let (mut moved, [mut steps, mut dearer, mut seconds]) = (Vec::new(), [0; 3]);
+        let find = |reducer: &mut Reducer<'_>, point: u32| {
+            reducer.topology.refresh(point);
+            reducer.find_legal(point)
+        };
         while let Some((point, best)) = reducer.next(&mut queue) {
             let all = 0..reducer.points.len() as u32;
-            let all = all.filter_map(|point| Some((reducer.find_legal(point)?, point)));
-            let cheapest = all.min_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.1.cmp(&b.1)));
-            let cheapest = cheapest.map(|(best, point)| (point, best.neighbor, best.cost));
-            assert_eq!(cheapest, Some((point, best.neighbor, best.cost)), "{cost:?} after {steps}");
+            let costs = all.filter_map(|point| Some(find(&mut reducer, point)?.cost));
+            let cheapest = costs.fold(f32::INFINITY, f32::min);
+            assert!(best.cost >= cheapest, "{cost:?} after {steps}");
+            dearer += usize::from(best.cost.sqrt() > 1.1 * cheapest.sqrt() + 1e-6);
             seconds += usize::from(best.is_second);
             steps += 1;
             reducer.step(&mut queue, point, best.neighbor, &mut moved);
         }
-        assert!((0..reducer.points.len() as u32).all(|point| reducer.find_legal(point).is_none()));
-        [steps, seconds]
+        assert!(
+            (0..reducer.points.len() as u32).all(|point| find(&mut reducer, point).is_none()),
+            "{cost:?}"
+        );
+        [steps, dearer, seconds]
     }
 
-    /// The queue always returns the cheapest of all legal collapses, as a full search finds it.
+    /// Collapses come in the order of their costs, up to the width of a bucket and to what became cheaper since the queue
+    /// last looked; nothing that is legal is left.
     #[test]
-    fn the_cheapest_legal_collapse_is_always_next() {
+    fn a_cheapest_legal_collapse_is_nearly_always_next() {
         for (cost, distance) in [
             (Cost::Quadric, f32::INFINITY),
             (Cost::Quadric, 0.25),
@@ -265,17 +327,18 @@ mod tests {
             (Cost::Melax { check_normals: false }, f32::INFINITY),
             (Cost::Melax { check_normals: true }, f32::INFINITY),
         ] {
-            let mut sums = [0, 0];
+            let mut sums = [0; 3];
             for seed in 0..6 {
                 let (positions, uv, indices) = pipe([0.03, 0.2][seed % 2], seed);
                 let surface = Surface { poses: &positions, indices: &indices, attributes: &[], stride: 0 };
                 let first = Surface { poses: &positions[..1], attributes: &uv, stride: 2, ..surface };
-                for [steps, seconds] in [surface, first].map(|surface| check(cost, &surface, distance)) {
-                    sums = [sums[0] + steps, sums[1] + seconds];
+                for found in [surface, first].map(|surface| check(cost, &surface, distance)) {
+                    sums = [0, 1, 2].map(|at| sums[at] + found[at]);
                 }
             }
-            let [steps, seconds] = sums;
-            assert!(steps > 200 && seconds > 5, "{cost:?} within {distance}: {steps}, {seconds}");
+            let [steps, dearer, seconds] = sums;
+            assert!(steps > 200 && seconds > 3, "{cost:?} within {distance}: {steps}, {seconds}");
+            assert!(10 * dearer < steps, "{cost:?} within {distance}: {dearer} of {steps}");
         }
     }
 }

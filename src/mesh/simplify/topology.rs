@@ -1,44 +1,9 @@
-//! The connectivity of the mesh: its triangles, and the triangles around each point.
+//! The connectivity of the mesh: the triangles around each point.
+
+mod change;
+mod link;
 
 use super::points::Points;
-
-/// A sparse map from indices to numbers that can be cleared in constant time.
-pub(crate) struct Marks {
-    current: u32,
-    stamps: Vec<u32>,
-    values: Vec<u32>,
-}
-
-impl Marks {
-    pub(crate) fn new(count: usize) -> Self {
-        Self { current: 0, stamps: vec![0; count], values: vec![0; count] }
-    }
-
-    /// Removes all entries.
-    pub(crate) fn clear(&mut self) {
-        if self.current == u32::MAX {
-            self.stamps.fill(0);
-            self.current = 0;
-        }
-        self.current += 1;
-    }
-
-    pub(crate) fn get(&self, at: u32) -> Option<u32> {
-        (self.stamps[at as usize] == self.current).then(|| self.values[at as usize])
-    }
-
-    pub(crate) fn set(&mut self, at: u32, value: u32) {
-        self.stamps[at as usize] = self.current;
-        self.values[at as usize] = value;
-    }
-
-    /// Marks an index. Returns whether it had no mark.
-    pub(crate) fn insert(&mut self, at: u32) -> bool {
-        let is_new = self.get(at).is_none();
-        self.set(at, 0);
-        is_new
-    }
-}
 
 /// A corner of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,6 +21,9 @@ pub(crate) struct RingTriangle {
     pub last: Corner,
 }
 
+/// The largest number of triangles around a point that may be removed.
+const MAX_RING: usize = 1024;
+
 /// The kind of a point's neighbourhood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -67,66 +35,146 @@ pub(crate) enum Kind {
     Locked,
 }
 
+/// What has changed at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Change {
+    None,
+    /// Points around it have collapsed.
+    Around,
+    /// A point was merged into it.
+    Merged,
+}
+
+/// Where the triangles of a point are.
+#[derive(Debug, Clone, Copy, Default)]
+struct Span {
+    start: usize,
+    len: u32,
+    /// Number of triangles for which there is room.
+    room: u32,
+}
+
+impl Span {
+    fn range(self) -> std::ops::Range<usize> {
+        self.start..self.start + self.len as usize
+    }
+}
+
+/// Whether following triangles from one to the next visits all of them, and comes back. If so, no step leads to where an
+/// earlier one led, and nothing else can be around the point.
+fn is_round(ring: &[[u32; 2]]) -> bool {
+    let Some([first, _]) = ring.first().filter(|_| ring.len() <= MAX_RING) else { return false };
+    let mut at = *first;
+    for step in 1..=ring.len() {
+        let Some([_, last]) = ring.iter().find(|[next, _]| *next == at) else { return false };
+        at = *last;
+        if at == *first {
+            return step == ring.len();
+        }
+    }
+    false
+}
+
 /// The triangles that have three different points. All others count as removed.
+///
+/// A collapse changes the lists of its two points alone. The lists of the points around them keep naming the point that
+/// is gone, until [`Self::refresh`] brings them up to date: most are not read before they have changed several times.
 pub(crate) struct Topology {
+    /// Triangles as their points see them: the other two points, in the triangle's order.
+    rings: Vec<[u32; 2]>,
+    /// For each entry of `rings`, the number of the triangle; empty if numbers do not matter.
+    numbers: Vec<u32>,
+    spans: Vec<Span>,
+    /// For each point, the point into which it has collapsed; itself as long as it is there.
+    remap: Vec<u32>,
+    /// Whether a point around a point has collapsed since its triangles were brought up to date.
+    touched: Vec<bool>,
+    /// What has changed at a point since [`Self::take_change`].
+    changes: Vec<Change>,
+    /// The corners of each triangle; empty if numbers do not matter.
     corners: Vec<[Corner; 3]>,
-    around: Vec<Vec<u32>>,
     kinds: Vec<Kind>,
     triangles: usize,
+    /// The triangles of the point that collapses.
+    scratch: Vec<([u32; 2], u32)>,
 }
 
 impl Topology {
-    pub(crate) fn new(points: &Points, indices: &[u32]) -> Self {
-        let corners: Vec<[Corner; 3]> = (indices.chunks_exact(3))
-            .map(|triangle| [triangle[0], triangle[1], triangle[2]])
-            .map(|triangle| triangle.map(|vertex| Corner { vertex, point: points.of(vertex) }))
-            .collect();
-        let has_area = |corners: &[Corner; 3]| {
-            let [a, b, c] = corners.map(|corner| corner.point);
-            a != b && b != c && c != a
-        };
-        let mut counts = vec![0; points.len()];
-        let all = (0_u32..).zip(&corners).filter(|(_, corners)| has_area(corners));
-        all.clone().flat_map(|(_, corners)| corners).for_each(|corner| counts[corner.point as usize] += 1);
-        let mut around: Vec<Vec<u32>> = counts.iter().map(|count| Vec::with_capacity(*count)).collect();
-        let mut triangles = 0;
-        for (triangle, corners) in all {
-            corners.iter().for_each(|corner| around[corner.point as usize].push(triangle));
-            triangles += 1;
+    /// Triangles are numbered if `is_numbered`, or if several vertices share a position.
+    pub(crate) fn new(points: &Points, indices: &[u32], is_numbered: bool) -> Self {
+        let is_numbered = is_numbered || !points.are_vertices();
+        let triangle =
+            |corners: &[u32]| [points.of(corners[0]), points.of(corners[1]), points.of(corners[2])];
+        let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        let mut spans = vec![Span::default(); points.len()];
+        for [a, b, c] in indices.chunks_exact(3).map(triangle).filter(has_area) {
+            spans[a as usize].room += 1;
+            spans[b as usize].room += 1;
+            spans[c as usize].room += 1;
         }
-        let mut topology = Self { corners, around, kinds: Vec::new(), triangles };
-        let mut follows = Marks::new(points.len());
-        let mut leads = Marks::new(points.len());
-        topology.kinds =
-            (0..points.len() as u32).map(|point| topology.kind_of(point, &mut follows, &mut leads)).collect();
+        let mut entries = 0;
+        for span in &mut spans {
+            span.start = entries;
+            entries += span.room as usize;
+        }
+        let mut rings = vec![[0; 2]; entries];
+        let mut numbers = vec![0; if is_numbered { entries } else { 0 }];
+        for (number, of) in (0_u32..).zip(indices.chunks_exact(3).map(triangle)) {
+            let [a, b, c] = of;
+            let all = [(a, [b, c]), (b, [c, a]), (c, [a, b])];
+            if !has_area(&of) {
+                continue;
+            }
+            for (point, others) in all {
+                let span = &mut spans[point as usize];
+                let at = span.start + span.len as usize;
+                span.len += 1;
+                rings[at] = others;
+                if is_numbered {
+                    numbers[at] = number;
+                }
+            }
+        }
+        let corner = |vertex: u32| Corner { vertex, point: points.of(vertex) };
+        let all = indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|at| corner(corners[at])));
+        let corners = if is_numbered { all.collect() } else { Vec::new() };
+        let (kinds, scratch) = (Vec::new(), Vec::new());
+        let (remap, changes) = ((0..points.len() as u32).collect(), vec![Change::None; points.len()]);
+        let (touched, triangles) = (vec![false; points.len()], entries / 3);
+        let mut topology =
+            Self { rings, numbers, spans, remap, touched, changes, corners, kinds, triangles, scratch };
+        topology.kinds = (0..points.len() as u32).map(|point| topology.kind_of(point)).collect();
         topology
     }
 
     /// The kind of a point. It is manifold if each neighbour begins at most one of its triangles and ends at
     /// most one, and if following the triangles from one to the next visits all of them.
-    fn kind_of(&self, point: u32, follows: &mut Marks, leads: &mut Marks) -> Kind {
-        let Some(some) = self.one_ring(point).next() else { return Kind::Locked };
-        follows.clear();
-        leads.clear();
-        for ring in self.one_ring(point) {
-            let is_new = follows.get(ring.next.point).is_none() && leads.get(ring.last.point).is_none();
-            if !is_new {
-                return Kind::Locked;
-            }
-            follows.set(ring.next.point, ring.last.point);
-            leads.set(ring.last.point, ring.next.point);
+    fn kind_of(&self, point: u32) -> Kind {
+        let ring = self.ring(point);
+        if is_round(ring) {
+            return Kind::Interior;
         }
-        let border = self.one_ring(point).map(|ring| ring.next.point).find(|next| leads.get(*next).is_none());
-        let first = border.unwrap_or(some.next.point);
+        // Other code searches rings, so that very long ones are left alone.
+        let Some(some) = ring.first().filter(|_| ring.len() <= MAX_RING) else { return Kind::Locked };
+        let is_unique = |at: usize| {
+            let [next, last] = ring[at];
+            ring[..at].iter().all(|other| other[0] != next && other[1] != last)
+        };
+        if !(1..ring.len()).all(is_unique) {
+            return Kind::Locked;
+        }
+        let border =
+            ring.iter().map(|[next, _]| *next).find(|next| ring.iter().all(|other| other[1] != *next));
+        let first = border.unwrap_or(some[0]);
         let (mut at, mut passed) = (first, 0);
-        while let Some(next) = follows.get(at) {
-            (at, passed) = (next, passed + 1);
+        while let Some([_, last]) = ring.iter().find(|[next, _]| *next == at) {
+            (at, passed) = (*last, passed + 1);
             if at == first {
                 break;
             }
         }
         match border {
-            _ if passed < self.around(point).len() => Kind::Locked,
+            _ if passed < ring.len() => Kind::Locked,
             None => Kind::Interior,
             Some(_) => Kind::Border,
         }
@@ -137,21 +185,51 @@ impl Topology {
         self.triangles
     }
 
+    #[inline]
     pub(crate) fn kind(&self, point: u32) -> Kind {
         self.kinds[point as usize]
     }
 
-    pub(crate) fn corners(&self, triangle: u32) -> &[Corner; 3] {
-        &self.corners[triangle as usize]
+    /// What has changed at a point since this was asked for the last time.
+    #[inline]
+    pub(crate) fn take_change(&mut self, point: u32) -> Change {
+        std::mem::replace(&mut self.changes[point as usize], Change::None)
     }
 
-    /// The triangles of a point.
+    /// Whether a point has collapsed.
+    #[inline]
+    pub(crate) fn is_gone(&self, point: u32) -> bool {
+        self.remap[point as usize] != point
+    }
+
+    /// The triangles of a point: the other two points of each, in the triangle's order.
+    #[inline]
+    pub(crate) fn ring(&self, point: u32) -> &[[u32; 2]] {
+        &self.rings[self.spans[point as usize].range()]
+    }
+
+    /// The numbers of the triangles of a point, if they matter.
     pub(crate) fn around(&self, point: u32) -> &[u32] {
-        &self.around[point as usize]
+        self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()
     }
 
+    /// A number that depends on the triangles of a point.
+    #[inline]
+    pub(crate) fn touch(&self, point: u32) -> u32 {
+        let span = self.spans[point as usize];
+        let first = self.rings.get(span.start).map_or(0, |others| others[0]);
+        let last = self.rings.get(span.start + span.len as usize).map_or(0, |others| others[1]);
+        first ^ last
+    }
+
+    /// The triangles of a point with their corners. Where triangles are not numbered, vertices are points.
     pub(crate) fn one_ring(&self, point: u32) -> impl Iterator<Item = RingTriangle> + '_ {
-        self.around(point).iter().map(move |&triangle| {
+        let numbers = self.around(point);
+        self.ring(point).iter().enumerate().map(move |(at, others)| {
+            let Some(&triangle) = numbers.get(at) else {
+                let [next, last] = others.map(|point| Corner { vertex: point, point });
+                return RingTriangle { triangle: 0, vertex: point, next, last };
+            };
             let [a, b, c] = self.corners[triangle as usize];
             let [own, next, last] = match point {
                 _ if a.point == point => [a, b, c],
@@ -160,71 +238,5 @@ impl Topology {
             };
             RingTriangle { triangle, vertex: own.vertex, next, last }
         })
-    }
-
-    /// Whether a collapse keeps the topology (the link condition): every common neighbour of the two points
-    /// lies across a triangle that both share, and no two of these common neighbours share a triangle with each
-    /// of the two points.
-    pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32, marks: &mut Marks) -> bool {
-        marks.clear();
-        let mut across = [None; 2];
-        let mut shared = 0;
-        for ring in self.one_ring(neighbor) {
-            marks.insert(ring.next.point);
-            marks.insert(ring.last.point);
-            let has_point = [ring.next.point, ring.last.point].iter().position(|other| *other == point);
-            if let Some(at) = has_point {
-                let other = [ring.last.point, ring.next.point][at];
-                if shared == 2 || across.contains(&Some(other)) {
-                    return false;
-                }
-                across[shared] = Some(other);
-                shared += 1;
-            }
-        }
-        let both_across = |ring: RingTriangle| {
-            [ring.next, ring.last].iter().all(|corner| across.contains(&Some(corner.point)))
-        };
-        if shared == 1 && self.around(point).len() == 1 && self.around(neighbor).len() == 1
-            || shared == 2
-                && self.one_ring(point).any(both_across)
-                && self.one_ring(neighbor).any(both_across)
-        {
-            return false;
-        }
-        // Counts each common neighbour once; those across a shared triangle are known to be different.
-        let mut common = 0;
-        for ring in self.one_ring(point) {
-            for other in [ring.next.point, ring.last.point] {
-                if marks.get(other) == Some(0) {
-                    marks.set(other, 1);
-                    common += 1;
-                }
-            }
-        }
-        common == shared
-    }
-
-    /// Merges a point into its neighbour; `moved` has the replacement of each of its vertices.
-    pub(crate) fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
-        for triangle in std::mem::take(&mut self.around[point as usize]) {
-            let corners = &mut self.corners[triangle as usize];
-            if corners.iter().any(|corner| corner.point == neighbor) {
-                for other in corners.map(|corner| corner.point) {
-                    let around = &mut self.around[other as usize];
-                    if let Some(at) = around.iter().position(|of| *of == triangle) {
-                        around.swap_remove(at);
-                    }
-                }
-                self.triangles -= 1;
-                continue;
-            }
-            for corner in corners.iter_mut().filter(|corner| corner.point == point) {
-                let to = moved.iter().find(|[from, _]| *from == corner.vertex);
-                *corner = Corner { vertex: to.map_or(corner.vertex, |[_, to]| *to), point: neighbor };
-            }
-            self.around[neighbor as usize].push(triangle);
-        }
-        self.kinds[point as usize] = Kind::Locked;
     }
 }

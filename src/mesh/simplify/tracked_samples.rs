@@ -13,7 +13,7 @@ pub(crate) struct TrackedSamples {
     /// midpoints.
     samples: Vec<Vec<u32>>,
     middles: Middles,
-    /// The square of the largest distance allowed.
+    /// The square of the largest distance allowed, in the unit of points' positions.
     most: f32,
     /// The collapse that was tested last, if it keeps within the limit.
     looked_at: Option<[u32; 2]>,
@@ -58,7 +58,7 @@ impl TrackedSamples {
         Self { samples, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
     }
 
-    /// Sets the largest distance that is allowed from now on.
+    /// Sets the largest distance that is allowed from now on, in the unit of points' positions.
     pub(crate) fn set_most(&mut self, distance: f32) {
         self.most = distance * distance;
     }

@@ -1,5 +1,7 @@
 //! What the page `scene.html` calls: a small scene, drawn in the browser.
 
+#[path = "../../../mesh/alike.rs"]
+mod alike;
 mod picture;
 
 use picture::World;
@@ -43,6 +45,12 @@ async fn drawn(gpu: &Gpu, mut world: World) -> Result<Vec<u8>, relievo::Error> {
     let pixels = world.draw(gpu).await?;
     gpu.check_async().await?;
     Ok(pixels)
+}
+
+/// Hashes of simplified meshes.
+#[wasm_bindgen]
+pub fn collapses() -> Vec<String> {
+    alike::hashes().into()
 }
 
 /// What the library says of a write beyond a buffer's end: at once, and once the browser has told the errors so far.

@@ -1,0 +1,221 @@
+//! Simplification beside meshoptimizer's, in one run: time, memory and levels, in one thread, with the default options of
+//! both.
+//!
+//! ```sh
+//! cargo bench --no-default-features --features samples --bench simplify                 # generated terrain
+//! cargo bench … -- --elevation map.png --mesh spot.obj --mesh creature.glb --grass      # of your files
+//! cargo bench … -- --out DIR      # the levels as OBJ, which tests/truth/simplify.py measures
+//! cargo bench … -- --growth       # 10,000 to 2 million triangles, and the peak of memory
+//! ```
+
+mod meshes;
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use meshes::Mesh;
+use meshopt::{SimplifyOptions, VertexDataAdapter};
+use peak_alloc::PeakAlloc;
+use relievo::mesh::{Options, Surface, simplify};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// The weight of normals in meshoptimizer's own example. There the square of a difference counts times the area over which
+/// it is, and here as the square of a distance; so ours is scaled by the edge of a square as large as a triangle that is left.
+const NORMALS: f32 = 0.5;
+const PERCENT: [usize; 4] = [50, 20, 10, 2];
+
+/// Triangles to simplify to, by one of two programs.
+type Simplify = fn(&Mesh, usize, bool) -> Result<Vec<u32>, Box<dyn Error>>;
+
+fn ours(mesh: &Mesh, triangles: usize, with_normals: bool) -> Result<Vec<u32>, Box<dyn Error>> {
+    let weight = NORMALS * (mesh.area() / triangles.max(1) as f32).sqrt();
+    let scaled: Vec<f32> = if with_normals {
+        mesh.normals.as_flattened().iter().map(|number| number * weight).collect()
+    } else {
+        Vec::new()
+    };
+    let surface = Surface {
+        poses: std::slice::from_ref(&mesh.positions),
+        indices: &mesh.indices,
+        attributes: &scaled,
+        stride: if with_normals { 3 } else { 0 },
+    };
+    let simplified = simplify(&surface, &Options { triangles, ..Options::default() })?;
+    Ok(simplified.triangles(&mesh.indices, simplified.collapses().len()))
+}
+
+fn theirs(mesh: &Mesh, triangles: usize, with_normals: bool) -> Result<Vec<u32>, Box<dyn Error>> {
+    let bytes: Vec<u8> =
+        mesh.positions.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
+    let vertices = VertexDataAdapter::new(&bytes, 12, 0)?;
+    let (count, error, options) = (triangles * 3, f32::MAX, SimplifyOptions::None);
+    if !with_normals {
+        return Ok(meshopt::simplify(&mesh.indices, &vertices, count, error, options, None));
+    }
+    let (normals, weights, locks) =
+        (mesh.normals.as_flattened(), [NORMALS; 3], vec![false; mesh.positions.len()]);
+    Ok(meshopt::simplify_with_attributes_and_locks(
+        &mesh.indices,
+        &vertices,
+        normals,
+        &weights,
+        12,
+        &locks,
+        count,
+        error,
+        options,
+        None,
+    ))
+}
+
+fn median(mut all: Vec<f64>) -> f64 {
+    all.sort_by(f64::total_cmp);
+    all[all.len() / 2]
+}
+
+/// What the arguments ask for.
+#[derive(Default)]
+struct Asked {
+    meshes: Vec<Mesh>,
+    out: Option<PathBuf>,
+    rounds: Option<usize>,
+    is_growth: bool,
+}
+
+impl Asked {
+    fn parse() -> Result<Self, Box<dyn Error>> {
+        let mut asked = Self::default();
+        let mut words = std::env::args().skip(1);
+        while let Some(word) = words.next() {
+            let mut value = || words.next().ok_or(format!("{word} needs a value"));
+            match word.as_str() {
+                // Cargo's own.
+                "--bench" => {}
+                "--elevation" => asked.meshes.push(meshes::elevation(Path::new(&value()?), 200_000)?),
+                "--mesh" => asked.meshes.push(meshes::file(Path::new(&value()?))?),
+                "--grass" => asked.meshes.push(meshes::grass(1000)),
+                "--out" => asked.out = Some(value()?.into()),
+                "--rounds" => asked.rounds = Some(value()?.parse()?),
+                "--growth" => asked.is_growth = true,
+                _ => return Err(format!("no such argument: {word}").into()),
+            }
+        }
+        if asked.meshes.is_empty() {
+            asked.meshes.push(meshes::generated(200_000)?);
+        }
+        Ok(asked)
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let asked = Asked::parse()?;
+    let rounds = asked.rounds.unwrap_or(5).max(1);
+    if asked.is_growth {
+        return growth(rounds);
+    }
+    println!("| mesh | triangles | normals | left | ours, ms | meshoptimizer, ms | ratio |");
+    println!("|---|---|---|---|---|---|---|");
+    for mesh in &asked.meshes {
+        if let Some(out) = &asked.out {
+            fs::create_dir_all(out)?;
+            write_obj(&out.join(format!("{}.obj", mesh.name)), mesh, &mesh.indices)?;
+        }
+        for with_normals in [false, true] {
+            for percent in PERCENT {
+                compare(mesh, with_normals, percent, rounds, asked.out.as_deref())?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Compares one level: both simplify to the number of triangles that both reach.
+fn compare(
+    mesh: &Mesh,
+    with_normals: bool,
+    percent: usize,
+    rounds: usize,
+    out: Option<&Path>,
+) -> Result<(), Box<dyn Error>> {
+    let target = mesh.triangles() * percent / 100;
+    // Either may stop early, where nothing more is legal.
+    let reached = theirs(mesh, target, with_normals)?.len() / 3;
+    let reached = ours(mesh, reached, with_normals)?.len() / 3;
+    let target = if reached > target + 2 { reached } else { target };
+    let both: [Simplify; 2] = [ours, theirs];
+    let (mut times, mut levels) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+    for round in 0..rounds {
+        for turn in 0..2 {
+            let who = (round + turn) % 2;
+            let start = Instant::now();
+            levels[who] = both[who](mesh, [reached, target][who], with_normals)?;
+            times[who].push(start.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    let ratio = median(times[0].iter().zip(&times[1]).map(|(ours, theirs)| ours / theirs).collect());
+    let [ours, theirs] = times.map(median);
+    let left = levels.each_ref().map(|level| level.len() / 3);
+    println!(
+        "| {} | {} | {} | {} / {} | {ours:.1} | {theirs:.1} | {ratio:.2} |",
+        mesh.name,
+        mesh.triangles(),
+        if with_normals { "yes" } else { "no" },
+        left[0],
+        left[1]
+    );
+    if let Some(out) = out {
+        let normals = if with_normals { "_normals" } else { "" };
+        for (name, level) in ["relievo", "meshoptimizer"].iter().zip(&levels) {
+            write_obj(&out.join(format!("{}{normals}_{percent}_{name}.obj", mesh.name)), mesh, level)?;
+        }
+    }
+    Ok(())
+}
+
+/// Time and memory from 10,000 to 2 million triangles, to 10 %.
+fn growth(rounds: usize) -> Result<(), Box<dyn Error>> {
+    println!(
+        "| triangles | ours, ms | ns / (n log2 n) | meshoptimizer, ms | ratio | peak beyond the mesh, MiB |"
+    );
+    println!("|---|---|---|---|---|---|");
+    for triangles in [10_000, 50_000, 200_000, 800_000, 2_000_000] {
+        let mesh = meshes::generated(triangles)?;
+        let before = MEMORY.current_usage_as_mb();
+        MEMORY.reset_peak_usage();
+        let mut times = [Vec::new(), Vec::new()];
+        let both: [Simplify; 2] = [ours, theirs];
+        let mut peak = 0.0;
+        for _ in 0..rounds {
+            for who in 0..2 {
+                let start = Instant::now();
+                both[who](&mesh, mesh.triangles() / 10, false)?;
+                times[who].push(start.elapsed().as_secs_f64() * 1e3);
+                if peak == 0.0 {
+                    peak = MEMORY.peak_usage_as_mb() - before;
+                }
+            }
+        }
+        let ratio = median(times[0].iter().zip(&times[1]).map(|(ours, theirs)| ours / theirs).collect());
+        let [ours, theirs] = times.map(median);
+        let n = mesh.triangles() as f64;
+        let growth = ours * 1e6 / (n * n.log2());
+        println!("| {n} | {ours:.1} | {growth:.2} | {theirs:.1} | {ratio:.2} | {peak:.0} |");
+    }
+    Ok(())
+}
+
+fn write_obj(path: &Path, mesh: &Mesh, indices: &[u32]) -> Result<(), Box<dyn Error>> {
+    let mut text = String::new();
+    for [x, y, z] in &mesh.positions {
+        writeln!(text, "v {x} {y} {z}")?;
+    }
+    for triangle in indices.chunks_exact(3) {
+        writeln!(text, "f {} {} {}", triangle[0] + 1, triangle[1] + 1, triangle[2] + 1)?;
+    }
+    Ok(fs::write(path, text)?)
+}

@@ -1,0 +1,41 @@
+//! Whether a collapse keeps the topology.
+
+use super::{Kind, Topology};
+
+impl Topology {
+    /// Whether a collapse keeps the topology (the link condition): every common neighbour of the two points
+    /// lies across a triangle that both share, and no two of these common neighbours share a triangle with each
+    /// of the two points.
+    pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32) -> bool {
+        let (ring, far) = (self.ring(point), self.ring(neighbor));
+        let mut across = [u32::MAX; 2];
+        let mut shared = 0;
+        for &[next, last] in far {
+            if next != point && last != point {
+                continue;
+            }
+            let other = if next == point { last } else { next };
+            if shared == 2 || across[0] == other {
+                return false;
+            }
+            across[shared] = other;
+            shared += 1;
+        }
+        let is_across = |other: u32| other == across[0] || other == across[1];
+        let both_across =
+            |ring: &[[u32; 2]]| ring.iter().any(|[next, last]| is_across(*next) && is_across(*last));
+        if shared == 1 && ring.len() == 1 && far.len() == 1
+            || shared == 2 && both_across(ring) && both_across(far)
+        {
+            return false;
+        }
+        let [is_inside, far_is_inside] = [point, neighbor].map(|point| self.kind(point) == Kind::Interior);
+        let is_common = |other: u32| {
+            other != neighbor
+                && !is_across(other)
+                && far.iter().any(|[next, last]| *next == other || !far_is_inside && *last == other)
+        };
+        // Around a point inside the surface, each neighbour is next once.
+        !ring.iter().any(|[next, last]| is_common(*next) || !is_inside && is_common(*last))
+    }
+}

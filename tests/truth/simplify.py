@@ -1,0 +1,85 @@
+"""Distances between meshes and their levels, measured by libigl, for levels that `cargo bench --bench simplify` wrote.
+
+python3 -m venv venv && venv/bin/pip install libigl && venv/bin/python tests/truth/simplify.py DIR
+
+DIR has MESH.obj, and MESH[_normals]_PERCENT_{relievo,meshoptimizer}.obj. Both directions are measured, at the vertices that
+are used, at the middles of edges and of triangles, and at points spread evenly over the area: root mean square (over the
+latter alone, since only these are spread evenly) and largest. Prints a table of both programs and their ratios, and the
+geometric means of the ratios.
+"""
+
+import pathlib
+import re
+import sys
+
+import igl
+import numpy
+
+SAMPLES = 200_000
+
+
+def read(path):
+    """Vertices and triangles of a file that the benchmark wrote."""
+    with open(path) as file:
+        lines = [line.split() for line in file]
+    positions = numpy.array([line[1:4] for line in lines if line[0] == "v"], dtype=float)
+    triangles = numpy.array([line[1:4] for line in lines if line[0] == "f"], dtype=numpy.int64) - 1
+    return positions, triangles
+
+
+def spread(positions, triangles, count):
+    """Points spread evenly over the area, from a fixed seed."""
+    corners = positions[triangles]
+    areas = numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    random = numpy.random.default_rng(7)
+    ends = numpy.cumsum(areas)
+    chosen = numpy.minimum(numpy.searchsorted(ends, random.random(count) * ends[-1]), len(areas) - 1)
+    root, part = numpy.sqrt(random.random((count, 1))), random.random((count, 1))
+    a, b, c = (corners[chosen, corner] for corner in range(3))
+    return (1 - root) * a + root * (1 - part) * b + root * part * c
+
+
+def special(positions, triangles):
+    """Vertices in use, and middles of edges and triangles."""
+    edges = numpy.unique(numpy.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    return numpy.concatenate(
+        [positions[numpy.unique(triangles)], positions[edges].mean(axis=1), positions[triangles].mean(axis=1)]
+    )
+
+
+def distances(mesh, level):
+    """Root mean square and largest distance, the larger of both directions."""
+    rms, largest = 0.0, 0.0
+    for source, target in ((mesh, level), (level, mesh)):
+        even = igl.point_mesh_squared_distance(spread(*source, SAMPLES), *target)[0]
+        ends = igl.point_mesh_squared_distance(special(*source), *target)[0]
+        rms = max(rms, numpy.sqrt(even.mean()))
+        largest = max(largest, numpy.sqrt(max(even.max(), ends.max())))
+    return rms, largest
+
+
+def main(folder):
+    pattern = re.compile(r"(.+?)(_normals)?_(\d+)_relievo\.obj")
+    found = [match for match in map(lambda path: pattern.fullmatch(path.name), sorted(folder.iterdir())) if match]
+    meshes, ratios = {}, {}
+    print("| mesh | normals | % | triangles | rms | largest | rms, ratio | largest, ratio |\n" + "|---" * 8 + "|")
+    for match in sorted(found, key=lambda match: (match[1], match[2] or "", -int(match[3]))):
+        name, normals, percent = match[1], match[2] or "", match[3]
+        mesh = meshes.setdefault(name, None) or read(folder / f"{name}.obj")
+        meshes[name] = mesh
+        levels = [read(folder / f"{name}{normals}_{percent}_{who}.obj") for who in ("relievo", "meshoptimizer")]
+        ours, theirs = (distances(mesh, level) for level in levels)
+        ratio = [a / b if b > 0 else float(a <= b) for a, b in zip(ours, theirs)]
+        ratios.setdefault(normals, []).append(ratio)
+        both = [f"{a:.4g} / {b:.4g}" for a, b in zip(ours, theirs)]
+        count = " / ".join(str(len(level[1])) for level in levels)
+        print(f"| {name} | {'yes' if normals else 'no'} | {percent} | {count} | {both[0]} | {both[1]} "
+              f"| {ratio[0]:.3f} | {ratio[1]:.3f} |", flush=True)
+    for normals, all_ratios in ratios.items():
+        mean, worst = numpy.exp(numpy.log(numpy.maximum(all_ratios, 1e-9)).mean(axis=0)), numpy.max(all_ratios, axis=0)
+        print(f"\n{'with' if normals else 'without'} normals: geometric mean of rms {mean[0]:.3f}, of largest {mean[1]:.3f}; "
+              f"worst {worst[0]:.3f}, {worst[1]:.3f}")
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[1]))
