@@ -38,7 +38,7 @@ const WORTHWHILE: f64 = 0.9;
 const NORMAL: f32 = 5e-3;
 
 /// The margin by which [`MeshLevel::error`] exceeds the sampled maximum, for what lies between poses.
-const ERROR_MARGIN: f32 = 1.01;
+const ERROR_MARGIN: f32 = 1.03;
 
 /// Coarser levels of one of a model's meshes.
 #[derive(Debug, Clone)]
@@ -64,7 +64,7 @@ impl MeshLevels {
     ///
     /// The error of a level is the largest distance, in all of these poses, between a vertex of the mesh and
     /// the level's triangles close to it, and between midpoints of the level's triangles and edges and the
-    /// mesh's triangles for which they stand. It is increased by 1 % for poses in between. Other points of the
+    /// mesh's triangles for which they stand. It is increased by 3 % for poses in between. Other points of the
     /// surfaces may be further apart: up to 1.4 times as far for a creature and a cow, and up to 10 times for a
     /// mesh that is as coarse as its bumps.
     ///
@@ -271,8 +271,7 @@ mod tests {
                     worst = worst.max(nearest.distance(*point));
                 }
             }
-            // Between the 16 moments of a clip that were measured, a vertex may be off a little further.
-            assert!(worst <= 1.03 * error && worst > 0.5 * error, "level {level}: {worst} of {error}");
+            assert!(worst <= *error && worst > 0.5 * error, "level {level}: {worst} of {error}");
         }
     }
 

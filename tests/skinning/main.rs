@@ -11,6 +11,7 @@ mod harness;
 mod hull;
 mod levels;
 mod merged;
+mod reduced;
 mod rigs;
 mod scales;
 mod shapes;
