@@ -60,3 +60,11 @@ pub(crate) fn scattered(
 pub(crate) fn config(json: &serde_json::Value) -> Result<Config, Error> {
     Ok(Config::from_json(&json.to_string())?)
 }
+
+/// The name of a case of windows: their size, what is special about them, how many, and where the first is.
+pub(crate) fn case_name(config: &Config, features: &Features, patches: &[[i32; 2]], apron: u32) -> String {
+    let (size, offset, k) = (config.patch_size, config.offset, config.coarse_levels);
+    let features =
+        features.injection().map_or(String::new(), |mode| format!(" {mode:?} {} features", features.len()));
+    format!("{size}×{size} {offset:?} k={k} apron {apron} × {} at {:?}{features}", patches.len(), patches[0])
+}

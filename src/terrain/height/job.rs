@@ -31,8 +31,34 @@ fn rim(config: &Config, level: usize) -> u32 {
 }
 
 /// The widths of the grids of an index that lists the features of windows with [`rim`], which has room for one point around.
-pub(in crate::terrain) fn grid_widths(config: &Config, widths: &[u32]) -> Vec<u32> {
+fn grid_widths(config: &Config, widths: &[u32]) -> Vec<u32> {
     widths.iter().enumerate().map(|(level, width)| width + 2 * (rim(config, level) - 1)).collect()
+}
+
+/// What the dispatches of a job read of its windows, level by level.
+#[derive(Debug, Clone)]
+pub(in crate::terrain) struct LevelInputs {
+    /// Points along an edge.
+    pub widths: Vec<u32>,
+    /// The first sample of each window, in units of the level's spacing.
+    pub origins: Vec<Buffer<[i32; 2]>>,
+    /// Injected points.
+    pub features: FeatureIndex,
+}
+
+impl LevelInputs {
+    /// Allocates them for `count` windows with `apron`, and for so many features.
+    ///
+    /// # Errors
+    /// [`InputError`] for an apron out of bounds; [`GpuError`].
+    pub fn new(gpu: &Gpu, config: &Config, [count, apron]: [u32; 2], capacity: usize) -> Result<Self, Error> {
+        Window { patch: [0, 0], apron }.validate(config)?;
+        let widths = level_widths(config, apron);
+        let origin = |_| Buffer::new(gpu, "window origins", count as usize);
+        let origins = (0..widths.len()).map(origin).collect::<Result<_, _>>()?;
+        let features = FeatureIndex::new(gpu, &grid_widths(config, &widths), count, capacity)?;
+        Ok(Self { widths, origins, features })
+    }
 }
 
 /// Scratch memory for the levels that one dispatch leaves to the next: about a third of the output with one
@@ -40,7 +66,7 @@ pub(in crate::terrain) fn grid_widths(config: &Config, widths: &[u32]) -> Vec<u3
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
     // The two buffers alternate: the last dispatch reads the first, the one before it the second, and so on.
-    pub(in crate::terrain) buffers: [Buffer<i32>; 2],
+    buffers: [Buffer<i32>; 2],
 }
 
 impl HeightScratch {
@@ -83,6 +109,17 @@ impl HeightScratch {
         points
     }
 
+    /// What a dispatch reads and writes that is followed by `left` others: the last one writes to the output, those before
+    /// it alternate between the buffers.
+    pub(in crate::terrain) fn of_dispatch<'a>(
+        &'a self,
+        left: usize,
+        output: &'a Buffer<i32>,
+    ) -> [&'a Buffer<i32>; 2] {
+        let fine = if left == 0 { output } else { &self.buffers[(left + 1) % 2] };
+        [&self.buffers[left % 2], fine]
+    }
+
     /// Bytes that the scratch takes on the device.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(Buffer::bytes).sum()
@@ -105,9 +142,7 @@ pub struct HeightJob {
     pub(in crate::terrain) config: Config,
     pub(in crate::terrain) count: u32,
     pub(in crate::terrain) apron: u32,
-    pub(in crate::terrain) widths: Vec<u32>,
-    pub(in crate::terrain) origins: Vec<Buffer<[i32; 2]>>,
-    pub(in crate::terrain) features: FeatureIndex,
+    pub(in crate::terrain) inputs: LevelInputs,
     pub(in crate::terrain) job: Job,
 }
 
@@ -127,7 +162,7 @@ impl HeightJob {
             let bound = format!("must be at most {}, the batch's count", self.count);
             return Err(InputError::new("patches.len", patches.len(), bound).into());
         }
-        let mut origins = vec![Vec::with_capacity(patches.len()); self.widths.len()];
+        let mut origins = vec![Vec::with_capacity(patches.len()); self.inputs.widths.len()];
         for &patch in patches {
             let window = Window { patch, apron: self.apron };
             window.validate(&self.config)?;
@@ -135,13 +170,13 @@ impl HeightJob {
                 origins[level].push(spans.map(|span| span.first as i32));
             }
         }
-        for (buffer, origins) in self.origins.iter().zip(&origins) {
+        for (buffer, origins) in self.inputs.origins.iter().zip(&origins) {
             buffer.write(gpu, origins)?;
         }
-        self.features.write(gpu, patches.len() as u32, |level, window| {
+        self.inputs.features.write(gpu, patches.len() as u32, |level, window| {
             let spacing = self.config.sample_spacing() << (self.config.levels() as usize - level);
             let origin = origins[level][window as usize].map(|first| i64::from(first) * spacing);
-            let lattice = Lattice { origin, width: self.widths[level], spacing };
+            let lattice = Lattice { origin, width: self.inputs.widths[level], spacing };
             features.on_lattice([0, 0], lattice.grown(rim(&self.config, level)), level > 0)
         })?;
         Ok(())

@@ -18,7 +18,7 @@ pub use batch::HeightBatch;
 #[cfg(feature = "gpu")]
 pub use job::{HeightJob, HeightScratch};
 #[cfg(feature = "gpu")]
-pub(in crate::terrain) use job::{grid_widths, level_widths};
+pub(in crate::terrain) use job::{LevelInputs, level_widths};
 #[cfg(all(feature = "gpu", any(test, feature = "verify")))]
 pub(crate) use pass::Blocks;
 #[cfg(feature = "gpu")]

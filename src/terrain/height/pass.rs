@@ -1,13 +1,12 @@
 //! The GPU pass of `kernels/terrain/height.wgsl`: one or two levels per dispatch, for a batch of windows.
 
-use super::job::{HeightJob, HeightScratch, level_widths};
+use super::job::{HeightJob, HeightScratch, LevelInputs};
 use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Tuning, Uniform};
 use crate::shared::terrain::level::Level;
 use crate::terrain::config::{Border, Config, Interpolation, Offset};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::window::Window;
 use crate::{Error, InputError};
 
 /// Rows of coarse cells per thread. Software adapters run few long threads best, hardware many short ones.
@@ -124,25 +123,18 @@ impl HeightPass {
             let bound = "must be \"linear\" in this pass: SmoothPass makes the others";
             return Err(InputError::new("interpolation", "smooth", bound).into());
         }
-        Window { patch: [0, 0], apron }.validate(config)?;
-        let widths = level_widths(config, apron);
-        output.check_holds("output", HeightJob::output_points(config, count, apron))?;
         let plan = self.plan(config.levels());
-        scratch.check(&plan, &widths, count)?;
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
-        let features = FeatureIndex::new(gpu, &widths, count, capacity)?;
-        let origins: Vec<_> = (0..widths.len())
-            .map(|_| Buffer::new(gpu, "window origins", count as usize))
-            .collect::<Result<_, _>>()?;
+        let inputs = LevelInputs::new(gpu, config, [count, apron], capacity)?;
+        let LevelInputs { widths, origins, features } = &inputs;
+        output.check_holds("output", HeightJob::output_points(config, count, apron))?;
+        scratch.check(&plan, widths, count)?;
         let mut steps = Vec::new();
         for (index, &[level, levels]) in plan.iter().enumerate() {
-            // The last dispatch writes to the output; those before it alternate between the scratch buffers.
-            let left = plan.len() - 1 - index;
-            let coarse = &scratch.buffers[left % 2];
-            let fine = if left == 0 { output } else { &scratch.buffers[(left + 1) % 2] };
+            let [coarse, fine] = scratch.of_dispatch(plan.len() - 1 - index, output);
             let stage = &self.stages[levels - 1];
             let kernel = if level == 0 { &stage.first } else { &stage.next };
-            let params = self.level(config, &widths, [level, levels], &features, count);
+            let params = self.level(config, widths, [level, levels], features, count);
             let uniform = Uniform::new(gpu, "terrain level", &params)?;
             let group = bindings::Group {
                 level: &uniform,
@@ -157,7 +149,7 @@ impl HeightPass {
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         let job = Job::new(gpu, "terrain/height", steps)?;
-        Ok(HeightJob { config: config.clone(), count, apron, widths, origins, features, job })
+        Ok(HeightJob { config: config.clone(), count, apron, inputs, job })
     }
 
     /// The coarse level and the number of levels of every dispatch.

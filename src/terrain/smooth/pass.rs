@@ -6,8 +6,7 @@ use crate::shared::terrain::level::Level;
 use crate::terrain::config::{Config, Interpolation, Offset};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::height::{HeightJob, HeightScratch, grid_widths, level_widths};
-use crate::terrain::window::Window;
+use crate::terrain::height::{HeightJob, HeightScratch, LevelInputs, level_widths};
 use crate::{Error, InputError};
 
 /// Rows of coarse cells per thread, which computes six rows of centers more. Software adapters run few long threads best,
@@ -95,24 +94,17 @@ impl SmoothPass {
             let bound = "must be \"smooth\" in this pass: HeightPass makes the others";
             return Err(InputError::new("interpolation", "linear", bound).into());
         }
-        Window { patch: [0, 0], apron }.validate(config)?;
-        let widths = level_widths(config, apron);
-        output.check_holds("output", HeightJob::output_points(config, count, apron))?;
         let plan = plan(config);
-        scratch.check(&plan, &widths, count)?;
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
-        let features = FeatureIndex::new(gpu, &grid_widths(config, &widths), count, capacity)?;
-        let origins: Vec<_> = (0..widths.len())
-            .map(|_| Buffer::new(gpu, "window origins", count as usize))
-            .collect::<Result<_, _>>()?;
+        let inputs = LevelInputs::new(gpu, config, [count, apron], capacity)?;
+        let LevelInputs { widths, origins, features } = &inputs;
+        output.check_holds("output", HeightJob::output_points(config, count, apron))?;
+        scratch.check(&plan, widths, count)?;
         let mut steps = Vec::new();
         for level in 0..plan.len() {
-            // The last dispatch writes to the output; those before it alternate between the scratch buffers.
-            let left = plan.len() - 1 - level;
-            let coarse = &scratch.buffers[left % 2];
-            let fine = if left == 0 { output } else { &scratch.buffers[(left + 1) % 2] };
+            let [coarse, fine] = scratch.of_dispatch(plan.len() - 1 - level, output);
             let kernel = if level == 0 { &self.first } else { &self.next };
-            let params = self.level(config, &widths, level, &features, count);
+            let params = self.level(config, widths, level, features, count);
             let uniform = Uniform::new(gpu, "terrain level", &params)?;
             let group = bindings::Group {
                 level: &uniform,
@@ -127,7 +119,7 @@ impl SmoothPass {
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         let job = Job::new(gpu, "terrain/smooth", steps)?;
-        Ok(HeightJob { config: config.clone(), count, apron, widths, origins, features, job })
+        Ok(HeightJob { config: config.clone(), count, apron, inputs, job })
     }
 
     fn level(

@@ -12,7 +12,7 @@ use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::HeightJob;
 use crate::terrain::smooth::SmoothPass;
 use crate::terrain::smooth::reference::smooth;
-use crate::terrain::verify::{config, scattered};
+use crate::terrain::verify::{case_name, config, scattered};
 use crate::terrain::window::Window;
 
 /// The cases cover every size, distribution and number of coarse levels; windows of every alignment; features, also of other
@@ -135,16 +135,7 @@ fn check(
     gpu.run("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> =
         patches.iter().flat_map(|&patch| smooth(config, features, Window { patch, apron })).collect();
-    let name = format!(
-        "{size}×{size} {offset:?} k={k} apron {apron} × {count} at {at:?}{features}",
-        size = config.patch_size,
-        offset = config.offset,
-        k = config.coarse_levels,
-        at = patches[0],
-        features = features
-            .injection()
-            .map_or(String::new(), |mode| format!(" {mode:?} {} features", features.len())),
-    );
+    let name = case_name(config, features, patches, apron);
     cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
     Ok(())
 }
