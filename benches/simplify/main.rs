@@ -5,6 +5,7 @@
 //! cargo bench --no-default-features --features samples --bench simplify                 # generated terrain
 //! cargo bench … -- --elevation map.png --mesh spot.obj --mesh creature.glb --grass      # of your files
 //! cargo bench … -- --out DIR      # the levels as OBJ, which tests/truth/simplify.py measures
+//! cargo bench … -- --percent 6 --normals 0.25   # other levels, another weight of normals
 //! cargo bench … -- --growth       # 10,000 to 2 million triangles, and the peak of memory
 //! ```
 
@@ -24,41 +25,37 @@ use relievo::mesh::{Options, Surface, simplify};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// The weight of normals in meshoptimizer's own example. There the square of a difference counts times the area over which
-/// it is, and here as the square of a distance; so ours is scaled by the edge of a square as large as a triangle that is left.
+/// The weight of normals in meshoptimizer's own example; both programs understand it alike.
 const NORMALS: f32 = 0.5;
 const PERCENT: [usize; 4] = [50, 20, 10, 2];
 
 /// Triangles to simplify to, by one of two programs.
-type Simplify = fn(&Mesh, usize, bool) -> Result<Vec<u32>, Box<dyn Error>>;
+type Simplify = fn(&Mesh, usize, Option<f32>) -> Result<Vec<u32>, Box<dyn Error>>;
 
-fn ours(mesh: &Mesh, triangles: usize, with_normals: bool) -> Result<Vec<u32>, Box<dyn Error>> {
-    let weight = NORMALS * (mesh.area() / triangles.max(1) as f32).sqrt();
-    let scaled: Vec<f32> = if with_normals {
+fn ours(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>, Box<dyn Error>> {
+    let scaled = normals.map_or_else(Vec::new, |weight| {
         mesh.normals.as_flattened().iter().map(|number| number * weight).collect()
-    } else {
-        Vec::new()
-    };
+    });
     let surface = Surface {
         poses: std::slice::from_ref(&mesh.positions),
         indices: &mesh.indices,
         attributes: &scaled,
-        stride: if with_normals { 3 } else { 0 },
+        stride: if normals.is_some() { 3 } else { 0 },
     };
     let simplified = simplify(&surface, &Options { triangles, ..Options::default() })?;
     Ok(simplified.triangles(&mesh.indices, simplified.collapses().len()))
 }
 
-fn theirs(mesh: &Mesh, triangles: usize, with_normals: bool) -> Result<Vec<u32>, Box<dyn Error>> {
+fn theirs(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>, Box<dyn Error>> {
     let bytes: Vec<u8> =
         mesh.positions.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
     let vertices = VertexDataAdapter::new(&bytes, 12, 0)?;
     let (count, error, options) = (triangles * 3, f32::MAX, SimplifyOptions::None);
-    if !with_normals {
+    let Some(weight) = normals else {
         return Ok(meshopt::simplify(&mesh.indices, &vertices, count, error, options, None));
-    }
+    };
     let (normals, weights, locks) =
-        (mesh.normals.as_flattened(), [NORMALS; 3], vec![false; mesh.positions.len()]);
+        (mesh.normals.as_flattened(), [weight; 3], vec![false; mesh.positions.len()]);
     Ok(meshopt::simplify_with_attributes_and_locks(
         &mesh.indices,
         &vertices,
@@ -84,6 +81,8 @@ struct Asked {
     meshes: Vec<Mesh>,
     out: Option<PathBuf>,
     rounds: Option<usize>,
+    percent: Vec<usize>,
+    normals: Option<f32>,
     is_growth: bool,
 }
 
@@ -101,12 +100,17 @@ impl Asked {
                 "--grass" => asked.meshes.push(meshes::grass(1000)),
                 "--out" => asked.out = Some(value()?.into()),
                 "--rounds" => asked.rounds = Some(value()?.parse()?),
+                "--percent" => asked.percent.push(value()?.parse()?),
+                "--normals" => asked.normals = Some(value()?.parse()?),
                 "--growth" => asked.is_growth = true,
                 _ => return Err(format!("no such argument: {word}").into()),
             }
         }
         if asked.meshes.is_empty() {
             asked.meshes.push(meshes::generated(200_000)?);
+        }
+        if asked.percent.is_empty() {
+            asked.percent.extend(PERCENT);
         }
         Ok(asked)
     }
@@ -125,9 +129,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             fs::create_dir_all(out)?;
             write_obj(&out.join(format!("{}.obj", mesh.name)), mesh, &mesh.indices)?;
         }
-        for with_normals in [false, true] {
-            for percent in PERCENT {
-                compare(mesh, with_normals, percent, rounds, asked.out.as_deref())?;
+        for normals in [None, Some(asked.normals.unwrap_or(NORMALS))] {
+            for percent in &asked.percent {
+                compare(mesh, normals, *percent, rounds, asked.out.as_deref())?;
             }
         }
     }
@@ -137,15 +141,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Compares one level: both simplify to the number of triangles that both reach.
 fn compare(
     mesh: &Mesh,
-    with_normals: bool,
+    normals: Option<f32>,
     percent: usize,
     rounds: usize,
     out: Option<&Path>,
 ) -> Result<(), Box<dyn Error>> {
     let target = mesh.triangles() * percent / 100;
     // Either may stop early, where nothing more is legal.
-    let reached = theirs(mesh, target, with_normals)?.len() / 3;
-    let reached = ours(mesh, reached, with_normals)?.len() / 3;
+    let reached = theirs(mesh, target, normals)?.len() / 3;
+    let reached = ours(mesh, reached, normals)?.len() / 3;
     let target = if reached > target + 2 { reached } else { target };
     let both: [Simplify; 2] = [ours, theirs];
     let (mut times, mut levels) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
@@ -153,7 +157,7 @@ fn compare(
         for turn in 0..2 {
             let who = (round + turn) % 2;
             let start = Instant::now();
-            levels[who] = both[who](mesh, [reached, target][who], with_normals)?;
+            levels[who] = both[who](mesh, [reached, target][who], normals)?;
             times[who].push(start.elapsed().as_secs_f64() * 1e3);
         }
     }
@@ -164,12 +168,12 @@ fn compare(
         "| {} | {} | {} | {} / {} | {ours:.1} | {theirs:.1} | {ratio:.2} |",
         mesh.name,
         mesh.triangles(),
-        if with_normals { "yes" } else { "no" },
+        if normals.is_some() { "yes" } else { "no" },
         left[0],
         left[1]
     );
     if let Some(out) = out {
-        let normals = if with_normals { "_normals" } else { "" };
+        let normals = if normals.is_some() { "_normals" } else { "" };
         for (name, level) in ["relievo", "meshoptimizer"].iter().zip(&levels) {
             write_obj(&out.join(format!("{}{normals}_{percent}_{name}.obj", mesh.name)), mesh, level)?;
         }
@@ -193,7 +197,7 @@ fn growth(rounds: usize) -> Result<(), Box<dyn Error>> {
         for _ in 0..rounds {
             for who in 0..2 {
                 let start = Instant::now();
-                both[who](&mesh, mesh.triangles() / 10, false)?;
+                both[who](&mesh, mesh.triangles() / 10, None)?;
                 times[who].push(start.elapsed().as_secs_f64() * 1e3);
                 if peak == 0.0 {
                     peak = MEMORY.peak_usage_as_mb() - before;
@@ -214,8 +218,12 @@ fn write_obj(path: &Path, mesh: &Mesh, indices: &[u32]) -> Result<(), Box<dyn Er
     for [x, y, z] in &mesh.positions {
         writeln!(text, "v {x} {y} {z}")?;
     }
+    for [x, y, z] in &mesh.normals {
+        writeln!(text, "vn {x} {y} {z}")?;
+    }
     for triangle in indices.chunks_exact(3) {
-        writeln!(text, "f {} {} {}", triangle[0] + 1, triangle[1] + 1, triangle[2] + 1)?;
+        let [a, b, c] = [0, 1, 2].map(|corner| triangle[corner] + 1);
+        writeln!(text, "f {a}//{a} {b}//{b} {c}//{c}")?;
     }
     Ok(fs::write(path, text)?)
 }

@@ -35,15 +35,6 @@ impl Mesh {
     pub fn triangles(&self) -> usize {
         self.indices.len() / 3
     }
-
-    /// The area of all triangles.
-    pub fn area(&self) -> f32 {
-        let area = |triangle: &[u32]| {
-            let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(self.positions[triangle[corner] as usize]));
-            0.5 * (b - a).cross(c - a).length()
-        };
-        self.indices.chunks_exact(3).map(area).sum()
-    }
 }
 
 /// A square of `cells` × `cells` cells, two triangles each, with the height at (column, row).

@@ -7,6 +7,7 @@ use std::iter::successors;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::attribute_weights::NORMAL;
 use super::pose::{Moment, moments};
 use crate::InputError;
 use crate::asset::Model;
@@ -33,9 +34,6 @@ const STEP: f32 = std::f32::consts::SQRT_2;
 
 /// A level is kept only if its triangles are at most this fraction of the level before.
 const WORTHWHILE: f64 = 0.9;
-
-/// The cost of a difference of 1 in a normal, as a fraction of the mesh's size.
-const NORMAL: f32 = 5e-3;
 
 /// The margin by which [`MeshLevel::error`] exceeds the sampled maximum, for what lies between poses.
 const ERROR_MARGIN: f32 = 1.03;
@@ -165,12 +163,12 @@ pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Ve
 }
 
 fn simplified(whole: &Whole<'_>, welded: &Welded, keys: &Keys) -> Result<Simplified, InputError> {
-    let (normal, texture) = (NORMAL * keys.size, keys.texture_scales(whole));
+    let texture = keys.texture_factors(whole);
     let (normals, indices) = (welded.normals(&keys.normals), welded.indices(whole));
     let attributes: Vec<f32> = (normals.iter().zip(&whole.uv).zip(&whole.member))
         .flat_map(|(([x, y, z], [u, v]), member)| {
             let texture = texture[*member as usize];
-            [normal * x, normal * y, normal * z, texture * u, texture * v]
+            [NORMAL * x, NORMAL * y, NORMAL * z, texture * u, texture * v]
         })
         .collect();
     let surface = Surface { poses: &keys.poses, indices: &indices, attributes: &attributes, stride: 5 };

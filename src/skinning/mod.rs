@@ -2,6 +2,7 @@
 //! and 9).
 
 pub mod at_rest;
+mod attribute_weights;
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
 #[cfg(feature = "gpu")]

@@ -6,15 +6,13 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3, Vec3};
 
 use super::at_rest;
+use super::attribute_weights::{NORMAL, TextureArea};
 use crate::InputError;
 use crate::asset::mesh::{smooth_normals, solved_tangents};
 use crate::asset::{Influence, Influences, Mesh, Model};
 use crate::mesh::distance::{self, Distance, Triangles};
 use crate::mesh::reduce::{Limits, Reduced, Reducer};
 use crate::mesh::simplify::{Stopped, Surface};
-
-/// The cost of a difference of 1 in a normal, as a fraction of the diagonal of the box around the model.
-const NORMAL: f64 = 5e-3;
 
 /// What normals of a reduced model are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -119,8 +117,6 @@ struct Input<'a> {
     first: Vec<usize>,
     /// For each triangle, its mesh.
     meshes: Vec<u32>,
-    /// The factor of normals.
-    normal: f32,
     /// For each mesh, the factor of texture coordinates.
     texture: Vec<f32>,
 }
@@ -141,8 +137,7 @@ impl<'a> Input<'a> {
             vertices: Vec::new(),
             first: Vec::new(),
             meshes: Vec::new(),
-            normal: (NORMAL * low.distance(high)) as f32,
-            texture: model.meshes.iter().map(texture_scale).collect(),
+            texture: model.meshes.iter().map(|mesh| texture_factor(mesh, low.distance(high))).collect(),
         };
         for (at, mesh) in model.meshes.iter().enumerate() {
             input.add(at, mesh);
@@ -182,7 +177,7 @@ impl<'a> Input<'a> {
         let mesh = &self.model.meshes[*index];
         if self.normals == Normals::Carry {
             let normal = mean(members.iter().map(|member| mesh.normals[*member as usize]));
-            self.attributes.extend(normal.map(|x| self.normal * x));
+            self.attributes.extend(normal.map(|x| NORMAL * x));
         }
         let scale = self.texture[*index];
         self.attributes.extend(mesh.uv[members[0] as usize].map(|x| scale * x));
@@ -319,16 +314,13 @@ fn bits(number: f32) -> u32 {
     (number + 0.0).to_bits()
 }
 
-/// The factor that makes a difference in texture coordinates as large as the way on the surface to which it belongs, on
-/// average; 0 without texture coordinates.
-fn texture_scale(mesh: &Mesh) -> f32 {
-    let (mut surface, mut texture) = (0.0, 0.0);
+/// The factor of a mesh's texture coordinates in a model of this size.
+fn texture_factor(mesh: &Mesh, size: f64) -> f32 {
+    let mut area = TextureArea::default();
     for triangle in mesh.indices.as_chunks::<3>().0 {
-        let [a, b, c] = triangle.map(|corner| DVec3::from(mesh.positions[corner as usize].map(f64::from)));
-        surface += (b - a).cross(c - a).length();
-        let [d, e, f] = triangle.map(|corner| DVec2::from(mesh.uv[corner as usize].map(f64::from)));
-        texture += (e - d).perp_dot(f - d).abs();
+        let place = |corner: u32| DVec3::from(mesh.positions[corner as usize].map(f64::from));
+        let uv = |corner: u32| DVec2::from(mesh.uv[corner as usize].map(f64::from));
+        area.add(triangle.map(place), triangle.map(uv));
     }
-    let scale = (surface / texture).sqrt() as f32;
-    if scale.is_finite() { scale } else { 0.0 }
+    area.factor(size)
 }

@@ -89,7 +89,7 @@ fn what_attributes_say_counts() {
     // A dark square on bright ground keeps its outline.
     let is_dark = |place: &[f32; 3]| (0.3..0.7).contains(&place[0]) && (0.3..0.7).contains(&place[2]);
     let spot: Vec<f32> = flat.poses[0].iter().map(|place| f32::from(is_dark(place))).collect();
-    let done = simplified(&spot, 1, 0.05);
+    let done = simplified(&spot, 1, 0.02);
     assert!((10..200).contains(&done.triangles_left()), "{}", done.triangles_left());
     let left = done.triangles(&flat.indices, done.collapses().len());
     // The mean over the ground does not change.
@@ -104,6 +104,6 @@ fn what_attributes_say_counts() {
     assert!((before - after).abs() < 0.03 * before, "{before} {after}");
     // Scaled to a thousandth, the attribute no longer matters.
     let faint: Vec<f32> = spot.iter().map(|value| value * 0.001).collect();
-    assert_eq!(simplified(&faint, 1, 0.05).triangles_left(), 2);
+    assert_eq!(simplified(&faint, 1, 0.02).triangles_left(), 2);
     assert_eq!(topology(&flat, &left).euler, 1);
 }

@@ -39,21 +39,14 @@ fn meadow() -> (Shape, Vec<u32>) {
 
 /// The largest distance of some vertices from a level.
 fn off(shape: &Shape, vertices: &[u32], level: &[u32]) -> f64 {
-    let mut some = shape.clone();
-    // Only these vertices are measured; the level's own triangles stay.
-    some.poses[0] = shape.poses[0].clone();
-    let mut worst = 0.0_f64;
-    for vertex in vertices {
-        let mut alone = some.clone();
-        let place = shape.poses[0][*vertex as usize];
-        alone.poses[0] = vec![place];
-        alone.uv.truncate(1);
-        let triangles: Vec<[f32; 3]> = level.iter().map(|corner| shape.poses[0][*corner as usize]).collect();
-        alone.poses[0].extend(&triangles);
-        let indices: Vec<u32> = (1..=triangles.len() as u32).collect();
-        worst = worst.max(distances(&alone, 0, &indices)[1]);
-    }
-    worst
+    let place = |vertex: &u32| shape.poses[0][*vertex as usize];
+    let indices: Vec<u32> = (1..=level.len() as u32).collect();
+    let distance = |vertex: &u32| {
+        let places = std::iter::once(vertex).chain(level).map(place).collect();
+        let alone = Shape { poses: vec![places], uv: vec![[0.0; 2]], indices: indices.clone() };
+        distances(&alone, 0, &indices)[1]
+    };
+    vertices.iter().map(distance).fold(0.0, f64::max)
 }
 
 #[test]

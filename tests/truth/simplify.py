@@ -4,8 +4,9 @@ python3 -m venv venv && venv/bin/pip install libigl && venv/bin/python tests/tru
 
 DIR has MESH.obj, and MESH[_normals]_PERCENT_{relievo,meshoptimizer}.obj. Both directions are measured, at the vertices that
 are used, at the middles of edges and of triangles, and at points spread evenly over the area: root mean square (over the
-latter alone, since only these are spread evenly) and largest. Prints a table of both programs and their ratios, and the
-geometric means of the ratios.
+latter alone, since only these are spread evenly) and largest. Where normals count, so do their differences, at points
+spread evenly over the mesh and the nearest points of the level: the root mean square length. Prints a table of both
+programs and their ratios, and the geometric means of the ratios.
 """
 
 import pathlib
@@ -19,24 +20,29 @@ SAMPLES = 200_000
 
 
 def read(path):
-    """Vertices and triangles of a file that the benchmark wrote."""
+    """Vertices, triangles and normals of a file that the benchmark wrote."""
     with open(path) as file:
         lines = [line.split() for line in file]
-    positions = numpy.array([line[1:4] for line in lines if line[0] == "v"], dtype=float)
-    triangles = numpy.array([line[1:4] for line in lines if line[0] == "f"], dtype=numpy.int64) - 1
-    return positions, triangles
+    positions, normals = (numpy.array([line[1:4] for line in lines if line[0] == key], dtype=float) for key in ("v", "vn"))
+    corners = [[corner.split("/")[0] for corner in line[1:4]] for line in lines if line[0] == "f"]
+    return positions, numpy.array(corners, dtype=numpy.int64) - 1, normals
 
 
 def spread(positions, triangles, count):
-    """Points spread evenly over the area, from a fixed seed."""
+    """Points spread evenly over the area, from a fixed seed: the triangle and the weights of its corners."""
     corners = positions[triangles]
     areas = numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     random = numpy.random.default_rng(7)
     ends = numpy.cumsum(areas)
     chosen = numpy.minimum(numpy.searchsorted(ends, random.random(count) * ends[-1]), len(areas) - 1)
     root, part = numpy.sqrt(random.random((count, 1))), random.random((count, 1))
-    a, b, c = (corners[chosen, corner] for corner in range(3))
-    return (1 - root) * a + root * (1 - part) * b + root * part * c
+    return chosen, numpy.concatenate([1 - root, root * (1 - part), root * part], axis=1)
+
+
+def at(values, triangles, points):
+    """Values of vertices at points of triangles."""
+    chosen, weights = points
+    return (values[triangles[chosen]] * weights[:, :, None]).sum(axis=1)
 
 
 def special(positions, triangles):
@@ -50,35 +56,48 @@ def special(positions, triangles):
 def distances(mesh, level):
     """Root mean square and largest distance, the larger of both directions."""
     rms, largest = 0.0, 0.0
-    for source, target in ((mesh, level), (level, mesh)):
-        even = igl.point_mesh_squared_distance(spread(*source, SAMPLES), *target)[0]
+    for source, target in ((mesh[:2], level[:2]), (level[:2], mesh[:2])):
+        even = igl.point_mesh_squared_distance(at(*source, spread(*source, SAMPLES)), *target)[0]
         ends = igl.point_mesh_squared_distance(special(*source), *target)[0]
         rms = max(rms, numpy.sqrt(even.mean()))
         largest = max(largest, numpy.sqrt(max(even.max(), ends.max())))
     return rms, largest
 
 
+def bend(mesh, level):
+    """Root mean square difference between the normals of a mesh and those of the nearest points of its level."""
+    positions, triangles, normals = mesh
+    points = spread(positions, triangles, SAMPLES)
+    places = at(positions, triangles, points)
+    _, nearest, feet = igl.point_mesh_squared_distance(places, *level[:2])
+    corners = [numpy.ascontiguousarray(level[0][level[1][nearest, corner]]) for corner in range(3)]
+    weights = numpy.nan_to_num(igl.barycentric_coordinates(numpy.ascontiguousarray(feet), *corners), nan=1 / 3)
+    both = [at(normals, triangles, points), at(level[2], level[1], (nearest, weights))]
+    first, second = (many / numpy.maximum(numpy.linalg.norm(many, axis=1, keepdims=True), 1e-9) for many in both)
+    return numpy.sqrt(((first - second) ** 2).sum(axis=1).mean())
+
+
 def main(folder):
     pattern = re.compile(r"(.+?)(_normals)?_(\d+)_relievo\.obj")
     found = [match for match in map(lambda path: pattern.fullmatch(path.name), sorted(folder.iterdir())) if match]
     meshes, ratios = {}, {}
-    print("| mesh | normals | % | triangles | rms | largest | rms, ratio | largest, ratio |\n" + "|---" * 8 + "|")
+    print("| mesh | normals | % | triangles | rms | largest | bend | rms, ratio | largest, ratio | bend, ratio |\n" + "|---" * 10 + "|")
     for match in sorted(found, key=lambda match: (match[1], match[2] or "", -int(match[3]))):
         name, normals, percent = match[1], match[2] or "", match[3]
         mesh = meshes.setdefault(name, None) or read(folder / f"{name}.obj")
         meshes[name] = mesh
         levels = [read(folder / f"{name}{normals}_{percent}_{who}.obj") for who in ("relievo", "meshoptimizer")]
-        ours, theirs = (distances(mesh, level) for level in levels)
+        ours, theirs = ((*distances(mesh, level), bend(mesh, level)) for level in levels)
         ratio = [a / b if b > 0 else float(a <= b) for a, b in zip(ours, theirs)]
         ratios.setdefault(normals, []).append(ratio)
         both = [f"{a:.4g} / {b:.4g}" for a, b in zip(ours, theirs)]
         count = " / ".join(str(len(level[1])) for level in levels)
         print(f"| {name} | {'yes' if normals else 'no'} | {percent} | {count} | {both[0]} | {both[1]} "
-              f"| {ratio[0]:.3f} | {ratio[1]:.3f} |", flush=True)
+              f"| {both[2]} | {ratio[0]:.3f} | {ratio[1]:.3f} | {ratio[2]:.3f} |", flush=True)
     for normals, all_ratios in ratios.items():
         mean, worst = numpy.exp(numpy.log(numpy.maximum(all_ratios, 1e-9)).mean(axis=0)), numpy.max(all_ratios, axis=0)
-        print(f"\n{'with' if normals else 'without'} normals: geometric mean of rms {mean[0]:.3f}, of largest {mean[1]:.3f}; "
-              f"worst {worst[0]:.3f}, {worst[1]:.3f}")
+        print(f"\n{'with' if normals else 'without'} normals: geometric mean of rms {mean[0]:.3f}, of largest {mean[1]:.3f}, of bend "
+              f"{mean[2]:.3f}; worst {worst[0]:.3f}, {worst[1]:.3f}, {worst[2]:.3f}")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 //! The cost of changes in attributes (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance
 //! Attributes", Visualization 1999): on each triangle an attribute is a linear function of position.
+//!
+//! Weights are areas, and the sums are not divided by them, as those of positions are: a wrong normal disturbs by the
+//! area that it shades (so does meshoptimizer). A mean would count it in the smallest triangle as much as in the largest.
 
 use glam::DVec3;
 
@@ -14,8 +17,6 @@ use super::turned::normal;
 pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
-    /// What positions are multiplied by; attributes count as much as they do.
-    scale: f64,
     /// The part without s, and the sums of weights.
     quadrics: Vec<Quadric>,
     /// For each attribute, the weighted sums of g and of k.
@@ -25,29 +26,27 @@ pub(crate) struct Attributes<'a> {
 /// What the costs of replacing a vertex depend on.
 pub(crate) struct Own<'a> {
     quadric: &'a Quadric,
-    inverse: f64,
     sums: &'a [(DVec3, f64)],
     values: &'a [f32],
-    scale: f64,
 }
 
 impl Own<'_> {
-    /// The sum of the means of a point's quadric and of the part of this one that does not depend on the replacement's
+    /// The sum of the mean of a point's quadric and of the part of this one that does not depend on the replacement's
     /// attributes.
     #[inline]
     pub(crate) fn with(&self, shape: &Quadric) -> Quadric {
-        shape.mixed(shape.inverse_weight(), self.quadric, self.inverse)
+        shape.mean_plus(self.quadric)
     }
 
-    /// The part of the mean cost that depends on the attributes of the replacement, which is `d` away.
+    /// The part of the cost that depends on the attributes of the replacement, which is `d` away.
     #[inline]
     pub(crate) fn change(&self, values: &[f32], d: DVec3) -> f64 {
         let mut cost = 0.0;
         for ((to, from), (gradient, lost)) in values.iter().zip(self.values).zip(self.sums) {
-            let s = (f64::from(*to) - f64::from(*from)) * self.scale;
+            let s = f64::from(*to) - f64::from(*from);
             cost += s * (s * self.quadric.weight - 2.0 * (gradient.dot(d) + lost));
         }
-        cost * self.inverse
+        cost
     }
 }
 
@@ -56,7 +55,7 @@ impl<'a> Attributes<'a> {
         let (values, stride) = (surface.attributes, surface.stride);
         let quadrics = vec![Quadric::default(); values.len() / stride];
         let sums = vec![(DVec3::ZERO, 0.0); values.len()];
-        let mut attributes = Self { values, stride, scale: points.scale(), quadrics, sums };
+        let mut attributes = Self { values, stride, quadrics, sums };
         for triangle in surface.indices.chunks_exact(3) {
             let vertices = [0, 1, 2].map(|corner| triangle[corner]);
             let positions = vertices.map(|vertex| points.position(points.of(vertex), 0));
@@ -69,7 +68,7 @@ impl<'a> Attributes<'a> {
 
     #[inline]
     fn value(&self, vertex: u32, attribute: usize) -> f64 {
-        f64::from(self.values[vertex as usize * self.stride + attribute]) * self.scale
+        f64::from(self.values[vertex as usize * self.stride + attribute])
     }
 
     /// Adds a triangle; `normal` has twice the triangle's area as its length.
@@ -90,10 +89,6 @@ impl<'a> Attributes<'a> {
         vertices.iter().for_each(|vertex| self.quadrics[*vertex as usize].add(&quadric));
     }
 
-    pub(crate) fn weight(&self, vertex: u32) -> f64 {
-        self.quadrics[vertex as usize].weight
-    }
-
     /// The cost of replacing `vertex` by `target`, which is `d` away.
     pub(crate) fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
         let quadric = &self.quadrics[vertex as usize];
@@ -104,11 +99,6 @@ impl<'a> Attributes<'a> {
             cost += s * (s * quadric.weight - 2.0 * (gradient.dot(d) + lost));
         }
         cost.max(0.0)
-    }
-
-    /// The cost of replacing `vertex` by `target`, which is `d` away, divided by the vertex's weight.
-    pub(crate) fn mean(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
-        self.cost(vertex, target, d) * self.quadrics[vertex as usize].inverse_weight()
     }
 
     /// The attributes of a vertex, in no unit.
@@ -122,10 +112,8 @@ impl<'a> Attributes<'a> {
     pub(crate) fn of(&self, vertex: u32) -> Own<'_> {
         Own {
             quadric: &self.quadrics[vertex as usize],
-            inverse: self.quadrics[vertex as usize].inverse_weight(),
             sums: &self.sums[vertex as usize * self.stride..][..self.stride],
             values: self.values_of(vertex),
-            scale: self.scale,
         }
     }
 
@@ -133,7 +121,7 @@ impl<'a> Attributes<'a> {
     pub(crate) fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
         let cost = self.cost(vertex, target, d);
         let [from, to] = [vertex, target].map(|vertex| vertex as usize * self.stride);
-        let weight = self.weight(vertex);
+        let weight = self.quadrics[vertex as usize].weight;
         let mut gradients = DVec3::ZERO;
         for attribute in 0..self.stride {
             let s = self.value(target, attribute) - self.value(vertex, attribute);
@@ -164,9 +152,7 @@ mod tests {
         let surface =
             Surface { poses: &[positions.to_vec()], indices: &indices, attributes: &values, stride: 2 };
         let mut attributes = Attributes::new(&surface, &points);
-        let value = |vertex: u32, attribute: usize| {
-            f64::from(values[vertex as usize * 2 + attribute]) * points.scale()
-        };
+        let value = |vertex: u32, attribute: usize| f64::from(values[vertex as usize * 2 + attribute]);
         // The difference between each attribute's plane through a triangle's corners and the attribute at a
         // vertex, on the plane or off it.
         let off = |triangle: usize, to: u32| -> f64 {

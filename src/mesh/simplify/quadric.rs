@@ -73,15 +73,16 @@ impl Quadric {
         (x * d.x + y * d.y + z * d.z + self.c).max(0.0)
     }
 
-    /// The sum of two quadrics about one origin, each times a factor, without weight.
+    /// The sum of this quadric divided by its weight and another one about the same origin, without weight.
     #[inline]
-    pub(crate) fn mixed(&self, factor: f64, other: &Self, by: f64) -> Self {
-        let mut a = self.a;
-        for (sum, value) in a.iter_mut().zip(other.a) {
-            *sum = *sum * factor + value * by;
+    pub(crate) fn mean_plus(&self, other: &Self) -> Self {
+        let factor = self.inverse_weight();
+        let mut a = other.a;
+        for (sum, value) in a.iter_mut().zip(self.a) {
+            *sum += value * factor;
         }
-        let b = self.b * factor + other.b * by;
-        Self { a, b, c: self.c * factor + other.c * by, weight: 0.0 }
+        let (b, c) = (self.b * factor + other.b, self.c * factor + other.c);
+        Self { a, b, c, weight: 0.0 }
     }
 
     /// A number that depends on the quadric's first and last words.

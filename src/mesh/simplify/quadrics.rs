@@ -8,9 +8,12 @@ use super::quadric::Quadric;
 use super::topology::{Kind, Topology};
 use super::turned::normal;
 
-/// How much more the planes across held edges count than those of triangles: a border has one triangle for an edge, and
-/// whatever lies behind shows what it lacks.
-const BORDER: f64 = 3.0;
+/// How much more the planes across edges of borders count than those of triangles: a border has one triangle for an edge,
+/// and whatever lies behind shows what it lacks.
+const BORDER: f64 = 10.0;
+
+/// As [`BORDER`], of each of the two triangles at an edge of a seam. The surface goes on there: a seam only holds its way.
+const SEAM: f64 = 1.0;
 
 /// The quadrics of a mesh.
 pub(crate) struct Quadrics<'a> {
@@ -27,6 +30,12 @@ impl<'a> Quadrics<'a> {
         }
         let attributes = (surface.stride > 0).then(|| Attributes::new(surface, points));
         Self { shape, attributes }
+    }
+
+    /// Whether attributes count.
+    #[inline]
+    pub(crate) fn has_attributes(&self) -> bool {
+        self.attributes.is_some()
     }
 
     /// The mean squared distance of a point's planes from its neighbour, in the worst pose.
@@ -91,7 +100,7 @@ impl<'a> Quadrics<'a> {
                 None => 0.0,
                 Some(attributes) => {
                     let d = points.position(neighbor, 0) - points.position(point, 0);
-                    attributes.mean(vertex, points.only_wedge(neighbor)?, d)
+                    attributes.cost(vertex, points.only_wedge(neighbor)?, d)
                 }
             };
             best.add(shape + attributes, neighbor);
@@ -107,7 +116,7 @@ impl<'a> Quadrics<'a> {
         quadric.touch()
     }
 
-    /// The mean squared difference in attributes if a point collapses and each of its wedges is replaced by the
+    /// The sum of squared differences in attributes, by area, if a point collapses and each of its wedges is replaced by the
     /// cheapest vertex allowed.
     pub(crate) fn attribute_cost(
         &self,
@@ -116,14 +125,11 @@ impl<'a> Quadrics<'a> {
         point: u32,
         neighbor: &Neighbor,
     ) -> f64 {
-        let Some(attributes) = &self.attributes else { return 0.0 };
-        let (mut sum, mut weight) = (0.0, 0.0);
-        for wedge in neighbors.wedges() {
-            let (_, cost) = self.target(points, neighbors, point, neighbor, wedge);
-            sum += cost;
-            weight += attributes.weight(wedge.vertex);
+        if self.attributes.is_none() {
+            return 0.0;
         }
-        if weight > 0.0 { sum / weight } else { 0.0 }
+        let wedges = neighbors.wedges().iter();
+        wedges.map(|wedge| self.target(points, neighbors, point, neighbor, wedge).1).sum()
     }
 
     /// The cheapest replacement of a wedge, and its cost in attributes.
@@ -191,10 +197,10 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, ver
     if of[0] == of[1] || of[1] == of[2] || of[2] == of[0] {
         return;
     }
-    let is_held = |from: usize, to: usize, across: usize| {
-        is_held(points, topology, [of[from], of[to], of[across]], [vertices[from], vertices[to]])
+    let hold = |from: usize, to: usize, across: usize| {
+        hold(points, topology, [of[from], of[to], of[across]], [vertices[from], vertices[to]])
     };
-    let held = [is_held(0, 1, 2), is_held(1, 2, 0), is_held(2, 0, 1)];
+    let held = [hold(0, 1, 2), hold(1, 2, 0), hold(2, 0, 1)];
     for pose in 0..points.poses() {
         let [a, b, c] = of;
         let positions = [points.position(a, pose), points.position(b, pose), points.position(c, pose)];
@@ -206,9 +212,9 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, ver
             shape[at(corner)].add_plane(&plane);
         }
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-            if held[from] {
+            if let Some(factor) = held[from] {
                 let edge = positions[to] - positions[from];
-                let across = Quadric::linear(edge.cross(normal).normalize(), BORDER * edge.length());
+                let across = Quadric::linear(edge.cross(normal).normalize(), factor * edge.length());
                 shape[at(from)].add_unweighted(&across);
                 shape[at(to)].add_unweighted(&across);
             }
@@ -216,13 +222,13 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, ver
     }
 }
 
-/// Whether the edge between the first two of a triangle's points is held: it is on a border, or the triangle on its
-/// other side has different wedges at both ends. `ends` are the triangle's vertices there.
-fn is_held(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -> bool {
+/// How much the plane across the edge between the first two of a triangle's points counts, if the edge is on a border, or
+/// on a seam: the triangle on its other side has different wedges at both ends. `ends` are the triangle's vertices there.
+fn hold(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -> Option<f64> {
     let [from, to, across] = of;
     let is_inside = |point: u32| topology.kind(point) == Kind::Interior && points.only_wedge(point).is_some();
     if is_inside(from) || is_inside(to) {
-        return false;
+        return None;
     }
     let is_shorter = topology.ring(from).len() < topology.ring(to).len();
     let [near, far] = if is_shorter { [from, to] } else { [to, from] };
@@ -233,5 +239,8 @@ fn is_held(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -
         let end = [ring.next, ring.last].into_iter().find(|end| end.point == far)?;
         Some([ring.vertex, end.vertex])
     });
-    beside.is_none_or(|[vertex, end]| vertex != near_vertex && end != far_vertex)
+    match beside {
+        None => Some(BORDER),
+        Some([vertex, end]) => (vertex != near_vertex && end != far_vertex).then_some(SEAM),
+    }
 }

@@ -285,9 +285,17 @@ mod tests {
         (positions, uv, indices)
     }
 
-    /// Simplifies until nothing is legal, and compares each collapse with the cheapest that a full search finds. Returns
-    /// the number of steps, how often the collapse was more than a tenth above that, and how often it was not the
-    /// cheapest of its point.
+    /// The cost of the collapse of a point if it were its turn.
+    fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
+        reducer.topology.refresh(point);
+        let found = reducer.find(point)?;
+        let checked = reducer.check(point, found).or_else(|| reducer.find_legal(point));
+        checked.map(|best| best.cost)
+    }
+
+    /// Simplifies until nothing is legal, and compares each collapse with those of all other points. Returns the number of
+    /// steps, how often the collapse was more than a tenth above the cheapest, and how often it was not the cheapest of
+    /// its point.
     fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
         let mut reducer = Reducer::new(surface, cost, distance < f32::INFINITY);
         let most = (f64::from(distance) * reducer.points.scale()) as f32;
@@ -300,9 +308,9 @@ mod tests {
         };
         while let Some((point, best)) = reducer.next(&mut queue) {
             let all = 0..reducer.points.len() as u32;
-            let costs = all.filter_map(|point| Some(find(&mut reducer, point)?.cost));
-            let cheapest = costs.fold(f32::INFINITY, f32::min);
-            assert!(best.cost >= cheapest, "{cost:?} after {steps}");
+            let costs = all.clone().filter_map(|point| Some(find(&mut reducer, point)?.cost));
+            assert!(best.cost >= costs.fold(f32::INFINITY, f32::min), "{cost:?} after {steps}");
+            let cheapest = all.filter_map(|point| now(&mut reducer, point)).fold(f32::INFINITY, f32::min);
             dearer += usize::from(best.cost.sqrt() > 1.1 * cheapest.sqrt() + 1e-6);
             seconds += usize::from(best.is_second);
             steps += 1;
@@ -338,7 +346,7 @@ mod tests {
             }
             let [steps, dearer, seconds] = sums;
             assert!(steps > 200 && seconds > 3, "{cost:?} within {distance}: {steps}, {seconds}");
-            assert!(10 * dearer < steps, "{cost:?} within {distance}: {dearer} of {steps}");
+            assert!(8 * dearer < steps, "{cost:?} within {distance}: {dearer} of {steps}");
         }
     }
 }

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::whole::Whole;
+use crate::skinning::attribute_weights::TextureArea;
 use crate::skinning::pose::Moment;
 
 /// Number of the clips' moments that serve as key poses.
@@ -44,22 +45,16 @@ impl Keys {
         Self { poses: all.into_iter().map(|key| key.points).collect(), normals, size: size / unit, unit }
     }
 
-    /// For each mesh the length that a unit of texture coordinates covers in the first pose, on average, in these units; a
-    /// texture thus counts by how far it slips over the surface. 0 if there is no texture.
-    pub fn texture_scales(&self, whole: &Whole<'_>) -> Vec<f32> {
-        let mut sums = vec![[0.0_f64; 2]; whole.meshes.len()];
+    /// For each mesh the factor of texture coordinates, by the first pose.
+    pub fn texture_factors(&self, whole: &Whole<'_>) -> Vec<f32> {
+        let mut areas = vec![TextureArea::default(); whole.meshes.len()];
         for triangle in whole.indices.chunks_exact(3) {
-            let [surface, texture] = &mut sums[whole.member_of(triangle) as usize];
             let corners = [0, 1, 2].map(|corner| triangle[corner] as usize);
-            let [a, b, c] = corners.map(|corner| Vec3::from(self.poses[0][corner]).as_dvec3());
-            *surface += (b - a).cross(c - a).length();
-            let [d, e, f] = corners.map(|corner| Vec2::from(whole.uv[corner]).as_dvec2());
-            *texture += (e - d).perp_dot(f - d).abs();
+            let places = corners.map(|corner| Vec3::from(self.poses[0][corner]).as_dvec3());
+            let uv = corners.map(|corner| Vec2::from(whole.uv[corner]).as_dvec2());
+            areas[whole.member_of(triangle) as usize].add(places, uv);
         }
-        let scale = |[surface, texture]: &[f64; 2]| {
-            if *texture > 0.0 { (surface / texture).sqrt() as f32 } else { 0.0 }
-        };
-        sums.iter().map(scale).collect()
+        areas.iter().map(|area| area.factor(f64::from(self.size))).collect()
     }
 }
 

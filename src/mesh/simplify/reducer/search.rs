@@ -12,6 +12,10 @@ use super::{Cost, Reducer};
 /// grow on terrain and on closed shapes, with twice of it the mean ones.
 const DEVIATION: f64 = 1.0 / 16.0;
 
+/// As [`DEVIATION`], where attributes count too, and added to their cost: theirs is mostly larger, so that a maximum would
+/// not see a spot that is off. Found by trial: with more of it normals suffer.
+const BESIDE_ATTRIBUTES: f64 = 0.25;
+
 impl Reducer<'_> {
     /// The cheapest collapse of a point, legal or not; of equal ones, that into the lower neighbour.
     pub(super) fn find(&mut self, point: u32) -> Option<Best> {
@@ -26,14 +30,14 @@ impl Reducer<'_> {
         let quadrics = self.quadrics.as_ref().filter(|_| self.topology.kind(point) == Kind::Interior)?;
         let vertex = self.points.only_wedge(point)?;
         let (cost, neighbor) = quadrics.cheapest(&self.points, [point, vertex], self.topology.ring(point))?;
-        Some(Best { neighbor, cost, is_second: false })
+        Some(Best { neighbor, cost, base: cost, is_second: false })
     }
 
     fn find_any(&mut self, point: u32) -> Option<Best> {
         self.neighbors.look(&self.topology, point, &mut self.marks);
         let costs = self.neighbors.all().iter().map(|neighbor| (self.cost(point, neighbor), neighbor.point));
         let (cost, neighbor) = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
-        Some(Best { neighbor, cost, is_second: false })
+        Some(Best { neighbor, cost, base: cost, is_second: false })
     }
 
     /// The cheapest collapse of a point that is legal at the moment.
@@ -45,7 +49,8 @@ impl Reducer<'_> {
         all.sort_unstable();
         let mut best: Option<Best> = None;
         for (cost, neighbor) in all {
-            let candidate = Best { neighbor, cost: f32::from_bits(cost), is_second: true };
+            let cost = f32::from_bits(cost);
+            let candidate = Best { neighbor, cost, base: cost, is_second: true };
             if best.is_some_and(|best| best.cost <= candidate.cost) {
                 break;
             }
@@ -73,7 +78,7 @@ impl Reducer<'_> {
 
     /// Whether a collapse keeps the topology, the orientation of triangles and, where they are limited, the distances
     /// of samples; and where the cost is that of Melax with normals, whether normals stay alike. If so, the collapse with
-    /// its cost, which is at least [`DEVIATION`] times the square of the distance that the point would be off.
+    /// its cost, which counts how far the point would be off the planes of its triangles.
     pub(super) fn check(&mut self, point: u32, best: Best) -> Option<Best> {
         let neighbor = best.neighbor;
         self.topology.refresh(neighbor);
@@ -92,7 +97,12 @@ impl Reducer<'_> {
         {
             return None;
         }
-        let least = if self.quadrics.is_some() { DEVIATION * deviation } else { 0.0 };
-        Some(Best { cost: best.cost.max(least as f32), ..best })
+        let Some(quadrics) = &self.quadrics else { return Some(best) };
+        let more = if quadrics.has_attributes() {
+            BESIDE_ATTRIBUTES * deviation
+        } else {
+            (DEVIATION * deviation - f64::from(best.base)).max(0.0)
+        };
+        Some(Best { cost: best.base + more as f32, ..best })
     }
 }

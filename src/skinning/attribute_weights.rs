@@ -1,0 +1,57 @@
+//! How much normals and texture coordinates count beside positions when a mesh is simplified
+//! ([`Surface::attributes`](crate::mesh::Surface::attributes)).
+
+use glam::{DVec2, DVec3};
+
+/// The factor of normals. Where normals differ at one point they are averaged, so that a larger one would keep the inside of
+/// flat faces, and cut their corners.
+pub(super) const NORMAL: f32 = 0.05;
+
+/// The edge of a square, as a fraction of a mesh's size, on which a texture that slips over the surface by some distance
+/// counts as much as a position that is off by it.
+const SQUARE: f64 = 3e-2;
+
+/// The areas of a mesh's triangles, in the mesh's units and in texture coordinates.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct TextureArea {
+    surface: f64,
+    texture: f64,
+}
+
+impl TextureArea {
+    /// Adds a triangle.
+    pub(super) fn add(&mut self, [a, b, c]: [DVec3; 3], [d, e, f]: [DVec2; 3]) {
+        self.surface += (b - a).cross(c - a).length();
+        self.texture += (e - d).perp_dot(f - d).abs();
+    }
+
+    /// The factor of texture coordinates of a mesh of this size; 0 without texture coordinates.
+    pub(super) fn factor(&self, size: f64) -> f32 {
+        let factor = ((self.surface / self.texture).sqrt() / (SQUARE * size)) as f32;
+        if factor.is_finite() { factor } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twice as large a mesh, and twice as large a texture, each with its own factor.
+    #[test]
+    fn a_texture_counts_by_how_far_it_slips() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let uv = [DVec2::ZERO, DVec2::X, DVec2::Y];
+        let factor = |scale: f64, texture: f64| {
+            let mut area = TextureArea::default();
+            area.add(corners.map(|corner| corner * scale), uv.map(|uv| uv * texture));
+            area.factor(scale)
+        };
+        // A unit of texture lies on a unit of length, which is the mesh's size.
+        let one = (1.0 / SQUARE) as f32;
+        assert!((factor(1.0, 1.0) - one).abs() < 1e-3);
+        assert!((factor(8.0, 1.0) - one).abs() < 1e-3);
+        assert!((factor(1.0, 2.0) - 0.5 * one).abs() < 1e-3);
+        assert_eq!(factor(1.0, 0.0), 0.0);
+        assert_eq!(TextureArea::default().factor(1.0), 0.0);
+    }
+}
