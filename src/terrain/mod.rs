@@ -8,6 +8,7 @@ pub(crate) mod blocks;
 pub mod border;
 pub mod color_maps;
 pub mod config;
+pub mod cover;
 pub mod crease;
 pub mod despike;
 pub mod export;
