@@ -6,6 +6,7 @@ pub mod blend;
 pub mod border;
 pub mod color_maps;
 pub mod config;
+pub mod cover;
 pub mod crease;
 pub mod despike;
 pub mod export;

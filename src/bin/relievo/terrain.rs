@@ -50,8 +50,8 @@ const WEIGHT_MODES: [(&str, WeightMode); 2] =
 /// mapping to heights), `heights_<px>_<py>.i32` (little-endian rows, in 1/65536 height units), and `report.json`.
 ///
 /// A configuration: {"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}. Optional fields: roughness,
-/// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, zones, and erosion: thermal, hydraulic and
-/// thermalAfter, such as "hydraulic": {"iterations": 300, "rain": 0.0003, "evaporation": 0.001, "capacity": 200, "threshold": 15,
+/// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, triplanar,
+/// variation, zones, and erosion: thermal, hydraulic and thermalAfter, such as "hydraulic": {"iterations": 300, "rain": 0.0003, "evaporation": 0.001, "capacity": 200, "threshold": 15,
 /// "erosion": 0.01, "deposition": 0.01, "talus": 30}. A feature file: {"patchCoordinates": [0, 0], "precomputedHeights":
 /// [x, y, height, …]}.
 #[derive(Args)]
@@ -268,7 +268,8 @@ impl Terrain {
 
     fn make(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
         let (config, count) = (&plan.recipe.config, plan.patches.len() as u64);
-        let maps = ColorMaps { config, textures: &plan.textures, shading: &plan.shading };
+        let maps =
+            ColorMaps { config, textures: &plan.textures, patches: &plan.patches, shading: &plan.shading };
         let gpu = self.backend.gpu(context)?;
         let mut made = Made { gpu, ..Made::default() };
         let start = Instant::now();
@@ -278,7 +279,7 @@ impl Terrain {
             progress.finish_and_clear();
             made.seconds.generate = start.elapsed().as_secs_f64();
             let (start, progress) = (Instant::now(), bar(count, "colouring"));
-            made.maps = maps.on_host(&made.windows, &|| progress.inc(1));
+            made.maps = maps.on_host(&made.windows, &|| progress.inc(1))?;
             progress.finish_and_clear();
             self.draw_on_host(plan, context, &mut made)?;
             made.seconds.render = start.elapsed().as_secs_f64();

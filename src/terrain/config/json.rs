@@ -36,6 +36,10 @@ struct Raw {
     #[serde(default)]
     texture_tile: Option<f64>,
     #[serde(default)]
+    triplanar: bool,
+    #[serde(default)]
+    variation: Option<f64>,
+    #[serde(default)]
     zones: Option<Vec<Object<Zone>>>,
     #[serde(default)]
     thermal: Option<Object<RawThermal>>,
@@ -118,7 +122,7 @@ impl<'de> Visitor<'de> for BorderVisitor {
 }
 
 /// A struct that JSON stores as an object. Serde alone would also accept an array of its fields.
-struct Object<T>(T);
+pub(super) struct Object<T>(pub(super) T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -205,6 +209,8 @@ impl Config {
             }),
             terrain_scale: raw.terrain_scale.unwrap_or(1.0),
             texture_tile: raw.texture_tile,
+            triplanar: raw.triplanar,
+            variation: raw.variation.unwrap_or(0.0),
             zones: raw.zones.map_or_else(
                 || Zone::defaults(raw.scale_factor, raw.offset),
                 |zones| zones.into_iter().map(|zone| zone.0).collect(),
