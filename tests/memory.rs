@@ -41,8 +41,9 @@ fn recipes() -> Vec<Recipe> {
         for mode in [None, Some(FeatureMode::Keep), Some(FeatureMode::Additive)] {
             for despike in [None, Some(Despike { threshold: 0.5 })] {
                 for (rains, iterations) in [(Some(1), Some(2)), (Some(6), None)] {
-                    let slides =
-                        |iterations| iterations.map(|iterations| Thermal { iterations, talus: 30.0 });
+                    let slides = |iterations: Option<u32>| {
+                        iterations.map(|iterations| Thermal { iterations, talus: 30.0 })
+                    };
                     let (thermal, thermal_after) = (slides(iterations), slides(iterations.map(|_| 3)));
                     let rain = Hydraulic { rain: 0.01, threshold: 1.0, ..Hydraulic::default() };
                     let hydraulic = rains.map(|iterations| Hydraulic { iterations, ..rain });

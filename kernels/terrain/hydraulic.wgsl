@@ -1,5 +1,5 @@
 // One cycle of hydraulic erosion (virtual pipes after Mei, Decaudin and Hu 2007, in integers). Each sample has ground, water,
-// suspended sediment, and the shares of both that leave for its four neighbours. A cycle moves these shares, lets banks slide,
+// suspended sediment, and the shares of both that leave for its four neighbours. A cycle moves these shares, lets ground creep and banks slide,
 // erodes or deposits, evaporates, rains, and computes the next shares from the surfaces before the cycle, so that it reads one
 // sample around. Whatever moves between two samples is computed alike by both, from the old state alone. Each window loses its
 // outermost ring of samples.
@@ -36,6 +36,8 @@ struct HydraulicParams {
     slope_factor: i32,
     // The largest stable difference between two neighbours.
     talus: i32,
+    // The fraction of each difference that creeps down, in 1/32768, at most 1/16.
+    creep: i32,
 }
 
 struct Cell {
@@ -105,8 +107,9 @@ fn cycle(cell: Cell, west: Cell, east: Cell, north: Cell, south: Cell) -> Cell {
 
     let steps = vec4<i32>(cell.ground) - ground;
     let excess = max(abs(steps) - vec4<i32>(params.talus), vec4<i32>(0)) >> vec4<u32>(3u);
-    let slid = min(select(vec4<i32>(0), excess, steps < vec4<i32>(0)), vec4<i32>(room))
-        - min(select(vec4<i32>(0), excess, steps > vec4<i32>(0)), rooms);
+    let sliding = excess + part(abs(steps), vec4<i32>(params.creep));
+    let slid = min(select(vec4<i32>(0), sliding, steps < vec4<i32>(0)), vec4<i32>(room))
+        - min(select(vec4<i32>(0), sliding, steps > vec4<i32>(0)), rooms);
 
     let surface = min(cell.ground + cell.water, HEIGHT_LIMIT);
     let falls = vec4<i32>(surface) - min(ground + water, vec4<i32>(HEIGHT_LIMIT));
@@ -148,7 +151,7 @@ fn next_shares(cell: Cell, falls: vec4<i32>, water: i32) -> vec4<i32> {
     return (shares * 3) >> vec4<u32>(2u);
 }
 
-// floor(amount * share / 32768) for amounts of 0 to 2^30 and shares of 0 to 32768.
+// floor(amount * share / 32768) for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
 fn part(amounts: vec4<i32>, shares: vec4<i32>) -> vec4<i32> {
     let bits = vec4<u32>(15u);
     return (amounts >> bits) * shares + (((amounts & vec4<i32>(32767)) * shares) >> bits);

@@ -149,5 +149,6 @@ fn hydraulic(raw: &RawHydraulic) -> Result<Hydraulic, InputError> {
         erosion: raw.erosion.unwrap_or(default.erosion),
         deposition: raw.deposition.unwrap_or(default.deposition),
         talus: raw.talus.unwrap_or(default.talus),
+        creep: raw.creep.unwrap_or(default.creep),
     })
 }

@@ -93,6 +93,7 @@ fn arguments() {
         ("erosion", "2", "0..=1"),
         ("deposition", "2", "0..=1"),
         ("talus", "90", "0..=89"),
+        ("creep", "0.1", "0..=0.0625"),
         ("snow", "1", "unknown field"),
     ] {
         let end = format!(r#", "hydraulic": {{"{field}": {value}}}}}"#);

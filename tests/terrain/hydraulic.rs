@@ -87,7 +87,8 @@ fn oracle(torus: &Torus, params: &HydraulicParams) -> Torus {
             let most = ((i64::from(SEDIMENT_LIMIT) - sediment(to)) / 4).min(room(to));
             let mud = given(from, direction, sediment(from)).min(most);
             let excess = (height(from) - height(to)).max(0) - i64::from(params.talus);
-            let slide = (excess.max(0) / 8).min(room(to));
+            let creep = (height(from) - height(to)).max(0) * i64::from(params.creep) / 32_768;
+            let slide = (excess.max(0) / 8 + creep).min(room(to));
             for (word, amount) in [slide, wet, mud].into_iter().enumerate() {
                 new[from][word] -= amount;
                 new[to][word] += amount;
@@ -138,9 +139,10 @@ fn oracle(torus: &Torus, params: &HydraulicParams) -> Torus {
 fn parameters() -> impl Strategy<Value = (Hydraulic, f64)> {
     let fraction = || prop_oneof![2 => 0.0..=1.0, 1 => Just(0.0), 1 => Just(1.0), 2 => 0.0..0.05];
     let scale = prop_oneof![4 => 0.1..100.0, 1 => Just(1e-6), 1 => Just(1e6)];
-    let rest = (0.0..=1024.0, 0.0..100.0, 0.0..=89.0, scale);
+    let creep = prop_oneof![0.0..0.02, Just(0.0625)];
+    let rest = (0.0..=1024.0, 0.0..100.0, 0.0..=89.0, creep, scale);
     (fraction(), fraction(), fraction(), fraction(), rest).prop_map(
-        |(rain, evaporation, erosion, deposition, (capacity, threshold, talus, scale))| {
+        |(rain, evaporation, erosion, deposition, (capacity, threshold, talus, creep, scale))| {
             let parameters = Hydraulic {
                 iterations: 40,
                 rain,
@@ -150,6 +152,7 @@ fn parameters() -> impl Strategy<Value = (Hydraulic, f64)> {
                 erosion,
                 deposition,
                 talus,
+                creep,
             };
             (parameters, scale)
         },
@@ -236,7 +239,7 @@ proptest! {
     /// Without rain, what is left is thermal erosion.
     #[test]
     fn without_rain_only_banks_slide(land in land(), talus in 0.0..80.0) {
-        let parameters = Hydraulic { rain: 0.0, talus, ..Hydraulic::default() };
+        let parameters = Hydraulic { rain: 0.0, talus, creep: 0.0, ..Hydraulic::default() };
         let params = parameters.params(1.0, 0, land.side as u32);
         let ground: Vec<i32> = land.ground.iter().map(|height| height / 2).collect();
         let threshold = Thermal { iterations: 1, talus }.fixed_threshold(1.0);
@@ -358,6 +361,7 @@ fn parameters_out_of_bounds_are_refused() {
         refused(Hydraulic { erosion: bad, ..good }, "hydraulic.erosion", "0..=1");
         refused(Hydraulic { deposition: bad, ..good }, "hydraulic.deposition", "0..=1");
         refused(Hydraulic { talus: bad, ..good }, "hydraulic.talus", "0..=89");
+        refused(Hydraulic { creep: bad, ..good }, "hydraulic.creep", "0..=0.0625");
     }
     let config = Config::new(257, 30.0, "s").expect("valid");
     let far = Thermal { iterations: 1025, talus: 30.0 };

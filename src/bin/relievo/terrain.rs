@@ -50,10 +50,10 @@ const WEIGHT_MODES: [(&str, WeightMode); 2] =
 /// mapping to heights), `heights_<px>_<py>.i32` (little-endian rows, in 1/65536 height units), and `report.json`.
 ///
 /// A configuration: {"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}. Optional fields: roughness,
-/// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, triplanar,
-/// variation, zones, and erosion: thermal, hydraulic and thermalAfter, such as "hydraulic": {"iterations": 300, "rain": 0.0003, "evaporation": 0.001, "capacity": 200, "threshold": 15,
-/// "erosion": 0.01, "deposition": 0.01, "talus": 30}. A feature file: {"patchCoordinates": [0, 0], "precomputedHeights":
-/// [x, y, height, …]}.
+/// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, triplanar, variation, zones, and erosion:
+/// thermal and thermalAfter, such as {"iterations": 20, "talus": 35}, and hydraulic, such as {"iterations": 300}, with rain,
+/// evaporation, capacity, threshold, erosion, deposition, talus and creep. A feature file: {"patchCoordinates": [0, 0],
+/// "precomputedHeights": [x, y, height, …]}.
 #[derive(Args)]
 pub struct Terrain {
     /// The configuration, a JSON file.

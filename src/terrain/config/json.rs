@@ -69,6 +69,7 @@ pub(crate) struct RawHydraulic {
     pub erosion: Option<f64>,
     pub deposition: Option<f64>,
     pub talus: Option<f64>,
+    pub creep: Option<f64>,
 }
 
 /// What follows generation, as JSON stores it beside the configuration.

@@ -20,7 +20,7 @@ pub use pass::{HydraulicBuffers, HydraulicPass};
 pub const MAX_ITERATIONS: u32 = 2048;
 
 /// Rain, rivers, and what they do to the ground. Each cycle moves water and the sediment in it to the four neighbours of each
-/// sample, lets steep banks slide, erodes or deposits, evaporates, and rains; in the last quarter of the cycles the land dries
+/// sample, lets ground creep and steep banks slide, erodes or deposits, evaporates, and rains; in the last quarter of the cycles the land dries
 /// without rain, and after the last one all sediment settles where it is.
 ///
 /// Lengths are fractions of the spacing of samples (terrainScale), so that a landscape of another scale erodes alike. Ground and
@@ -34,34 +34,38 @@ pub const MAX_ITERATIONS: u32 = 2048;
 pub struct Hydraulic {
     /// Number of cycles, at most [`MAX_ITERATIONS`]. Default 300.
     pub iterations: u32,
-    /// Depth of the rain in a cycle, in spacings of samples, 0 to 1. Default 0.0003.
+    /// Depth of the rain in a cycle, in spacings of samples, 0 to 1. Default 0.0005.
     pub rain: f64,
     /// The fraction of the water that evaporates in a cycle, 0 to 1. Default 0.001.
     pub evaporation: f64,
     /// The sediment that water carries: for each unit of discharge, at a slope of 1; 0 to 1024. Default 200.
     pub capacity: f64,
     /// The discharge below which water carries nothing, as the number of samples whose rain it is; 0 to 65536. It decides how
-    /// far from the watershed valleys begin. Default 15.
+    /// far from the watershed valleys begin. Default 8.
     pub threshold: f64,
     /// The fraction of the lacking sediment that the water takes from the ground in a cycle, 0 to 1. Default 0.01.
     pub erosion: f64,
-    /// The fraction of the excess sediment that settles in a cycle, 0 to 1. Default 0.01.
+    /// The fraction of the excess sediment that settles in a cycle, 0 to 1. Default 0.02.
     pub deposition: f64,
-    /// The steepest stable bank, in degrees, 0 to 89. Default 30.
+    /// The steepest stable bank, in degrees, 0 to 89. Default 35.
     pub talus: f64,
+    /// The fraction of the difference between two neighbours that creeps down in a cycle, 0 to 1/16. It rounds ridges, and the
+    /// more of it, the further apart are valleys. Default 0.01.
+    pub creep: f64,
 }
 
 impl Default for Hydraulic {
     fn default() -> Self {
         Self {
             iterations: 300,
-            rain: 0.0003,
+            rain: 0.0005,
             evaporation: 0.001,
             capacity: 200.0,
-            threshold: 15.0,
+            threshold: 8.0,
             erosion: 0.01,
-            deposition: 0.01,
-            talus: 30.0,
+            deposition: 0.02,
+            talus: 35.0,
+            creep: 0.01,
         }
     }
 }
@@ -84,6 +88,7 @@ impl Hydraulic {
             ("erosion", self.erosion, 1.0),
             ("deposition", self.deposition, 1.0),
             ("talus", self.talus, 89.0),
+            ("creep", self.creep, 0.0625),
         ] {
             finite(&format!("hydraulic.{field}"), value, 0.0, most)?;
         }
@@ -114,6 +119,7 @@ impl Hydraulic {
             steepest,
             slope_shift,
             slope_factor: (1 << 27) / (steepest >> slope_shift),
+            creep: fraction(self.creep),
             talus: fixed(libm::tan(self.talus.to_radians()) * spacing, widest),
         }
     }

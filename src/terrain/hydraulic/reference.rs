@@ -72,11 +72,12 @@ impl Cell {
         [water, part(self.sediment, share).min(neighbour.sediment_room())]
     }
 
-    /// The ground that slides down to a neighbour.
+    /// The ground that slides and creeps down to a neighbour.
     #[inline(always)]
-    fn sliding(self, neighbour: Self, talus: i32) -> i32 {
-        let step = self.ground - neighbour.ground;
-        ((step.max(0) - talus).max(0) >> 3).min(neighbour.ground_room())
+    fn sliding(self, neighbour: Self, params: &HydraulicParams) -> i32 {
+        let step = (self.ground - neighbour.ground).max(0);
+        let slid = (step - params.talus).max(0) >> 3;
+        (slid + part(step, params.creep)).min(neighbour.ground_room())
     }
 }
 
@@ -91,7 +92,7 @@ fn cycle(cell: Cell, around: [Cell; 4], params: &HydraulicParams) -> (i32, Flow)
             lost[what] += out[what];
             gained[what] += into[what];
         }
-        slid += neighbour.sliding(cell, params.talus) - cell.sliding(neighbour, params.talus);
+        slid += neighbour.sliding(cell, params) - cell.sliding(neighbour, params);
     }
     let moved = cell.water - lost[0] + gained[0];
     let sediment = cell.sediment - lost[1] + gained[1];
@@ -143,7 +144,7 @@ fn next_shares(cell: Cell, falls: [i32; 4], water: i32) -> [i32; 4] {
     flux.map(|flux| ((((flux as u32 >> shift) * inverse) >> 16) as i32 * 3) >> 2)
 }
 
-/// ⌊amount · share / 32768⌋ for amounts of 0 to 2^30 and shares of 0 to 32768.
+/// ⌊amount · share / 32768⌋ for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
 #[inline(always)]
 fn part(amount: i32, share: i32) -> i32 {
     (amount >> 15) * share + (((amount & 32767) * share) >> 15)

@@ -57,6 +57,7 @@ fn kinds() -> [Hydraulic; 4] {
         deposition: 1.0,
         evaporation: 0.0,
         talus: 0.0,
+        creep: 0.0625,
         ..ordinary
     };
     let smallest = Hydraulic {
