@@ -3,6 +3,8 @@
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
 pub mod blend;
+#[cfg(feature = "gpu")]
+pub(crate) mod blocks;
 pub mod border;
 pub mod color_maps;
 pub mod config;
