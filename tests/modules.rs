@@ -18,8 +18,12 @@ use relievo::gpu::{Buffer, Gpu, shaders::MODULES};
 use relievo::lod::LodCamera;
 use relievo::skinning::palette::reference::dual;
 use relievo::surface::{Address, HeightMap, Method, SurfaceTextures};
-use relievo::terrain::blend::reference::zone_fractions;
-use relievo::terrain::blend::{MapZone, WeightMode};
+use relievo::terrain::blend::WeightMode;
+use relievo::terrain::blend::reference::{
+    color_variation, steepness, triplanar_weights, varied, zone_fractions,
+};
+use relievo::terrain::config::Zone;
+use relievo::terrain::cover::{ShaderZone, zone_of};
 use relievo::terrain::fixed::{mean_of_four, multiply_high};
 
 /// What a shader of `tests/modules/` makes of `floats`: so many words. `constants` and textures are for those that have
@@ -114,35 +118,54 @@ fn assert_near(words: &[u32], expected: &[f32], bound: f32) {
     }
 }
 
-fn zones() -> [MapZone; 3] {
-    [[-8.0, 0.0], [0.0, 10.0], [20.0, 30.0]].map(|[min, max]| MapZone { color: [0.0; 3], min, max })
+fn zones() -> [ShaderZone; 3] {
+    let [mut low, mut middle, mut high] =
+        [[-8.0, 0.0], [0.0, 10.0], [20.0, 30.0]].map(|[min, max]| zone_of(&Zone::new(min, max, None)));
+    middle.rise = [4.0, -0.5];
+    low.fall = [-4.0, 2.5];
+    low.height_blend = 1.0;
+    high.height_blend = 0.5;
+    [low, middle, high]
 }
 
-/// Weights divide twice, 2.5 units in the last place each; shares are at most 1.
+/// Weights divide twice, 2.5 units in the last place each, and lines by slope multiply the rounding of the steepness by 4;
+/// fractions are at most 1. Of the noise, the largest of the cells' coordinates has 14 bits behind the point left.
 #[test]
-fn zone_weights_are_those_of_the_reference() {
+fn zones_and_their_textures_are_those_of_the_reference() {
     let gpu = gpu();
-    let heights = [-100.0, -8.5, -8.0, -3.0, 0.0, 0.25, 7.5, 10.0, 16.0, 25.0, 30.0, 39.0, 41.0, 1000.0];
+    let heights = [-100.0, -8.5, -8.0, -3.0, 0.0, 0.25, 7.5, 10.0, 16.0, 25.0, 30.0, 31.0, -5.0, -1.0];
+    let count = heights.len();
+    let normal = |at: usize| {
+        let tilt = at as f32 / count as f32;
+        Vec3::new(0.6 * tilt, 1.0 - tilt, 0.8 * tilt).normalize().to_array()
+    };
     for (additive, weights) in [(0.0, WeightMode::Normalized), (1.0, WeightMode::Additive)] {
-        let words = run(&gpu, "terrain", &[("ADDITIVE", additive)], None, &heights, 3 * heights.len() + 6);
-        let expected: Vec<f32> =
-            heights.iter().flat_map(|height| zone_fractions(&zones(), *height, weights)).collect();
-        assert!(expected.iter().any(|share| *share > 0.0 && *share < 1.0), "nothing is blended");
-        assert_near(&words[..expected.len()], &expected, 1e-6);
+        let words = run(&gpu, "terrain", &[("ADDITIVE", additive)], None, &heights, 9 * count + 6);
+        let fractions = |at: usize| {
+            let place = (heights[at], steepness(normal(at)));
+            zone_fractions(&zones(), place, &[1.0, 0.75, 0.5], weights)
+        };
+        assert!((0..count).flat_map(fractions).any(|part| part > 0.01 && part < 0.99), "nothing is blended");
+        for (at, own) in words.chunks(9).take(count).enumerate() {
+            assert_near(&own[..3], &fractions(at), 4e-6);
+            assert_near(&own[3..6], &triplanar_weights(normal(at)), 4e-6);
+            let noise = color_variation([heights[at] * heights[at], 1023.5 * (at as f32 / count as f32)]);
+            assert_near(&own[6..], &varied([0.5, 0.25, 1.0], noise, 0.5), 1e-4);
+        }
     }
 }
 
 /// Integer results must be equal to the bit.
 #[test]
 fn terrain_offsets_are_those_of_the_reference_and_light_falls_as_the_cosine() {
-    let words = run(&gpu(), "terrain", &[], None, &[0.0; 4], 18);
+    let words = run(&gpu(), "terrain", &[], None, &[0.0; 4], 42);
     let range = 655_360;
     let offsets: [i32; 4] = std::array::from_fn(|x| {
         let (first, second) = relievo::hash::threefry2x32([17, 4], [x as u32; 8], [5; 8]);
         let sum = (first[0] & 0xffff) + (first[0] >> 16) + (second[0] & 0xffff) + (second[0] >> 16);
         multiply_high((sum << 14) + 0x8000, 2 * range) as i32 - range as i32
     });
-    let words = &words[12..];
+    let words = &words[36..];
     assert_eq!(words[..4], offsets.map(|offset| offset as u32));
     let [a, b, c, d] = offsets;
     assert_eq!(words[4], mean_of_four(a, b, c, d) as u32);

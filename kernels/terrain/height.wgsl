@@ -4,10 +4,11 @@
 // diamonds on the rim of its cells a second time, so that threads need no barrier and a level is one dispatch.
 // With two levels per dispatch, the rows of the level in between stream through registers too and are neither
 // stored nor loaded.
-import package::wgsl::terrain::fixed::mean_of_sums;
+import package::wgsl::terrain::blocks::block_of;
+import package::wgsl::terrain::fixed::{held, mean_of_sums};
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, feature_at, feature_bits, injected_lanes};
 import package::wgsl::terrain::level::{
-    Columns, FIRST, LANES, Place, base_points, columns_of, fine_at, held, level, loaded, offsets, origins, store_four, world_y};
+    Columns, FIRST, LANES, Place, base_points, columns_of, fine_at, level, loaded, offsets, origins, store_four, world_y};
 
 // Rows of coarse cells per thread: many for a software adapter, few for hardware.
 override CELL_ROWS: u32 = 4u;
@@ -33,17 +34,15 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
-    if index >= level.blocks * level.windows {
+    let block = block_of(level.blocks, group, groups, lane);
+    if !block.there {
         return;
     }
-    let in_window = index % level.blocks;
-    let block = vec2<i32>(vec2<u32>(in_window % level.blocks_per_row, in_window / level.blocks_per_row));
-    let window = index / level.blocks;
+    let window = block.window;
     let place = place_of(window, origins[window], level.fine_spacing, level.fine_range);
     // A thread's first cell starts at the coarse point that coincides with its first sample, or else precedes
     // it.
-    let first = block * vec2<i32>(4, i32(CELL_ROWS));
+    let first = vec2<i32>(block.at) * vec2<i32>(4, i32(CELL_ROWS));
     if LEVELS == 1u {
         subdivide(place, first + place.shift - vec2<i32>(1));
     } else {

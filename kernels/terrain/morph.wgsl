@@ -1,4 +1,6 @@
-// A blend of two height fields (B section 4.4, targetHeight): from + floor((to - from) * time), in integers.
+// A blend of two height fields (B section 4.4, targetHeight): from + floor((to - from) * time), in integers. A thread makes
+// four samples.
+import package::wgsl::terrain::fixed::held;
 
 struct MorphParams {
     points: u32,
@@ -7,8 +9,8 @@ struct MorphParams {
 }
 
 @group(0) @binding(0) var<uniform> params: MorphParams;
-@group(0) @binding(1) var<storage, read> start_heights: array<i32>;
-@group(0) @binding(2) var<storage, read> target_heights: array<i32>;
+@group(0) @binding(1) var<storage, read> start_heights: array<vec4<i32>>;
+@group(0) @binding(2) var<storage, read> target_heights: array<vec4<i32>>;
 @group(0) @binding(3) var<storage, read_write> heights: array<i32>;
 
 @compute @workgroup_size(64)
@@ -17,13 +19,25 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
+    let vector = (group.y * groups.x + group.x) * 64u + lane;
+    let index = 4u * vector;
     if index >= params.points {
         return;
     }
-    let difference = target_heights[index] - start_heights[index];
+    let start = start_heights[vector];
+    let difference = target_heights[vector] - start;
     // The 48-bit product, computed from the two halves of the difference.
-    let high = (difference >> 16u) * i32(params.time);
-    let low = (u32(difference) & 0xffffu) * params.time;
-    heights[index] = start_heights[index] + high + i32(low >> 16u);
+    let high = (difference >> vec4<u32>(16u)) * i32(params.time);
+    let low = (vec4<u32>(difference) & vec4<u32>(0xffffu)) * params.time;
+    let blended = held(start + high + vec4<i32>(low >> vec4<u32>(16u)));
+    heights[index] = blended.x;
+    if index + 1u < params.points {
+        heights[index + 1u] = blended.y;
+    }
+    if index + 2u < params.points {
+        heights[index + 2u] = blended.z;
+    }
+    if index + 3u < params.points {
+        heights[index + 3u] = blended.w;
+    }
 }

@@ -1,7 +1,10 @@
 // Windows around the patches of a batch, gathered from the patches themselves and their neighbours. There is
-// one dispatch for each buffer of patches; it writes the samples that come from that buffer.
+// one dispatch for each buffer of patches; it writes the samples that come from that buffer. A thread copies a block of a
+// window that comes from one patch.
+import package::wgsl::terrain::blocks::{Blocks, block_of, span_of};
 
 struct PadParams {
+    blocks: Blocks,
     size: u32,
     apron: u32,
 }
@@ -15,45 +18,91 @@ struct PadParams {
 
 const NONE = 0xffffffffu;
 const ELSEWHERE = 0xfffffffeu;
+// Columns of a block.
+const BLOCK_WIDTH: u32 = 16u;
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let width = params.size + 2u * params.apron;
-    if id.x >= width {
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let block = block_of(params.blocks, group, groups, lane);
+    if !block.there {
         return;
     }
-    let at = vec2<i32>(id.xy) - vec2<i32>(i32(params.apron));
-    let source = source_of(id.z, at);
-    let patch_index = around_at(id.z, source);
+    let columns = span_of(block.at.x, BLOCK_WIDTH, params.apron, params.size);
+    let rows = span_of(block.at.y, params.blocks.rows, params.apron, params.size);
+    let tile = vec2<u32>(columns.tile, rows.tile);
+    let provider = source_of(block.window, tile);
+    let patch_index = around_at(block.window, provider);
     if patch_index == ELSEWHERE {
         return;
     }
-    let last = i32(params.size) - 1;
-    let local = vec2<u32>(clamp(at - last * (source - vec2<i32>(1)), vec2<i32>(0), vec2<i32>(last)));
-    windows[(id.z * width + id.y) * width + id.x] =
-        patches[patch_index * params.size * params.size + local.y * params.size + local.x];
+    let local = vec2<u32>(
+        first_in_patch(columns.start, tile.x, provider.x), first_in_patch(rows.start, tile.y, provider.y));
+    // Where a patch is missing, the samples at the edge of another are repeated.
+    let step = select(vec2<u32>(0u), vec2<u32>(1u, params.size), tile == provider);
+    let width = params.size + 2u * params.apron;
+    var sample = (patch_index * params.size + local.y) * params.size + local.x;
+    var row = (block.window * width + rows.start) * width + columns.start;
+    let length = columns.end - columns.start;
+    for (var y = rows.start; y < rows.end; y++) {
+        let first = four_from(sample, step.x);
+        let second = four_from(sample + 4u * step.x, step.x);
+        let third = four_from(sample + 8u * step.x, step.x);
+        let fourth = four_from(sample + 12u * step.x, step.x);
+        store_four(row, 0u, length, first);
+        store_four(row, 4u, length, second);
+        store_four(row, 8u, length, third);
+        store_four(row, 12u, length, fourth);
+        sample += step.y;
+        row += width;
+    }
 }
 
-// The tile (column, row) whose patch provides the sample.
-fn source_of(window: u32, at: vec2<i32>) -> vec2<i32> {
-    let last = i32(params.size) - 1;
-    let tile = vec2<i32>(1) + select(vec2<i32>(0), vec2<i32>(1), at > vec2<i32>(last))
-        - select(vec2<i32>(0), vec2<i32>(1), at < vec2<i32>(0));
-    // Try the tile itself, then its neighbours in x and in y, and last the patch itself; a missing tile is
-    // replaced by clamping.
-    var source = vec2<i32>(tile.x, tile.y);
-    if around_at(window, source) == NONE {
-        source = vec2<i32>(tile.x, 1);
-    }
-    if around_at(window, source) == NONE {
-        source = vec2<i32>(1, tile.y);
-    }
-    if around_at(window, source) == NONE {
-        source = vec2<i32>(1, 1);
-    }
-    return source;
+fn four_from(sample: u32, step: u32) -> vec4<i32> {
+    return vec4<i32>(patches[sample], patches[sample + step], patches[sample + 2u * step], patches[sample + 3u * step]);
 }
 
-fn around_at(window: u32, tile: vec2<i32>) -> u32 {
-    return around[9u * window + u32(3 * tile.y + tile.x)];
+fn store_four(row: u32, column: u32, length: u32, heights: vec4<i32>) {
+    let at = row + column;
+    if column < length {
+        windows[at] = heights.x;
+    }
+    if column + 1u < length {
+        windows[at + 1u] = heights.y;
+    }
+    if column + 2u < length {
+        windows[at + 2u] = heights.z;
+    }
+    if column + 3u < length {
+        windows[at + 3u] = heights.w;
+    }
+}
+
+// The column or row, in the patch of tile `provider`, of the sample at `start` in the window, which lies in tile `tile`.
+fn first_in_patch(start: u32, tile: u32, provider: u32) -> u32 {
+    let last = i32(params.size) - 1;
+    return u32(clamp(i32(start) - i32(params.apron) - last * (i32(provider) - 1), 0, last));
+}
+
+// The tile (column, row) whose patch provides the samples of a tile: the tile itself, or else its neighbours in x and in y, and
+// last the patch itself.
+fn source_of(window: u32, tile: vec2<u32>) -> vec2<u32> {
+    var provider = tile;
+    if around_at(window, provider) == NONE {
+        provider = vec2<u32>(tile.x, 1u);
+    }
+    if around_at(window, provider) == NONE {
+        provider = vec2<u32>(1u, tile.y);
+    }
+    if around_at(window, provider) == NONE {
+        provider = vec2<u32>(1u, 1u);
+    }
+    return provider;
+}
+
+fn around_at(window: u32, tile: vec2<u32>) -> u32 {
+    return around[9u * window + 3u * tile.y + tile.x];
 }

@@ -4,6 +4,7 @@
 // A thread owns 4 x CELL_ROWS coarse cells. It streams the coarse rows through registers: of each the values interpolated along
 // the row, from four of these rows the centers of a row of cells, and from four rows of centers the points on the edges between
 // them. It computes the three centers on either side of its cells that other threads compute too.
+import package::wgsl::terrain::blocks::block_of;
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, feature_at, feature_bits, injected_lanes};
 import package::wgsl::terrain::level::{
@@ -40,18 +41,16 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
-    if index >= level.blocks * level.windows {
+    let block = block_of(level.blocks, group, groups, lane);
+    if !block.there {
         return;
     }
-    let in_window = index % level.blocks;
-    let block = vec2<i32>(vec2<u32>(in_window % level.blocks_per_row, in_window / level.blocks_per_row));
-    let window = index / level.blocks;
+    let window = block.window;
     let origin = origins[window];
     // The coarse window begins three points before the one at its first sample or the one before that.
     let shift = origin - 2 * ((origin >> vec2<u32>(1u)) - vec2<i32>(3));
     let place = Place(window, origin, shift, level.fine_spacing, level.fine_range);
-    subdivide(place, block * vec2<i32>(4, i32(CELL_ROWS)) + vec2<i32>(3));
+    subdivide(place, vec2<i32>(block.at) * vec2<i32>(4, i32(CELL_ROWS)) + vec2<i32>(3));
 }
 
 fn subdivide(place: Place, cell: vec2<i32>) {

@@ -55,6 +55,7 @@ impl<const N: usize> SeenAs<f32> for [f32; N] {}
 // Vectors of what lies one after another.
 impl SeenAs<[u32; 4]> for u32 {}
 impl SeenAs<[f32; 4]> for f32 {}
+impl SeenAs<[i32; 4]> for i32 {}
 // Bits.
 impl SeenAs<[u32; 4]> for [f32; 4] {}
 impl<const N: usize> SeenAs<[u32; 4]> for [[f32; 4]; N] {}

@@ -11,6 +11,9 @@ use super::readback::Readback;
 use super::{Gpu, GpuError};
 use crate::InputError;
 
+/// The bytes of which buffers are multiples.
+const ROOM: usize = 16;
+
 /// A storage buffer of `len` elements. Usable as storage, vertices, indices, indirect arguments, and copy source and
 /// destination.
 #[derive(Debug, Clone)]
@@ -22,12 +25,13 @@ pub struct Buffer<T> {
 }
 
 impl<T: bytemuck::Pod> Buffer<T> {
-    /// A buffer of zeros. An empty one gets room for one element, since WebGPU binds no empty ranges.
+    /// A buffer of zeros. An empty one gets room for one element, since WebGPU binds no empty ranges, and each has room for
+    /// whole vectors of four words, so that kernels may read words four at a time.
     ///
     /// # Errors
     /// [`GpuError::Limit`] when it is larger than a binding may be, [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, label: &'static str, len: usize) -> Result<Self, GpuError> {
-        let size = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
+        let size = (len.max(1) * size_of::<T>()).next_multiple_of(ROOM) as u64;
         if size > gpu.max_binding() {
             return Err(GpuError::Limit {
                 pass: label,

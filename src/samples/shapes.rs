@@ -38,11 +38,10 @@ pub fn rock() -> Result<Model, InputError> {
             (point(u, v), normal.normalize_or(DVec3::Y), [u, v])
         });
     }
-    let image = image::RgbaImage::from_raw(
-        TEXTURE_SIZE,
-        TEXTURE_SIZE,
-        ZoneTexture::built_in(BuiltIn::Hill).mips.swap_remove(0),
-    );
+    let mut texels = ZoneTexture::built_in(BuiltIn::Hill).mips.swap_remove(0);
+    // A rock is opaque, and has no use for the heights of the texture.
+    texels.chunks_exact_mut(4).for_each(|texel| texel[3] = 255);
+    let image = image::RgbaImage::from_raw(TEXTURE_SIZE, TEXTURE_SIZE, texels);
     builder.model("rock", [1.0, 0.96, 0.9, 1.0], image)
 }
 

@@ -11,7 +11,6 @@ use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
 use crate::scene::Quality;
-use crate::terrain::config::Config;
 use crate::terrain::recipe::Recipe;
 
 /// The most entries of `meshes` and of `characters`.
@@ -111,14 +110,13 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
     if !config.value().is_object() {
         return Err(config.error("must be an object"));
     }
-    let parsed = Config::from_json(&config.value().to_string());
-    let parsed = parsed.map_err(|error| below(&config.path, "config", error))?;
+    let recipe = Recipe::from_json(&config.value().to_string());
+    let recipe = recipe.map_err(|error| below(&config.path, "config", error))?;
     let patches = match fields.get("patches") {
         Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
         None => vec![[0, 0]],
     };
     let path = format!("{}.patches", at.path);
-    let recipe = Recipe::new(parsed.clone());
     for (index, patch) in patches.iter().enumerate() {
         let own = || format!("{path}[{index}]");
         if patches[..index].contains(patch) {
@@ -126,12 +124,12 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         }
         recipe.validate(&[*patch], 1).map_err(|error| InputError { path: own(), ..error })?;
     }
-    let heights = patches.len() as u64 * u64::from(parsed.patch_size).pow(2);
+    let heights = patches.len() as u64 * u64::from(recipe.config.patch_size).pow(2);
     if heights > MAX_HEIGHTS {
         let bound = format!("must have at most {MAX_HEIGHTS} heights together, and would have {heights}");
         return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
     }
-    Ok(TerrainEntry { config: parsed, patches })
+    Ok(TerrainEntry { recipe, patches })
 }
 
 fn patch(at: &At<'_>) -> Result<[i32; 2], InputError> {

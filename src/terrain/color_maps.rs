@@ -5,10 +5,12 @@ use rayon::prelude::*;
 use super::blend::Shading;
 use super::blend::reference::blend;
 use super::config::Config;
-use super::texture::{Texture, map_zones};
+use super::cover::Cover;
+use super::texture::Texture;
+use crate::InputError;
 #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
 use {
-    super::blend::BlendPass,
+    super::blend::{BlendBuffers, BlendPass},
     super::fields::Fields,
     crate::Error,
     crate::gpu::{Buffer, Gpu},
@@ -18,10 +20,12 @@ use {
 /// lowest byte.
 #[derive(Debug, Clone, Copy)]
 pub struct ColorMaps<'a> {
-    /// The configuration: its zones, and the distance between samples.
+    /// The configuration: its zones, how their textures lie on the ground, and the distance between samples.
     pub config: &'a Config,
-    /// One texture per zone; only its mean colour is used.
+    /// One texture per zone.
     pub textures: &'a [Texture],
+    /// The patches, in the order of the windows.
+    pub patches: &'a [[i32; 2]],
     /// The light, and how zone weights are blended.
     pub shading: &'a Shading,
 }
@@ -29,32 +33,46 @@ pub struct ColorMaps<'a> {
 impl ColorMaps<'_> {
     /// Computes the maps of windows of heights with one sample of margin, in parallel; `progress` is called
     /// for each map.
-    pub fn on_host(&self, windows: &[Vec<i32>], progress: &(dyn Fn() + Sync)) -> Vec<Vec<u32>> {
-        let zones = map_zones(&self.config.zones, self.textures);
-        let width = self.config.patch_size as usize + 2;
-        let map = |window: &Vec<i32>| {
-            let pixels = blend(window, width, self.config.terrain_scale, &zones, self.shading);
+    ///
+    /// # Errors
+    /// The errors of [`Cover::new`].
+    pub fn on_host(
+        &self,
+        windows: &[Vec<i32>],
+        progress: &(dyn Fn() + Sync),
+    ) -> Result<Vec<Vec<u32>>, InputError> {
+        let cover = Cover::new(self.config, self.textures)?;
+        let size = self.config.patch_size;
+        let map = |(window, patch): (&Vec<i32>, &[i32; 2])| {
+            let pixels = blend(window, size as usize + 2, &cover, self.shading, cover.place(*patch, size));
             progress();
             pixels
         };
-        windows.par_iter().map(map).collect()
+        Ok(windows.par_iter().zip(self.patches).map(map).collect())
     }
 
     /// Computes the maps of fields with one sample of margin on the device, and waits for it.
     ///
     /// # Errors
-    /// The errors of [`BlendPass::prepare`].
+    /// The errors of [`Cover::new`] and [`BlendPass::prepare`].
     #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
     pub fn on_device(&self, gpu: &Gpu, parts: &[Fields]) -> Result<Vec<Vec<u32>>, Error> {
         let pass = BlendPass::new(gpu)?;
-        let zones = map_zones(&self.config.zones, self.textures);
-        let points = (self.config.patch_size as usize).pow(2);
+        let cover = Cover::new(self.config, self.textures)?;
+        let size = self.config.patch_size;
+        let points = (size as usize).pow(2);
+        let mut rest = self.patches;
         let mut maps = Vec::new();
         for part in parts {
+            let (here, after) = rest.split_at(rest.len().min(part.count as usize));
+            let places: Vec<_> = here.iter().map(|patch| cover.place(*patch, size)).collect();
+            let places = Buffer::from_slice(gpu, "places", &places)?;
             let pixels = Buffer::new(gpu, "colour map", points * part.count as usize)?;
-            let job = pass.prepare(gpu, self.config.terrain_scale, &zones, self.shading, part, &pixels)?;
+            let buffers = BlendBuffers { windows: part, places: &places, pixels: &pixels };
+            let job = pass.prepare(gpu, &cover, self.shading, buffers)?;
             gpu.run("colour map", |encoder| job.record(encoder))?;
             maps.extend(pixels.read_blocking(gpu)?.chunks_exact(points).map(<[u32]>::to_vec));
+            rest = after;
         }
         Ok(maps)
     }

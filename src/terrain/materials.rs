@@ -1,15 +1,15 @@
 //! Zones of terrain and their textures on the device.
 
 use crate::gpu::{Buffer, Gpu};
-use crate::shared::terrain::zones;
 use crate::terrain::config::Zone;
+use crate::terrain::cover::{ShaderZone, zone_of};
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{Error, InputError};
 
-/// Zone ranges and textures on the device.
+/// Zones and their textures on the device.
 #[derive(Debug, Clone)]
 pub struct Materials {
-    pub(crate) zones: Buffer<zones::Zone>,
+    pub(crate) zones: Buffer<ShaderZone>,
     pub(crate) zone_count: u32,
     pub(crate) textures: wgpu::Texture,
     pub(crate) sampler: wgpu::Sampler,
@@ -25,9 +25,8 @@ impl Materials {
             let bound = format!("must be one for each of the {} zones", zones.len());
             return Err(InputError::new("textures.len", textures.len(), bound).into());
         }
-        let range = |zone: &Zone| zones::Zone { min: zone.min as f32, max: zone.max as f32 };
-        let ranges: Vec<_> = zones.iter().map(range).collect();
-        let zone_buffer = Buffer::from_slice(gpu, "zones", &ranges)?;
+        let shader_zones: Vec<_> = zones.iter().map(zone_of).collect();
+        let zone_buffer = Buffer::from_slice(gpu, "zones", &shader_zones)?;
         let (textures, sampler) = gpu.scoped(|| (upload(gpu, textures), sampler(gpu)))?;
         Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
     }

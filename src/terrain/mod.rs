@@ -3,9 +3,12 @@
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
 pub mod blend;
+#[cfg(feature = "gpu")]
+pub(crate) mod blocks;
 pub mod border;
 pub mod color_maps;
 pub mod config;
+pub mod cover;
 pub mod crease;
 pub mod despike;
 pub mod export;
@@ -19,6 +22,7 @@ pub mod generator;
 pub mod grid;
 pub mod ground;
 pub mod height;
+pub mod hydraulic;
 #[cfg(feature = "gpu")]
 pub mod materials;
 pub mod mesh;

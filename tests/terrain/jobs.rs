@@ -2,17 +2,20 @@
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Options};
-use relievo::terrain::blend::{BlendPass, MapZone, Shading, WeightMode};
+use relievo::terrain::blend::{BlendBuffers, BlendPass, Shading, WeightMode};
 use relievo::terrain::border::BorderPass;
 use relievo::terrain::config::{Border, Config, Offset};
+use relievo::terrain::cover::{Cover, MapZone};
 use relievo::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use relievo::terrain::features::{FeatureIndex, Features};
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use relievo::terrain::morph::{MorphBuffers, MorphPass};
 use relievo::terrain::normals::NormalsPass;
 use relievo::terrain::pad::PadPass;
+use relievo::terrain::texture::Texture;
 use relievo::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use relievo::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
 
@@ -75,32 +78,53 @@ fn normals() {
 fn blend() {
     let gpu = gpu();
     let pass = BlendPass::new(&gpu).expect("compiled");
-    let zone = MapZone { color: [0.5; 3], min: 0.0, max: 1.0 };
+    let config = Config::new(3, 10.0, "").expect("valid");
+    let textures = Texture::of_zones(&config.zones).expect("built in");
+    refuses(Cover::new(&config, &textures[1..]).map(|_| ()).map_err(Error::from), &["textures.len = 3"]);
+    let cover = Cover::new(&config, &textures).expect("valid");
     let good = Shading::default();
     let windows = fields(&gpu, 5, 2);
-    let prepare = |scale, zones: &[MapZone], shading, windows: &Fields, pixels| {
-        pass.prepare(&gpu, scale, zones, &shading, windows, &buffer(&gpu, pixels)).map(|_| ())
+    let prepare = |cover: &Cover, shading, windows: &Fields, [places, pixels]: [usize; 2]| {
+        let places = Buffer::new(&gpu, "places", places).expect("allocated");
+        let buffers = BlendBuffers { windows, places: &places, pixels: &buffer(&gpu, pixels) };
+        pass.prepare(&gpu, cover, &shading, buffers).map(|_| ())
     };
-    assert!(prepare(1.0, &[zone; 32], good, &windows, 18).is_ok());
-    refuses(prepare(1.0, &[zone], good, &windows, 17), &["pixels = [17 elements]", "at least 18"]);
-    refuses(prepare(f64::INFINITY, &[zone], good, &windows, 18), &["terrainScale = inf"]);
-    refuses(prepare(1.0, &[], good, &windows, 18), &["zones = [0 zones]", "1 to 32"]);
-    refuses(prepare(1.0, &[zone; 33], good, &windows, 18), &["zones = [33 zones]", "1 to 32"]);
-    for (bad, part) in [
-        (MapZone { max: 0.0, ..zone }, "zones[1].max = 0: must be above min = 0"),
-        (MapZone { min: f32::NAN, ..zone }, "zones[1].min = NaN"),
-        (MapZone { color: [0.0, f32::INFINITY, 0.0], ..zone }, "zones[1].color[1] = inf"),
-    ] {
-        refuses(prepare(1.0, &[zone, bad], good, &windows, 18), &[part]);
-    }
+    let of = |zones: &[MapZone]| Cover { zones: zones.to_vec(), ..cover.clone() };
+    let zone = cover.zones[0];
+    assert!(prepare(&of(&[zone; 32]), good, &windows, [2, 18]).is_ok());
+    refuses(prepare(&cover, good, &windows, [2, 17]), &["pixels = [17 elements]", "at least 18"]);
+    refuses(prepare(&cover, good, &windows, [1, 18]), &["places = [1 elements]", "at least 2"]);
+    let endless = Cover { terrain_scale: f64::INFINITY, ..cover.clone() };
+    refuses(prepare(&endless, good, &windows, [2, 18]), &["terrainScale = inf"]);
+    refuses(prepare(&Cover { tile: 0.0, ..cover.clone() }, good, &windows, [2, 18]), &["tile = 0"]);
+    refuses(
+        prepare(&Cover { variation: 1.5, ..cover.clone() }, good, &windows, [2, 18]),
+        &["variation = 1.5"],
+    );
+    refuses(prepare(&of(&[]), good, &windows, [2, 18]), &["zones = [0 zones]", "1 to 32"]);
+    refuses(prepare(&of(&[zone; 33]), good, &windows, [2, 18]), &["zones = [33 zones]", "1 to 32"]);
+    let with = |change: &dyn Fn(&mut MapZone)| {
+        let mut bad = zone;
+        change(&mut bad);
+        prepare(&of(&[zone, bad]), good, &windows, [2, 18])
+    };
+    refuses(with(&|bad| bad.zone.max = bad.zone.min), &["zones[1].max = ", "above min"]);
+    refuses(with(&|bad| bad.zone.min = f32::NAN), &["zones[1].min = NaN"]);
+    refuses(with(&|bad| bad.zone.rise[1] = f32::INFINITY), &["zones[1].rise[1] = inf"]);
+    refuses(with(&|bad| bad.zone.fall[0] = 1e7), &["zones[1].fall[0] = 10000000"]);
+    refuses(with(&|bad| bad.zone.height_blend = -0.5), &["zones[1].height_blend = -0.5", "0..=1"]);
+    refuses(with(&|bad| bad.zone.repeats = 1.5), &["zones[1].repeats = 1.5", "whole"]);
+    refuses(with(&|bad| bad.zone.repeats = 17.0), &["zones[1].repeats = 17", "1..=16"]);
+    refuses(with(&|bad| bad.edge_log2 = 10), &["zones[1].edge_log2 = 10", "0..=9"]);
+    refuses(with(&|bad| bad.first = u32::MAX), &["zones[1].first = 4294967295", "room"]);
     let weights = WeightMode::Additive;
     let dark = Shading { light: [0.0; 3], weights, ..good };
-    refuses(prepare(1.0, &[zone], dark, &windows, 18), &["light = [0.0, 0.0, 0.0]", "length 1"]);
+    refuses(prepare(&cover, dark, &windows, [2, 18]), &["light = [0.0, 0.0, 0.0]", "length 1"]);
     let blind = Shading { light: [f32::NAN, 0.0, 0.0], ..good };
-    refuses(prepare(1.0, &[zone], blind, &windows, 18), &["light = [NaN, 0.0, 0.0]"]);
-    refuses(prepare(1.0, &[zone], Shading { ambient: 1.5, ..good }, &windows, 18), &["ambient = 1.5"]);
-    refuses(prepare(1.0, &[zone], good, &fields(&gpu, 2, 1), 18), &["windows.width = 2"]);
-    refuses(prepare(1.0, &[zone], good, &short(&gpu), 18), &["windows.heights = [49 elements]"]);
+    refuses(prepare(&cover, blind, &windows, [2, 18]), &["light = [NaN, 0.0, 0.0]"]);
+    refuses(prepare(&cover, Shading { ambient: 1.5, ..good }, &windows, [2, 18]), &["ambient = 1.5"]);
+    refuses(prepare(&cover, good, &fields(&gpu, 2, 1), [2, 18]), &["windows.width = 2"]);
+    refuses(prepare(&cover, good, &short(&gpu), [2, 18]), &["windows.heights = [49 elements]"]);
 }
 
 #[test]
@@ -138,6 +162,29 @@ fn thermal() {
     refuses(prepare(3, 1.0, &windows, 50), &["windows.width = 5: ", "exceed 6"]);
     refuses(prepare(1, 0.0, &windows, 50), &["terrainScale = 0"]);
     refuses(prepare(1, 1.0, &short(&gpu), 50), &["windows.heights = [49 elements]"]);
+}
+
+#[test]
+fn hydraulic() {
+    let gpu = gpu();
+    let pass = HydraulicPass::new(&gpu).expect("compiled");
+    let prepare = |iterations, scale, windows: &Fields, [other, flows, more]: [usize; 3]| {
+        let other = Fields { heights: buffer(&gpu, other), width: 5, count: 2 };
+        let params = Hydraulic { iterations, ..Hydraulic::default() };
+        let (flows, other_flows) = (&buffer(&gpu, flows), &buffer(&gpu, more));
+        let buffers = HydraulicBuffers { windows, other: &other, flows, other_flows };
+        pass.prepare(&gpu, params, scale, buffers).map(|_| ())
+    };
+    let windows = fields(&gpu, 5, 2);
+    assert_eq!(HydraulicPass::flow_points(&windows), 18);
+    assert!(prepare(2, 1.0, &windows, [18; 3]).is_ok() && prepare(0, 1.0, &windows, [1; 3]).is_ok());
+    refuses(prepare(2, 1.0, &windows, [17, 18, 18]), &["other.heights = [17 elements]", "at least 18"]);
+    refuses(prepare(2, 1.0, &windows, [18, 17, 18]), &["flows = [17 elements]", "at least 18"]);
+    refuses(prepare(2, 1.0, &windows, [18, 18, 17]), &["other_flows = [17 elements]", "at least 18"]);
+    refuses(prepare(3, 1.0, &windows, [50; 3]), &["windows.width = 5: ", "exceed 6"]);
+    refuses(prepare(2049, 1.0, &windows, [50; 3]), &["hydraulic.iterations = 2049", "2048"]);
+    refuses(prepare(1, 0.0, &windows, [50; 3]), &["terrainScale = 0"]);
+    refuses(prepare(1, 1.0, &short(&gpu), [50; 3]), &["windows.heights = [49 elements]"]);
 }
 
 #[test]

@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, HashMap};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::terrain::blend::reference::zone_fractions;
-use relievo::terrain::blend::{MapZone, WeightMode};
-use relievo::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, Offset};
+use relievo::terrain::blend::WeightMode;
+use relievo::terrain::blend::reference::{steepness, zone_fractions, zone_weight};
+use relievo::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, Offset, Slope, Zone};
+use relievo::terrain::cover::{ShaderZone, zone_of};
 use relievo::terrain::despike::Despike;
 use relievo::terrain::export::cropped;
 use relievo::terrain::features::{FeatureFile, Features};
@@ -71,7 +72,13 @@ impl World {
 
     fn recipe(&self, despike: Option<f64>, thermal: Option<Thermal>) -> Recipe {
         let despike = despike.map(|threshold| Despike { threshold });
-        Recipe { config: self.config.clone(), features: self.features(), despike, thermal }
+        Recipe {
+            config: self.config.clone(),
+            features: self.features(),
+            despike,
+            thermal,
+            ..Recipe::new(self.config.clone())
+        }
     }
 }
 
@@ -567,7 +574,7 @@ proptest! {
 
     #[test]
     fn additive_shares_are_equation_3_6(zones in zones(), height in -300.0..300.0_f32) {
-        let fractions = zone_fractions(&zones, height, WeightMode::Additive);
+        let fractions = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Additive);
         prop_assert_eq!(fractions.len(), zones.len());
         for (fraction, zone) in fractions.into_iter().zip(&zones) {
             let [min, max, height] = [zone.min, zone.max, height].map(f64::from);
@@ -578,8 +585,8 @@ proptest! {
 
     #[test]
     fn normalized_shares_sum_to_one_everywhere(zones in zones(), height in -300.0..300.0_f32) {
-        let fractions = zone_fractions(&zones, height, WeightMode::Normalized);
-        let weights = zone_fractions(&zones, height, WeightMode::Additive);
+        let fractions = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Normalized);
+        let weights = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Additive);
         prop_assert!(fractions.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
         prop_assert!((fractions.iter().copied().map(f64::from).sum::<f64>() - 1.0).abs() < 1e-6);
         if weights.iter().any(|weight| *weight > 0.0) {
@@ -593,10 +600,10 @@ proptest! {
         beyond in 0.5..1000.0_f32,
         above in any::<bool>(),
     ) {
-        let ends = |zone: &MapZone| if above { 2.0 * zone.max - zone.min } else { -zone.min };
+        let ends = |zone: &ShaderZone| if above { 2.0 * zone.max - zone.min } else { -zone.min };
         let outermost = zones.iter().map(ends).fold(f32::MIN, f32::max);
         let height = if above { outermost + beyond } else { -outermost - beyond };
-        let fractions = zone_fractions(&zones, height, WeightMode::Normalized);
+        let fractions = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Normalized);
         let nearest = fractions.iter().position(|fraction| *fraction == 1.0);
         prop_assert_eq!(fractions.iter().filter(|fraction| **fraction != 0.0).count(), 1);
         prop_assert!(nearest.is_some_and(|index| outermost - ends(&zones[index]) < 1e-3), "{:?}", fractions);
@@ -620,11 +627,51 @@ fn the_mean_is_exact_at_the_limits() {
     }
 }
 
-fn zones() -> impl Strategy<Value = Vec<MapZone>> {
-    let zone = (-150.0..100.0_f32, 0.5..50.0_f32).prop_map(|(min, range)| MapZone {
-        color: [0.5; 3],
-        min,
-        max: min + range,
-    });
+/// The weight by slope, of angles: 0 before a transition, a half where the zone begins or ends, 1 inside.
+#[test]
+fn zones_lie_on_their_slopes() {
+    let weight = |slope: Slope, degrees: f64| {
+        let zone = zone_of(&Zone { slope, ..Zone::new(0.0, 1.0, None) });
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        zone_weight(&zone, 1.0, steepness([0.6 * sine, cosine, 0.8 * sine].map(|part| part as f32)))
+    };
+    for (min, max, fade) in [(30.0, 90.0, 10.0), (0.0, 25.0, 1.0), (20.0, 60.0, 30.0), (0.0, 90.0, 45.0)] {
+        let slope = Slope { min, max, fade };
+        for degrees in (0..=90).map(f64::from) {
+            let inside = |from: f64| (0.5 + from / fade).clamp(0.0, 1.0);
+            let rise = if min > 0.0 { inside(degrees - min) } else { 1.0 };
+            let fall = if max < 90.0 { inside(max - degrees) } else { 1.0 };
+            // Lines in the tangent of half the angle are nearly lines in the angle.
+            let found = f64::from(weight(slope, degrees));
+            assert!((found - rise * fall).abs() < 0.04, "{slope:?} at {degrees}: {found}");
+            assert!(
+                found == rise * fall || rise * fall > 0.0 && rise * fall < 1.0,
+                "{slope:?} at {degrees}: {found}"
+            );
+        }
+    }
+}
+
+/// Of two zones with equal weights, the one that stands higher in its texture has more, if it is blended by heights.
+#[test]
+fn what_stands_high_in_its_texture_shows_first() {
+    let zone = |height_blend| zone_of(&Zone { height_blend, ..Zone::new(0.0, 10.0, None) });
+    let fraction = |height_blend, texels: [f32; 2]| {
+        let zones = [zone(height_blend); 2];
+        zone_fractions(&zones, (5.0, 0.0), &texels, WeightMode::Normalized)[0]
+    };
+    assert_eq!(fraction(0.0, [1.0, 0.0]), 0.5);
+    assert!(fraction(1.0, [1.0, 0.5]) > 0.9 && fraction(1.0, [0.5, 1.0]) < 0.1);
+    assert!(fraction(0.3, [1.0, 0.5]) > 0.6 && fraction(0.3, [1.0, 0.5]) < 0.9);
+    let additive = zone_fractions(&[zone(1.0); 2], (5.0, 0.0), &[1.0, 0.2], WeightMode::Additive);
+    assert!((additive[0] + additive[1] - 1.0).abs() < 1e-6, "the weights are halves: {additive:?}");
+}
+
+/// Heights of the zones' textures.
+const LEVEL: [f32; 8] = [0.5; 8];
+
+fn zones() -> impl Strategy<Value = Vec<ShaderZone>> {
+    let zone = (-150.0..100.0_f64, 0.5..50.0_f64)
+        .prop_map(|(min, range)| zone_of(&Zone::new(min, min + range, None)));
     prop::collection::vec(zone, 1..9)
 }

@@ -66,6 +66,40 @@ fn defaults_are_those_of_the_specification() {
     assert_eq!((config.roughness, config.coarse_levels, config.terrain_scale), (1.0, 0, 1.0));
     assert_eq!((config.offset, config.border, config.corners), (Offset::Signed, Border::Seamless, [0.0; 4]));
     assert_eq!((config.zones.len(), config.texture_tile), (4, None));
+    assert_eq!((config.triplanar, config.variation), (false, 0.0));
+    let zone = &accepted(&[("zones", r#"[{"min": 0, "max": 1}]"#)]).zones[0];
+    assert_eq!((zone.slope.min, zone.slope.max, zone.slope.fade), (0.0, 90.0, 10.0));
+    assert_eq!((zone.height_blend, zone.repeats), (0.0, 1));
+}
+
+#[test]
+fn how_zones_lie_on_the_ground_is_bounded() {
+    let zones = |more: &str| format!(r#"[{{"min": 0, "max": 1}}, {{"min": 0, "max": 1, {more}}}]"#);
+    for (more, parts) in [
+        (r#""slope": {"min": -1}"#, ["zones[1].slope.min = -1: ", "0..=90"]),
+        (r#""slope": {"max": 91}"#, ["zones[1].slope.max = 91: ", "0..=90"]),
+        (r#""slope": {"min": 30, "max": 30}"#, ["zones[1].slope.max = 30: ", "above min = 30"]),
+        (r#""slope": {"fade": 0.5}"#, ["zones[1].slope.fade = 0.5: ", "1..=45"]),
+        (r#""slope": {"fade": 46}"#, ["zones[1].slope.fade = 46: ", "1..=45"]),
+        (r#""slope": {"steepest": 3}"#, ["zones[1].slope", "unknown field `steepest`"]),
+        (r#""slope": [10, 20, 5]"#, ["zones[1].slope", "an object"]),
+        (r#""heightBlend": -0.1"#, ["zones[1].heightBlend = -0.1: ", "0..=1"]),
+        (r#""heightBlend": 1.5"#, ["zones[1].heightBlend = 1.5: ", "0..=1"]),
+        (r#""repeats": 0"#, ["zones[1].repeats = 0: ", "1..=16"]),
+        (r#""repeats": 17"#, ["zones[1].repeats = 17: ", "1..=16"]),
+        (r#""repeats": 2.5"#, ["zones[1].repeats", "2.5 must be a whole number in 1..=16"]),
+    ] {
+        refused(&[("zones", &zones(more))], &parts);
+    }
+    let more = r#""slope": {"min": 0, "max": 90, "fade": 45}, "heightBlend": 1, "repeats": 16.0, "texture": "scree""#;
+    assert_eq!(accepted(&[("zones", &zones(more))]).zones[1].repeats, 16);
+    for (field, value, parts) in [
+        ("variation", "-0.1", ["variation = -0.1: ", "0..=1"]),
+        ("variation", "1.01", ["variation = 1.01: ", "0..=1"]),
+        ("triplanar", "1", ["triplanar", "boolean"]),
+    ] {
+        refused(&[(field, value)], &parts);
+    }
 }
 
 #[test]
@@ -154,6 +188,9 @@ fn numbers_that_are_not_finite_are_refused() {
     refuses_all(|config, value| config.terrain_scale = value, "terrainScale");
     refuses_all(|config, value| config.texture_tile = Some(value), "textureTile");
     refuses_all(|config, value| config.corners[2] = value, "corners[2]");
+    refuses_all(|config, value| config.variation = value, "variation");
+    refuses_all(|config, value| config.zones[2].slope.fade = value, "zones[2].slope.fade");
+    refuses_all(|config, value| config.zones[2].height_blend = value, "zones[2].heightBlend");
     refuses_all(|config, value| config.zones[1].min = value, "zones[1].min");
     refuses_all(|config, value| config.zones[3].max = value, "zones[3].max");
 }

@@ -1,10 +1,11 @@
 // Draws patches of terrain of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8): an indexed patch for
-// each visible one, zone textures blended by height, a directional light.
+// each visible one, zone textures blended by height, slope and their own height maps, a directional light.
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
 import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::terrain::slope::slope_normal;
-import package::wgsl::terrain::zones::{Zone, zone_fold, zone_folded, zone_fraction};
+import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_uv, triplanar_weight, triplanar_weights, varied};
+import package::wgsl::terrain::zones::{Zone, steepness, zone_blend, zone_blended, zone_color};
 
 // Where the samples of a terrain lie in a view. Positions are counted from a sample near the view, so that they are
 // precise far from the terrain's origin, and equal samples give equal bits, whichever patch they belong to.
@@ -25,11 +26,16 @@ struct TerrainParams {
     // World units between samples, and twice that in 1/65536 units.
     spacing: f32,
     run: f32,
-    // Texture tiles per sample.
+    // Texture tiles per sample, and per unit of height.
     tiling: f32,
+    tiles_per_unit: f32,
     zone_count: u32,
     // 1 if zones add their weights as they are, 0 if these are normalized.
     additive: u32,
+    // 1 where textures lie on the ground from above alone, 3 where they lie on it from the sides too.
+    planes: u32,
+    // The strength of the variation of colour, 0 to 1.
+    variation: f32,
     // The number in the object of its first patch here.
     first_patch: u32,
 }
@@ -38,7 +44,7 @@ struct TerrainParams {
 struct TerrainPatch {
     // Its first sample, in samples from the terrain's origin.
     origin: vec2<i32>,
-    // Texture coordinates at that sample, without whole tiles.
+    // Texture coordinates at that sample, without whole multiples of TILES_PERIOD.
     uv: vec2<f32>,
     // The index of its window among the heights.
     window: u32,
@@ -145,30 +151,41 @@ fn placed(vertex: u32, instance: u32) -> WholeVertex {
         instance);
 }
 
-// The zones' colours at a height, blended.
-fn zones_colored(uv: vec2<f32>, height: f32) -> vec3<f32> {
+// The colour of the ground at texture coordinates, a height in units, and a unit normal.
+fn ground_color(uv: vec2<f32>, height: f32, normal: vec3<f32>) -> vec3<f32> {
+    let tiles = vec3<f32>(uv.x, height * terrain.tiles_per_unit, uv.y);
     // Derivatives need uniform control flow, so they are taken here and not in the loop.
-    let uv_dx = dpdx(uv);
-    let uv_dy = dpdy(uv);
-    var fold = zone_fold();
+    let tiles_dx = dpdx(tiles);
+    let tiles_dy = dpdy(tiles);
+    let weights = select(vec3<f32>(1.0, 0.0, 0.0), triplanar_weights(normal), terrain.planes == TRIPLANAR_PLANES);
+    let steep = steepness(normal);
+    var blend = zone_blend();
     for (var z = 0u; z < terrain.zone_count; z++) {
-        fold = zone_folded(fold, z, zones[z], height);
+        let zone = zones[z];
+        var texel = vec4<f32>(0.0);
+        for (var plane = 0u; plane < terrain.planes; plane++) {
+            let at = zone.repeats * triplanar_uv(plane, tiles);
+            let dx = zone.repeats * triplanar_uv(plane, tiles_dx);
+            let dy = zone.repeats * triplanar_uv(plane, tiles_dy);
+            texel += triplanar_weight(weights, plane) * textureSampleGrad(textures, texture_sampler, at, z, dx, dy);
+        }
+        blend = zone_blended(blend, zone, height, steep, texel);
     }
-    var albedo = vec3<f32>(0.0);
-    for (var z = 0u; z < terrain.zone_count; z++) {
-        let fraction = zone_fraction(fold, z, zones[z], height, terrain.additive != 0u);
-        albedo += fraction * textureSampleGrad(textures, texture_sampler, uv, z, uv_dx, uv_dy).rgb;
+    let color = zone_color(blend, terrain.additive != 0u);
+    if terrain.variation == 0.0 {
+        return color;
     }
-    return albedo;
+    return varied(color, color_variation(uv), terrain.variation);
 }
 
 @fragment
 fn fragment(in: Vertex) -> @location(0) vec4<f32> {
-    return scene_shaded(scene_surface(zones_colored(in.uv, in.height), normalize(in.normal)));
+    let normal = normalize(in.normal);
+    return scene_shaded(scene_surface(ground_color(in.uv, in.height, normal), normal));
 }
 
 fn whole_surface(in: WholeVertex) -> Surface {
-    return colored_surface(in, zones_colored(in.uv, in.height));
+    return colored_surface(in, ground_color(in.uv, in.height, normalize(in.normal)));
 }
 
 fn colored_surface(in: WholeVertex, color: vec3<f32>) -> Surface {

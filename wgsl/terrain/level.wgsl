@@ -1,7 +1,7 @@
 // A level of subdivision for a batch of windows onto the plane: what its kernels read and write, the base lattice, and random
 // offsets.
 import package::wgsl::hash::threefry2x32;
-import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
+import package::wgsl::terrain::blocks::Blocks;
 import package::wgsl::terrain::offset::height_offset;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_at, feature_bits, injected_lanes};
 
@@ -25,10 +25,8 @@ struct Level {
     // The range of offsets of points on edges, where interpolation is smooth.
     edge_range: u32,
     base_range: u32,
-    blocks_per_row: u32,
-    // Threads per window, and number of windows.
-    blocks: u32,
-    windows: u32,
+    // Blocks of coarse cells.
+    @align(16) blocks: Blocks,
     @align(16) fine_features: FeatureGrid,
     @align(16) base_features: FeatureGrid,
 }
@@ -96,12 +94,6 @@ fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
         result = injected_lanes(feature, LANES == vec4<i32>(column), result);
     }
     return result;
-}
-
-// Returns the heights unchanged, since none is less than the constant. lavapipe stores lane by lane and would
-// repeat the arithmetic of a value that is only stored for each lane; it does not split a maximum.
-fn held(heights: vec4<i32>) -> vec4<i32> {
-    return max(heights, vec4<i32>(-HEIGHT_LIMIT));
 }
 
 // Stores every other sample of a row.

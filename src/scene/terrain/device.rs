@@ -11,6 +11,7 @@ use crate::scene::mesh::NOTHING;
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::cover::{TILES_PERIOD, planes};
 use crate::terrain::fields::Fields;
 use crate::terrain::generator::Generator;
 use crate::terrain::ground::Ground;
@@ -94,8 +95,11 @@ fn drawable(
         spacing: config.terrain_scale as f32,
         run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
         tiling: (config.tiles_per_patch() / f64::from(size - 1)) as f32,
+        tiles_per_unit: (1.0 / config.tile()) as f32,
         zone_count: zones.zone_count,
         additive: source.shading.weights.code(),
+        planes: planes(config.triplanar),
+        variation: config.variation as f32,
         first_patch: first as u32,
     };
     let patches = Buffer::new(gpu, "patches", fields.count.max(1) as usize)?;
@@ -117,7 +121,7 @@ pub(in crate::scene) fn listed(config: &Config, patches: &[[i32; 2]]) -> Vec<Ter
     let (edge, tiles) = (config.patch_size as i32 - 1, config.tiles_per_patch());
     let patch = |(window, patch): (u32, &[i32; 2])| TerrainPatch {
         origin: patch.map(|index| index.wrapping_mul(edge)),
-        uv: patch.map(|index| (f64::from(index) * tiles).rem_euclid(1.0) as f32),
+        uv: patch.map(|index| (f64::from(index) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
         window,
         unused: 0,
     };

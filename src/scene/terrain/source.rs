@@ -38,7 +38,8 @@ impl TerrainSource {
     }
 
     /// Heights that the caller's passes computed, or that they will: fields, the first of which shows the first patch. Of the
-    /// configuration, `patch_size`, `terrain_scale`, `texture_tile` and `zones` count. The fields extend by at least one sample
+    /// configuration, `patch_size`, `terrain_scale`, `texture_tile`, `triplanar`,
+    /// `variation` and `zones` count. The fields extend by at least one sample
     /// beyond each patch, the same number on every side, which shading reads.
     ///
     /// The scene shares the buffer and copies nothing: each frame draws the heights that the buffer holds when the frame

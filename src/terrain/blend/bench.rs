@@ -5,7 +5,10 @@ use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::{copy_of, some_windows};
 use crate::terrain::blend::reference::blend;
-use crate::terrain::blend::{BlendPass, MapZone, Shading};
+use crate::terrain::blend::{BlendBuffers, BlendPass, Shading};
+use crate::terrain::config::Config;
+use crate::terrain::cover::Cover;
+use crate::terrain::texture::Texture;
 
 /// Measures a batch of 64 patches with four zones.
 ///
@@ -17,14 +20,12 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let (host, windows) = some_windows(gpu, width, count)?;
     let points = (width as usize - 2).pow(2) * count as usize;
     let pixels = Buffer::new(gpu, "pixels", points)?;
-    let zone = |i: i16| MapZone {
-        color: [0.2, 0.3, 0.1 * f32::from(i)],
-        min: f32::from(20 * i - 60),
-        max: f32::from(20 * i - 30),
-    };
-    let zones = [0, 1, 2, 3].map(zone);
+    let config = Config::new(257, 40.0, "bench")?;
+    let cover = Cover::new(&config, &Texture::of_zones(&config.zones)?)?;
+    let places = Buffer::from_slice(gpu, "places", &vec![[0_u32; 2]; count as usize])?;
     let shading = Shading::default();
-    let job = BlendPass::new(gpu)?.prepare(gpu, 1.0, &zones, &shading, &windows, &pixels)?;
+    let buffers = BlendBuffers { windows: &windows, places: &places, pixels: &pixels };
+    let job = BlendPass::new(gpu)?.prepare(gpu, &cover, &shading, buffers)?;
     let copied = copy_of(gpu, points)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
@@ -32,7 +33,7 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
         Contender::host(Backend::Reference, || {
             let window = &host[..(width * width) as usize];
             for _ in 0..count {
-                drop(std::hint::black_box(blend(window, width as usize, 1.0, &zones, &shading)));
+                drop(std::hint::black_box(blend(window, width as usize, &cover, &shading, [0; 2])));
             }
         }),
     ];

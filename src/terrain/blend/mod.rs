@@ -1,4 +1,5 @@
-//! Height zones and the top-down colour map of a patch (B section 3.3.1, equations 3.6 and 3.7).
+//! The top-down colour map of a patch: zones of ground with their textures (B section 3.3.1, equations 3.6 and 3.7), and
+//! hill-shading.
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
@@ -9,13 +10,10 @@ pub mod reference;
 pub(crate) mod verify;
 
 use crate::InputError;
-pub use crate::shared::terrain::blend::MapZone;
 use crate::terrain::config::finite;
-#[cfg(feature = "gpu")]
-use crate::terrain::config::{MAX_ZONES, check_range};
 
 #[cfg(feature = "gpu")]
-pub use pass::BlendPass;
+pub use pass::{BlendBuffers, BlendPass};
 
 /// How zone weights are combined into a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
@@ -69,27 +67,12 @@ impl Shading {
     }
 }
 
-/// Checks that there are 1 to [`MAX_ZONES`] zones, and that each has a valid range of heights and a finite
-/// colour.
-///
-/// # Errors
-/// [`InputError`] that names the zone.
-#[cfg(feature = "gpu")]
-pub(crate) fn check_map_zones(zones: &[MapZone]) -> Result<(), InputError> {
-    if zones.is_empty() || zones.len() > MAX_ZONES {
-        let bound = format!("must hold 1 to {MAX_ZONES} zones");
-        return Err(InputError::new("zones", format!("[{} zones]", zones.len()), bound));
-    }
-    for (index, zone) in zones.iter().enumerate() {
-        check_range(&format!("zones[{index}]"), zone.min.into(), zone.max.into())?;
-        for (channel, value) in zone.color.into_iter().enumerate() {
-            finite(&format!("zones[{index}].color[{channel}]"), value.into(), 0.0, 1.0)?;
-        }
-    }
-    Ok(())
-}
-
-/// The largest difference allowed between a channel of a colour map and the reference: one level of 255. The
-/// colour carries some tens of rounding errors of 2⁻²³ and the 28 ULP of `pow`, far less than a level, but the
-/// rounding to 8 bits may go either way.
+/// The largest difference allowed between a channel of a colour map and the reference: one level of 255. Places in textures and
+/// the cells of the variation are whole numbers, and everything else is continuous. A weight carries at most 2^-16: by height
+/// some 2^-23 · (|height| + |max|) / (max − min), and by slope, whose transitions are at least a degree wide, 115 times the 2^-20
+/// of the steepness. The colour carries that divided by the sum of weights, and the 28 ULP of `pow`. Where the sum is at least
+/// [`MIN_TOTAL`], that is far less than a level, but the rounding to 8 bits may go either way.
 pub const MAP_BOUND: u8 = 1;
+
+/// The sum of weights below which [`MAP_BOUND`] does not hold, unless it is 0.
+pub const MIN_TOTAL: f32 = 1.0 / 64.0;

@@ -1,18 +1,30 @@
 //! The GPU pass of `kernels/terrain/blend.wgsl`.
 
-use super::{MapZone, Shading, check_map_zones};
+use super::Shading;
 use crate::Error;
 use crate::gpu::bindings::terrain::blend as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::blend::MapParams;
 use crate::shared::terrain::light::Light;
-use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
+use crate::terrain::config::HEIGHT_ONE;
+use crate::terrain::cover::{Cover, planes};
 use crate::terrain::fields::Fields;
 
 /// Draws the top-down colour maps of patches.
 #[derive(Debug, Clone)]
 pub struct BlendPass {
     kernel: Kernel,
+}
+
+/// The buffers of a job of [`BlendPass`].
+#[derive(Debug, Clone, Copy)]
+pub struct BlendBuffers<'a> {
+    /// Windows of heights with one sample of margin.
+    pub windows: &'a Fields,
+    /// The position of each window's first inner sample in tiles ([`Cover::place`]).
+    pub places: &'a Buffer<[u32; 2]>,
+    /// Receives a pixel for every sample but those of the outermost ring: RGBA, 8 bits each, red in the lowest byte, sRGB.
+    pub pixels: &'a Buffer<u32>,
 }
 
 impl BlendPass {
@@ -24,39 +36,38 @@ impl BlendPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the colour maps of `windows`: `pixels` receives a pixel for every sample but those of the
-    /// outermost ring (RGBA, 8 bits each, red in the lowest byte, sRGB).
+    /// Prepares the colour maps of windows, which it uploads the cover for.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a spacing, zones or shading out of bounds, for windows with nothing inside the
-    /// outermost ring, and for an output that is too short; [`GpuError`].
+    /// [`crate::InputError`] for a cover or shading out of bounds, for windows with nothing inside the outermost ring, and for
+    /// places or an output that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        terrain_scale: f64,
-        zones: &[MapZone],
+        cover: &Cover,
         shading: &Shading,
-        windows: &Fields,
-        pixels: &Buffer<u32>,
+        buffers: BlendBuffers<'_>,
     ) -> Result<Job, Error> {
-        check_terrain_scale(terrain_scale)?;
-        check_map_zones(zones)?;
+        let BlendBuffers { windows, places, pixels } = buffers;
+        cover.validate()?;
         shading.validate()?;
         windows.check("windows", 1)?;
+        places.check_holds("places", windows.count as usize)?;
         pixels.check_holds("pixels", windows.points(1))?;
-        let params = MapParams {
-            light: Light { direction: shading.light.into(), ambient: shading.ambient },
-            in_width: windows.width,
-            run: (2.0 * terrain_scale * HEIGHT_ONE) as f32,
-            zone_count: zones.len() as u32,
-            additive: shading.weights.code(),
+        let uniform = Uniform::new(gpu, "colour map", &params(cover, shading, windows.width))?;
+        let zones = Buffer::from_slice(gpu, "zones", &cover.zones)?;
+        let packed = |texel: &[u16; 4]| {
+            let [red, green, blue, height] = texel.map(u32::from);
+            [red | green << 16, blue | height << 16]
         };
-        let uniform = Uniform::new(gpu, "colour map", &params)?;
-        let zones = Buffer::from_slice(gpu, "zones", zones)?;
+        let texels: Vec<[u32; 2]> = cover.texels.iter().map(packed).collect();
+        let texels = Buffer::from_slice(gpu, "texels", &texels)?;
         let group = bindings::Group {
             params: &uniform,
             windows: windows.heights.slice(),
             zones: zones.slice(),
+            texels: texels.slice(),
+            places: places.slice(),
             pixels: pixels.slice(),
         };
         let step = Step {
@@ -65,5 +76,20 @@ impl BlendPass {
             workgroups: windows.workgroups(&self.kernel, 1),
         };
         Ok(Job::new(gpu, "terrain/blend", vec![step])?)
+    }
+}
+
+fn params(cover: &Cover, shading: &Shading, in_width: u32) -> MapParams {
+    let [tiles_per_sample, tiles_per_unit] = cover.steps();
+    MapParams {
+        light: Light { direction: shading.light.into(), ambient: shading.ambient },
+        in_width,
+        run: (2.0 * cover.terrain_scale * HEIGHT_ONE) as f32,
+        zone_count: cover.zones.len() as u32,
+        additive: shading.weights.code(),
+        tiles_per_sample,
+        tiles_per_unit,
+        planes: planes(cover.triplanar),
+        variation: cover.variation,
     }
 }

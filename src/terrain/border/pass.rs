@@ -5,7 +5,8 @@ use super::Neighbours;
 use super::visits::{Visit, visits};
 use crate::gpu::bindings::terrain::border as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::terrain::border::{BorderParams, NONE};
+use crate::shared::terrain::border::{BLOCK_WIDTH, BorderParams, NONE};
+use crate::terrain::blocks::{Blocks, rows};
 use crate::terrain::fields::{Fields, places};
 use crate::{Error, InputError};
 
@@ -52,11 +53,14 @@ impl BorderPass {
         let visits = visits(neighbours, &places)?;
         let entries: Vec<_> =
             (0..parts.len()).map(|part| Entries::new(gpu, part, &visits)).collect::<Result<_, _>>()?;
+        // Where the strips along two borders meet, there is nothing between them.
+        let rim = if 2 * width < size { width } else { 0 };
         let mut starts = vec![0; parts.len()];
         let mut steps = Vec::new();
         for Visit { part, source, entries: visited } in &visits {
             let count = visited.len() as u32;
-            let params = BorderParams { size, width, points: size * size, start: starts[*part] };
+            let blocks = Blocks::with_rim([rim, size - 2 * rim], BLOCK_WIDTH, rows(gpu.tuning()), count);
+            let params = BorderParams { blocks, size, width, points: size * size, start: starts[*part], rim };
             starts[*part] += count;
             let uniform = Uniform::new(gpu, "border", &params)?;
             let Entries { neighbours, order } = &entries[*part];
@@ -75,7 +79,7 @@ impl BorderPass {
                 others,
             };
             let groups = vec![group.bind(gpu, kernel)?];
-            let workgroups = [kernel.groups_for(size), size, count];
+            let workgroups = blocks.workgroups(gpu, kernel);
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         Ok(Job::new(gpu, "terrain/border", steps)?)

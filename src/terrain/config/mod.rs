@@ -3,10 +3,9 @@
 mod json;
 mod zones;
 
-pub(crate) use json::{from_json_object, read_text};
-#[cfg(feature = "gpu")]
+pub(crate) use json::{RawHydraulic, RawThermal, from_json_object, read_text, whole};
 pub(crate) use zones::check_range;
-pub use zones::{BuiltIn, MAX_ZONES, Zone, ZoneTexture};
+pub use zones::{BuiltIn, MAX_REPEATS, MAX_ZONES, Slope, Zone, ZoneTexture};
 
 use std::path::Path;
 
@@ -30,7 +29,7 @@ pub const HEIGHT_LIMIT: i64 = fixed::HEIGHT_LIMIT as i64;
 const SMOOTH_LIMIT: i64 = 1 << 29;
 
 /// The most texture tiles along a patch's edge: with more, `f32` texture coordinates could not resolve a
-/// quarter of a texel.
+/// half a texel.
 const MAX_TILES: f64 = 16_384.0;
 
 /// The distribution of the random offsets; r is the range at a level.
@@ -112,7 +111,12 @@ pub struct Config {
     /// `None`, which stands for (patchSize − 1) / 10 units; with B's terrainScale that is 10 · terrainScale
     /// tiles per patch.
     pub texture_tile: Option<f64>,
-    /// Height zones for colouring, 1 to 32. Default four: sand, grass, hill and snow.
+    /// Whether textures lie on steep ground from the sides too (triplanar mapping), so that they are not stretched there. Default
+    /// `false`.
+    pub triplanar: bool,
+    /// The strength of a variation of colour over many tiles, which hides that textures repeat, 0 to 1. Default 0.
+    pub variation: f64,
+    /// Zones of ground, 1 to 32. Default four: sand, grass, hill and snow.
     pub zones: Vec<Zone>,
 }
 
@@ -134,6 +138,8 @@ impl Config {
             corners: [0.0; 4],
             terrain_scale: 1.0,
             texture_tile: None,
+            triplanar: false,
+            variation: 0.0,
             zones: Zone::defaults(scale_factor, Offset::Signed),
         };
         config.validate()?;
@@ -149,11 +155,16 @@ impl Config {
         let text = read_text(path)?;
         let mut config =
             Self::from_json(&text).map_err(|source| Error::InputFile { path: path.to_owned(), source })?;
+        config.resolve_textures(path);
+        Ok(config)
+    }
+
+    /// Makes texture paths relative to the file that names them.
+    pub(crate) fn resolve_textures(&mut self, path: &Path) {
         let folder = path.parent().unwrap_or(Path::new(""));
-        for zone in &mut config.zones {
+        for zone in &mut self.zones {
             zone.resolve_texture(folder);
         }
-        Ok(config)
     }
 
     /// Checks every field. Every function that takes a `Config` calls it.
@@ -178,6 +189,7 @@ impl Config {
         if let Some(tile) = self.texture_tile {
             finite("textureTile", tile, self.edge_length() / MAX_TILES, f64::MAX)?;
         }
+        finite("variation", self.variation, 0.0, 1.0)?;
         let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
         for (index, &corner) in self.corners.iter().enumerate() {
             finite(&format!("corners[{index}]"), corner, -most, most)?;
@@ -282,6 +294,11 @@ impl Config {
     /// Number of texture tiles along a patch's edge.
     pub fn tiles_per_patch(&self) -> f64 {
         self.texture_tile.map_or(10.0 * self.terrain_scale, |tile| self.edge_length() / tile)
+    }
+
+    /// World units that a texture tile covers.
+    pub(crate) fn tile(&self) -> f64 {
+        self.edge_length() / self.tiles_per_patch()
     }
 
     /// Distance between neighbouring samples in world coordinates.

@@ -4,11 +4,15 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::json::{Object, whole};
 use super::{HEIGHT_ONE, Offset, finite};
 use crate::InputError;
 
 /// The most zones that a configuration may have.
 pub const MAX_ZONES: usize = 32;
+
+/// The most times that a zone's texture repeats in a tile.
+pub const MAX_REPEATS: u32 = 16;
 
 /// The texture of a zone.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,22 +23,33 @@ pub enum ZoneTexture {
     File(PathBuf),
 }
 
-/// Textures that relievo generates.
+/// Textures that relievo generates, each with a height map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BuiltIn {
-    /// Pale, fine-grained, rippled sand.
+    /// Pale, fine-grained sand with ripples of wind.
     Sand,
-    /// Green blades of grass.
+    /// Tufts of grass.
     Grass,
     /// Broken grey-brown rock.
     Hill,
-    /// Nearly white snow.
+    /// Nearly white snow with drifts.
     Snow,
+    /// Dark earth with crumbs and small stones.
+    Soil,
+    /// Layers of rock, which lie level on walls where textures lie on steep ground from the sides too
+    /// ([`Config::triplanar`](super::Config::triplanar)).
+    Strata,
+    /// Broken stones on a slope.
+    Scree,
 }
 
 impl BuiltIn {
-    /// All of them, from the lowest zone to the highest.
-    pub const ALL: [Self; 4] = [Self::Sand, Self::Grass, Self::Hill, Self::Snow];
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::Sand, Self::Grass, Self::Hill, Self::Snow, Self::Soil, Self::Strata, Self::Scree];
+
+    /// Those of zones that name no texture, from the lowest zone to the highest.
+    const DEFAULTS: [Self; 4] = [Self::Sand, Self::Grass, Self::Hill, Self::Snow];
 
     /// The name of the texture in JSON.
     pub(crate) fn name(self) -> &'static str {
@@ -43,12 +58,51 @@ impl BuiltIn {
             Self::Grass => "grass",
             Self::Hill => "hill",
             Self::Snow => "snow",
+            Self::Soil => "soil",
+            Self::Strata => "strata",
+            Self::Scree => "scree",
         }
     }
 }
 
-/// A range of heights with a texture. Its weight is greatest at `max` and falls to 0 at `max` ± (`max` −
-/// `min`).
+/// A range of slopes, in degrees from level ground.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Slope {
+    /// Lower end, 0 to 90, where the weight is a half; at 0 it is 1. Default 0.
+    pub min: f64,
+    /// Upper end, above `min`, where the weight is a half; at 90 it is 1. Default 90.
+    pub max: f64,
+    /// Degrees in which the weight goes from 0 to 1, 1 to 45, half of them on either side of an end (as far as there are
+    /// slopes). Default 10.
+    pub fade: f64,
+}
+
+impl Default for Slope {
+    fn default() -> Self {
+        Self { min: 0.0, max: 90.0, fade: 10.0 }
+    }
+}
+
+impl Slope {
+    /// Checks that the ends are in 0..=90 and in order, and that `fade` is in 1..=45.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field, with `path` in front of it.
+    pub fn validate(&self, path: &str) -> Result<(), InputError> {
+        finite(&format!("{path}.min"), self.min, 0.0, 90.0)?;
+        finite(&format!("{path}.max"), self.max, 0.0, 90.0)?;
+        finite(&format!("{path}.fade"), self.fade, 1.0, 45.0)?;
+        if self.max <= self.min {
+            let bound = format!("must be above min = {}", self.min);
+            return Err(InputError::new(format!("{path}.max"), self.max, bound));
+        }
+        Ok(())
+    }
+}
+
+/// A range of heights and slopes with a texture. Its weight is greatest at `max` and falls to 0 at `max` ± (`max` −
+/// `min`); at the ends of `slope` it falls to 0 too.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
@@ -56,10 +110,36 @@ pub struct Zone {
     pub min: f64,
     /// Upper end of the range, in height units; above `min`.
     pub max: f64,
-    /// `"sand"`, `"grass"`, `"hill"`, `"snow"` or the path of an image. Default: by the zone's position in the
-    /// list.
+    /// `"sand"`, `"grass"`, `"hill"`, `"snow"`, `"soil"`, `"strata"`, `"scree"` or the path of an image. Default: by the zone's
+    /// position in the list, one of the first four.
     #[serde(default, deserialize_with = "texture")]
     pub texture: Option<ZoneTexture>,
+    /// The slopes on which the zone lies. Default all.
+    #[serde(default, deserialize_with = "slope")]
+    pub slope: Slope,
+    /// How much the height map of the texture counts where zones meet (B section 2.3.4), 0 to 1: at 1 the zone shows first where
+    /// its texture is high, and last where it is deep. Default 0.
+    #[serde(default, rename = "heightBlend")]
+    pub height_blend: f64,
+    /// How many times the texture repeats in a texture tile, 1 to 16. Default 1.
+    #[serde(default = "once", deserialize_with = "repeats")]
+    pub repeats: u32,
+}
+
+fn once() -> u32 {
+    1
+}
+
+/// A whole number, as JSON may write it; [`Zone::validate`] checks its bounds.
+fn repeats<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    let number = serde_json::Number::deserialize(deserializer)?;
+    let refused =
+        |_| serde::de::Error::custom(format!("{number} must be a whole number in 1..={MAX_REPEATS}"));
+    whole("repeats", &number, 0, u32::MAX).map_err(refused)
+}
+
+fn slope<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Slope, D::Error> {
+    Object::<Slope>::deserialize(deserializer).map(|object| object.0)
 }
 
 fn texture<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<ZoneTexture>, D::Error> {
@@ -69,6 +149,11 @@ fn texture<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<Z
 }
 
 impl Zone {
+    /// A zone on all slopes, blended by its weight alone, whose texture covers a tile.
+    pub fn new(min: f64, max: f64, texture: Option<ZoneTexture>) -> Self {
+        Self { min, max, texture, slope: Slope::default(), height_blend: 0.0, repeats: 1 }
+    }
+
     /// The four default zones, at fixed fractions of `scale_factor`. With `positive` offsets the terrain lies
     /// three halves of `scale_factor` higher on average, so the zones do too.
     pub(crate) fn defaults(scale_factor: f64, offset: Offset) -> Vec<Self> {
@@ -77,26 +162,31 @@ impl Zone {
         let lift = if offset == Offset::Positive { 1.5 } else { 0.0 };
         [(-1.7, -0.65), (-0.65, -0.1), (-0.1, 0.45), (0.4, 1.1)]
             .into_iter()
-            .zip(BuiltIn::ALL)
-            .map(|((min, max), texture)| Self {
-                min: (min + lift) * unit,
-                max: (max + lift) * unit,
-                texture: Some(ZoneTexture::BuiltIn(texture)),
+            .zip(BuiltIn::DEFAULTS)
+            .map(|((min, max), texture)| {
+                Self::new((min + lift) * unit, (max + lift) * unit, Some(ZoneTexture::BuiltIn(texture)))
             })
             .collect()
     }
 
-    /// Checks that `min` and `max` are finite and in order.
+    /// Checks that `min` and `max` are finite and in order, and every other field.
     ///
     /// # Errors
     /// [`InputError`] that names the field, with `path` in front of it.
     pub fn validate(&self, path: &str) -> Result<(), InputError> {
-        check_range(path, self.min, self.max)
+        check_range(path, self.min, self.max)?;
+        self.slope.validate(&format!("{path}.slope"))?;
+        finite(&format!("{path}.heightBlend"), self.height_blend, 0.0, 1.0)?;
+        if !(1..=MAX_REPEATS).contains(&self.repeats) {
+            let bound = format!("must be a whole number in 1..={MAX_REPEATS}");
+            return Err(InputError::new(format!("{path}.repeats"), self.repeats, bound));
+        }
+        Ok(())
     }
 
     /// The texture of the zone, which stands at `index` in its list.
     pub(crate) fn texture_at(&self, index: usize) -> ZoneTexture {
-        self.texture.clone().unwrap_or(ZoneTexture::BuiltIn(BuiltIn::ALL[index.min(3)]))
+        self.texture.clone().unwrap_or(ZoneTexture::BuiltIn(BuiltIn::DEFAULTS[index.min(3)]))
     }
 
     pub(crate) fn resolve_texture(&mut self, folder: &Path) {

@@ -4,6 +4,7 @@ use super::Despike;
 use crate::gpu::bindings::terrain::despike as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::despike::DespikeParams;
+use crate::terrain::blocks::Columns;
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
@@ -23,6 +24,7 @@ pub struct DespikeBuffers<'a> {
 #[derive(Debug, Clone)]
 pub struct DespikePass {
     kernel: Kernel,
+    columns: Columns,
 }
 
 impl DespikePass {
@@ -32,8 +34,13 @@ impl DespikePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, with_features: bool) -> Result<Self, GpuError> {
-        let constants = bindings::Constants { features: with_features.into() };
-        Ok(Self { kernel: bindings::kernel(gpu, &constants)? })
+        Self::with_columns(gpu, with_features, Columns::of(gpu.tuning()))
+    }
+
+    /// As [`DespikePass::new`], with the given columns.
+    pub(crate) fn with_columns(gpu: &Gpu, with_features: bool, columns: Columns) -> Result<Self, GpuError> {
+        let constants = bindings::Constants { quads: columns.quads, features: with_features.into() };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
     }
 
     /// Prepares the despiking of windows.
@@ -51,12 +58,13 @@ impl DespikePass {
             let bound = format!("must be that of the windows, {}", windows.width);
             return Err(InputError::new("features.width", grid.width, bound).into());
         }
-        let params =
-            DespikeParams { features: grid, in_width: windows.width, threshold: despike.fixed_threshold() };
+        let blocks = self.columns.blocks(windows);
+        let threshold = despike.fixed_threshold();
+        let params = DespikeParams { blocks, features: grid, in_width: windows.width, threshold };
         let uniform = Uniform::new(gpu, "despike", &params)?;
         let group = bindings::Group {
             params: &uniform,
-            windows: windows.heights.slice(),
+            windows: windows.heights.slice().cast(),
             cropped: cropped.heights.slice(),
         };
         let injected =
@@ -64,7 +72,7 @@ impl DespikePass {
         let step = Step {
             kernel: self.kernel.clone(),
             groups: vec![group.bind(gpu, &self.kernel)?, injected.bind(gpu, &self.kernel)?],
-            workgroups: windows.workgroups(&self.kernel, 1),
+            workgroups: blocks.workgroups(gpu, &self.kernel),
         };
         Ok(Job::new(gpu, "terrain/despike", vec![step])?)
     }

@@ -4,6 +4,7 @@ use crate::Error;
 use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
+use crate::terrain::blocks::Columns;
 use crate::terrain::despike::reference::despike;
 use crate::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
@@ -15,15 +16,19 @@ use crate::terrain::verify::{LIMIT, random_heights, random_words};
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    Columns::ALL.into_iter().try_for_each(|columns| with_columns(cases, columns))
+}
+
+fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
     for with_features in [false, true] {
-        let pass = DespikePass::new(cases.gpu, with_features)?;
+        let pass = DespikePass::with_columns(cases.gpu, with_features, columns)?;
         for (case, (width, count)) in
             [(3, 1), (5, 3), (34, 2), (65, 5), (66, 4), (67, 3), (131, 2)].into_iter().enumerate()
         {
             for threshold in [0.0, 0.5, 300.0, 16383.0] {
                 check(
                     cases,
-                    &pass,
+                    (&pass, columns),
                     with_features.then_some(case as u32),
                     Despike { threshold },
                     [width, count],
@@ -36,7 +41,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 fn check(
     cases: &mut Cases<'_>,
-    pass: &DespikePass,
+    (pass, columns): (&DespikePass, Columns),
     features: Option<u32>,
     params: Despike,
     [width, count]: [u32; 2],
@@ -70,8 +75,9 @@ fn check(
         })
         .collect();
     let name = format!(
-        "{width}×{width} × {count}, threshold {}{}",
+        "{width}×{width} × {count}, threshold {}, {} wide{}",
         params.threshold,
+        4 * columns.quads,
         features.map_or("", |_| ", a third injected")
     );
     cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);

@@ -4,6 +4,7 @@ use super::job::{HeightJob, HeightScratch, LevelInputs};
 use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Tuning, Uniform};
 use crate::shared::terrain::level::Level;
+use crate::terrain::blocks::Blocks as TerrainBlocks;
 use crate::terrain::config::{Border, Config, Interpolation, Offset};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fixed::FeatureMode;
@@ -145,7 +146,7 @@ impl HeightPass {
             let injected =
                 bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
             let groups = vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?];
-            let workgroups = kernel.spread(gpu, params.blocks * count);
+            let workgroups = params.blocks.workgroups(gpu, kernel);
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         let job = Job::new(gpu, "terrain/height", steps)?;
@@ -171,7 +172,6 @@ impl HeightPass {
         let (coarse_width, fine_width) = (widths[level], widths[fine]);
         // A window may start anywhere in its first cell.
         let cells = if levels == 1 { fine_width / 2 + 1 } else { (fine_width + 6) / 4 };
-        let blocks_per_row = cells.div_ceil(4);
         Level {
             key: config.key().into(),
             fine_width,
@@ -183,9 +183,7 @@ impl HeightPass {
             middle_range: config.level_range(level as u32),
             edge_range: 0,
             base_range: config.level_range(0),
-            blocks_per_row,
-            blocks: blocks_per_row * cells.div_ceil(self.cell_rows),
-            windows: count,
+            blocks: TerrainBlocks::of_squares(cells, 4, self.cell_rows, count),
             fine_features: features.grid(fine),
             base_features: features.grid(0),
         }

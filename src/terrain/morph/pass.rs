@@ -48,12 +48,12 @@ impl MorphPass {
         let params = Uniform::new(gpu, "morph", &MorphParams { points, time: 0 })?;
         let group = bindings::Group {
             params: &params,
-            start_heights: from.slice(),
-            target_heights: to.slice(),
+            start_heights: from.slice().cast(),
+            target_heights: to.slice().cast(),
             heights: heights.slice(),
         };
         let groups = vec![group.bind(gpu, &self.kernel)?];
-        let workgroups = self.kernel.spread(gpu, points);
+        let workgroups = self.kernel.spread(gpu, points.div_ceil(4));
         let step = Step { kernel: self.kernel.clone(), groups, workgroups };
         Ok(MorphJob { params, points, job: Job::new(gpu, "terrain/morph", vec![step])? })
     }

@@ -4,6 +4,7 @@ use crate::Error;
 use crate::gpu::bindings::terrain::normals as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::normals::NormalsParams;
+use crate::terrain::blocks::Columns;
 use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
 
@@ -11,6 +12,7 @@ use crate::terrain::fields::Fields;
 #[derive(Debug, Clone)]
 pub struct NormalsPass {
     kernel: Kernel,
+    columns: Columns,
 }
 
 impl NormalsPass {
@@ -19,7 +21,13 @@ impl NormalsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
+        Self::with_columns(gpu, Columns::of(gpu.tuning()))
+    }
+
+    /// As [`NormalsPass::new`], with the given columns.
+    pub(crate) fn with_columns(gpu: &Gpu, columns: Columns) -> Result<Self, GpuError> {
+        let constants = bindings::Constants { quads: columns.quads };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
     }
 
     /// Prepares the slopes of `windows`, whose samples are `terrain_scale` world units apart. For every sample
@@ -40,19 +48,20 @@ impl NormalsPass {
         windows.check("windows", 1)?;
         gradients.check_holds("gradients", windows.points(1))?;
         normals.check_holds("normals", 3 * windows.points(1))?;
-        let params =
-            NormalsParams { in_width: windows.width, run: (2.0 * terrain_scale * HEIGHT_ONE) as f32 };
+        let blocks = self.columns.blocks(windows);
+        let run = (2.0 * terrain_scale * HEIGHT_ONE) as f32;
+        let params = NormalsParams { blocks, in_width: windows.width, run };
         let uniform = Uniform::new(gpu, "normals", &params)?;
         let group = bindings::Group {
             params: &uniform,
-            windows: windows.heights.slice(),
+            windows: windows.heights.slice().cast(),
             gradients: gradients.slice(),
             normals: normals.slice(),
         };
         let step = Step {
             kernel: self.kernel.clone(),
             groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: windows.workgroups(&self.kernel, 1),
+            workgroups: blocks.workgroups(gpu, &self.kernel),
         };
         Ok(Job::new(gpu, "terrain/normals", vec![step])?)
     }

@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
+use crate::terrain::blocks::Columns;
 use crate::terrain::fields::Fields;
 use crate::terrain::normals::reference::normals;
 use crate::terrain::normals::{NORMAL_BOUND, NormalsPass};
@@ -13,8 +14,12 @@ use crate::terrain::verify::{LIMIT, random_heights};
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    Columns::ALL.into_iter().try_for_each(|columns| with_columns(cases, columns))
+}
+
+fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = NormalsPass::new(gpu)?;
+    let pass = NormalsPass::with_columns(gpu, columns)?;
     for (width, count) in [(3, 1), (65, 3), (66, 2), (67, 2), (131, 4)] {
         for (limit, terrain_scale) in
             [(0, 1.0), (1 << 16, 1.0), (LIMIT, 0.001), (LIMIT, 1e5), (1 << 22, 0.37)]
@@ -32,7 +37,10 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 expected_slopes.extend(slopes);
                 expected_units.extend(units.into_iter().flatten());
             }
-            let name = format!("{width}×{width} × {count}, heights to {limit}, spacing {terrain_scale}");
+            let wide = 4 * columns.quads;
+            let name = format!(
+                "{width}×{width} × {count}, heights to {limit}, spacing {terrain_scale}, {wide} wide"
+            );
             cases.add(
                 format!("{name}: gradients"),
                 slopes.check(gpu, |actual| compare::exact(actual, &expected_slopes))?,

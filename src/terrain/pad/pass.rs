@@ -3,7 +3,8 @@
 use super::{Surround, validate};
 use crate::gpu::bindings::terrain::pad as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::terrain::pad::{ELSEWHERE, NONE, PadParams};
+use crate::shared::terrain::pad::{BLOCK_WIDTH, ELSEWHERE, NONE, PadParams};
+use crate::terrain::blocks::{Blocks, rows};
 use crate::terrain::fields::{Fields, Place, places};
 use crate::{Error, InputError};
 
@@ -44,7 +45,8 @@ impl PadPass {
         check_surrounds(surrounds, places.len())?;
         windows.check_holds("windows", surrounds.len() * (width as usize).pow(2))?;
         let tiles: Vec<_> = surrounds.iter().flatten().map(|tile| tile.map(|patch| places[patch])).collect();
-        let uniform = Uniform::new(gpu, "pad", &PadParams { size, apron })?;
+        let blocks = Blocks::with_rim([apron, size], BLOCK_WIDTH, rows(gpu.tuning()), surrounds.len() as u32);
+        let uniform = Uniform::new(gpu, "pad", &PadParams { blocks, size, apron })?;
         let mut steps = Vec::new();
         for (part, patches) in parts.iter().enumerate() {
             let Some(around) = tiles_in(part, &tiles) else { continue };
@@ -58,7 +60,7 @@ impl PadPass {
             steps.push(Step {
                 kernel: self.kernel.clone(),
                 groups: vec![group.bind(gpu, &self.kernel)?],
-                workgroups: [self.kernel.groups_for(width), width, surrounds.len() as u32],
+                workgroups: blocks.workgroups(gpu, &self.kernel),
             });
         }
         Ok(Job::new(gpu, "terrain/pad", steps)?)

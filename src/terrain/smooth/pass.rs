@@ -3,6 +3,7 @@
 use crate::gpu::bindings::terrain::smooth as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::level::Level;
+use crate::terrain::blocks::Blocks;
 use crate::terrain::config::{Config, Interpolation, Offset};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fixed::FeatureMode;
@@ -115,7 +116,7 @@ impl SmoothPass {
             let injected =
                 bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
             let groups = vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?];
-            let workgroups = kernel.spread(gpu, params.blocks * count);
+            let workgroups = params.blocks.workgroups(gpu, kernel);
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         let job = Job::new(gpu, "terrain/smooth", steps)?;
@@ -133,7 +134,6 @@ impl SmoothPass {
         let (coarse_width, fine_width) = (widths[level], widths[level + 1]);
         // A window may start anywhere in its first cell.
         let cells = fine_width / 2 + 1;
-        let blocks_per_row = cells.div_ceil(4);
         Level {
             key: config.key().into(),
             fine_width,
@@ -145,9 +145,7 @@ impl SmoothPass {
             middle_range: 0,
             edge_range: config.edge_range(level as u32),
             base_range: config.level_range(0),
-            blocks_per_row,
-            blocks: blocks_per_row * cells.div_ceil(self.cell_rows),
-            windows: count,
+            blocks: Blocks::of_squares(cells, 4, self.cell_rows, count),
             fine_features: features.grid(level + 1),
             base_features: features.grid(0),
         }

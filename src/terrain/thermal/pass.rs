@@ -5,6 +5,7 @@ use crate::Error;
 use crate::gpu::bindings::terrain::thermal as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::thermal::ThermalParams;
+use crate::terrain::blocks::Columns;
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
 
@@ -21,6 +22,7 @@ pub struct ThermalBuffers<'a> {
 #[derive(Debug, Clone)]
 pub struct ThermalPass {
     kernel: Kernel,
+    columns: Columns,
 }
 
 impl ThermalPass {
@@ -29,7 +31,13 @@ impl ThermalPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
+        Self::with_columns(gpu, Columns::of(gpu.tuning()))
+    }
+
+    /// As [`ThermalPass::new`], with the given columns.
+    pub(crate) fn with_columns(gpu: &Gpu, columns: Columns) -> Result<Self, GpuError> {
+        let constants = bindings::Constants { quads: columns.quads };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
     }
 
     /// Prepares all iterations, which alternate between `windows` and `other`. Each iteration drops the outermost
@@ -56,17 +64,19 @@ impl ThermalPass {
         for iteration in 0..thermal.iterations {
             let (from, to) = if iteration % 2 == 0 { (windows, other) } else { (other, windows) };
             let at = windows.cropped(iteration);
-            let uniform = Uniform::new(gpu, "thermal", &ThermalParams { in_width: at.width, threshold })?;
+            let blocks = self.columns.blocks(&at);
+            let params = ThermalParams { blocks, in_width: at.width, threshold };
+            let uniform = Uniform::new(gpu, "thermal", &params)?;
             let group = bindings::Group {
                 params: &uniform,
-                windows: from.heights.slice(),
+                windows: from.heights.slice().cast(),
                 cropped: to.heights.slice(),
             };
             let groups = vec![group.bind(gpu, &self.kernel)?];
             steps.push(Step {
                 kernel: self.kernel.clone(),
                 groups,
-                workgroups: at.workgroups(&self.kernel, 1),
+                workgroups: blocks.workgroups(gpu, &self.kernel),
             });
         }
         Ok(Job::new(gpu, "terrain/thermal", steps)?)

@@ -5,6 +5,7 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::POISON;
 use crate::harness::poison::Poisoned;
+use crate::terrain::blocks::Columns;
 use crate::terrain::fields::Fields;
 use crate::terrain::thermal::reference::thermal;
 use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
@@ -16,8 +17,12 @@ use crate::terrain::verify::{LIMIT, random_heights};
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    Columns::ALL.into_iter().try_for_each(|columns| with_columns(cases, columns))
+}
+
+fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = ThermalPass::new(gpu)?;
+    let pass = ThermalPass::with_columns(gpu, columns)?;
     for (width, count) in [(3, 2), (23, 3), (66, 5), (130, 2)] {
         for iterations in [1, 2, 5, 10].into_iter().filter(|iterations| 2 * iterations < width) {
             for (talus, limit) in [(0.0, LIMIT / 2), (35.0, 1 << 20), (89.0, LIMIT / 2)] {
@@ -41,7 +46,10 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                     edge -= 2;
                     expected[iteration % 2][..fields.len()].copy_from_slice(&fields);
                 }
-                let name = format!("{width}×{width} × {count}, {iterations} iterations, talus {talus}°");
+                let wide = 4 * columns.quads;
+                let name = format!(
+                    "{width}×{width} × {count}, {iterations} iterations, talus {talus}°, {wide} wide"
+                );
                 let result = iterations as usize % 2;
                 for (what, at) in [("", result), (", before the last", 1 - result)] {
                     let comparison = outputs[at].check(gpu, |actual| exact(actual, &expected[at]))?;

@@ -1,8 +1,10 @@
-//! Benchmark cases of `terrain/wrap`: generation of patches by themselves.
+//! Benchmark cases of `terrain/wrap`: generation of patches by themselves. `limit` draws and stores the same number of random
+//! words; `copy` moves 4 bytes per point.
 
 use rayon::prelude::*;
 
 use crate::Error;
+use crate::baseline::words::WordsPass;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::copy_of;
@@ -28,9 +30,13 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let features = Features::default();
     job.set(gpu, &patches, &features)?;
     let copied = copy_of(gpu, points)?;
+    let words = Buffer::new(gpu, "words", points.next_multiple_of(1024))?;
+    let rows = words.len() as u32 / 1024;
+    let drawn = WordsPass::new(gpu)?.prepare(gpu, config.key(), [1024, rows], &words)?;
     let reference = |patch: &[i32; 2]| drop(std::hint::black_box(wrap(&config, &features, *patch)));
     let contenders = vec![
         Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+        Contender::job(Backend::Limit, &drawn),
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Reference, || patches.iter().for_each(reference)),
         Contender::host(Backend::ReferenceParallel, || patches.par_iter().for_each(reference)),

@@ -5,6 +5,7 @@ use crate::InputError;
 use crate::gpu::bindings::terrain::wrap as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::wrap::WrapLevel;
+use crate::terrain::blocks::{Blocks, rows};
 use crate::terrain::config::{Border, Config, Offset, PATCH_EDGE};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fixed::FeatureMode;
@@ -74,7 +75,9 @@ impl WrapPass {
             let (fine, coarse) =
                 if (levels - level) % 2 == 1 { (output, scratch) } else { (scratch, output) };
             let kernel = if level == 0 { &self.first } else { &self.next };
+            let blocks = Blocks::of_squares(widths[level], 4, rows(gpu.tuning()), count);
             let params = WrapLevel {
+                blocks,
                 corners: config.fixed_corners().into(),
                 fine_features: features.grid(level + 1),
                 base_features: features.grid(0),
@@ -96,7 +99,7 @@ impl WrapPass {
             let injected =
                 bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
             let groups = vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?];
-            let workgroups = [kernel.groups_for(widths[level]), widths[level], count];
+            let workgroups = blocks.workgroups(gpu, kernel);
             steps.push(Step { kernel: kernel.clone(), groups, workgroups });
         }
         let job = Job::new(gpu, "terrain/wrap", steps)?;

@@ -13,6 +13,7 @@ use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch, TerrainV
 use crate::shared::render::scene_view::SceneView;
 use crate::terrain::blend::Shading;
 use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::cover::{TILES_PERIOD, planes};
 use crate::terrain::fields::Fields;
 use crate::terrain::generator::Generator;
 use crate::terrain::materials::Materials;
@@ -52,13 +53,16 @@ impl Land {
             spacing: terrain_scale as f32,
             run: (2.0 * terrain_scale * HEIGHT_ONE) as f32,
             tiling: (tiles / f64::from(size - 1)) as f32,
+            tiles_per_unit: (1.0 / self.config.tile()) as f32,
             zone_count: zones.zone_count,
             additive: Shading::default().weights.code(),
+            planes: planes(self.config.triplanar),
+            variation: self.config.variation as f32,
             first_patch: 0,
         };
         let patch = |(window, patch): (u32, [i32; 2])| TerrainPatch {
             origin: patch.map(|at| at * (size as i32 - 1)),
-            uv: patch.map(|at| (f64::from(at) * tiles).rem_euclid(1.0) as f32),
+            uv: patch.map(|at| (f64::from(at) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
             window,
             unused: 0,
         };

@@ -1,0 +1,125 @@
+//! The top-down colour map: the CPU reference of `kernels/terrain/blend.wgsl` and `wgsl/terrain/zones.wgsl`.
+
+mod texturing;
+
+use glam::Vec3;
+
+use crate::asset::light::lambert;
+use crate::srgb;
+use crate::terrain::blend::{Shading, WeightMode};
+#[cfg(feature = "verify")]
+use crate::terrain::cover::MapZone;
+use crate::terrain::cover::{Cover, ShaderZone};
+use crate::terrain::normals::reference::unit_normal;
+pub use texturing::{color_variation, triplanar_weights, varied};
+
+/// The tangent of half the angle between a unit normal and the vertical: 0 on level ground, 1 on a wall.
+pub fn steepness(normal: [f32; 3]) -> f32 {
+    let [x, y, z] = normal;
+    (x * x + z * z).sqrt() / (1.0 + y)
+}
+
+/// The weight of a zone at `height` (B equation 3.6) and a steepness: by height 1 at `max`, falling linearly to 0 at `max` ±
+/// (`max` − `min`), times the two lines of the slope.
+pub fn zone_weight(zone: &ShaderZone, height: f32, steep: f32) -> f32 {
+    let range = zone.max - zone.min;
+    let line = |line: [f32; 2]| (line[0] * steep + line[1]).clamp(0.0, 1.0);
+    ((range - (height - zone.max).abs()) / range).max(0.0) * (line(zone.rise) * line(zone.fall))
+}
+
+/// The factor of a weight by the height of a texel, 0 to 1.
+fn prominence(zone: &ShaderZone, texel_height: f32) -> f32 {
+    let squared = (1.0 + zone.height_blend * (0.9375 * texel_height - 0.9375)).powi(2);
+    squared * squared
+}
+
+/// The fraction of each zone's colour at `height`, in units, and a steepness, in the order of `zones`; `texel_heights` are those of
+/// the zones' textures there, 0 to 1.
+pub fn zone_fractions(
+    zones: &[ShaderZone],
+    (height, steep): (f32, f32),
+    texel_heights: &[f32],
+    weights: WeightMode,
+) -> Vec<f32> {
+    let all: Vec<f32> = zones.iter().map(|zone| zone_weight(zone, height, steep)).collect();
+    let factor = |((zone, texel), weight): ((&ShaderZone, &f32), &f32)| weight * prominence(zone, *texel);
+    let factors: Vec<f32> = zones.iter().zip(texel_heights).zip(&all).map(factor).collect();
+    let total: f32 = factors.iter().sum();
+    if total > 0.0 {
+        let sum = if weights == WeightMode::Additive { all.iter().sum() } else { 1.0 };
+        return factors.into_iter().map(|factor| sum * (factor / total)).collect();
+    }
+    if weights == WeightMode::Additive {
+        return vec![0.0; zones.len()];
+    }
+    let distance = |zone: &ShaderZone| (height - zone.max).abs() - (zone.max - zone.min);
+    let nearest = (zones.iter().enumerate())
+        .min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)))
+        .map_or(0, |(index, _)| index);
+    (0..zones.len()).map(|index| if index == nearest { 1.0 } else { 0.0 }).collect()
+}
+
+/// The colour map of a window with `width` samples per row, without the outermost ring of samples: RGBA, 8 bits
+/// each, red in the lowest byte. `place` is that of the first sample inside ([`Cover::place`]).
+pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, place: [u32; 2]) -> Vec<u32> {
+    let at = |x: usize, y: usize| window[y * width + x];
+    let zones: Vec<ShaderZone> = cover.zones.iter().map(|map_zone| map_zone.zone).collect();
+    let [step, _] = cover.steps();
+    let mut pixels = Vec::with_capacity((width - 2) * (width - 2));
+    for y in 1..width - 1 {
+        for x in 1..width - 1 {
+            let gradient = [at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1)];
+            let normal = unit_normal(gradient, cover.terrain_scale);
+            let facing = Vec3::from(normal).dot(shading.light.into()).max(0.0);
+            let light = lambert(shading.ambient, facing);
+            let [east, south] = [(place[0], x), (place[1], y)]
+                .map(|(first, at)| first.wrapping_add((at as u32 - 1).wrapping_mul(step)));
+            let tiles = [east, texturing::tiles_up(at(x, y), cover), south];
+            let color = ground_color(cover, &zones, shading.weights, at(x, y), normal, tiles);
+            let bytes = color.map(|channel| srgb::byte(channel * light));
+            pixels.push(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], 255]));
+        }
+    }
+    pixels
+}
+
+/// The sum of weights at each pixel of a map. Its colour is divided by their products with factors of height maps, which have
+/// small relative errors.
+#[cfg(feature = "verify")]
+pub(crate) fn totals(window: &[i32], width: usize, cover: &Cover) -> Vec<f32> {
+    let at = |x: usize, y: usize| window[y * width + x];
+    let mut totals = Vec::new();
+    for (y, x) in (1..width - 1).flat_map(|y| (1..width - 1).map(move |x| (y, x))) {
+        let gradient = [at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1)];
+        let steep = steepness(unit_normal(gradient, cover.terrain_scale));
+        let weight = |zone: &MapZone| zone_weight(&zone.zone, at(x, y) as f32 / 65_536.0, steep);
+        totals.push(cover.zones.iter().map(weight).sum());
+    }
+    totals
+}
+
+/// The colour of the ground at a place, given in 2^-22 tiles: east, up, south.
+fn ground_color(
+    cover: &Cover,
+    zones: &[ShaderZone],
+    weights: WeightMode,
+    height: i32,
+    normal: [f32; 3],
+    tiles: [u32; 3],
+) -> [f32; 3] {
+    let texels: Vec<[f32; 4]> =
+        cover.zones.iter().map(|zone| texturing::texel(cover, zone, normal, tiles)).collect();
+    let texel_heights: Vec<f32> = texels.iter().map(|texel| texel[3]).collect();
+    let place = (height as f32 / 65_536.0, steepness(normal));
+    let mut color = [0.0; 3];
+    for (fraction, texel) in zone_fractions(zones, place, &texel_heights, weights).iter().zip(&texels) {
+        for (sum, channel) in color.iter_mut().zip(texel) {
+            *sum += fraction * channel;
+        }
+    }
+    if cover.variation == 0.0 {
+        return color;
+    }
+    let [east, _, south] = tiles.map(|tiles| (tiles >> 8) as f32 / 16_384.0);
+    varied(color, color_variation([east, south]), cover.variation)
+}

@@ -1,0 +1,79 @@
+//! How textures lie on the ground: the CPU reference of `wgsl/terrain/texturing.wgsl`.
+
+use crate::terrain::cover::{Cover, MapZone, TILES_PERIOD};
+
+/// The weights of the planes of triplanar mapping by a unit normal: from above, from the east or west, from the north or south.
+pub fn triplanar_weights([x, y, z]: [f32; 3]) -> [f32; 3] {
+    let squared = [y, x, z].map(|part| (part.abs() - 0.3).max(0.0).powi(2));
+    squared.map(|part| part / (squared[0] + squared[1] + squared[2]))
+}
+
+/// A height in 2^-22 tiles, rounded down, without whole multiples of [`TILES_PERIOD`].
+pub(super) fn tiles_up(height: i32, cover: &Cover) -> u32 {
+    ((i64::from(height) * i64::from(cover.steps()[1])) >> 16) as u32
+}
+
+/// The linear colour of a zone's texture at a place, and its height.
+pub(super) fn texel(
+    cover: &Cover,
+    zone: &MapZone,
+    normal: [f32; 3],
+    [east, up, south]: [u32; 3],
+) -> [f32; 4] {
+    let texel = |at: [u32; 2]| {
+        let edge = 1 << zone.edge_log2;
+        let [x, y] = at.map(|tiles| {
+            let repeated = u64::from(tiles) * zone.zone.repeats as u64;
+            (repeated >> (22 - zone.edge_log2)) as usize % edge
+        });
+        cover.texels[zone.first as usize + y * edge + x].map(|channel| f32::from(channel) / 65_535.0)
+    };
+    let above = texel([east, south]);
+    if !cover.triplanar {
+        return above;
+    }
+    let down = up.wrapping_neg();
+    let planes = [above, texel([south, down]), texel([east, down])];
+    let weights = triplanar_weights(normal);
+    std::array::from_fn(|channel| (0..3).map(|plane| weights[plane] * planes[plane][channel]).sum())
+}
+
+/// The random word of a cell.
+fn word(x: u32, y: u32) -> u32 {
+    let mut word = x.wrapping_mul(0x9e37_79b1).wrapping_add(y.wrapping_mul(0x85eb_ca77));
+    word = (word ^ (word >> 16)).wrapping_mul(0x7feb_352d);
+    word = (word ^ (word >> 15)).wrapping_mul(0x846c_a68b);
+    word ^ (word >> 16)
+}
+
+/// Noise at texture coordinates, seen from above: brightness and warmth, each −1 to 1.
+pub fn color_variation(tiles: [f32; 2]) -> [f32; 2] {
+    let mut sum = [0.0_f32; 2];
+    for octave in 0..3 {
+        let width = [2.0, 8.0, 32.0][octave as usize];
+        let period = TILES_PERIOD / width as u32;
+        let cells = tiles.map(|tiles| tiles / width);
+        let inside = cells.map(|at| at - at.floor());
+        let [s, t] = inside.map(|at| at * at * (3.0 - 2.0 * at));
+        let [x, y] = cells.map(|at| at.floor() as i32 as u32);
+        let corner = |dx: u32, dy: u32| {
+            let [x, y] = [x.wrapping_add(dx), y.wrapping_add(dy)].map(|at| at % period);
+            let word = word(x + octave * 4096, y);
+            [word >> 16, word & 0xffff].map(|half| half as f32)
+        };
+        let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+        for (at, sum) in sum.iter_mut().enumerate() {
+            let (west, east) = (a[at] + (c[at] - a[at]) * t, b[at] + (d[at] - b[at]) * t);
+            *sum += west + (east - west) * s;
+        }
+    }
+    sum.map(|sum| sum * (2.0 / 196_605.0) - 1.0)
+}
+
+/// A linear colour under a variation of `strength`, 0 to 1.
+pub fn varied(color: [f32; 3], [brightness, warmth]: [f32; 2], strength: f32) -> [f32; 3] {
+    let tint = [0.2, 0.05, -0.25];
+    std::array::from_fn(|channel| {
+        color[channel] * (1.0 + strength * (0.5 * brightness + tint[channel] * warmth))
+    })
+}

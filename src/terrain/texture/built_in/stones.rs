@@ -1,0 +1,80 @@
+//! Stones: loose ones on soil, and a slope that consists of them.
+
+use super::apart;
+use crate::terrain::texture::field::{made, mixed, ramp, stretched, texels as shaded};
+use crate::terrain::texture::noise::{cell, gradient, octaves, random, smoothstep};
+
+/// A stone at a point, or none.
+struct Stone {
+    /// Height above what it lies on, 0 where there is none.
+    height: f32,
+    /// Its brightness and its hue, 0 to 1.
+    look: [f32; 2],
+}
+
+/// Stones of one size, `count` in a row; of the places for stones, the part `dense` has one.
+fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
+    let bend = 0.16 / count as f32;
+    let bent = [
+        at[0] + bend * gradient(key + 1, [2 * count; 2], at),
+        at[1] + bend * gradient(key + 2, [2 * count; 2], at),
+    ];
+    let cell = cell(key, [count; 2], bent);
+    let number = |use_of: u32| random(key + 3, [cell.word, use_of]);
+    let gap = cell.distances[1] - cell.distances[0];
+    // Faces: the top is a plane, tilted, and cut by two others.
+    let face =
+        |first: u32| cell.offset[0] * (number(first) - 0.5) + cell.offset[1] * (number(first + 1) - 0.5);
+    let top = (0.55 + 0.45 * number(0) + 0.7 * face(1)).min(0.8 + 1.6 * face(3)).min(0.85 + 1.6 * face(5));
+    let height = if number(7) < dense { smoothstep(0.02, 0.22, gap) * top.max(0.1) } else { 0.0 };
+    Stone { height, look: [number(8), number(9)] }
+}
+
+/// The colour of a stone.
+fn rock(look: [f32; 2], tone: f32) -> [f32; 3] {
+    let grey = ramp(&[[0.36, 0.34, 0.32], [0.52, 0.50, 0.47], [0.66, 0.64, 0.60]], look[0] + tone);
+    mixed(grey, [grey[0] * 1.12, grey[1] * 0.98, grey[2] * 0.82], look[1])
+}
+
+/// A slope of broken stones, large ones over small ones.
+pub fn scree() -> Vec<u8> {
+    let (heights, colors) = apart(made(|at| {
+        let grain = octaves(301, [60, 60], 3, 0.6, at);
+        let mut found =
+            (0.06 + 0.03 * grain, [0.27, 0.25, 0.22].map(|channel| channel * (1.0 + 0.3 * grain)));
+        for (key, count, dense, size) in [(311, 44, 0.9, 0.36), (331, 24, 0.8, 0.62), (351, 13, 0.55, 1.0)] {
+            let stone = stone(key, count, dense, at);
+            let height = size * stone.height;
+            if stone.height > 0.05 && height > found.0 {
+                found = (height + 0.02 * grain, rock(stone.look, 0.16 * grain + 0.15 * (stone.height - 0.6)));
+            }
+        }
+        found
+    }));
+    shaded(&stretched(heights), colors, 1.0)
+}
+
+/// Crumbs of earth with few stones.
+pub fn soil() -> Vec<u8> {
+    let (heights, colors) = apart(made(|at| {
+        let crumbs = octaves(401, [14, 14], 6, 0.68, at);
+        let clod = cell(411, [37; 2], at);
+        let lump = 1.0 - clod.distances[0];
+        let damp = octaves(421, [7, 7], 3, 0.5, at);
+        let earth = 0.30 + 0.26 * crumbs + 0.14 * lump;
+        let color = ramp(
+            &[[0.19, 0.14, 0.10], [0.33, 0.25, 0.18], [0.45, 0.36, 0.27]],
+            0.45 + 0.5 * crumbs + 0.2 * (lump - 0.6) - 0.12 * damp,
+        );
+        let mut found = (earth, color);
+        for (key, count, dense, size) in [(431, 64, 0.12, 0.45), (451, 29, 0.06, 0.7)] {
+            let stone = stone(key, count, dense, at);
+            let height = 0.12 + size * stone.height;
+            if stone.height > 0.05 && height > found.0 {
+                found = (height, mixed(rock(stone.look, 0.1 * crumbs - 0.1), color, 0.5));
+            }
+        }
+        found
+    }));
+    shaded(&stretched(heights), colors, 1.0)
+}

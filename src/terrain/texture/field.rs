@@ -1,0 +1,82 @@
+//! Numbers at the texels of a tile, and what is made of them all: blurs, and colours that are shaded by heights.
+
+use rayon::prelude::*;
+
+use super::TEXTURE_SIZE;
+
+/// Texels along an edge.
+const EDGE: usize = TEXTURE_SIZE as usize;
+
+/// A number for each texel, row by row.
+pub type Field = Vec<f32>;
+
+/// What `of` gives at the middle of each texel, 0 to 1 along each edge.
+pub fn made<T: Send>(of: impl Fn([f32; 2]) -> T + Sync) -> Vec<T> {
+    let middle = |index: usize| (index as f32 + 0.5) / EDGE as f32;
+    (0..EDGE * EDGE).into_par_iter().map(|at| of([middle(at % EDGE), middle(at / EDGE)])).collect()
+}
+
+/// The means of squares of 2 · `radius` + 1 texels.
+pub fn blurred(field: &[f32], radius: usize) -> Field {
+    let rows = transposed_means(field, radius);
+    transposed_means(&rows, radius)
+}
+
+/// The means of 2 · `radius` + 1 texels of a row, with rows and columns exchanged.
+fn transposed_means(field: &[f32], radius: usize) -> Field {
+    let mut means = vec![0.0; EDGE * EDGE];
+    for (y, row) in field.chunks_exact(EDGE).enumerate() {
+        let at = |x: usize| f64::from(row[x % EDGE]);
+        let mut sum: f64 = (0..=2 * radius).map(|x| at(x + EDGE - radius)).sum();
+        for x in 0..EDGE {
+            means[x * EDGE + y] = (sum / (2 * radius + 1) as f64) as f32;
+            sum += at(x + radius + 1) - at(x + EDGE - radius);
+        }
+    }
+    means
+}
+
+/// Stretches numbers to 0 to 1.
+pub fn stretched(mut field: Field) -> Field {
+    let low = field.iter().copied().fold(f32::MAX, f32::min);
+    let high = field.iter().copied().fold(f32::MIN, f32::max);
+    field.iter_mut().for_each(|value| *value = (*value - low) / (high - low).max(1e-6));
+    field
+}
+
+/// Texels from heights, 0 to 1, and sRGB colours, 0 to 1. What lies deeper than its surroundings is darker by `shade`, and large
+/// differences are taken out, because they would show that the texture repeats.
+pub fn texels(heights: &[f32], mut colors: Vec<[f32; 3]>, shade: f32) -> Vec<u8> {
+    for (radius, strength) in [(2, 1.6), (8, 1.0)] {
+        let around = blurred(heights, radius);
+        for ((color, height), around) in colors.iter_mut().zip(heights).zip(&around) {
+            let factor = 1.0 + shade * strength * (height - around).clamp(-0.5, 0.16);
+            *color = color.map(|channel| channel * factor);
+        }
+    }
+    for channel in 0..3 {
+        let values: Field = colors.iter().map(|color| color[channel]).collect();
+        let mean = values.iter().map(|value| f64::from(*value)).sum::<f64>() as f32 / values.len() as f32;
+        for (color, around) in colors.iter_mut().zip(blurred(&values, 40)) {
+            color[channel] *= 1.0 + 0.8 * (mean / around.max(1e-3) - 1.0);
+        }
+    }
+    let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    let texel = |(color, height): (&[f32; 3], &f32)| {
+        let [red, green, blue] = color.map(byte);
+        [red, green, blue, byte(*height)]
+    };
+    colors.iter().zip(heights).flat_map(texel).collect()
+}
+
+/// The colour at 0 to 1 of a ramp of colours.
+pub fn ramp(colors: &[[f32; 3]], at: f32) -> [f32; 3] {
+    let scaled = at.clamp(0.0, 1.0) * (colors.len() - 1) as f32;
+    let first = (scaled as usize).min(colors.len() - 2);
+    mixed(colors[first], colors[first + 1], scaled - first as f32)
+}
+
+/// From `from` at 0 to `to` at 1.
+pub fn mixed(from: [f32; 3], to: [f32; 3], at: f32) -> [f32; 3] {
+    std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * at)
+}

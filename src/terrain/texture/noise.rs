@@ -1,0 +1,97 @@
+//! Noise that repeats after a tile: gradient noise (Perlin 2002) and cells (Worley 1996). Only arithmetic that is the same on
+//! every machine is used.
+
+/// A random word of a lattice point; `key` separates the uses.
+pub fn word(key: u32, [x, y]: [u32; 2]) -> u32 {
+    let mut word = key.wrapping_mul(0xc2b2_ae3d) ^ x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77);
+    for shift in [16, 15] {
+        word = (word ^ (word >> shift)).wrapping_mul(0x7feb_352d);
+    }
+    word ^ (word >> 16)
+}
+
+/// A random number, 0 to 1.
+pub fn random(key: u32, at: [u32; 2]) -> f32 {
+    (word(key, at) >> 8) as f32 / 16_777_216.0
+}
+
+/// 0 below `low`, 1 above `high`, smooth between them.
+pub fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
+    let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Gradient noise of a lattice with `periods` cells along the tile's edges, about −1 to 1.
+pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
+    let (x, y) = (u * periods[0] as f32, v * periods[1] as f32);
+    let (cell_x, cell_y) = (x.floor(), y.floor());
+    let (s, t) = (x - cell_x, y - cell_y);
+    let wrapped = |cell: f32, step: i32, period: u32| (cell as i32 + step).rem_euclid(period as i32) as u32;
+    let corner = |dx: i32, dy: i32| {
+        let word = word(key, [wrapped(cell_x, dx, periods[0]), wrapped(cell_y, dy, periods[1])]);
+        let (s, t) = (s - dx as f32, t - dy as f32);
+        // Eight directions of about one length.
+        let [long, short] = if word & 4 == 0 { [s, t] } else { [t, s] };
+        let signed = |value: f32, bit: u32| if word & bit == 0 { value } else { -value };
+        signed(long, 1) * 1.3 + signed(short, 2) * 0.55
+    };
+    let fade = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    let (fade_s, fade_t) = (fade(s), fade(t));
+    let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+    mix(mix(corner(0, 0), corner(1, 0), fade_s), mix(corner(0, 1), corner(1, 1), fade_s), fade_t)
+}
+
+/// Octaves of gradient noise, each with twice the frequency of the one before and `gain` times its weight; about −1 to 1.
+pub fn octaves(key: u32, periods: [u32; 2], count: u32, gain: f32, at: [f32; 2]) -> f32 {
+    let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
+    for octave in 0..count {
+        sum += weight * gradient(key + octave, periods.map(|period| period << octave), at);
+        total += weight;
+        weight *= gain;
+    }
+    sum / total
+}
+
+/// Octaves of noise with sharp ridges, 0 to 1.
+pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
+    let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
+    for octave in 0..count {
+        let ridge = 1.0 - gradient(key + octave, [period << octave; 2], at).abs().min(1.0);
+        sum += weight * ridge * ridge;
+        total += weight;
+        weight *= 0.55;
+    }
+    sum / total
+}
+
+/// The cell that a point lies in, among cells around one random point for each square of a lattice.
+#[derive(Debug, Clone, Copy)]
+pub struct Cell {
+    /// The distances to the nearest and the second nearest of these points, in squares.
+    pub distances: [f32; 2],
+    /// The way from the nearest of them, in squares.
+    pub offset: [f32; 2],
+    /// A random word of the cell.
+    pub word: u32,
+}
+
+/// The cell of a point.
+pub fn cell(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> Cell {
+    let (x, y) = (u * periods[0] as f32, v * periods[1] as f32);
+    let (cell_x, cell_y) = (x.floor(), y.floor());
+    let mut found = Cell { distances: [9.0; 2], offset: [0.0; 2], word: 0 };
+    for (dy, dx) in (-1..2).flat_map(|dy| (-1..2).map(move |dx| (dy, dx))) {
+        let square = [(cell_x, dx, periods[0]), (cell_y, dy, periods[1])]
+            .map(|(cell, step, period)| (cell as i32 + step).rem_euclid(period as i32) as u32);
+        let word = word(key, square);
+        let inside = [word & 0xffff, word >> 16].map(|half| half as f32 / 65_536.0);
+        let offset = [x - cell_x - dx as f32 - inside[0], y - cell_y - dy as f32 - inside[1]];
+        let distance = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+        if distance < found.distances[0] {
+            found = Cell { distances: [distance, found.distances[0]], offset, word };
+        } else if distance < found.distances[1] {
+            found.distances[1] = distance;
+        }
+    }
+    found
+}

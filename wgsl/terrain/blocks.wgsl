@@ -1,0 +1,48 @@
+// Which outputs a thread makes. The outputs of a window are cut into blocks, a thread makes one, and neighbouring threads make
+// neighbouring blocks of a row.
+
+struct Blocks {
+    // Blocks along a row of a window, and in a window.
+    per_row: u32,
+    per_window: u32,
+    // Blocks in all windows.
+    count: u32,
+    // Rows of a block.
+    rows: u32,
+}
+
+struct Block {
+    // Whether there is one for this thread.
+    there: bool,
+    window: u32,
+    // Column and row among the window's blocks.
+    at: vec2<u32>,
+}
+
+// The block of a thread of a workgroup of 64.
+fn block_of(blocks: Blocks, group: vec3<u32>, groups: vec3<u32>, lane: u32) -> Block {
+    let index = (group.y * groups.x + group.x) * 64u + lane;
+    let in_window = index % blocks.per_window;
+    let at = vec2<u32>(in_window % blocks.per_row, in_window / blocks.per_row);
+    return Block(index < blocks.count, index / blocks.per_window, at);
+}
+
+// A part of a row or column of blocks that does not cross from a rim into what lies inside it.
+struct Span {
+    start: u32,
+    end: u32,
+    // 0 before the inside, 1 inside, 2 behind it.
+    tile: u32,
+}
+
+// The samples of block `block`, at most `width`, along an edge of `inside` samples with a rim of `rim` at both ends.
+fn span_of(block: u32, width: u32, rim: u32, inside: u32) -> Span {
+    let rim_blocks = (rim + width - 1u) / width;
+    let inside_blocks = (inside + width - 1u) / width;
+    let tile = u32(block >= rim_blocks) + u32(block >= rim_blocks + inside_blocks);
+    let first = select(select(0u, rim_blocks, tile == 1u), rim_blocks + inside_blocks, tile == 2u);
+    let begin = select(select(0u, rim, tile == 1u), rim + inside, tile == 2u);
+    let length = select(rim, inside, tile == 1u);
+    let start = (block - first) * width;
+    return Span(begin + start, begin + min(start + width, length), tile);
+}
