@@ -5,6 +5,8 @@
 //! included: each stage frees what the next one does not read. An index of features takes a further two bits per sample
 //! and level.
 
+mod erosion;
+
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
@@ -13,14 +15,15 @@ use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::{Fields, REMEDY};
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch};
-use crate::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
+use crate::terrain::hydraulic::HydraulicPass;
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::smooth::SmoothPass;
-use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
+use crate::terrain::thermal::ThermalPass;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
 use crate::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
+use erosion::after;
 
 /// Generates the fields of one recipe.
 #[derive(Debug, Clone)]
@@ -247,40 +250,6 @@ impl Generator {
         Ok(windows)
     }
 
-    /// Thermal erosion of the first of two buffers.
-    async fn slide(
-        &self,
-        gpu: &Gpu,
-        thermal: Option<Thermal>,
-        both: [Fields; 2],
-    ) -> Result<[Fields; 2], Error> {
-        let Some(thermal) = thermal.filter(|thermal| thermal.iterations > 0) else { return Ok(both) };
-        let buffers = ThermalBuffers { windows: &both[0], other: &both[1] };
-        let job = self.thermal.prepare(gpu, thermal, self.recipe.config.terrain_scale, buffers)?;
-        job.run_async(gpu).await?;
-        Ok(after(both, thermal.iterations))
-    }
-
-    /// Hydraulic erosion of the first of two buffers.
-    async fn rain(
-        &self,
-        gpu: &Gpu,
-        (pass, hydraulic): (&HydraulicPass, Hydraulic),
-        both: [Fields; 2],
-    ) -> Result<[Fields; 2], Error> {
-        if hydraulic.iterations == 0 {
-            return Ok(both);
-        }
-        let points = HydraulicPass::flow_points(&both[0]);
-        let flow = |label| Buffer::new(gpu, label, points).map_err(|error| error.with_remedy(REMEDY));
-        let (flows, other_flows) = (flow("water and sediment")?, flow("other water and sediment")?);
-        let [windows, other] = &both;
-        let buffers = HydraulicBuffers { windows, other, flows: &flows, other_flows: &other_flows };
-        let job = pass.prepare(gpu, hydraulic, self.recipe.config.terrain_scale, buffers)?;
-        job.run_async(gpu).await?;
-        Ok(after(both, hydraulic.iterations))
-    }
-
     /// An index of every injected point of the windows; `injected` gives (column, row) for each window.
     fn index(&self, gpu: &Gpu, apron: u32, injected: &[Vec<(u32, u32)>]) -> Result<FeatureIndex, GpuError> {
         let width = self.recipe.config.patch_size + 2 * apron;
@@ -331,13 +300,6 @@ impl WindowPass {
             }
         }
     }
-}
-
-/// Two buffers after so many iterations that alternate between them, the one with the result first.
-fn after([windows, other]: [Fields; 2], iterations: u32) -> [Fields; 2] {
-    let width = windows.cropped(iterations).width;
-    let [made, rest] = if iterations.is_multiple_of(2) { [windows, other] } else { [other, windows] };
-    [Fields { width, ..made }, Fields { width: width.saturating_sub(2), ..rest }]
 }
 
 /// Splits `count` patches into as few parts of at most `most` patches as possible, the smaller parts first:

@@ -134,7 +134,10 @@ fn help_teaches() {
     for (arguments, words) in [
         (&["--help"][..], &["demo", "verify", "bench", "terrain", "shaders", "RELIEVO_ADAPTER"][..]),
         (&["pose", "--help"], &["builtin", "walk", "column by column", "--wrap"]),
-        (&["terrain", "--help"], &["patchSize", "precomputedHeights", "--thermal", "map.png", "report.json"]),
+        (
+            &["terrain", "--help"],
+            &["patchSize", "precomputedHeights", "--thermal", "--hydraulic", "map.png", "report.json"],
+        ),
     ] {
         let run = relievo(arguments);
         assert_eq!(run.code, Some(0));

@@ -39,6 +39,8 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/camera/path/0/at", r#"[1, "2", 3]"#, "camera.path[0].at[1] = 2", "must be a number"),
     ("/terrain/patches/1", "[0, 0.5]", "terrain.patches[1][1] = 0.5", "whole number"),
     // Ranges.
+    ("/terrain/config/hydraulic", r#"{"rain": 2}"#, "terrain.config.hydraulic.rain = 2", "0..=1"),
+    ("/terrain/config/thermalAfter", "{}", "terrain.config.thermalAfter", "iterations"),
     ("/terrain/config/patchSize", "18", "terrain.config.patchSize = 18", "2^n + 1"),
     ("/terrain/config/zones", "[]", "terrain.config.zones", "1 to 32"),
     ("/terrain/patches", "[]", "terrain.patches.len = 0", "1..=4096"),

@@ -7,12 +7,36 @@ use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer};
 use relievo::scene::{ObjectId, Ray, Scene, TerrainSource, TerrainStyle, View};
 use relievo::terrain::config::Config;
+use relievo::terrain::field::field;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;
 
 use crate::frame::{Frame, device};
 use crate::world::{SIZE, camera};
+
+/// The scene generates a recipe with all erosion: its ground is what the CPU computes.
+#[test]
+fn eroded_ground_is_that_of_the_reference() {
+    let recipe = Recipe::from_json(
+        r#"{"patchSize": 33, "scaleFactor": 9, "seed": "h", "interpolation": "smooth", "thermal": {"iterations": 2},
+            "hydraulic": {"iterations": 17, "rain": 0.01, "threshold": 1}, "thermalAfter": {"iterations": 3}}"#,
+    )
+    .expect("valid");
+    let stage = Stage::new(&device(), &TerrainSource::from(recipe.clone()).with_patches(&HERE));
+    let fields = field(&recipe, &HERE, 0).expect("valid");
+    let dry = field(&Recipe { hydraulic: None, ..recipe }, &HERE, 0).expect("valid");
+    assert!(fields != dry);
+    for (patch, heights) in HERE.iter().zip(&fields) {
+        for at in 0..33 * 33 {
+            let [x, z] = [at % 33, at / 33];
+            let place = [(0, x), (1, z)].map(|(axis, index)| f64::from(32 * patch[axis] + index));
+            let height = f64::from(heights[at as usize]) / 65_536.0;
+            let shown = stage.height(place[0], place[1]).expect("on a patch");
+            assert!((shown - height).abs() < 1e-9, "{place:?}: {shown} instead of {height}");
+        }
+    }
+}
 
 const HERE: [[i32; 2]; 4] = [[-1, -1], [0, -1], [-1, 0], [0, 0]];
 

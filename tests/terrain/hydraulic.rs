@@ -31,7 +31,7 @@ impl Torus {
         let inside = |at: usize| (at + self.side - 1) % self.side;
         let places = (0..width * width).map(|at| inside(at / width) * self.side + inside(at % width));
         let (ground, flow): (Vec<_>, Vec<_>) = places.map(|at| (self.ground[at], self.flow[at])).unzip();
-        let params = HydraulicParams { in_width: width as u32, ..*params };
+        let params = HydraulicParams { in_width: width as u32, wet: 1, ..*params };
         let (ground, flow) = hydraulic(&ground, &flow, &params);
         Self { side: self.side, ground, flow }
     }
@@ -159,13 +159,23 @@ fn parameters() -> impl Strategy<Value = (Hydraulic, f64)> {
     )
 }
 
-/// Random land, often at the limits of heights.
+/// Random land, often at the limits of heights, dry or with as much water and sediment as there may be.
 fn land() -> impl Strategy<Value = Torus> {
     let limit = HEIGHT_LIMIT as i32;
     let range = prop_oneof![Just(limit), Just(1 << 16), Just(1 << 22)];
-    (3..9_usize, range).prop_flat_map(move |(side, range)| {
+    let most = prop_oneof![Just(0), Just(1 << 16), Just(WATER_LIMIT)];
+    (3..9_usize, range, most).prop_flat_map(move |(side, range, most)| {
         let height = prop_oneof![6 => -range..=range, 1 => Just(range), 1 => Just(-range)];
-        prop::collection::vec(height, side * side).prop_map(move |ground| Torus::dry(side, ground))
+        let amount = || prop_oneof![2 => 0..=most, 1 => Just(most)];
+        let cell = (height, amount(), amount(), [0..=6144, 0..=6144, 0..=6144, 0..=6144]);
+        prop::collection::vec(cell, side * side).prop_map(move |cells| {
+            let flow = |(ground, water, sediment, shares): &(i32, i32, i32, [i32; 4])| {
+                let [west, east, north, south] = shares;
+                [*water, (*sediment).min(limit - ground), west | east << 16, north | south << 16]
+            };
+            let (ground, flow) = cells.iter().map(|cell| (cell.0, flow(cell))).unzip();
+            Torus { side, ground, flow }
+        })
     })
 }
 
@@ -208,7 +218,8 @@ proptest! {
             prop_assert_eq!(moved.water(), torus.water(), "cycle {}", cycle);
             for (moved, next) in moved.flow.iter().zip(&next.flow) {
                 let evaporated = i64::from(moved[0]) * i64::from(params.evaporation) / 32_768;
-                prop_assert_eq!(i64::from(next[0]), i64::from(moved[0]) - evaporated + i64::from(params.rain));
+                let left = i64::from(moved[0]) - evaporated + i64::from(params.rain);
+                prop_assert_eq!(i64::from(next[0]), left.min(WATER_LIMIT.into()));
             }
             torus = next;
         }

@@ -1,5 +1,6 @@
 //! `relievo terrain`: heights, colour maps and views of patches of terrain.
 
+mod erosion;
 mod look;
 
 use std::path::PathBuf;
@@ -22,10 +23,8 @@ use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::grid::Grid;
-use relievo::terrain::hydraulic::Hydraulic;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::texture::Texture;
-use relievo::terrain::thermal::Thermal;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -35,6 +34,7 @@ use crate::arguments::{one_of, pair};
 use crate::memory;
 use crate::output::say;
 use crate::progress::bar;
+use erosion::Erosion;
 use look::Look;
 
 const FEATURE_MODES: [(&str, FeatureMode); 2] =
@@ -81,22 +81,8 @@ pub struct Terrain {
     /// Coordinates of the first patch, in patches.
     #[arg(long, value_name = "PX,PY", default_value = "0,0", allow_hyphen_values = true)]
     origin: String,
-    /// Number of iterations of thermal erosion, which follows despiking.
-    #[arg(long, value_name = "ITERATIONS")]
-    thermal: Option<u32>,
-    /// The steepest slope that thermal erosion leaves alone, in degrees. Default: 35.
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
-    talus: Option<f64>,
-    /// Number of cycles of hydraulic erosion, which follows thermal erosion. Each patch is computed in a window with as many
-    /// samples around it as there are cycles: larger patches erode for less.
-    #[arg(long, value_name = "ITERATIONS")]
-    hydraulic: Option<u32>,
-    /// The depth of the rain in each cycle of hydraulic erosion, in spacings of samples.
-    #[arg(long, value_name = "DEPTH", requires = "hydraulic", allow_hyphen_values = true)]
-    rain: Option<f64>,
-    /// Number of iterations of thermal erosion after hydraulic erosion, with the slope of --talus.
-    #[arg(long, value_name = "ITERATIONS")]
-    thermal_after: Option<u32>,
+    #[command(flatten)]
+    erosion: Erosion,
     /// Replaces each point that is further than TAU (in height units) from the mean of its neighbours by this
     /// mean.
     #[arg(long, value_name = "TAU", allow_hyphen_values = true)]
@@ -189,7 +175,10 @@ impl Terrain {
     }
 
     fn plan(&self) -> Result<Plan, Error> {
-        let mut recipe = self.recipe()?;
+        let read = Recipe::from_file(&self.config)?;
+        let despike = self.despike.map(|threshold| Despike { threshold });
+        let mut recipe = Recipe { despike, ..self.erosion.applied(read)? };
+        recipe.validate(&[], 0)?;
         let grid = pair::<u32>("patches", &self.patches, 'x', "must be columns x rows, such as 3x3")?;
         let origin = pair::<i32>("origin", &self.origin, ',', "must be two patch coordinates, such as -1,2")?;
         let size =
@@ -213,33 +202,6 @@ impl Terrain {
         let textures = Texture::of_zones(&recipe.config.zones)?;
         let shading = Shading { weights: self.weights, ..Shading::default() };
         Ok(Plan { recipe, grid, patches, size, shading, textures })
-    }
-
-    /// The configuration's recipe, with what the arguments ask for in its place.
-    fn recipe(&self) -> Result<Recipe, Error> {
-        let read = Recipe::from_file(&self.config)?;
-        let thermal = |iterations: Option<u32>, given: Option<Thermal>| {
-            let talus = self.talus.unwrap_or(given.unwrap_or_default().talus);
-            iterations.or(given.map(|given| given.iterations)).map(|iterations| Thermal { iterations, talus })
-        };
-        let hydraulic = self.hydraulic.map(|iterations| {
-            let given = read.hydraulic.unwrap_or_default();
-            Hydraulic { iterations, rain: self.rain.unwrap_or(given.rain), ..given }
-        });
-        let recipe = Recipe {
-            despike: self.despike.map(|threshold| Despike { threshold }),
-            thermal: thermal(self.thermal, read.thermal),
-            hydraulic: hydraulic.or(read.hydraulic),
-            thermal_after: thermal(self.thermal_after, read.thermal_after),
-            ..read
-        };
-        if let (Some(talus), None, None) = (self.talus, recipe.thermal, recipe.thermal_after) {
-            return Err(
-                InputError::new("talus", talus, "must stand with --thermal or --thermal-after").into()
-            );
-        }
-        recipe.validate(&[], 0)?;
-        Ok(recipe)
     }
 
     fn read_features(&self, config: &Config, grid: Grid, width: u32) -> Result<Features, Error> {

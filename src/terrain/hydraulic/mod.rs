@@ -50,7 +50,7 @@ pub struct Hydraulic {
     /// The steepest stable bank, in degrees, 0 to 89. Default 35.
     pub talus: f64,
     /// The fraction of the difference between two neighbours that creeps down in a cycle, 0 to 1/16. It rounds ridges, and the
-    /// more of it, the further apart are valleys. Default 0.01.
+    /// more of it, the further apart are valleys. Default 0.005.
     pub creep: f64,
 }
 
@@ -65,7 +65,7 @@ impl Default for Hydraulic {
             erosion: 0.01,
             deposition: 0.02,
             talus: 35.0,
-            creep: 0.01,
+            creep: 0.005,
         }
     }
 }

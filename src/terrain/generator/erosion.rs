@@ -1,0 +1,51 @@
+//! Erosion of windows, which alternates between them and a second buffer.
+
+use super::Generator;
+use crate::Error;
+use crate::gpu::{Buffer, Gpu};
+use crate::terrain::fields::{Fields, REMEDY};
+use crate::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
+use crate::terrain::thermal::{Thermal, ThermalBuffers};
+
+impl Generator {
+    /// Thermal erosion of the first of two buffers.
+    pub(super) async fn slide(
+        &self,
+        gpu: &Gpu,
+        thermal: Option<Thermal>,
+        both: [Fields; 2],
+    ) -> Result<[Fields; 2], Error> {
+        let Some(thermal) = thermal.filter(|thermal| thermal.iterations > 0) else { return Ok(both) };
+        let buffers = ThermalBuffers { windows: &both[0], other: &both[1] };
+        let job = self.thermal.prepare(gpu, thermal, self.recipe.config.terrain_scale, buffers)?;
+        job.run_async(gpu).await?;
+        Ok(after(both, thermal.iterations))
+    }
+
+    /// Hydraulic erosion of the first of two buffers.
+    pub(super) async fn rain(
+        &self,
+        gpu: &Gpu,
+        (pass, hydraulic): (&HydraulicPass, Hydraulic),
+        both: [Fields; 2],
+    ) -> Result<[Fields; 2], Error> {
+        if hydraulic.iterations == 0 {
+            return Ok(both);
+        }
+        let points = HydraulicPass::flow_points(&both[0]);
+        let flow = |label| Buffer::new(gpu, label, points).map_err(|error| error.with_remedy(REMEDY));
+        let (flows, other_flows) = (flow("water and sediment")?, flow("other water and sediment")?);
+        let [windows, other] = &both;
+        let buffers = HydraulicBuffers { windows, other, flows: &flows, other_flows: &other_flows };
+        let job = pass.prepare(gpu, hydraulic, self.recipe.config.terrain_scale, buffers)?;
+        job.run_async(gpu).await?;
+        Ok(after(both, hydraulic.iterations))
+    }
+}
+
+/// Two buffers after so many iterations that alternate between them, the one with the result first.
+pub(super) fn after([windows, other]: [Fields; 2], iterations: u32) -> [Fields; 2] {
+    let width = windows.cropped(iterations).width;
+    let [made, rest] = if iterations.is_multiple_of(2) { [windows, other] } else { [other, windows] };
+    [Fields { width, ..made }, Fields { width: width.saturating_sub(2), ..rest }]
+}
