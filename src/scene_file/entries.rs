@@ -8,12 +8,15 @@ use crate::animation::Wrap;
 use crate::surface::Shadow;
 use crate::surface::relief::Method;
 use crate::terrain::config::Config;
+use crate::terrain::morph::Morph;
 
 /// The terrain.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TerrainEntry {
     pub config: Config,
     pub patches: Vec<[i32; 2]>,
+    /// What the heights become, and how far they are on the way.
+    pub target: Option<(Config, Morph)>,
 }
 
 /// A model with its instances.

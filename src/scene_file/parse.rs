@@ -12,6 +12,7 @@ use crate::InputError;
 use crate::asset::Light;
 use crate::scene::Quality;
 use crate::terrain::config::Config;
+use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
 /// The most entries of `meshes` and of `characters`.
@@ -106,13 +107,8 @@ impl SceneFile {
 }
 
 fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
-    let fields = at.fields(&["config", "patches"])?;
-    let config = fields.need("config", "the configuration of `relievo terrain`")?;
-    if !config.value().is_object() {
-        return Err(config.error("must be an object"));
-    }
-    let parsed = Config::from_json(&config.value().to_string());
-    let parsed = parsed.map_err(|error| below(&config.path, "config", error))?;
+    let fields = at.fields(&["config", "patches", "target", "time"])?;
+    let parsed = terrain_config(&fields.need("config", "the configuration of `relievo terrain`")?)?;
     let patches = match fields.get("patches") {
         Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
         None => vec![[0, 0]],
@@ -131,7 +127,33 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         let bound = format!("must have at most {MAX_HEIGHTS} heights together, and would have {heights}");
         return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
     }
-    Ok(TerrainEntry { config: parsed, patches })
+    let target = target(&fields, &parsed, &patches)?;
+    Ok(TerrainEntry { config: parsed, patches, target })
+}
+
+fn terrain_config(at: &At<'_>) -> Result<Config, InputError> {
+    if !at.value().is_object() {
+        return Err(at.error("must be an object"));
+    }
+    Config::from_json(&at.value().to_string()).map_err(|error| below(&at.path, "config", error))
+}
+
+/// What the heights of `config` become, if anything: half way unless there is a time.
+fn target(
+    fields: &Fields<'_>,
+    config: &Config,
+    patches: &[[i32; 2]],
+) -> Result<Option<(Config, Morph)>, InputError> {
+    let time = fields.maybe("time", |at| at.number(0.0, 1.0))?;
+    let Some(at) = fields.get("target") else {
+        let missing = |_| Err(fields.missing("target", "what the heights become at time 1"));
+        return time.map_or(Ok(None), missing);
+    };
+    let target = terrain_config(&at)?;
+    let refused = |error| below(&at.path, "config", error);
+    check_target(config, &target).map_err(refused)?;
+    Recipe::new(target.clone()).validate(patches, 1).map_err(refused)?;
+    Ok(Some((target, Morph { time: time.unwrap_or(0.5) })))
 }
 
 fn patch(at: &At<'_>) -> Result<[i32; 2], InputError> {

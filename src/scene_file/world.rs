@@ -13,6 +13,7 @@ use super::spec::SunOptions;
 use crate::asset::Model;
 use crate::gpu::Gpu;
 use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource};
+use crate::terrain::recipe::Recipe;
 use crate::{Error, InputError};
 
 /// A scene that was built from a file, with the file's camera and quality.
@@ -91,6 +92,10 @@ impl LoadedScene {
             let source = TerrainSource::new(terrain.config.clone())
                 .with_patches(&terrain.patches)
                 .with_textures(self.textures.clone());
+            let source = match &terrain.target {
+                Some((target, morph)) => source.with_target(Recipe::new(target.clone()), *morph),
+                None => source,
+            };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
             let name = terrain.config.seed.clone();
