@@ -11,6 +11,7 @@ use relievo::terrain::generator::Generator;
 use relievo::terrain::morph::Morph;
 use relievo::terrain::morph::reference::morph;
 use relievo::terrain::recipe::Recipe;
+use relievo::terrain::thermal::Thermal;
 
 use crate::frame::{Frame, device};
 use crate::world::{SIZE, camera};
@@ -21,18 +22,24 @@ fn ends() -> [Config; 2] {
     [("embed", 6.0), ("another", 9.0)].map(|(seed, height)| Config::new(33, height, seed).expect("valid"))
 }
 
+/// The first is eroded.
+fn recipes() -> [Recipe; 2] {
+    let [from, to] = ends().map(Recipe::new);
+    [Recipe { thermal: Some(Thermal { iterations: 3, ..Thermal::default() }), ..from }, to]
+}
+
 fn source(time: f64) -> TerrainSource {
-    let [from, to] = ends();
-    TerrainSource::new(from).with_patches(&HERE).with_target(Recipe::new(to), Morph { time })
+    let [from, to] = recipes();
+    TerrainSource::from(from).with_patches(&HERE).with_target(to, Morph { time })
 }
 
 /// Terrain made from the heights at a time, which the host computed.
 fn between(gpu: &Gpu, time: f64) -> TerrainSource {
-    let windows = ends().map(|config| {
-        let generator = Generator::new(gpu, Recipe::new(config)).expect("compiled");
-        generator.generate(gpu, &HERE, 1, &mut |_| ()).expect("generated").remove(0)
+    let [from, to] = recipes().map(|recipe| {
+        let generator = Generator::new(gpu, recipe).expect("compiled");
+        let fields = generator.generate(gpu, &HERE, 1, &mut |_| ()).expect("generated").remove(0);
+        fields.read_blocking(gpu).expect("read").concat()
     });
-    let [from, to] = [0, 1].map(|end: usize| windows[end].heights.read_blocking(gpu).expect("read"));
     let fields = Fields::new(gpu, "between", 35, 4).expect("allocated");
     fields.heights.write(gpu, &morph(&from, &to, Morph { time }.fixed_time())).expect("written");
     TerrainSource::from_fields(ends()[0].clone(), fields, &HERE)

@@ -18,7 +18,7 @@ impl MorphedFields {
     /// the blend has been recorded.
     ///
     /// # Errors
-    /// [`InputError`] for other numbers of parts, widths or counts; [`crate::gpu::GpuError`].
+    /// [`InputError`] for other numbers of parts, widths or counts, and for buffers that are too short; [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, from: &[Fields], to: &[Fields]) -> Result<Self, Error> {
         if to.len() != from.len() {
             let bound = format!("must be {}, as from.len", from.len());
@@ -32,9 +32,12 @@ impl MorphedFields {
                 let bound = format!("must be {from}, as from[{part}].{field}");
                 return Err(InputError::new(format!("to[{part}].{field}"), to, bound).into());
             }
+            // After erosion a buffer has more room than its fields take.
+            from.check(&format!("from[{part}]"), 0)?;
+            to.check(&format!("to[{part}]"), 0)?;
             let between = Fields::new(gpu, "terrain heights", from.width, from.count)?;
             let buffers = MorphBuffers { from: &from.heights, to: &to.heights, heights: &between.heights };
-            jobs.push(pass.prepare(gpu, buffers)?);
+            jobs.push(pass.prepare_first(gpu, buffers, between.points(0) as u32)?);
             fields.push(between);
         }
         Ok(Self { fields, jobs })

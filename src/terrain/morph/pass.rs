@@ -44,7 +44,17 @@ impl MorphPass {
                 return Err(InputError::new(field, len, bound).into());
             }
         }
-        let points = from.len() as u32;
+        Ok(self.prepare_first(gpu, buffers, from.len() as u32)?)
+    }
+
+    /// Prepares a blend of the first `points` heights, which all buffers hold.
+    pub(crate) fn prepare_first(
+        &self,
+        gpu: &Gpu,
+        buffers: MorphBuffers<'_>,
+        points: u32,
+    ) -> Result<MorphJob, GpuError> {
+        let MorphBuffers { from, to, heights } = buffers;
         let params = Uniform::new(gpu, "morph", &MorphParams { points, time: 0 })?;
         let group = bindings::Group {
             params: &params,
