@@ -31,6 +31,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/pad", run: terrain::pad::bench::cases },
     Stem { name: "terrain/despike", run: terrain::despike::bench::cases },
     Stem { name: "terrain/thermal", run: terrain::thermal::bench::cases },
+    Stem { name: "terrain/hydraulic", run: terrain::hydraulic::bench::cases },
     Stem { name: "terrain/normals", run: terrain::normals::bench::cases },
     Stem { name: "terrain/morph", run: terrain::morph::bench::cases },
     Stem { name: "terrain/blend", run: terrain::blend::bench::cases },

@@ -33,6 +33,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "terrain/pad", run: terrain::pad::verify::cases },
     Stem { name: "terrain/despike", run: terrain::despike::verify::cases },
     Stem { name: "terrain/thermal", run: terrain::thermal::verify::cases },
+    Stem { name: "terrain/hydraulic", run: terrain::hydraulic::verify::cases },
     Stem { name: "terrain/normals", run: terrain::normals::verify::cases },
     Stem { name: "terrain/morph", run: terrain::morph::verify::cases },
     Stem { name: "terrain/blend", run: terrain::blend::verify::cases },

@@ -7,16 +7,16 @@ use glam::{DVec3, Quat, Vec3};
 use crate::animation::Wrap;
 use crate::surface::Shadow;
 use crate::surface::relief::Method;
-use crate::terrain::config::Config;
 use crate::terrain::morph::Morph;
+use crate::terrain::recipe::Recipe;
 
 /// The terrain.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TerrainEntry {
-    pub config: Config,
+    pub recipe: Recipe,
     pub patches: Vec<[i32; 2]>,
     /// What the heights become, and how far they are on the way.
-    pub target: Option<(Config, Morph)>,
+    pub target: Option<(Recipe, Morph)>,
 }
 
 /// A model with its instances.

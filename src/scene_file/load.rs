@@ -74,7 +74,7 @@ impl SceneFile {
     /// that does not suit its use, and for a clip that a model does not have.
     pub fn load(&self, read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> Result<LoadedScene, InputError> {
         let mut files = Files { read, models: HashMap::new(), levelled: HashMap::new() };
-        let zones = self.terrain.iter().flat_map(|terrain| &terrain.config.zones).enumerate();
+        let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones).enumerate();
         let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
             ZoneTexture::BuiltIn(kind) => Ok(Texture::built_in(kind)),
             ZoneTexture::File(path) => {

@@ -11,7 +11,6 @@ use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
 use crate::scene::Quality;
-use crate::terrain::config::Config;
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
@@ -108,13 +107,12 @@ impl SceneFile {
 
 fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
     let fields = at.fields(&["config", "patches", "target", "time"])?;
-    let parsed = terrain_config(&fields.need("config", "the configuration of `relievo terrain`")?)?;
+    let recipe = terrain_recipe(&fields.need("config", "the configuration of `relievo terrain`")?)?;
     let patches = match fields.get("patches") {
         Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
         None => vec![[0, 0]],
     };
     let path = format!("{}.patches", at.path);
-    let recipe = Recipe::new(parsed.clone());
     for (index, patch) in patches.iter().enumerate() {
         let own = || format!("{path}[{index}]");
         if patches[..index].contains(patch) {
@@ -122,37 +120,37 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         }
         recipe.validate(&[*patch], 1).map_err(|error| InputError { path: own(), ..error })?;
     }
-    let heights = patches.len() as u64 * u64::from(parsed.patch_size).pow(2);
+    let heights = patches.len() as u64 * u64::from(recipe.config.patch_size).pow(2);
     if heights > MAX_HEIGHTS {
         let bound = format!("must have at most {MAX_HEIGHTS} heights together, and would have {heights}");
         return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
     }
-    let target = target(&fields, &parsed, &patches)?;
-    Ok(TerrainEntry { config: parsed, patches, target })
+    let target = target(&fields, &recipe, &patches)?;
+    Ok(TerrainEntry { recipe, patches, target })
 }
 
-fn terrain_config(at: &At<'_>) -> Result<Config, InputError> {
+fn terrain_recipe(at: &At<'_>) -> Result<Recipe, InputError> {
     if !at.value().is_object() {
         return Err(at.error("must be an object"));
     }
-    Config::from_json(&at.value().to_string()).map_err(|error| below(&at.path, "config", error))
+    Recipe::from_json(&at.value().to_string()).map_err(|error| below(&at.path, "config", error))
 }
 
-/// What the heights of `config` become, if anything: half way unless there is a time.
+/// What the heights of `recipe` become, if anything: half way unless there is a time.
 fn target(
     fields: &Fields<'_>,
-    config: &Config,
+    recipe: &Recipe,
     patches: &[[i32; 2]],
-) -> Result<Option<(Config, Morph)>, InputError> {
+) -> Result<Option<(Recipe, Morph)>, InputError> {
     let time = fields.maybe("time", |at| at.number(0.0, 1.0))?;
     let Some(at) = fields.get("target") else {
         let missing = |_| Err(fields.missing("target", "what the heights become at time 1"));
         return time.map_or(Ok(None), missing);
     };
-    let target = terrain_config(&at)?;
+    let target = terrain_recipe(&at)?;
     let refused = |error| below(&at.path, "config", error);
-    check_target(config, &target).map_err(refused)?;
-    Recipe::new(target.clone()).validate(patches, 1).map_err(refused)?;
+    check_target(&recipe.config, &target.config).map_err(refused)?;
+    target.validate(patches, 1).map_err(refused)?;
     Ok(Some((target, Morph { time: time.unwrap_or(0.5) })))
 }
 

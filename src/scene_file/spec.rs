@@ -81,7 +81,7 @@ impl SceneFile {
                 relief.albedo.iter().chain(&relief.normals).for_each(&mut add);
             }
         }
-        let zones = self.terrain.iter().flat_map(|terrain| &terrain.config.zones);
+        let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones);
         found.extend(zones.filter_map(|zone| match &zone.texture {
             Some(ZoneTexture::File(path)) => Some(path.clone()),
             _ => None,

@@ -13,7 +13,6 @@ use super::spec::SunOptions;
 use crate::asset::Model;
 use crate::gpu::Gpu;
 use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource};
-use crate::terrain::recipe::Recipe;
 use crate::{Error, InputError};
 
 /// A scene that was built from a file, with the file's camera and quality.
@@ -89,16 +88,16 @@ impl LoadedScene {
         let mut objects = Vec::new();
         let mut land = None;
         if let Some(terrain) = &file.terrain {
-            let source = TerrainSource::new(terrain.config.clone())
+            let source = TerrainSource::from(terrain.recipe.clone())
                 .with_patches(&terrain.patches)
                 .with_textures(self.textures.clone());
             let source = match &terrain.target {
-                Some((target, morph)) => source.with_target(Recipe::new(target.clone()), *morph),
+                Some((target, morph)) => source.with_target(target.clone(), *morph),
                 None => source,
             };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
-            let name = terrain.config.seed.clone();
+            let name = terrain.recipe.config.seed.clone();
             objects.push(WorldObject { object, kind: WorldKind::Terrain, name, model: None });
         }
         for (entry, loaded) in file.objects.iter().zip(&self.objects) {
@@ -156,7 +155,7 @@ impl LoadedScene {
     /// The least and the largest x and z of each patch.
     fn patches(&self) -> Vec<[[f64; 2]; 2]> {
         let patches = self.file.terrain.iter().flat_map(|terrain| {
-            let edge = terrain.config.edge_length();
+            let edge = terrain.recipe.config.edge_length();
             terrain.patches.iter().map(move |patch| {
                 let low = patch.map(|index| f64::from(index) * edge);
                 [low, low.map(|start| start + edge)]

@@ -2,13 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::{border, despike, height, pad, smooth, thermal, wrap};
+use super::{border, despike, height, hydraulic, pad, smooth, thermal, wrap};
 use crate::InputError;
 use crate::terrain::border::neighbours;
 use crate::terrain::config::{Border, Config, Interpolation};
 use crate::terrain::features::Features;
+use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::Recipe;
+use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
 
 /// The final heights of `patches` in 1/65536 units, each with `margin` samples around it, in rows of patchSize
@@ -91,15 +93,37 @@ fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window
         });
         width -= 2;
     }
-    if let Some(thermal) = recipe.thermal {
+    let scale = recipe.config.terrain_scale;
+    let mut eroded = Eroded { window, width };
+    recipe.thermal.into_iter().for_each(|thermal| eroded.slide(thermal, scale));
+    recipe.hydraulic.into_iter().for_each(|hydraulic| eroded.rain(hydraulic, scale));
+    recipe.thermal_after.into_iter().for_each(|thermal| eroded.slide(thermal, scale));
+    eroded.window
+}
+
+/// A window that shrinks with every iteration of erosion.
+struct Eroded {
+    window: Vec<i32>,
+    width: usize,
+}
+
+impl Eroded {
+    /// Thermal erosion.
+    fn slide(&mut self, thermal: Thermal, scale: f64) {
         for _ in 0..thermal.iterations {
-            window = thermal::reference::thermal(
-                &window,
-                width,
-                thermal.fixed_threshold(recipe.config.terrain_scale),
-            );
-            width -= 2;
+            self.window =
+                thermal::reference::thermal(&self.window, self.width, thermal.fixed_threshold(scale));
+            self.width -= 2;
         }
     }
-    window
+
+    /// Hydraulic erosion.
+    fn rain(&mut self, hydraulic: Hydraulic, scale: f64) {
+        let mut flow = Vec::new();
+        for cycle in 0..hydraulic.iterations {
+            let params = hydraulic.params(scale, cycle, self.width as u32);
+            (self.window, flow) = hydraulic::reference::hydraulic(&self.window, &flow, &params);
+            self.width -= 2;
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! Whole fields on the device: the kernels in the order of a recipe. This is the GPU side of
 //! [`crate::terrain::field`].
 //!
-//! At no time do its buffers hold more than two `i32` per sample of the enlarged windows, results included:
-//! each stage frees what the next one does not read. An index of features takes a further two bits per sample
+//! At no time do its buffers hold more than two `i32` per sample of the enlarged windows, or ten with hydraulic erosion, results
+//! included: each stage frees what the next one does not read. An index of features takes a further two bits per sample
 //! and level.
 
 use crate::Error;
@@ -13,10 +13,11 @@ use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::{Fields, REMEDY};
 use crate::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use crate::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::smooth::SmoothPass;
-use crate::terrain::thermal::{ThermalBuffers, ThermalPass};
+use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
 use crate::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
@@ -31,6 +32,8 @@ pub struct Generator {
     pad: PadPass,
     despike: DespikePass,
     thermal: ThermalPass,
+    /// Compiled only for a recipe that has it.
+    hydraulic: Option<HydraulicPass>,
 }
 
 impl Generator {
@@ -48,18 +51,26 @@ impl Generator {
             pad: PadPass::new(gpu)?,
             despike: DespikePass::new(gpu, injection.is_some())?,
             thermal: ThermalPass::new(gpu)?,
+            hydraulic: recipe.hydraulic.map(|_| HydraulicPass::new(gpu)).transpose()?,
             recipe,
         })
     }
 
     /// The number of patches that one part of the result may hold.
     pub(crate) fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
-        Fields::most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
+        self.most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
+    }
+
+    /// The largest number of windows in one part: the flow of hydraulic erosion takes four words a sample.
+    fn most(&self, gpu: &Gpu, width: u32) -> usize {
+        let windows = Fields::most(gpu, width);
+        if self.recipe.hydraulic.is_some() { (windows / 4).max(1) } else { windows }
     }
 
     /// The final heights of `patches` with `margin` samples around each, in parts that each fit one storage
     /// binding. Calls `progress` with the number of patches of each part that is done. Waits for the device. At
-    /// most two `i32` per sample of the enlarged windows are allocated at once, apart from features.
+    /// most two `i32` per sample of the enlarged windows, or ten with hydraulic erosion, are allocated at once, apart from
+    /// features.
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -145,7 +156,7 @@ impl Generator {
             return Ok(alone);
         }
         let width = config.patch_size + 2 * apron;
-        let mut sizes = part_sizes(patches.len(), Fields::most(gpu, width));
+        let mut sizes = part_sizes(patches.len(), self.most(gpu, width));
         let all = surrounds(config, patches);
         let injected = self.recipe.injected(patches, apron);
         // The last part takes the patches that remain.
@@ -214,30 +225,60 @@ impl Generator {
         injected: &[Vec<(u32, u32)>],
         windows: Fields,
     ) -> Result<Fields, Error> {
-        let thermal = self.recipe.thermal.filter(|thermal| thermal.iterations > 0);
-        if self.recipe.despike.is_none() && thermal.is_none() {
+        let Recipe { despike, thermal, hydraulic, thermal_after, .. } = self.recipe;
+        if self.recipe.apron(0) == 0 {
             return Ok(windows);
         }
-        // Despiking and erosion both drop a ring of samples before they write to the second buffer.
+        // Each of them drops a ring of samples before it writes to the second buffer.
         let other = Fields::new(gpu, "terrain windows", windows.cropped(1).width, windows.count)?;
-        let (mut current, mut other) = (windows, other);
-        if let Some(despike) = self.recipe.despike {
+        let mut both = [windows, other];
+        if let Some(despike) = despike {
             let features = self.index(gpu, apron, injected)?;
-            let buffers = DespikeBuffers { windows: &current, features: &features, cropped: &other };
+            let buffers = DespikeBuffers { windows: &both[0], features: &features, cropped: &both[1] };
             let job = self.despike.prepare(gpu, despike, buffers)?;
             gpu.run_async("terrain/despike", |encoder| job.record(encoder)).await?;
-            (current, other) = (other, current.cropped(1));
+            both = after(both, 1);
         }
-        if let Some(thermal) = thermal {
-            let scale = self.recipe.config.terrain_scale;
-            let buffers = ThermalBuffers { windows: &current, other: &other };
-            let job = self.thermal.prepare(gpu, thermal, scale, buffers)?;
-            job.run_async(gpu).await?;
-            let width = current.cropped(thermal.iterations).width;
-            let result = if thermal.iterations % 2 == 0 { current } else { other };
-            current = Fields { width, ..result };
+        both = self.slide(gpu, thermal, both).await?;
+        if let (Some(hydraulic), Some(pass)) = (hydraulic, &self.hydraulic) {
+            both = self.rain(gpu, (pass, hydraulic), both).await?;
         }
-        Ok(current)
+        let [windows, _] = self.slide(gpu, thermal_after, both).await?;
+        Ok(windows)
+    }
+
+    /// Thermal erosion of the first of two buffers.
+    async fn slide(
+        &self,
+        gpu: &Gpu,
+        thermal: Option<Thermal>,
+        both: [Fields; 2],
+    ) -> Result<[Fields; 2], Error> {
+        let Some(thermal) = thermal.filter(|thermal| thermal.iterations > 0) else { return Ok(both) };
+        let buffers = ThermalBuffers { windows: &both[0], other: &both[1] };
+        let job = self.thermal.prepare(gpu, thermal, self.recipe.config.terrain_scale, buffers)?;
+        job.run_async(gpu).await?;
+        Ok(after(both, thermal.iterations))
+    }
+
+    /// Hydraulic erosion of the first of two buffers.
+    async fn rain(
+        &self,
+        gpu: &Gpu,
+        (pass, hydraulic): (&HydraulicPass, Hydraulic),
+        both: [Fields; 2],
+    ) -> Result<[Fields; 2], Error> {
+        if hydraulic.iterations == 0 {
+            return Ok(both);
+        }
+        let points = HydraulicPass::flow_points(&both[0]);
+        let flow = |label| Buffer::new(gpu, label, points).map_err(|error| error.with_remedy(REMEDY));
+        let (flows, other_flows) = (flow("water and sediment")?, flow("other water and sediment")?);
+        let [windows, other] = &both;
+        let buffers = HydraulicBuffers { windows, other, flows: &flows, other_flows: &other_flows };
+        let job = pass.prepare(gpu, hydraulic, self.recipe.config.terrain_scale, buffers)?;
+        job.run_async(gpu).await?;
+        Ok(after(both, hydraulic.iterations))
     }
 
     /// An index of every injected point of the windows; `injected` gives (column, row) for each window.
@@ -290,6 +331,13 @@ impl WindowPass {
             }
         }
     }
+}
+
+/// Two buffers after so many iterations that alternate between them, the one with the result first.
+fn after([windows, other]: [Fields; 2], iterations: u32) -> [Fields; 2] {
+    let width = windows.cropped(iterations).width;
+    let [made, rest] = if iterations.is_multiple_of(2) { [windows, other] } else { [other, windows] };
+    [Fields { width, ..made }, Fields { width: width.saturating_sub(2), ..rest }]
 }
 
 /// Splits `count` patches into as few parts of at most `most` patches as possible, the smaller parts first:

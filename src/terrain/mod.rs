@@ -22,6 +22,7 @@ pub mod generator;
 pub mod grid;
 pub mod ground;
 pub mod height;
+pub mod hydraulic;
 #[cfg(feature = "gpu")]
 pub mod materials;
 pub mod mesh;

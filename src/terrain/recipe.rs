@@ -1,14 +1,18 @@
 //! A recipe for terrain: the configuration, the features, and the operations after generation.
 
-use crate::InputError;
-use crate::terrain::config::{Border, Config};
+use std::path::Path;
+
+use crate::terrain::config::{Border, Config, RawHydraulic, RawThermal, read_text, whole};
 use crate::terrain::despike::Despike;
 use crate::terrain::features::Features;
+use crate::terrain::hydraulic::{Hydraulic, MAX_ITERATIONS};
 use crate::terrain::pad;
 use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
+use crate::{Error, InputError};
 
-/// How a field of patches is made. The order is generation, borders, despiking, erosion.
+/// How a field of patches is made. The order is that of the fields: generation, borders, despiking, thermal erosion, hydraulic
+/// erosion, and thermal erosion once more.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
     /// How heights are generated.
@@ -19,18 +23,64 @@ pub struct Recipe {
     pub despike: Option<Despike>,
     /// Thermal erosion, if wanted.
     pub thermal: Option<Thermal>,
+    /// Hydraulic erosion, if wanted.
+    pub hydraulic: Option<Hydraulic>,
+    /// Thermal erosion after hydraulic erosion, if wanted.
+    pub thermal_after: Option<Thermal>,
 }
 
 impl Recipe {
     /// A recipe that only generates.
     pub fn new(config: Config) -> Self {
-        Self { config, features: Features::default(), despike: None, thermal: None }
+        Self {
+            config,
+            features: Features::default(),
+            despike: None,
+            thermal: None,
+            hydraulic: None,
+            thermal_after: None,
+        }
+    }
+
+    /// Reads a configuration from JSON, with erosion beside it, each with its fields in a JSON object: `thermal` and
+    /// `thermalAfter` (`iterations`, `talus`), and `hydraulic` (the fields of [`Hydraulic`]); what is left out has its default.
+    ///
+    /// # Errors
+    /// [`InputError`] for text that is not such JSON, for unknown keys, and for values out of bounds.
+    pub fn from_json(text: &str) -> Result<Self, InputError> {
+        let (config, erosion) = Config::with_erosion(text)?;
+        let recipe = Self {
+            thermal: erosion.thermal.map(|raw| thermal("thermal", &raw)).transpose()?,
+            hydraulic: erosion.hydraulic.map(|raw| hydraulic(&raw)).transpose()?,
+            thermal_after: erosion.thermal_after.map(|raw| thermal("thermalAfter", &raw)).transpose()?,
+            ..Self::new(config)
+        };
+        recipe.validate(&[], 0)?;
+        Ok(recipe)
+    }
+
+    /// Reads a JSON file. Texture paths in its zones are relative to the file.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] for the errors of [`Recipe::from_json`].
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        let read = Self::from_json(&read_text(path)?);
+        let mut recipe = read.map_err(|source| Error::InputFile { path: path.to_owned(), source })?;
+        recipe.config.resolve_textures(path);
+        Ok(recipe)
     }
 
     /// Samples beyond the patch that generation must provide for a final field with `margin` samples around it.
     pub fn apron(&self, margin: u32) -> u32 {
-        let iterations = self.thermal.map_or(0, |thermal| thermal.iterations);
-        margin.saturating_add(self.despike.map_or(0, |_| 1)).saturating_add(iterations)
+        let iterations = |thermal: Option<Thermal>| thermal.map_or(0, |thermal| thermal.iterations);
+        [
+            self.despike.map_or(0, |_| 1),
+            iterations(self.thermal),
+            self.hydraulic.map_or(0, |hydraulic| hydraulic.iterations),
+            iterations(self.thermal_after),
+        ]
+        .into_iter()
+        .fold(margin, u32::saturating_add)
     }
 
     /// (column, row) of the injected points of each window, which despiking leaves alone. The lists are empty
@@ -51,13 +101,54 @@ impl Recipe {
         self.features.check(&self.config)?;
         self.despike.map_or(Ok(()), |despike| despike.validate())?;
         self.thermal.map_or(Ok(()), |thermal| thermal.validate())?;
+        self.hydraulic.map_or(Ok(()), |hydraulic| hydraulic.validate())?;
+        let after = self.thermal_after.map_or(Ok(()), |thermal| thermal.validate());
+        after.map_err(|error| InputError {
+            path: error.path.replacen("thermal", "thermalAfter", 1),
+            ..error
+        })?;
         let apron = self.apron(margin);
         if self.config.border != Border::Seamless {
-            pad::validate(self.config.patch_size, apron)?;
+            pad::validate(self.config.patch_size, apron).map_err(|error| self.caused(error))?;
         }
         for &patch in patches {
-            Window { patch, apron }.validate(&self.config)?;
+            Window { patch, apron }.validate(&self.config).map_err(|error| self.caused(error))?;
         }
         Ok(())
     }
+
+    /// An error that names the apron, as one that names the field that makes it large.
+    fn caused(&self, error: InputError) -> InputError {
+        match self.hydraulic {
+            Some(Hydraulic { iterations, .. }) if error.path == "apron" && iterations > 0 => {
+                let bound = format!("makes an apron of {} samples, which {}", error.value, error.bound);
+                InputError::new("hydraulic.iterations", iterations, bound)
+            }
+            _ => error,
+        }
+    }
+}
+
+fn thermal(field: &str, raw: &RawThermal) -> Result<Thermal, InputError> {
+    let iterations = whole(&format!("{field}.iterations"), &raw.iterations, 0, 1024)?;
+    Ok(Thermal { iterations, talus: raw.talus.unwrap_or(Thermal::default().talus) })
+}
+
+fn hydraulic(raw: &RawHydraulic) -> Result<Hydraulic, InputError> {
+    let default = Hydraulic::default();
+    let iterations = raw
+        .iterations
+        .as_ref()
+        .map_or(Ok(default.iterations), |number| whole("hydraulic.iterations", number, 0, MAX_ITERATIONS))?;
+    Ok(Hydraulic {
+        iterations,
+        rain: raw.rain.unwrap_or(default.rain),
+        evaporation: raw.evaporation.unwrap_or(default.evaporation),
+        capacity: raw.capacity.unwrap_or(default.capacity),
+        threshold: raw.threshold.unwrap_or(default.threshold),
+        erosion: raw.erosion.unwrap_or(default.erosion),
+        deposition: raw.deposition.unwrap_or(default.deposition),
+        talus: raw.talus.unwrap_or(default.talus),
+        creep: raw.creep.unwrap_or(default.creep),
+    })
 }

@@ -101,6 +101,27 @@ fn arguments() {
     refused(GOOD, &["--size", "9000x5"], &["size", "4096"]);
     refused(GOOD, &["--thermal", "5000"], &["thermal", "5000", "1024"]);
     refused(GOOD, &["--thermal", "5", "--talus", "95"], &["talus", "95"]);
+    refused(GOOD, &["--talus", "20"], &["talus", "20", "--thermal"]);
+    refused(GOOD, &["--thermal-after", "5000"], &["thermalAfter.iterations", "5000", "1024"]);
+    refused(GOOD, &["--hydraulic", "5000"], &["hydraulic.iterations", "5000", "2048"]);
+    refused(GOOD, &["--hydraulic", "5", "--rain", "-1"], &["hydraulic.rain", "-1", "0..=1"]);
+    for (field, value, bound) in [
+        ("iterations", "2049", "0..=2048"),
+        ("iterations", "1.5", "whole number"),
+        ("rain", "1.5", "0..=1"),
+        ("evaporation", "-0.1", "0..=1"),
+        ("capacity", "1025", "0..=1024"),
+        ("threshold", "65537", "0..=65536"),
+        ("erosion", "2", "0..=1"),
+        ("deposition", "2", "0..=1"),
+        ("talus", "90", "0..=89"),
+        ("creep", "0.1", "0..=0.0625"),
+        ("snow", "1", "unknown field"),
+    ] {
+        let end = format!(r#", "hydraulic": {{"{field}": {value}}}}}"#);
+        let config = GOOD.trim_end().strip_suffix('}').expect("an object").to_owned() + &end;
+        refused(&config, &[], &[&format!("hydraulic.{field}"), bound]);
+    }
     refused(GOOD, &["--despike", "-1"], &["despike", "-1"]);
     refused(GOOD, &["--despike", "NaN"], &["despike", "NaN"]);
 }

@@ -88,7 +88,7 @@ fn shaders_are_flat_and_described() {
         &["camera_allows", "instance_axes"],
         &["rows_of_dual", "placed_normal"],
         &["surface_trace", "surface_soft_shadow"],
-        &["zone_fraction", "slope_normal", "threefry2x32"],
+        &["zone_blended", "slope_normal", "threefry2x32"],
     ]) {
         let file = folder.path().join("wgsl").join(module["file"].as_str().expect("a name"));
         let source = std::fs::read_to_string(file).expect("written");

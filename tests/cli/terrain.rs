@@ -64,6 +64,11 @@ const CONFIGS: &[(&str, &[&str])] = &[
         r#"{"patchSize": 33, "scaleFactor": 9, "seed": "b", "border": {"blend": 9}}"#,
         &["--patches", "3x3", "--thermal", "4", "--talus", "20"],
     ),
+    (
+        r#"{"patchSize": 33, "scaleFactor": 9, "seed": "h", "interpolation": "smooth",
+            "hydraulic": {"rain": 0.01, "threshold": 1}, "thermal": {"iterations": 2}, "thermalAfter": {"iterations": 1}}"#,
+        &["--patches", "2x2", "--origin", "-2,-1", "--hydraulic", "21", "--thermal-after", "3"],
+    ),
 ];
 
 #[test]
@@ -79,6 +84,26 @@ fn both_backends_give_the_same_hashes_and_nearly_the_same_map() {
         let worst = gpu.iter().zip(cpu.iter()).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(gpu.dimensions() == cpu.dimensions() && worst <= Some(1), "{config}: {worst:?} levels");
     }
+}
+
+/// Arguments take the place of the configuration's fields, and the others stay.
+#[test]
+fn arguments_take_the_place_of_erosion_in_the_configuration() {
+    let made = |erosion: &str, arguments: &[&str]| {
+        let config = format!(r#"{{"patchSize": 17, "scaleFactor": 9, "seed": "h"{erosion}}}"#);
+        let bench = Bench::new(&config);
+        let report = bench.terrain("out", &[arguments, ["--backend", "cpu"].as_slice()].concat());
+        hashes(&report).join(" ")
+    };
+    let rainy = r#", "hydraulic": {"iterations": 12, "rain": 0.02, "threshold": 0}"#;
+    let other = r#", "hydraulic": {"iterations": 3, "rain": 0.5, "threshold": 0}"#;
+    assert_eq!(made(rainy, &[]), made(other, &["--hydraulic", "12", "--rain", "0.02"]));
+    assert_eq!(made(rainy, &["--hydraulic", "0"]), made("", &[]));
+    assert!(made(rainy, &[]) != made(other, &["--hydraulic", "12"]));
+    let slides = r#", "thermal": {"iterations": 4, "talus": 10}"#;
+    assert_eq!(made(slides, &[]), made("", &["--thermal", "4", "--talus", "10"]));
+    assert!(made(slides, &[]) != made(slides, &["--talus", "20"]));
+    assert!(made("", &["--thermal", "4"]) != made("", &[]));
 }
 
 #[test]

@@ -16,7 +16,16 @@ const PICTURES: &[(&str, &str, f32)] = &[
     ("scene_far", "far.json", 0.25),
     ("scene_herd", "herd.json", 2.5),
     (NEAR, "herd.json", 2.5),
+    (WALK, "walk.json", 0.0),
+    ("ground_walk_plain", "walk.json", 0.0),
+    (FAR, "overlook.json", 0.0),
+    ("ground_far_plain", "overlook.json", 0.0),
 ];
+
+/// Ground by height and slope, as somebody sees it who walks there, and from afar. The plain ones have the same world with no more
+/// than its default zones.
+const WALK: &str = "ground_walk";
+const FAR: &str = "ground_far";
 
 /// The herd from so near that a creature covers more of the picture than may differ; from the file's own camera it does not.
 const NEAR: &str = "scene_herd_near";
@@ -24,13 +33,19 @@ const NEAR: &str = "scene_herd_near";
 /// The size of a golden. Frames have one sample a pixel at twice that size, and are averaged.
 const SIZE: [u32; 2] = [208, 136];
 
-/// The scene of a golden: what its file says, but for the camera of the near one.
+/// The scene of a golden: what its file says, but for the camera of the near one, and the look of plain ground.
 fn scene_of(name: &str, file: &str) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes").join(file);
     let text = std::fs::read_to_string(path).expect("there");
     let mut scene: Value = serde_json::from_str(&text).expect("JSON");
     if name == NEAR {
         scene["camera"] = json!({ "near": 0.2, "at": [59.5, 6.5, 83], "look": [60, 3.6, 74] });
+    }
+    if name.ends_with("_plain") {
+        let config = scene["terrain"]["config"].as_object_mut().expect("a configuration");
+        config.retain(|field, _| {
+            ["patchSize", "scaleFactor", "seed", "terrainScale"].contains(&field.as_str())
+        });
     }
     scene
 }
@@ -102,4 +117,32 @@ fn a_shadow_that_is_missing_is_seen() {
     let difference = difference("scene_ruins", &picture(&player(&scene, 0.0)));
     println!("without shadow: {difference:?}");
     assert!(!difference.within(Tolerance::IMAGE), "{difference:?}");
+}
+
+/// Ground that lacks any part of its look is missed.
+#[test]
+fn ground_without_a_part_of_its_look_is_seen() {
+    let with = |name: &str, file: &str, change: &dyn Fn(&mut Value)| {
+        let mut scene = scene_of(name, file);
+        change(&mut scene["terrain"]["config"]);
+        difference(name, &picture(&player(&scene, 0.0)))
+    };
+    let of_zones = |config: &mut Value, field: &str| {
+        for zone in config["zones"].as_array_mut().expect("zones") {
+            zone.as_object_mut().expect("a zone").remove(field);
+        }
+    };
+    let same = with(WALK, "walk.json", &|_| ());
+    assert!(same.within(Tolerance::IMAGE), "{same:?}");
+    for (what, found) in [
+        ("slopes", with(WALK, "walk.json", &|config| of_zones(config, "slope"))),
+        ("height maps", with(WALK, "walk.json", &|config| of_zones(config, "heightBlend"))),
+        ("repeats", with(WALK, "walk.json", &|config| of_zones(config, "repeats"))),
+        ("triplanar", with(WALK, "walk.json", &|config| config["triplanar"] = json!(false))),
+        ("variation", with(FAR, "overlook.json", &|config| config["variation"] = json!(0))),
+        ("smooth", with(FAR, "overlook.json", &|config| config["interpolation"] = json!("linear"))),
+    ] {
+        println!("without {what}: {found:?}");
+        assert!(!found.within(Tolerance::IMAGE), "without {what}: {found:?}");
+    }
 }

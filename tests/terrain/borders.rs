@@ -20,7 +20,7 @@ fn despiked_beside_features(border: &str, patches: &[[i32; 2]]) -> Vec<Vec<i32>>
         features,
         despike: Some(Despike { threshold: 0.1 }),
         thermal: Some(Thermal { iterations: 3, talus: 35.0 }),
-        config,
+        ..Recipe::new(config)
     };
     field(&recipe, patches, 0).expect("valid")
 }

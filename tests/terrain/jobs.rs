@@ -11,6 +11,7 @@ use relievo::terrain::features::{FeatureIndex, Features};
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use relievo::terrain::morph::{MorphBuffers, MorphPass};
 use relievo::terrain::normals::NormalsPass;
 use relievo::terrain::pad::PadPass;
@@ -161,6 +162,29 @@ fn thermal() {
     refuses(prepare(3, 1.0, &windows, 50), &["windows.width = 5: ", "exceed 6"]);
     refuses(prepare(1, 0.0, &windows, 50), &["terrainScale = 0"]);
     refuses(prepare(1, 1.0, &short(&gpu), 50), &["windows.heights = [49 elements]"]);
+}
+
+#[test]
+fn hydraulic() {
+    let gpu = gpu();
+    let pass = HydraulicPass::new(&gpu).expect("compiled");
+    let prepare = |iterations, scale, windows: &Fields, [other, flows, more]: [usize; 3]| {
+        let other = Fields { heights: buffer(&gpu, other), width: 5, count: 2 };
+        let params = Hydraulic { iterations, ..Hydraulic::default() };
+        let (flows, other_flows) = (&buffer(&gpu, flows), &buffer(&gpu, more));
+        let buffers = HydraulicBuffers { windows, other: &other, flows, other_flows };
+        pass.prepare(&gpu, params, scale, buffers).map(|_| ())
+    };
+    let windows = fields(&gpu, 5, 2);
+    assert_eq!(HydraulicPass::flow_points(&windows), 18);
+    assert!(prepare(2, 1.0, &windows, [18; 3]).is_ok() && prepare(0, 1.0, &windows, [1; 3]).is_ok());
+    refuses(prepare(2, 1.0, &windows, [17, 18, 18]), &["other.heights = [17 elements]", "at least 18"]);
+    refuses(prepare(2, 1.0, &windows, [18, 17, 18]), &["flows = [17 elements]", "at least 18"]);
+    refuses(prepare(2, 1.0, &windows, [18, 18, 17]), &["other_flows = [17 elements]", "at least 18"]);
+    refuses(prepare(3, 1.0, &windows, [50; 3]), &["windows.width = 5: ", "exceed 6"]);
+    refuses(prepare(2049, 1.0, &windows, [50; 3]), &["hydraulic.iterations = 2049", "2048"]);
+    refuses(prepare(1, 0.0, &windows, [50; 3]), &["terrainScale = 0"]);
+    refuses(prepare(1, 1.0, &short(&gpu), [50; 3]), &["windows.heights = [49 elements]"]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod harness;
 mod arithmetic;
 mod borders;
 mod ground;
+mod hydraulic;
 #[cfg(feature = "gpu")]
 mod jobs;
 mod known_heights;

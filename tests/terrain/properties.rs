@@ -72,7 +72,13 @@ impl World {
 
     fn recipe(&self, despike: Option<f64>, thermal: Option<Thermal>) -> Recipe {
         let despike = despike.map(|threshold| Despike { threshold });
-        Recipe { config: self.config.clone(), features: self.features(), despike, thermal }
+        Recipe {
+            config: self.config.clone(),
+            features: self.features(),
+            despike,
+            thermal,
+            ..Recipe::new(self.config.clone())
+        }
     }
 }
 

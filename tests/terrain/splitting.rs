@@ -40,7 +40,12 @@ fn recipes(blend: u32) -> Vec<Recipe> {
     let mut recipes = Vec::new();
     for despike in [None, Some(Despike { threshold: 0.5 })] {
         for thermal in [None, Some(Thermal { iterations: 3, talus: 30.0 })] {
-            recipes.push(Recipe { config: config.clone(), features: features.clone(), despike, thermal });
+            recipes.push(Recipe {
+                features: features.clone(),
+                despike,
+                thermal,
+                ..Recipe::new(config.clone())
+            });
         }
     }
     recipes

@@ -23,6 +23,7 @@ use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::grid::Grid;
+use relievo::terrain::hydraulic::Hydraulic;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::texture::Texture;
 use relievo::terrain::thermal::Thermal;
@@ -51,8 +52,10 @@ const WEIGHT_MODES: [(&str, WeightMode); 2] =
 /// mapping to heights), `heights_<px>_<py>.i32` (little-endian rows, in 1/65536 height units), and `report.json`.
 ///
 /// A configuration: {"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}. Optional fields: roughness,
-/// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, triplanar, variation, zones. A feature file:
-/// {"patchCoordinates": [0, 0], "precomputedHeights": [x, y, height, …]}.
+/// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, triplanar, variation, zones, and erosion:
+/// thermal and thermalAfter, such as {"iterations": 20, "talus": 35}, and hydraulic, such as {"iterations": 300}, with rain,
+/// evaporation, capacity, threshold, erosion, deposition, talus and creep. A feature file: {"patchCoordinates": [0, 0],
+/// "precomputedHeights": [x, y, height, …]}.
 #[derive(Args)]
 pub struct Terrain {
     /// The configuration, a JSON file.
@@ -83,15 +86,19 @@ pub struct Terrain {
     /// Number of iterations of thermal erosion, which follows despiking.
     #[arg(long, value_name = "ITERATIONS")]
     thermal: Option<u32>,
-    /// The steepest slope that thermal erosion leaves alone, in degrees.
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        default_value_t = 35.0,
-        requires = "thermal",
-        allow_hyphen_values = true
-    )]
-    talus: f64,
+    /// The steepest slope that thermal erosion leaves alone, in degrees. Default: 35.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    talus: Option<f64>,
+    /// Number of cycles of hydraulic erosion, which follows thermal erosion. Each patch is computed in a window with as many
+    /// samples around it as there are cycles: larger patches erode for less.
+    #[arg(long, value_name = "ITERATIONS")]
+    hydraulic: Option<u32>,
+    /// The depth of the rain in each cycle of hydraulic erosion, in spacings of samples.
+    #[arg(long, value_name = "DEPTH", requires = "hydraulic", allow_hyphen_values = true)]
+    rain: Option<f64>,
+    /// Number of iterations of thermal erosion after hydraulic erosion, with the slope of --talus.
+    #[arg(long, value_name = "ITERATIONS")]
+    thermal_after: Option<u32>,
     /// Replaces each point that is further than TAU (in height units) from the mean of its neighbours by this
     /// mean.
     #[arg(long, value_name = "TAU", allow_hyphen_values = true)]
@@ -187,7 +194,7 @@ impl Terrain {
     }
 
     fn plan(&self) -> Result<Plan, Error> {
-        let config = Config::from_file(&self.config)?;
+        let mut recipe = self.recipe()?;
         let grid = pair::<u32>("patches", &self.patches, 'x', "must be columns x rows, such as 3x3")?;
         let origin = pair::<i32>("origin", &self.origin, ',', "must be two patch coordinates, such as -1,2")?;
         let size =
@@ -196,25 +203,49 @@ impl Terrain {
             let bound = "must be 1 to 4096 pixels along each edge";
             return Err(InputError::new("size", &self.size, bound).into());
         }
-        let thermal = self.thermal.map(|iterations| Thermal { iterations, talus: self.talus });
-        thermal.map_or(Ok(()), |thermal| thermal.validate())?;
         if grid.contains(&0) {
             return Err(InputError::new("patches", &self.patches, "must be at least 1x1").into());
         }
         let grid = Grid { first: origin, size: grid };
-        let despike = self.despike.map(|threshold| Despike { threshold });
-        let mut recipe = Recipe { despike, thermal, ..Recipe::new(config) };
         let width = recipe.config.patch_size.saturating_add(recipe.apron(1).saturating_mul(2));
-        let batches = self.target.batches();
-        memory::check(&self.patches, batches * grid.bytes(width, 0))?;
+        // Hydraulic erosion has water and sediment beside the heights.
+        let words = self.target.batches() * if recipe.hydraulic.is_some() { 2 } else { 1 };
+        memory::check(&self.patches, words * grid.bytes(width, 0))?;
         let patches = grid.patches()?;
         recipe.features = self.read_features(&recipe.config, grid, width)?;
-        memory::check(&self.patches, batches * grid.bytes(width, recipe.features.len() as u64))?;
+        memory::check(&self.patches, words * grid.bytes(width, recipe.features.len() as u64))?;
         recipe.validate(&patches, 1)?;
         let target = self.target.read(&recipe, &patches)?;
         let textures = Texture::of_zones(&recipe.config.zones)?;
         let shading = Shading { weights: self.weights, ..Shading::default() };
         Ok(Plan { recipe, target, grid, patches, size, shading, textures })
+    }
+
+    /// The configuration's recipe, with what the arguments ask for in its place.
+    fn recipe(&self) -> Result<Recipe, Error> {
+        let read = Recipe::from_file(&self.config)?;
+        let thermal = |iterations: Option<u32>, given: Option<Thermal>| {
+            let talus = self.talus.unwrap_or(given.unwrap_or_default().talus);
+            iterations.or(given.map(|given| given.iterations)).map(|iterations| Thermal { iterations, talus })
+        };
+        let hydraulic = self.hydraulic.map(|iterations| {
+            let given = read.hydraulic.unwrap_or_default();
+            Hydraulic { iterations, rain: self.rain.unwrap_or(given.rain), ..given }
+        });
+        let recipe = Recipe {
+            despike: self.despike.map(|threshold| Despike { threshold }),
+            thermal: thermal(self.thermal, read.thermal),
+            hydraulic: hydraulic.or(read.hydraulic),
+            thermal_after: thermal(self.thermal_after, read.thermal_after),
+            ..read
+        };
+        if let (Some(talus), None, None) = (self.talus, recipe.thermal, recipe.thermal_after) {
+            return Err(
+                InputError::new("talus", talus, "must stand with --thermal or --thermal-after").into()
+            );
+        }
+        recipe.validate(&[], 0)?;
+        Ok(recipe)
     }
 
     fn read_features(&self, config: &Config, grid: Grid, width: u32) -> Result<Features, Error> {

@@ -41,6 +41,43 @@ struct Raw {
     variation: Option<f64>,
     #[serde(default)]
     zones: Option<Vec<Object<Zone>>>,
+    #[serde(default)]
+    thermal: Option<Object<RawThermal>>,
+    #[serde(default)]
+    hydraulic: Option<Object<RawHydraulic>>,
+    #[serde(default)]
+    thermal_after: Option<Object<RawThermal>>,
+}
+
+/// Thermal erosion as JSON stores it.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub(crate) struct RawThermal {
+    pub iterations: serde_json::Number,
+    pub talus: Option<f64>,
+}
+
+/// Hydraulic erosion as JSON stores it.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub(crate) struct RawHydraulic {
+    pub iterations: Option<serde_json::Number>,
+    pub rain: Option<f64>,
+    pub evaporation: Option<f64>,
+    pub capacity: Option<f64>,
+    pub threshold: Option<f64>,
+    pub erosion: Option<f64>,
+    pub deposition: Option<f64>,
+    pub talus: Option<f64>,
+    pub creep: Option<f64>,
+}
+
+/// What follows generation, as JSON stores it beside the configuration.
+#[derive(Default)]
+pub(crate) struct RawErosion {
+    pub thermal: Option<RawThermal>,
+    pub hydraulic: Option<RawHydraulic>,
+    pub thermal_after: Option<RawThermal>,
 }
 
 #[derive(Default)]
@@ -127,11 +164,31 @@ enum RawCorners {
 }
 
 impl Config {
-    /// Reads a configuration from B's JSON.
+    /// Reads a configuration from B's JSON. [`Recipe::from_json`](crate::terrain::recipe::Recipe::from_json) reads erosion too.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not such JSON, for unknown keys, and for values out of bounds.
+    /// [`InputError`] for text that is not such JSON, for unknown keys, for values out of bounds, and for erosion, which a
+    /// configuration does not have.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
+        let (config, RawErosion { thermal, hydraulic, thermal_after }) = Self::with_erosion(text)?;
+        let given = [
+            ("thermal", thermal.is_some()),
+            ("hydraulic", hydraulic.is_some()),
+            ("thermalAfter", thermal_after.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((field, _)) => {
+                Err(InputError::new(field, "given", "must be left out where only a configuration is read"))
+            }
+            None => Ok(config),
+        }
+    }
+
+    /// A configuration, and the erosion that stands beside it.
+    ///
+    /// # Errors
+    /// [`InputError`] for text that is not such JSON, for unknown keys, and for values of the configuration out of bounds.
+    pub(crate) fn with_erosion(text: &str) -> Result<(Self, RawErosion), InputError> {
         let raw: Raw = from_json_object("config", text)?;
         let border = match raw.border {
             RawBorder::Seamless => Border::Seamless,
@@ -161,7 +218,9 @@ impl Config {
             ),
         };
         config.validate()?;
-        Ok(config)
+        let [thermal, thermal_after] = [raw.thermal, raw.thermal_after].map(|raw| raw.map(|raw| raw.0));
+        let hydraulic = raw.hydraulic.map(|raw| raw.0);
+        Ok((config, RawErosion { thermal, hydraulic, thermal_after }))
     }
 }
 

@@ -3,7 +3,7 @@
 mod json;
 mod zones;
 
-pub(crate) use json::{from_json_object, read_text};
+pub(crate) use json::{RawHydraulic, RawThermal, from_json_object, read_text, whole};
 pub(crate) use zones::check_range;
 pub use zones::{BuiltIn, MAX_REPEATS, MAX_ZONES, Slope, Zone, ZoneTexture};
 
@@ -155,11 +155,16 @@ impl Config {
         let text = read_text(path)?;
         let mut config =
             Self::from_json(&text).map_err(|source| Error::InputFile { path: path.to_owned(), source })?;
+        config.resolve_textures(path);
+        Ok(config)
+    }
+
+    /// Makes texture paths relative to the file that names them.
+    pub(crate) fn resolve_textures(&mut self, path: &Path) {
         let folder = path.parent().unwrap_or(Path::new(""));
-        for zone in &mut config.zones {
+        for zone in &mut self.zones {
             zone.resolve_texture(folder);
         }
-        Ok(config)
     }
 
     /// Checks every field. Every function that takes a `Config` calls it.

@@ -87,38 +87,36 @@ fn snow() -> Vec<u8> {
     shaded(&heights, heights.iter().zip(&sparkles).map(color).collect(), 0.35)
 }
 
-/// Layers of rock of uneven thickness and colour, cracked across; the texture's top is up.
+/// Layers of rock of uneven thickness and hardness, broken into blocks; the texture's top is up.
 fn strata() -> Vec<u8> {
     let (heights, marks) = apart(made(|[u, v]| {
-        let fold = 0.018 * octaves(151, [3, 3], 3, 0.5, [u, v]);
-        let level = v + fold;
-        let thin = level + 0.004 * octaves(157, [14, 14], 3, 0.6, [u, v]);
+        let fold = 0.02 * octaves(151, [3, 3], 3, 0.5, [u, v]);
+        let torn = 0.010 * octaves(157, [11, 17], 5, 0.7, [u, v]);
         // Thick layers, and thin ones in them.
         let bed = |key: u32, count: u32, at: f32| {
-            let scaled = at * count as f32 + 0.5 * gradient(key, [1, count / 3], [0.0, at]);
+            let scaled = at * count as f32 + 0.6 * gradient(key, [1, count / 3], [0.0, at]);
             let index = (scaled.floor() as i32).rem_euclid(count as i32) as u32;
             (random(key + 1, [index, 0]), scaled - scaled.floor())
         };
-        let (thick, inside) = bed(163, 9, level);
-        let (leaf, within) = bed(173, 41, thin);
-        // Joints run across a layer here and there.
-        let joint = |key: u32, counts: [u32; 2]| {
-            let line =
-                gradient(key, counts, [u + 0.13 * thick + 0.006 * gradient(191, [20, 20], [u, v]), v]).abs();
-            let is_cracked = smoothstep(0.0, 0.3, octaves(key + 1, [7, 9], 2, 0.5, [u, v]) + 0.1);
-            1.0 - is_cracked * (1.0 - smoothstep(0.0, 0.05, line))
+        let (thick, inside) = bed(163, 9, v + fold + torn);
+        let (leaf, within) = bed(173, 37, v + fold + 0.6 * torn);
+        let block = |key: u32, counts: [u32; 2]| {
+            let cell = cell(key, counts, [u + 3.0 * torn + 0.37 * thick, v + fold + torn]);
+            let number = |use_of: u32| random(key + 1, [cell.word, use_of]) - 0.5;
+            (cell.offset[0] * number(0) + cell.offset[1] * number(1) + 0.5 * number(2), number(3))
         };
-        let open = joint(181, [9, 4]) * (0.5 + 0.5 * joint(187, [23, 9]));
-        let ledge = smoothstep(0.0, 0.12, inside) * (0.7 + 0.3 * smoothstep(0.0, 0.25, within));
-        let rough = octaves(193, [12, 24], 4, 0.6, [u, v]);
-        let height = (0.35 + 0.4 * thick + 0.25 * leaf + 0.3 * rough) * ledge * (0.5 + 0.5 * open);
-        (height, [thick, leaf, rough])
+        let ((large, tone), (small, _)) = (block(181, [8, 15]), block(187, [21, 44]));
+        let rough = octaves(193, [12, 20], 6, 0.66, [u, v]);
+        let ledge = smoothstep(0.0, 0.16, inside) * (0.75 + 0.25 * smoothstep(0.0, 0.3, within));
+        let height = (0.4 + 0.45 * thick + 0.2 * leaf + 0.4 * large + 0.22 * small + 0.35 * rough)
+            * (0.3 + 0.7 * ledge);
+        (height, [thick, leaf, rough, tone])
     }));
     let heights = stretched(heights);
-    let colors = [[0.42, 0.35, 0.29], [0.55, 0.46, 0.37], [0.62, 0.55, 0.46], [0.50, 0.46, 0.42]];
-    let color = |(height, [thick, leaf, rough]): (&f32, &[f32; 3])| {
-        let layer = ramp(&colors, 0.65 * thick + 0.35 * leaf);
-        layer.map(|channel| channel * (0.72 + 0.34 * height + 0.14 * rough))
+    let colors = [[0.45, 0.38, 0.33], [0.54, 0.47, 0.40], [0.61, 0.56, 0.50], [0.51, 0.49, 0.46]];
+    let color = |(height, [thick, leaf, rough, tone]): (&f32, &[f32; 4])| {
+        let layer = ramp(&colors, 0.6 * thick + 0.25 * leaf + 0.3 * (tone + 0.25));
+        layer.map(|channel| channel * (0.5 + 0.65 * height + 0.2 * rough + 0.12 * tone))
     };
-    shaded(&heights, heights.iter().zip(&marks).map(color).collect(), 0.9)
+    shaded(&heights, heights.iter().zip(&marks).map(color).collect(), 1.2)
 }

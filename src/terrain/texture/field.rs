@@ -50,7 +50,7 @@ pub fn texels(heights: &[f32], mut colors: Vec<[f32; 3]>, shade: f32) -> Vec<u8>
     for (radius, strength) in [(2, 1.6), (8, 1.0)] {
         let around = blurred(heights, radius);
         for ((color, height), around) in colors.iter_mut().zip(heights).zip(&around) {
-            let factor = 1.0 + shade * strength * (height - around).clamp(-0.5, 0.3);
+            let factor = 1.0 + shade * strength * (height - around).clamp(-0.5, 0.16);
             *color = color.map(|channel| channel * factor);
         }
     }

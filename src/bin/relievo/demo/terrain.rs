@@ -13,6 +13,9 @@ struct Configured {
     has_valley: bool,
 }
 
+/// A configuration whose zones lie by height and slope.
+const LOOK: &str = include_str!("../../../../examples/terrain.json");
+
 const VALLEY: &str = include_str!("../../../../examples/valley.json");
 
 const fn plain(
@@ -31,72 +34,72 @@ const fn valley(name: &'static str, title: &'static str, config: &'static str) -
 const ENTRIES: &[Configured] = &[
     plain(
         "textured",
-        "A patch from three parameters: size, height and a seed; four zones of ground, blended by height",
+        "A patch from size, height and a seed; six zones of ground by height and slope, blended where their textures are deep",
         "",
-        r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#,
+        LOOK,
     ),
     plain(
         "grid",
         "Nine patches, made independently: no seam in height, slope or texture",
         "--patches 3x3",
-        r#"{"patchSize": 129, "scaleFactor": 40.0, "seed": "seamless"}"#,
+        r#"{"patchSize": 129, "scaleFactor": 40.0, "seed": "seamless", "interpolation": "smooth", "variation": 0.5}"#,
     ),
     plain(
         "mountains",
         "coarseLevels 2: mountains larger than a patch",
         "--patches 4x4",
-        r#"{"patchSize": 129, "scaleFactor": 130.0, "seed": "alps", "coarseLevels": 2}"#,
+        r#"{"patchSize": 129, "scaleFactor": 130.0, "seed": "alps", "coarseLevels": 2, "interpolation": "smooth", "triplanar": true}"#,
     ),
     plain(
         "wireframe",
         "The mesh that is drawn, straight from the heights",
         "--wireframe",
-        r#"{"patchSize": 65, "scaleFactor": 12.0, "seed": "wire"}"#,
+        r#"{"patchSize": 65, "scaleFactor": 12.0, "seed": "wire", "interpolation": "smooth"}"#,
     ),
     plain(
         "step_1",
         "After one subdivision",
         "--wireframe",
-        r#"{"patchSize": 3, "scaleFactor": 12.0, "seed": "wire", "terrainScale": 32}"#,
+        r#"{"patchSize": 3, "scaleFactor": 12.0, "seed": "wire", "interpolation": "smooth", "terrainScale": 32}"#,
     ),
     plain(
         "step_2",
         "After two subdivisions: every second sample is one of the first",
         "--wireframe",
-        r#"{"patchSize": 5, "scaleFactor": 12.0, "seed": "wire", "terrainScale": 16}"#,
+        r#"{"patchSize": 5, "scaleFactor": 12.0, "seed": "wire", "interpolation": "smooth", "terrainScale": 16}"#,
     ),
     plain(
         "step_5",
         "After five subdivisions",
         "--wireframe",
-        r#"{"patchSize": 33, "scaleFactor": 12.0, "seed": "wire", "terrainScale": 2}"#,
+        r#"{"patchSize": 33, "scaleFactor": 12.0, "seed": "wire", "interpolation": "smooth", "terrainScale": 2}"#,
     ),
     valley(
         "valley_1",
         "A valley injected by a sixteenth of its heights, seed one",
-        r#"{"patchSize": 129, "scaleFactor": 24.0, "seed": "one"}"#,
+        r#"{"patchSize": 129, "scaleFactor": 24.0, "seed": "one", "interpolation": "smooth"}"#,
     ),
     valley(
         "valley_2",
         "The same valley, seed two",
-        r#"{"patchSize": 129, "scaleFactor": 24.0, "seed": "two"}"#,
+        r#"{"patchSize": 129, "scaleFactor": 24.0, "seed": "two", "interpolation": "smooth"}"#,
     ),
     valley(
         "valley_3",
         "The same valley, seed three",
-        r#"{"patchSize": 129, "scaleFactor": 24.0, "seed": "three"}"#,
+        r#"{"patchSize": 129, "scaleFactor": 24.0, "seed": "three", "interpolation": "smooth"}"#,
     ),
     plain(
         "additive",
         "Zone weights that are added and not normalized: brighter where zones overlap",
         "--weights additive",
-        r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#,
+        r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text", "interpolation": "smooth"}"#,
     ),
     plain(
         "thermal",
         "The first patch after despiking and 120 iterations of thermal erosion",
         "--despike 0.6 --thermal 120",
-        r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#,
+        LOOK,
     ),
     plain(
         "blend",

@@ -1,0 +1,126 @@
+//! Hydraulic erosion: rain collects in rivers, which carry ground away and leave it where they slow down (virtual pipes after
+//! Mei, Decaudin and Hu, "Fast hydraulic erosion simulation and visualization on GPU", Pacific Graphics 2007), in integers.
+
+use crate::InputError;
+use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
+
+#[cfg(feature = "verify")]
+pub(crate) mod bench;
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+#[cfg(feature = "verify")]
+pub(crate) mod verify;
+
+pub use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
+#[cfg(feature = "gpu")]
+pub use pass::{HydraulicBuffers, HydraulicPass};
+
+/// The largest number of cycles.
+pub const MAX_ITERATIONS: u32 = 2048;
+
+/// Rain, rivers, and what they do to the ground. Each cycle moves water and the sediment in it to the four neighbours of each
+/// sample, lets ground creep and steep banks slide, erodes or deposits, evaporates, and rains; in the last quarter of the cycles the land dries
+/// without rain, and after the last one all sediment settles where it is.
+///
+/// Lengths are fractions of the spacing of samples (terrainScale), so that a landscape of another scale erodes alike. Ground and
+/// sediment together are conserved to the last bit. A cycle reads samples at most one sample away: a patch of 257² samples
+/// needs as many samples around it as there are cycles, and 300 cycles on it compute windows of 857², eleven times the patch, at
+/// first, so larger patches erode for less. Water comes from as far as there are cycles: rivers longer than that end.
+///
+/// No configuration overflows: a sample holds at most 1024 height units of water and of sediment. What would exceed this, or
+/// the largest height, stays where it came from, and rain beyond it is lost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hydraulic {
+    /// Number of cycles, at most [`MAX_ITERATIONS`]. Default 300.
+    pub iterations: u32,
+    /// Depth of the rain in a cycle, in spacings of samples, 0 to 1. Default 0.0005.
+    pub rain: f64,
+    /// The fraction of the water that evaporates in a cycle, 0 to 1. Default 0.001.
+    pub evaporation: f64,
+    /// The sediment that water carries: for each unit of discharge, at a slope of 1; 0 to 1024. Default 200.
+    pub capacity: f64,
+    /// The discharge below which water carries nothing, as the number of samples whose rain it is; 0 to 65536. It decides how
+    /// far from the watershed valleys begin. Default 8.
+    pub threshold: f64,
+    /// The fraction of the lacking sediment that the water takes from the ground in a cycle, 0 to 1. Default 0.01.
+    pub erosion: f64,
+    /// The fraction of the excess sediment that settles in a cycle, 0 to 1. Default 0.02.
+    pub deposition: f64,
+    /// The steepest stable bank, in degrees, 0 to 89. Default 35.
+    pub talus: f64,
+    /// The fraction of the difference between two neighbours that creeps down in a cycle, 0 to 1/16. It rounds ridges, and the
+    /// more of it, the further apart are valleys. Default 0.01.
+    pub creep: f64,
+}
+
+impl Default for Hydraulic {
+    fn default() -> Self {
+        Self {
+            iterations: 300,
+            rain: 0.0005,
+            evaporation: 0.001,
+            capacity: 200.0,
+            threshold: 8.0,
+            erosion: 0.01,
+            deposition: 0.02,
+            talus: 35.0,
+            creep: 0.01,
+        }
+    }
+}
+
+impl Hydraulic {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the first field out of bounds, such as `hydraulic.rain`.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if self.iterations > MAX_ITERATIONS {
+            let bound = format!("must be at most {MAX_ITERATIONS}");
+            return Err(InputError::new("hydraulic.iterations", self.iterations, bound));
+        }
+        for (field, value, most) in [
+            ("rain", self.rain, 1.0),
+            ("evaporation", self.evaporation, 1.0),
+            ("capacity", self.capacity, 1024.0),
+            ("threshold", self.threshold, 65536.0),
+            ("erosion", self.erosion, 1.0),
+            ("deposition", self.deposition, 1.0),
+            ("talus", self.talus, 89.0),
+            ("creep", self.creep, 0.0625),
+        ] {
+            finite(&format!("hydraulic.{field}"), value, 0.0, most)?;
+        }
+        Ok(())
+    }
+
+    /// What the kernel and its reference read in a cycle, counted from 0, on windows of `in_width`² samples that are
+    /// `terrain_scale` height units apart.
+    pub fn params(&self, terrain_scale: f64, cycle: u32, in_width: u32) -> HydraulicParams {
+        let fixed = |value: f64, most: i32| value.round_ties_even().min(f64::from(most)) as i32;
+        let fraction = |value: f64| fixed(value * 32768.0, 32768);
+        let spacing = terrain_scale * HEIGHT_ONE;
+        // No two heights differ by more than twice the limit.
+        let widest = 2 * HEIGHT_LIMIT as i32;
+        let steepest = fixed(spacing, widest).max(1);
+        let slope_shift = 17_u32.saturating_sub(steepest.leading_zeros());
+        let raining = cycle < self.iterations - self.iterations / 4;
+        HydraulicParams {
+            in_width,
+            wet: (cycle > 0).into(),
+            settles: (cycle + 1 == self.iterations).into(),
+            rain: if raining { fixed(self.rain * spacing, WATER_LIMIT) } else { 0 },
+            evaporation: fraction(self.evaporation),
+            erosion: fraction(self.erosion),
+            deposition: fraction(self.deposition),
+            capacity: fixed(self.capacity * 256.0, 1 << 18),
+            threshold: fixed(self.threshold * self.rain * spacing, WATER_LIMIT),
+            steepest,
+            slope_shift,
+            slope_factor: (1 << 27) / (steepest >> slope_shift),
+            creep: fraction(self.creep),
+            talus: fixed(libm::tan(self.talus.to_radians()) * spacing, widest),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The GPU pass of `kernels/terrain/hydraulic.wgsl`, one cycle per dispatch.
+
+use super::Hydraulic;
+use super::reference::Flow;
+use crate::gpu::bindings::terrain::hydraulic as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::terrain::config::check_terrain_scale;
+use crate::terrain::fields::Fields;
+use crate::{Error, InputError};
+
+/// Rows of samples per thread. Software adapters run few long threads best, hardware many short ones.
+const ROWS_SOFTWARE: u32 = 32;
+const ROWS_HARDWARE: u32 = 4;
+
+/// What erosion reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub struct HydraulicBuffers<'a> {
+    /// Read and written: the windows.
+    pub windows: &'a Fields,
+    /// Written: fields with room for as many windows that are a sample smaller on every side.
+    pub other: &'a Fields,
+    /// Written: scratch for water and sediment, with room for the samples of `other`.
+    pub flows: &'a Buffer<Flow>,
+    /// As `flows`.
+    pub other_flows: &'a Buffer<Flow>,
+}
+
+/// Applies hydraulic erosion.
+#[derive(Debug, Clone)]
+pub struct HydraulicPass {
+    kernel: Kernel,
+    rows: u32,
+}
+
+impl HydraulicPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let rows = if gpu.tuning().wants_long_threads() { ROWS_SOFTWARE } else { ROWS_HARDWARE };
+        Self::with_rows(gpu, rows)
+    }
+
+    /// As [`HydraulicPass::new`], with so many rows of samples per thread.
+    ///
+    /// # Errors
+    /// [`InputError`] for no rows; what the driver's compiler reports.
+    pub(crate) fn with_rows(gpu: &Gpu, rows: u32) -> Result<Self, Error> {
+        if rows == 0 {
+            return Err(InputError::new("rows", 0, "must be at least 1").into());
+        }
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { rows })?, rows })
+    }
+
+    /// The number of elements that [`HydraulicBuffers::flows`] needs for windows.
+    pub fn flow_points(windows: &Fields) -> usize {
+        windows.points(1)
+    }
+
+    /// Prepares all cycles, which alternate between `windows` and `other`. Each cycle drops the outermost ring of samples. The
+    /// result lies in `windows` if the number of cycles is even, else in `other`. Windows are at most 2^30 − 1 high, in 1/65536
+    /// units, and so is the result.
+    ///
+    /// # Errors
+    /// [`InputError`] for parameters out of bounds, for windows that have too few rings for the cycles, and for a buffer that
+    /// is too short; [`GpuError`].
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        hydraulic: Hydraulic,
+        terrain_scale: f64,
+        buffers: HydraulicBuffers<'_>,
+    ) -> Result<Job, Error> {
+        let HydraulicBuffers { windows, other, flows, other_flows } = buffers;
+        hydraulic.validate()?;
+        check_terrain_scale(terrain_scale)?;
+        windows.check("windows", hydraulic.iterations)?;
+        if hydraulic.iterations > 0 {
+            let points = Self::flow_points(windows);
+            other.heights.check_holds("other.heights", points)?;
+            flows.check_holds("flows", points)?;
+            other_flows.check_holds("other_flows", points)?;
+        }
+        let steps = (0..hydraulic.iterations).map(|cycle| {
+            let sides = [(windows, flows), (other, other_flows)];
+            let [from, to] = if cycle % 2 == 0 { sides } else { [sides[1], sides[0]] };
+            let in_width = windows.cropped(cycle).width;
+            let params = hydraulic.params(terrain_scale, cycle, in_width);
+            self.step(
+                gpu,
+                (&Uniform::new(gpu, "hydraulic", &params)?, windows.cropped(cycle + 1)),
+                [from, to],
+            )
+        });
+        let steps = steps.collect::<Result<_, GpuError>>()?;
+        Ok(Job::new(gpu, "terrain/hydraulic", steps)?)
+    }
+
+    /// The dispatch of a cycle that makes windows of this size.
+    fn step(
+        &self,
+        gpu: &Gpu,
+        (params, made): (&Uniform<crate::shared::terrain::hydraulic::HydraulicParams>, Fields),
+        [from, to]: [(&Fields, &Buffer<Flow>); 2],
+    ) -> Result<Step, GpuError> {
+        let group = bindings::Group {
+            params,
+            windows: from.0.heights.slice(),
+            flows: from.1.slice(),
+            cropped: to.0.heights.slice(),
+            cropped_flows: to.1.slice(),
+        };
+        let groups = vec![group.bind(gpu, &self.kernel)?];
+        let workgroups = [self.kernel.groups_for(made.width), made.width.div_ceil(self.rows), made.count];
+        Ok(Step { kernel: self.kernel.clone(), groups, workgroups })
+    }
+}

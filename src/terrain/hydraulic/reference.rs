@@ -1,0 +1,151 @@
+//! Hydraulic erosion: the CPU reference of `kernels/terrain/hydraulic.wgsl`.
+
+use crate::shared::terrain::fixed::HEIGHT_LIMIT;
+use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
+
+/// Water and suspended sediment, both in 1/65536 height units, and the shares of both that leave in the next cycle, in 1/32768:
+/// to the west in the low half of the third word and to the east in its high half, to the north and to the south in the fourth.
+pub type Flow = [i32; 4];
+
+/// A sample, with its shares towards west, east, north and south.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    ground: i32,
+    water: i32,
+    sediment: i32,
+    shares: [i32; 4],
+}
+
+/// One cycle on a window with [`HydraulicParams::in_width`] samples per row, without the outermost ring of samples: the ground
+/// and the flow after it. Of heights of at most 2^30 − 1 in size it makes such heights.
+pub fn hydraulic(ground: &[i32], flow: &[Flow], params: &HydraulicParams) -> (Vec<i32>, Vec<Flow>) {
+    let width = params.in_width as usize;
+    let inner = (width - 2) * (width - 2);
+    let (mut new_ground, mut new_flow) = (Vec::with_capacity(inner), Vec::with_capacity(inner));
+    let cell = |at: usize| Cell::new(ground[at], if params.wet == 0 { [0; 4] } else { flow[at] });
+    for y in 1..width - 1 {
+        for at in y * width + 1..(y + 1) * width - 1 {
+            let around = [cell(at - 1), cell(at + 1), cell(at - width), cell(at + width)];
+            let (height, flow) = cycle(cell(at), around, params);
+            new_ground.push(height + flow[1] * params.settles);
+            new_flow.push(flow);
+        }
+    }
+    (new_ground, new_flow)
+}
+
+impl Cell {
+    #[inline(always)]
+    fn new(ground: i32, [water, sediment, across, along]: Flow) -> Self {
+        Self { ground, water, sediment, shares: [across & 0xffff, across >> 16, along & 0xffff, along >> 16] }
+    }
+
+    /// The height of the water's surface.
+    #[inline(always)]
+    fn surface(self) -> i32 {
+        (self.ground + self.water).min(HEIGHT_LIMIT)
+    }
+
+    /// The most water that one neighbour may add.
+    #[inline(always)]
+    fn water_room(self) -> i32 {
+        (WATER_LIMIT - self.water) >> 2
+    }
+
+    /// The most ground that one neighbour may add, and as much sediment.
+    #[inline(always)]
+    fn ground_room(self) -> i32 {
+        (HEIGHT_LIMIT - self.ground - self.sediment) >> 3
+    }
+
+    /// The most sediment that one neighbour may add.
+    #[inline(always)]
+    fn sediment_room(self) -> i32 {
+        ((SEDIMENT_LIMIT - self.sediment) >> 2).min(self.ground_room())
+    }
+
+    /// Water and sediment that leave through a side for a neighbour.
+    #[inline(always)]
+    fn leaving(self, side: usize, neighbour: Self) -> [i32; 2] {
+        let share = self.shares[side];
+        let water = part(self.water, share).min(neighbour.water_room());
+        [water, part(self.sediment, share).min(neighbour.sediment_room())]
+    }
+
+    /// The ground that slides and creeps down to a neighbour.
+    #[inline(always)]
+    fn sliding(self, neighbour: Self, params: &HydraulicParams) -> i32 {
+        let step = (self.ground - neighbour.ground).max(0);
+        let slid = (step - params.talus).max(0) >> 3;
+        (slid + part(step, params.creep)).min(neighbour.ground_room())
+    }
+}
+
+/// A cycle of one sample, from its neighbours to the west, east, north and south.
+#[inline(always)]
+fn cycle(cell: Cell, around: [Cell; 4], params: &HydraulicParams) -> (i32, Flow) {
+    let (mut lost, mut gained, mut slid) = ([0; 2], [0; 2], 0);
+    for (side, neighbour) in around.into_iter().enumerate() {
+        let out = cell.leaving(side, neighbour);
+        let into = neighbour.leaving(side ^ 1, cell);
+        for what in 0..2 {
+            lost[what] += out[what];
+            gained[what] += into[what];
+        }
+        slid += neighbour.sliding(cell, params) - cell.sliding(neighbour, params);
+    }
+    let moved = cell.water - lost[0] + gained[0];
+    let sediment = cell.sediment - lost[1] + gained[1];
+    let falls = around.map(|neighbour| cell.surface() - neighbour.surface());
+    let carried = capacity((lost[0] + gained[0]) >> 1, falls.into_iter().fold(0, i32::max), params);
+    let steps = around.map(|neighbour| cell.ground - neighbour.ground);
+    let lifted = lifted(steps, moved, carried - sediment, params);
+    let water = (moved - part(moved, params.evaporation) + params.rain).min(WATER_LIMIT);
+    let [west, east, north, south] = next_shares(cell, falls, water);
+    (cell.ground - lifted + slid, [water, sediment + lifted, west | east << 16, north | south << 16])
+}
+
+/// The sediment that a discharge carries down a surface that falls so far to the next sample.
+#[inline(always)]
+fn capacity(discharge: i32, fall: i32, params: &HydraulicParams) -> i32 {
+    let slope = ((fall.min(params.steepest) >> params.slope_shift) * params.slope_factor) >> 15;
+    let rate = ((slope * params.capacity) >> 8).min(1 << 18);
+    let driving = (discharge - params.threshold).clamp(0, WATER_LIMIT);
+    let high = driving >> 12;
+    // A rate beyond this carries more than the limit, and its product might overflow.
+    let safe = rate.min(1 << (high.max(1).leading_zeros() - 2));
+    (high * safe + (((driving & 4095) * rate) >> 12)).min(SEDIMENT_LIMIT)
+}
+
+/// The ground that goes into suspension, or, below 0, the sediment that settles. Ground sinks no deeper than its lowest
+/// neighbour, and rises no higher than its highest or the water.
+#[inline(always)]
+fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -> i32 {
+    if lacking > 0 {
+        let deepest = steps.into_iter().fold(0, i32::max);
+        return part(lacking, params.erosion).min(deepest >> 3);
+    }
+    let highest = steps.into_iter().fold(0, |highest, step| highest.max(-step));
+    -part(-lacking, params.deposition).min((highest >> 3).max(water >> 2))
+}
+
+/// The shares that leave next: each pipe keeps half of its flux and takes a sixteenth of the fall; all together give three
+/// quarters of the water at most, so that neighbouring samples do not exchange all of it from cycle to cycle.
+#[inline(always)]
+fn next_shares(cell: Cell, falls: [i32; 4], water: i32) -> [i32; 4] {
+    let mut flux = [0; 4];
+    for side in 0..4 {
+        let old = part(cell.water, cell.shares[side]);
+        flux[side] = (old - (old >> 1) + (falls[side] >> 4)).clamp(0, WATER_LIMIT);
+    }
+    let whole = flux.into_iter().sum::<i32>().max(water).max(1) as u32;
+    let shift = 16 - whole.leading_zeros().min(16);
+    let inverse = (1 << 31) / (whole >> shift);
+    flux.map(|flux| ((((flux as u32 >> shift) * inverse) >> 16) as i32 * 3) >> 2)
+}
+
+/// ⌊amount · share / 32768⌋ for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
+#[inline(always)]
+fn part(amount: i32, share: i32) -> i32 {
+    (amount >> 15) * share + (((amount & 32767) * share) >> 15)
+}

@@ -1,0 +1,127 @@
+//! Parity cases of `kernels/terrain/hydraulic.wgsl`.
+
+use crate::Error;
+use crate::harness::Cases;
+use crate::harness::compare::exact;
+use crate::harness::poison::{POISON, Poisoned};
+use crate::terrain::fields::Fields;
+use crate::terrain::hydraulic::reference::{Flow, hydraulic};
+use crate::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
+use crate::terrain::verify::{LIMIT, random_heights};
+
+/// Windows of one case.
+struct Case {
+    width: u32,
+    count: u32,
+    limit: i32,
+    params: Hydraulic,
+    terrain_scale: f64,
+}
+
+/// The cases cover sizes around workgroups and blocks of rows, odd and even numbers of cycles, parameters at both bounds, and
+/// heights at the limit. All four buffers are compared as a whole.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let rows = [1, 4, 32];
+    for rows in rows {
+        let pass = HydraulicPass::with_rows(cases.gpu, rows)?;
+        for (width, count) in [(3, 2), (23, 3), (66, 3), (67, 2), (130, 2)] {
+            for iterations in [1, 2, 5, 10].into_iter().filter(|iterations| 2 * iterations < width) {
+                for (kind, params) in kinds().into_iter().enumerate() {
+                    let (limit, terrain_scale) =
+                        [(1 << 20, 1.0), (LIMIT, 1e6), (LIMIT, 1e-6), (1 << 24, 30.0)][kind];
+                    let params = Hydraulic { iterations, ..params };
+                    let case = Case { width, count, limit, params, terrain_scale };
+                    let name =
+                        format!("{width}×{width} × {count}, {iterations} cycles, kind {kind}, {rows} rows");
+                    compare(cases, &pass, &name, &case)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Ordinary parameters, the largest and the smallest, and much rain that runs off.
+fn kinds() -> [Hydraulic; 4] {
+    let ordinary =
+        Hydraulic { rain: 0.02, threshold: 1.0, erosion: 0.1, deposition: 0.1, ..Hydraulic::default() };
+    let [capacity, rain] = [1024.0, 1.0];
+    let largest = Hydraulic {
+        rain,
+        capacity,
+        threshold: 0.0,
+        erosion: 1.0,
+        deposition: 1.0,
+        evaporation: 0.0,
+        talus: 0.0,
+        creep: 0.0625,
+        ..ordinary
+    };
+    let smallest = Hydraulic {
+        rain: 0.0,
+        capacity: 0.0,
+        erosion: 0.0,
+        deposition: 0.0,
+        evaporation: 1.0,
+        talus: 89.0,
+        ..ordinary
+    };
+    [ordinary, largest, smallest, Hydraulic { rain: 0.9, capacity: 5.0, evaporation: 0.01, ..ordinary }]
+}
+
+fn compare(cases: &mut Cases<'_>, pass: &HydraulicPass, name: &str, case: &Case) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let Case { width, count, limit, params, terrain_scale } = *case;
+    let host = random_heights(width, (width * width * count) as usize, limit);
+    let inner = ((width - 2) * (width - 2) * count) as usize;
+    let heights = [Poisoned::new(gpu, host.len())?, Poisoned::new(gpu, inner)?];
+    let flows = [Poisoned::new(gpu, inner)?, Poisoned::new(gpu, inner)?];
+    let [windows, other] = [0, 1].map(|i| Fields { heights: heights[i].buffer.clone(), width, count });
+    windows.heights.write(gpu, &host)?;
+    let buffers = HydraulicBuffers {
+        windows: &windows,
+        other: &other,
+        flows: &flows[0].buffer,
+        other_flows: &flows[1].buffer,
+    };
+    let job = pass.prepare(gpu, params, terrain_scale, buffers)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let (ground, flow) = expected(host, inner, case);
+    for (at, when) in [(0, "even"), (1, "odd")] {
+        let comparison = heights[at].check(gpu, |actual| exact(actual, &ground[at]))?;
+        cases.add(format!("{name}, heights after {when} cycles"), comparison);
+        let words = flow[at].concat();
+        let comparison =
+            flows[at].check(gpu, |actual: &[Flow]| exact(bytemuck::cast_slice(actual), words.as_slice()))?;
+        cases.add(format!("{name}, flow after {when} cycles"), comparison);
+    }
+    Ok(())
+}
+
+/// What the cycles leave in the first part of all buffers, over their previous contents.
+fn expected(mut ground: Vec<i32>, inner: usize, case: &Case) -> ([Vec<i32>; 2], [Vec<Flow>; 2]) {
+    let poison = POISON as i32;
+    let mut heights = [ground.clone(), vec![poison; inner]];
+    let mut flows = [vec![[poison; 4]; inner], vec![[poison; 4]; inner]];
+    let mut flow = vec![[poison; 4]; ground.len()];
+    let mut width = case.width;
+    for cycle in 0..case.params.iterations {
+        let params = case.params.params(case.terrain_scale, cycle, width);
+        let points = (width * width) as usize;
+        let windows = ground.chunks_exact(points).zip(flow.chunks_exact(points));
+        let made: Vec<_> = windows.map(|(ground, flow)| hydraulic(ground, flow, &params)).collect();
+        (ground, flow) = (Vec::new(), Vec::new());
+        for (window, flows) in made {
+            ground.extend(window);
+            flow.extend(flows);
+        }
+        width -= 2;
+        let at = (cycle as usize + 1) % 2;
+        heights[at][..ground.len()].copy_from_slice(&ground);
+        flows[at][..flow.len()].copy_from_slice(&flow);
+    }
+    (heights, flows)
+}
