@@ -19,3 +19,4 @@ mod refusals;
 mod shader;
 #[cfg(feature = "gpu")]
 mod splitting;
+mod textures;
