@@ -53,7 +53,9 @@ fn main(
     let opposite = vec4<u32>(last) - x;
     let beside = sides_of(columns.tile);
     let beyond = sides_of(rows.tile);
-    for (var y = rows.start; y < rows.end; y++) {
+    let is_reached = are_there(beside, around.xy) || are_there(beyond, around.zw);
+    let end = select(rows.start, rows.end, is_reached);
+    for (var y = rows.start; y < end; y++) {
         let first = order[entry] * params.points + y * params.size + columns.start;
         let row = y * params.size;
         let across = (last - y) * params.size + x;
@@ -80,6 +82,12 @@ fn sides_of(tile: u32) -> vec2<u32> {
         return vec2<u32>(0u, 2u);
     }
     return vec2<u32>(min(tile, 1u), select(1u, 2u, tile == 2u));
+}
+
+// Whether one of these sides has a neighbour.
+fn are_there(sides: vec2<u32>, around: vec2<u32>) -> bool {
+    let first = sides.x == 0u && sides.y > 0u && around.x != NONE;
+    return first || (sides.x < sides.y && sides.y == 2u && around.y != NONE);
 }
 
 fn store(index: u32, there: bool, height: i32) {

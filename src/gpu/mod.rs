@@ -137,10 +137,12 @@ impl Gpu {
         &self.memory
     }
 
-    /// The largest storage binding in bytes: at least WebGPU's default of 128 MiB.
+    /// The largest storage binding in bytes, a multiple of 16 as the sizes of [`Buffer`]s are: at least WebGPU's default of
+    /// 128 MiB.
     pub fn max_binding(&self) -> u64 {
         let limits = self.device.limits();
-        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        most - most % 16
     }
 
     /// A command encoder.

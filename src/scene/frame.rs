@@ -114,6 +114,11 @@ impl Scene {
             let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
         }
+        for object in self.objects.iter_mut() {
+            if let Kind::Terrain(terrain) = &mut object.kind {
+                terrain.morphing.iter_mut().for_each(|morphing| morphing.record(encoder));
+            }
+        }
         self.record_stages(encoder, views, between)?;
         self.count(encoder, views);
         views.iter_mut().for_each(|view| view.recorded(self.frames));

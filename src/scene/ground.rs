@@ -7,6 +7,7 @@ use crate::scene::handles::ObjectId;
 use crate::scene::object::{Kind, Object};
 use crate::scene::terrain::{Terrain, listed};
 use crate::terrain::mesh::GroundPoint;
+use crate::terrain::morph::Morph;
 use crate::{Error, InputError};
 
 impl Scene {
@@ -45,6 +46,20 @@ impl Scene {
         let set = entry.and_then(|entry| entry.set_patches(&mut staged, patches, heights));
         self.staged = staged;
         set
+    }
+
+    /// Lets the heights of a terrain with a target ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) be
+    /// the blend of its two recipes at another time: from + ⌊(to − from) · time⌋ in integers, so that the picture is that of
+    /// terrain made from these heights. The next frame blends on the device, normals with them; [`Scene::ground`] and
+    /// [`Scene::pick`] answer by the new heights at once. Without a change of the time nothing is blended. The host takes a
+    /// few nanoseconds per sample.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene, no terrain, or one without a target; for a time outside 0..=1.
+    /// Nothing has changed then.
+    pub fn morph_terrain(&mut self, terrain: ObjectId, morph: Morph) -> Result<(), InputError> {
+        let entry = self.object_mut(terrain)?;
+        terrain_of_mut(&mut entry.kind)?.morph(&mut entry.instances, morph)
     }
 
     /// Reads the heights of a terrain made from fields, as the work that was submitted leaves them: [`Scene::ground`] and

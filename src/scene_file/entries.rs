@@ -7,6 +7,7 @@ use glam::{DVec3, Quat, Vec3};
 use crate::animation::Wrap;
 use crate::surface::Shadow;
 use crate::surface::relief::Method;
+use crate::terrain::morph::Morph;
 use crate::terrain::recipe::Recipe;
 
 /// The terrain.
@@ -14,6 +15,8 @@ use crate::terrain::recipe::Recipe;
 pub(super) struct TerrainEntry {
     pub recipe: Recipe,
     pub patches: Vec<[i32; 2]>,
+    /// What the heights become, and how far they are on the way.
+    pub target: Option<(Recipe, Morph)>,
 }
 
 /// A model with its instances.

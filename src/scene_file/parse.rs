@@ -11,6 +11,7 @@ use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
 use crate::scene::Quality;
+use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
 /// The most entries of `meshes` and of `characters`.
@@ -105,13 +106,8 @@ impl SceneFile {
 }
 
 fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
-    let fields = at.fields(&["config", "patches"])?;
-    let config = fields.need("config", "the configuration of `relievo terrain`")?;
-    if !config.value().is_object() {
-        return Err(config.error("must be an object"));
-    }
-    let recipe = Recipe::from_json(&config.value().to_string());
-    let recipe = recipe.map_err(|error| below(&config.path, "config", error))?;
+    let fields = at.fields(&["config", "patches", "target", "time"])?;
+    let recipe = terrain_recipe(&fields.need("config", "the configuration of `relievo terrain`")?)?;
     let patches = match fields.get("patches") {
         Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
         None => vec![[0, 0]],
@@ -129,7 +125,33 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         let bound = format!("must have at most {MAX_HEIGHTS} heights together, and would have {heights}");
         return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
     }
-    Ok(TerrainEntry { recipe, patches })
+    let target = target(&fields, &recipe, &patches)?;
+    Ok(TerrainEntry { recipe, patches, target })
+}
+
+fn terrain_recipe(at: &At<'_>) -> Result<Recipe, InputError> {
+    if !at.value().is_object() {
+        return Err(at.error("must be an object"));
+    }
+    Recipe::from_json(&at.value().to_string()).map_err(|error| below(&at.path, "config", error))
+}
+
+/// What the heights of `recipe` become, if anything: half way unless there is a time.
+fn target(
+    fields: &Fields<'_>,
+    recipe: &Recipe,
+    patches: &[[i32; 2]],
+) -> Result<Option<(Recipe, Morph)>, InputError> {
+    let time = fields.maybe("time", |at| at.number(0.0, 1.0))?;
+    let Some(at) = fields.get("target") else {
+        let missing = |_| Err(fields.missing("target", "what the heights become at time 1"));
+        return time.map_or(Ok(None), missing);
+    };
+    let target = terrain_recipe(&at)?;
+    let refused = |error| below(&at.path, "config", error);
+    check_target(&recipe.config, &target.config).map_err(refused)?;
+    target.validate(patches, 1).map_err(refused)?;
+    Ok(Some((target, Morph { time: time.unwrap_or(0.5) })))
 }
 
 fn patch(at: &At<'_>) -> Result<[i32; 2], InputError> {

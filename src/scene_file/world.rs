@@ -91,6 +91,10 @@ impl LoadedScene {
             let source = TerrainSource::from(terrain.recipe.clone())
                 .with_patches(&terrain.patches)
                 .with_textures(self.textures.clone());
+            let source = match &terrain.target {
+                Some((target, morph)) => source.with_target(target.clone(), *morph),
+                None => source,
+            };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
             let name = terrain.recipe.config.seed.clone();

@@ -57,6 +57,28 @@ fn configurations() {
 }
 
 #[test]
+fn targets() {
+    let other = |from: &str, to: &str| GOOD.replace(from, to);
+    let with = |target: &str, more: &[&str], words: &[&str]| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("target.json");
+        std::fs::write(&path, target).expect("writable");
+        let all = [&["--target", path.to_str().expect("UTF-8")], more].concat();
+        refused(GOOD, &all, words);
+    };
+    with(&other("33", "65"), &[], &["target.json", "patchSize", "65", "must be 33"]);
+    with(
+        &GOOD.replace('}', r#", "terrainScale": 2}"#),
+        &[],
+        &["target.json", "terrainScale", "2", "must be 1"],
+    );
+    with(&other("40.0", "-1"), &[], &["target.json", "scaleFactor", "-1"]);
+    with(GOOD, &["--time", "1.5"], &["time", "1.5", "0..=1"]);
+    with(GOOD, &["--time", "-0.1"], &["time", "-0.1", "0..=1"]);
+    refused(GOOD, &["--target", "nowhere.json"], &["nowhere.json"]);
+}
+
+#[test]
 fn files() {
     refused(GOOD, &["--features", "@missing.json"], &["missing.json"]);
     refused(GOOD, &["--features", "@twice.json"], &["twice.json", "precomputedHeights[5]", "already"]);

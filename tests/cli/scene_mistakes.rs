@@ -103,6 +103,15 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
         "terrain.config.zones[0].texture = gone.png",
         "cannot be read",
     ),
+    (
+        "/terrain/target",
+        r#"{"patchSize": 33, "scaleFactor": 2, "seed": "cli"}"#,
+        "terrain.target.patchSize = 33",
+        "must be 17",
+    ),
+    ("/terrain/target", "3", "terrain.target = 3", "must be an object"),
+    ("/terrain/time", "0.5", "terrain.target", "must be given"),
+    ("/terrain/time", "2", "terrain.time = 2", "0..=1"),
     // What only the device's heights tell.
     ("/meshes/0/instances/0/on", "[4, 50]", "meshes[0].instances[0].on = [4, 50]", "on a patch"),
     ("/characters/0/scatter/area", "[[50, 50], [60, 60]]", "characters[0].scatter.area", "on the terrain"),

@@ -228,3 +228,28 @@ fn an_existing_folder_is_reused_and_nothing_is_left_beside_it() {
         .collect();
     assert!(names.iter().all(|name| !name.starts_with(".relievo")), "{names:?}");
 }
+
+/// Heights between two configurations: those of either at the ends, and the same bits from both processors in between.
+#[test]
+fn heights_are_on_the_way_to_a_target() {
+    let bench = Bench::new(CONFIGS[0].0);
+    let other = r#"{"patchSize": 33, "scaleFactor": 10.0, "seed": "another", "roughness": 0.9}"#;
+    std::fs::write(bench.path("target.json"), other).expect("writable");
+    let target = bench.path("target.json");
+    let with = |out: &str, more: &[&str]| {
+        let all = [&["--patches", "2x1", "--thermal", "3"], more].concat();
+        let report = bench.terrain(out, &all);
+        hashes(&report).into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let from = with("from", &[]);
+    assert_eq!(with("start", &["--target", &target, "--time", "0"]), from);
+    let half = with("half", &["--target", &target]);
+    assert_eq!(with("cpu", &["--target", &target, "--time", "0.5", "--backend", "cpu"]), half);
+    let end = with("end", &["--target", &target, "--time", "1"]);
+    std::fs::write(bench.path("config.json"), other).expect("writable");
+    assert_eq!(with("to", &[]), end);
+    let read = |out: &str| heights(bench.path(&format!("{out}/heights_1_0.i32")).into());
+    let ends = read("from").into_iter().zip(read("to"));
+    let middle = ends.map(|(from, to)| (i64::from(from) + i64::from(to)).div_euclid(2) as i32);
+    assert!(middle.eq(read("half")), "the heights are not half way");
+}

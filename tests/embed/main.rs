@@ -21,6 +21,7 @@ mod levels;
 mod life;
 mod materials;
 mod misuse;
+mod morphing;
 mod picked;
 mod pieces;
 mod placements;

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use relievo::gpu::Gpu;
+use relievo::terrain::export::HeightRange;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -47,4 +48,14 @@ pub fn pair<T: FromStr>(field: &str, text: &str, separator: char, bound: &str) -
         (Ok(first), Ok(second)) => Ok([first, second]),
         _ => Err(InputError::new(field, text, bound)),
     }
+}
+
+/// Parses the heights of black and white.
+pub fn height_range(text: &str) -> Result<HeightRange, InputError> {
+    let bound = "must be two finite heights, such as -20,35.5";
+    let [low, high] = pair::<f64>("heights-range", text, ',', bound)?;
+    if low.is_finite() && high.is_finite() {
+        return Ok(HeightRange { low, high });
+    }
+    Err(InputError::new("heights-range", text, bound))
 }

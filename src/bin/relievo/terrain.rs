@@ -2,6 +2,7 @@
 
 mod erosion;
 mod look;
+mod target;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -30,12 +31,13 @@ use serde::Serialize;
 
 use crate::Context;
 use crate::arguments::Backend;
-use crate::arguments::{one_of, pair};
+use crate::arguments::{height_range, one_of, pair};
 use crate::memory;
 use crate::output::say;
 use crate::progress::bar;
 use erosion::Erosion;
 use look::Look;
+use target::{Target, TargetArguments};
 
 const FEATURE_MODES: [(&str, FeatureMode); 2] =
     [("keep", FeatureMode::Keep), ("additive", FeatureMode::Additive)];
@@ -87,6 +89,8 @@ pub struct Terrain {
     /// mean.
     #[arg(long, value_name = "TAU", allow_hyphen_values = true)]
     despike: Option<f64>,
+    #[command(flatten)]
+    target: TargetArguments,
     /// How zone weights blend colours; additive is the method of Tanca's dissertation (2012).
     #[arg(long, value_name = "MODE", default_value = "normalized", value_parser = one_of(WEIGHT_MODES))]
     weights: WeightMode,
@@ -128,6 +132,7 @@ struct Seconds {
 /// The checked arguments.
 struct Plan {
     recipe: Recipe,
+    target: Target,
     grid: Grid,
     patches: Vec<[i32; 2]>,
     size: [u32; 2],
@@ -193,15 +198,16 @@ impl Terrain {
         let grid = Grid { first: origin, size: grid };
         let width = recipe.config.patch_size.saturating_add(recipe.apron(1).saturating_mul(2));
         // Hydraulic erosion has water and sediment beside the heights.
-        let words = if recipe.hydraulic.is_some() { 2 } else { 1 };
+        let words = self.target.batches() * if recipe.hydraulic.is_some() { 2 } else { 1 };
         memory::check(&self.patches, words * grid.bytes(width, 0))?;
         let patches = grid.patches()?;
         recipe.features = self.read_features(&recipe.config, grid, width)?;
         memory::check(&self.patches, words * grid.bytes(width, recipe.features.len() as u64))?;
         recipe.validate(&patches, 1)?;
+        let target = self.target.read(&recipe, &patches)?;
         let textures = Texture::of_zones(&recipe.config.zones)?;
         let shading = Shading { weights: self.weights, ..Shading::default() };
-        Ok(Plan { recipe, grid, patches, size, shading, textures })
+        Ok(Plan { recipe, target, grid, patches, size, shading, textures })
     }
 
     fn read_features(&self, config: &Config, grid: Grid, width: u32) -> Result<Features, Error> {
@@ -238,6 +244,7 @@ impl Terrain {
         let progress = bar(count, "generating");
         let Some(gpu) = made.gpu.clone() else {
             made.windows = field_with(&plan.recipe, &plan.patches, 1, &|| progress.inc(1))?;
+            made.windows = plan.target.windows(&plan.patches, made.windows)?;
             progress.finish_and_clear();
             made.seconds.generate = start.elapsed().as_secs_f64();
             let (start, progress) = (Instant::now(), bar(count, "colouring"));
@@ -249,6 +256,7 @@ impl Terrain {
         };
         let generator = Generator::new(&gpu, plan.recipe.clone())?;
         let parts = generator.generate(&gpu, &plan.patches, 1, &mut |done| progress.inc(done as u64))?;
+        let parts = plan.target.fields(&gpu, &plan.patches, parts)?;
         progress.finish_and_clear();
         for part in &parts {
             made.windows.extend(part.read_blocking(&gpu)?);
@@ -279,7 +287,7 @@ impl Terrain {
 
     /// How terrain.png is drawn.
     fn look<'a>(&self, plan: &'a Plan) -> Look<'a> {
-        let Plan { recipe, grid, patches, size, shading, textures } = plan;
+        let Plan { recipe, grid, patches, size, shading, textures, .. } = plan;
         let style = if self.wireframe { TerrainStyle::Wireframe } else { TerrainStyle::Textured };
         let (config, shading) = (&recipe.config, *shading);
         Look { config, grid: grid.size, patches, size: *size, shading, textures, style }
@@ -326,13 +334,4 @@ impl Terrain {
         ))?;
         made.notes.iter().try_for_each(say)
     }
-}
-
-fn height_range(text: &str) -> Result<HeightRange, InputError> {
-    let bound = "must be two finite heights, such as -20,35.5";
-    let [low, high] = pair::<f64>("heights-range", text, ',', bound)?;
-    if low.is_finite() && high.is_finite() {
-        return Ok(HeightRange { low, high });
-    }
-    Err(InputError::new("heights-range", text, bound))
 }

@@ -7,6 +7,7 @@ use crate::scene::chunk::Chunk;
 use crate::scene::instances;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
+use crate::scene::terrain::Morphing;
 use crate::scene::{mesh, relief, terrain};
 use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::{Error, InputError};
@@ -16,6 +17,7 @@ use crate::{Error, InputError};
 pub(in crate::scene) struct OnDevice {
     chunks: Vec<Chunk>,
     character: Option<(Shared, Vec<Runtime>)>,
+    morphing: Option<Morphing>,
 }
 
 impl Object {
@@ -48,7 +50,7 @@ impl Object {
             }
             Kind::Mesh(_) => self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity),
             // It does not grow.
-            Kind::Terrain(_) => {}
+            Kind::Terrain(terrain) => terrain.morphing.iter_mut().for_each(Morphing::refresh),
         }
         Ok(())
     }
@@ -60,8 +62,8 @@ impl Object {
         let drawn = match &self.kind {
             Kind::Terrain(terrain) => {
                 terrain.check_can_be_rebuilt()?;
-                let chunks = terrain::made(gpu, layouts, &terrain.source).await?.2.0;
-                return Ok(OnDevice { chunks, character: None });
+                let (terrain, _, (chunks, _)) = terrain::made(gpu, layouts, &terrain.source).await?;
+                return Ok(OnDevice { chunks, character: None, morphing: terrain.morphing });
             }
             Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, (merged, looks))?,
             Kind::Mesh(MeshOnHost::Relief(relief)) => {
@@ -72,14 +74,18 @@ impl Object {
                 let (shared, runtimes) = character.on(gpu)?;
                 let first = character.drawables_of((gpu, layouts), looks, &runtimes)?;
                 let chunks = Character::chunks_of((gpu, layouts), &first, &runtimes)?;
-                return Ok(OnDevice { chunks, character: Some((shared, runtimes)) });
+                return Ok(OnDevice { chunks, character: Some((shared, runtimes)), morphing: None });
             }
         };
-        Ok(OnDevice { chunks: whole(&self.instances, drawn).0, character: None })
+        Ok(OnDevice { chunks: whole(&self.instances, drawn).0, character: None, morphing: None })
     }
 
     /// Takes everything on another device. Everything starts afresh.
-    pub(in crate::scene) fn adopt(&mut self, OnDevice { chunks, character: on_device }: OnDevice) {
+    pub(in crate::scene) fn adopt(&mut self, on_device: OnDevice) {
+        let OnDevice { chunks, character: on_device, morphing } = on_device;
+        if let Kind::Terrain(terrain) = &mut self.kind {
+            terrain.morphing = morphing;
+        }
         if let (Kind::Character(character), Some(on_device)) = (&mut self.kind, on_device) {
             character.adopt(on_device);
         }

@@ -72,7 +72,8 @@ impl Object {
         }
         match &mut self.kind {
             Kind::Character(character) => character.stage(staged, frame, now),
-            Kind::Mesh(_) | Kind::Terrain(_) => Ok(()),
+            Kind::Terrain(terrain) => terrain.morphing.iter().try_for_each(|morphing| morphing.stage(staged)),
+            Kind::Mesh(_) => Ok(()),
         }
     }
 

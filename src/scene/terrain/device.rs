@@ -1,5 +1,6 @@
 //! Terrain on the device: heights that are generated or the caller's, and what is drawn of them.
 
+use super::morphing::Morphing;
 use super::source::{Origin, TerrainSource, check_fields, check_once, check_patches};
 use super::{Terrain, extremes, placed};
 use crate::gpu::{Buffer, Gpu, Uniform};
@@ -21,7 +22,7 @@ use crate::terrain::texture::Texture;
 use crate::{Error, InputError};
 
 /// The samples around each patch that the scene generates: shading reads one.
-const MARGIN: u32 = 1;
+pub(super) const MARGIN: u32 = 1;
 
 /// Makes terrain: what a scene keeps of it, its patches as instances, and how they are drawn, in a chunk for each part of the
 /// heights that one binding holds.
@@ -31,9 +32,20 @@ pub(in crate::scene) async fn made(
     source: &TerrainSource,
 ) -> Result<(Terrain, Instances, (Vec<Chunk>, Vec<SceneDraw>)), Error> {
     let TerrainSource { patches, textures, .. } = source;
+    source.check_target()?;
     let config = source.config();
+    let mut morphing = None;
     let parts = match &source.origin {
-        Origin::Recipe(recipe) => generated(gpu, recipe, patches).await?,
+        Origin::Recipe(recipe) => {
+            let parts = generated(gpu, recipe, patches).await?;
+            match &source.target {
+                Some((target, morph)) => {
+                    let target = generated(gpu, target, patches).await?;
+                    morphing.insert(Morphing::new(gpu, [parts, target], *morph).await?).fields()
+                }
+                None => parts,
+            }
+        }
         Origin::Fields { config, fields } => {
             check_fields(config, fields)?;
             check_patches(config, fields, patches)?;
@@ -66,7 +78,7 @@ pub(in crate::scene) async fn made(
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
     draws[0].indices = indices.len() as u32;
     let (edge, spacing) = (config.edge_length(), config.terrain_scale);
-    let terrain = Terrain { ground, edge, spacing, source: source.clone() };
+    let terrain = Terrain { ground, edge, spacing, source: source.clone(), morphing };
     Ok((terrain, instances, (chunks, draws)))
 }
 

@@ -7,6 +7,7 @@ use crate::scene::options::TerrainStyle;
 use crate::terrain::blend::Shading;
 use crate::terrain::config::Config;
 use crate::terrain::fields::Fields;
+use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::texture::Texture;
 
@@ -29,6 +30,8 @@ pub struct TerrainSource {
     pub(super) textures: Option<Vec<Texture>>,
     pub(super) shading: Shading,
     pub(super) style: TerrainStyle,
+    /// What the heights become, and how far they are on the way.
+    pub(super) target: Option<(Box<Recipe>, Morph)>,
 }
 
 impl TerrainSource {
@@ -68,7 +71,7 @@ impl TerrainSource {
 
     fn of(origin: Origin) -> Self {
         let (shading, style) = (Shading::default(), TerrainStyle::Textured);
-        Self { origin, patches: vec![[0, 0]], textures: None, shading, style }
+        Self { origin, patches: vec![[0, 0]], textures: None, shading, style, target: None }
     }
 
     /// Shows these patches instead, each given once: its column, counted to the east, and its row, counted to the south.
@@ -93,6 +96,30 @@ impl TerrainSource {
     #[must_use]
     pub fn with_style(self, style: TerrainStyle) -> Self {
         Self { style, ..self }
+    }
+
+    /// Lets the heights change to those of another recipe, which has samples in the same places. They are blended by `morph` at
+    /// first, and later as [`Scene::morph_terrain`](crate::scene::Scene::morph_terrain) says. Zones and textures are those of
+    /// the first recipe.
+    #[must_use]
+    pub fn with_target(self, target: Recipe, morph: Morph) -> Self {
+        Self { target: Some((Box::new(target), morph)), ..self }
+    }
+
+    /// Checks the target.
+    ///
+    /// # Errors
+    /// [`InputError`] below `target` for one with samples in other places, and for heights of the caller, and that of `morph`.
+    pub(super) fn check_target(&self) -> Result<(), InputError> {
+        let Some((target, morph)) = &self.target else { return Ok(()) };
+        if self.fields().is_some() {
+            let bound = "must not be given for terrain made from fields: blend them with a pass";
+            return Err(InputError::new("target", "a recipe", bound));
+        }
+        let below = |error: InputError| InputError { path: format!("target.{}", error.path), ..error };
+        check_target(self.config(), &target.config).map_err(below)?;
+        target.validate(&self.patches, 1).map_err(below)?;
+        morph.validate()
     }
 
     /// The configuration.

@@ -8,7 +8,8 @@ use crate::terrain::border::reference::border;
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::fields::Fields;
 
-/// Measures a grid of 8 × 8 patches.
+/// Measures a grid of 8 × 8 patches. `copy` moves whole patches, though a kernel must only touch the strips along borders that
+/// have a neighbour: a tenth of the samples here, in 15 dispatches, one after the other.
 ///
 /// # Errors
 /// What the device reports.

@@ -1,8 +1,10 @@
 //! A blend of two height fields over time (B section 4.4, `targetHeight`).
 
 use crate::InputError;
-use crate::terrain::config::finite;
+use crate::terrain::config::{Config, finite};
 
+#[cfg(feature = "gpu")]
+mod batch;
 #[cfg(feature = "verify")]
 pub(crate) mod bench;
 #[cfg(feature = "gpu")]
@@ -12,6 +14,8 @@ pub mod reference;
 pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
+pub use batch::MorphedFields;
+#[cfg(feature = "gpu")]
 pub use pass::{MorphBuffers, MorphJob, MorphPass};
 
 /// A blend of two fields: `from + ⌊(to − from)·time⌋`, in integers. It is exact at both ends, and every device
@@ -20,6 +24,29 @@ pub use pass::{MorphBuffers, MorphJob, MorphPass};
 pub struct Morph {
     /// 0 (the first field) to 1 (the second), rounded to steps of 1/65536.
     pub time: f64,
+}
+
+impl Default for Morph {
+    /// The first field.
+    fn default() -> Self {
+        Self { time: 0.0 }
+    }
+}
+
+/// Checks that fields of `target` may follow those of `config`: that they have the same number of samples in the same places.
+///
+/// # Errors
+/// [`InputError`] that names `patchSize` or `terrainScale`.
+pub fn check_target(config: &Config, target: &Config) -> Result<(), InputError> {
+    if target.patch_size != config.patch_size {
+        let bound = format!("must be {}, as at time 0", config.patch_size);
+        return Err(InputError::new("patchSize", target.patch_size, bound));
+    }
+    if target.terrain_scale != config.terrain_scale {
+        let bound = format!("must be {}, as at time 0", config.terrain_scale);
+        return Err(InputError::new("terrainScale", target.terrain_scale, bound));
+    }
+    Ok(())
 }
 
 impl Morph {

@@ -2,7 +2,7 @@
 
 use super::Morph;
 use crate::gpu::bindings::terrain::morph as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
 use crate::shared::terrain::morph::MorphParams;
 use crate::{Error, InputError};
 
@@ -44,7 +44,17 @@ impl MorphPass {
                 return Err(InputError::new(field, len, bound).into());
             }
         }
-        let points = from.len() as u32;
+        Ok(self.prepare_first(gpu, buffers, from.len() as u32)?)
+    }
+
+    /// Prepares a blend of the first `points` heights, which all buffers hold.
+    pub(crate) fn prepare_first(
+        &self,
+        gpu: &Gpu,
+        buffers: MorphBuffers<'_>,
+        points: u32,
+    ) -> Result<MorphJob, GpuError> {
+        let MorphBuffers { from, to, heights } = buffers;
         let params = Uniform::new(gpu, "morph", &MorphParams { points, time: 0 })?;
         let group = bindings::Group {
             params: &params,
@@ -73,8 +83,15 @@ impl MorphJob {
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, morph: Morph) -> Result<(), Error> {
+        let mut gpu = gpu;
+        self.stage(&mut gpu, morph)
+    }
+
+    /// Sets the time where `to` records it.
+    pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
-        Ok(self.params.write(gpu, &MorphParams { points: self.points, time: morph.fixed_time() })?)
+        let params = MorphParams { points: self.points, time: morph.fixed_time() };
+        Ok(to.uniform(&self.params, &params)?)
     }
 
     /// Records the blend.

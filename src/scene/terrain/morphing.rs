@@ -1,0 +1,67 @@
+//! Terrain whose heights lie between those of two recipes.
+
+use crate::Error;
+use crate::gpu::{Gpu, Staged};
+use crate::terrain::fields::Fields;
+use crate::terrain::morph::reference::morph;
+use crate::terrain::morph::{Morph, MorphedFields};
+
+/// The heights of two recipes, and the blend of them that is drawn.
+#[derive(Debug)]
+pub(in crate::scene) struct Morphing {
+    blend: MorphedFields,
+    /// The windows of both recipes on the host, patch by patch.
+    ends: [Vec<Vec<i32>>; 2],
+    morph: Morph,
+    /// Whether the device does not have the blend yet.
+    is_due: bool,
+}
+
+impl Morphing {
+    /// Blends two batches of fields on the device, and waits for it.
+    pub async fn new(gpu: &Gpu, [from, to]: [Vec<Fields>; 2], morph: Morph) -> Result<Self, Error> {
+        let blend = MorphedFields::new(gpu, &from, &to)?;
+        blend.set(gpu, morph)?;
+        gpu.run_async("terrain/morph", |encoder| blend.record(encoder)).await?;
+        let ends = [read(gpu, &from).await?, read(gpu, &to).await?];
+        Ok(Self { blend, ends, morph, is_due: false })
+    }
+
+    /// The fields of the blend, part by part.
+    pub fn fields(&self) -> Vec<Fields> {
+        self.blend.fields().to_vec()
+    }
+
+    /// Sets another time, and gives the windows of the blend as the device will have them.
+    pub fn set(&mut self, time: Morph) -> impl Iterator<Item = Vec<i32>> {
+        self.is_due |= time != self.morph;
+        self.morph = time;
+        let [from, to] = &self.ends;
+        from.iter().zip(to).map(move |(from, to)| morph(from, to, time.fixed_time()))
+    }
+
+    /// Lets the next frame blend again, since the device may not have what was recorded.
+    pub fn refresh(&mut self) {
+        self.is_due = true;
+    }
+
+    /// Stages the time, if it has changed.
+    pub fn stage(&self, staged: &mut Staged) -> Result<(), Error> {
+        if self.is_due { self.blend.stage(staged, self.morph) } else { Ok(()) }
+    }
+
+    /// Records the blend, if the time has changed.
+    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        if std::mem::take(&mut self.is_due) {
+            self.blend.record(encoder);
+        }
+    }
+}
+
+async fn read(gpu: &Gpu, parts: &[Fields]) -> Result<Vec<Vec<i32>>, Error> {
+    let mut windows = Vec::new();
+    for part in parts {
+        windows.extend(part.read(gpu).await?);
+    }
+    Ok(windows)
+}

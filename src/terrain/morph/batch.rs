@@ -1,0 +1,69 @@
+//! Blends of whole batches of fields, part by part.
+
+use super::{Morph, MorphBuffers, MorphJob, MorphPass};
+use crate::gpu::{Gpu, Upload};
+use crate::terrain::fields::Fields;
+use crate::{Error, InputError};
+
+/// Fields whose heights lie between those of two batches: set the time, then record. It holds both batches.
+#[derive(Debug, Clone)]
+pub struct MorphedFields {
+    fields: Vec<Fields>,
+    jobs: Vec<MorphJob>,
+}
+
+impl MorphedFields {
+    /// Allocates fields for the blend of `from`, the heights at time 0, and `to`, those at time 1: parts of the same widths and
+    /// counts, as a [`Generator`](crate::terrain::generator::Generator) makes them of the same patches. They hold zeros until
+    /// the blend has been recorded.
+    ///
+    /// # Errors
+    /// [`InputError`] for other numbers of parts, widths or counts, and for buffers that are too short; [`crate::gpu::GpuError`].
+    pub fn new(gpu: &Gpu, from: &[Fields], to: &[Fields]) -> Result<Self, Error> {
+        if to.len() != from.len() {
+            let bound = format!("must be {}, as from.len", from.len());
+            return Err(InputError::new("to.len", to.len(), bound).into());
+        }
+        let pass = MorphPass::new(gpu)?;
+        let (mut fields, mut jobs) = (Vec::new(), Vec::new());
+        for (part, (from, to)) in from.iter().zip(to).enumerate() {
+            let sizes = [("width", from.width, to.width), ("count", from.count, to.count)];
+            if let Some((field, from, to)) = sizes.into_iter().find(|(_, from, to)| from != to) {
+                let bound = format!("must be {from}, as from[{part}].{field}");
+                return Err(InputError::new(format!("to[{part}].{field}"), to, bound).into());
+            }
+            // After erosion a buffer has more room than its fields take.
+            from.check(&format!("from[{part}]"), 0)?;
+            to.check(&format!("to[{part}]"), 0)?;
+            let between = Fields::new(gpu, "terrain heights", from.width, from.count)?;
+            let buffers = MorphBuffers { from: &from.heights, to: &to.heights, heights: &between.heights };
+            jobs.push(pass.prepare_first(gpu, buffers, between.points(0) as u32)?);
+            fields.push(between);
+        }
+        Ok(Self { fields, jobs })
+    }
+
+    /// The fields that receive the blend, part by part.
+    pub fn fields(&self) -> &[Fields] {
+        &self.fields
+    }
+
+    /// Sets the time of the next submission.
+    ///
+    /// # Errors
+    /// [`InputError`] for a time outside 0..=1; [`crate::gpu::GpuError`].
+    pub fn set(&self, gpu: &Gpu, morph: Morph) -> Result<(), Error> {
+        let mut gpu = gpu;
+        self.stage(&mut gpu, morph)
+    }
+
+    /// Sets the time where `to` records it.
+    pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
+        self.jobs.iter().try_for_each(|job| job.stage(to, morph))
+    }
+
+    /// Records the blend.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.jobs.iter().for_each(|job| job.record(encoder));
+    }
+}

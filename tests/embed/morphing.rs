@@ -1,0 +1,143 @@
+//! Terrain between two recipes: pictures, normals and ground are those of the heights in between.
+
+use image::RgbaImage;
+use relievo::InputError;
+use relievo::gpu::Gpu;
+use relievo::render::Renderer;
+use relievo::scene::{ObjectId, Scene, TerrainSource, View};
+use relievo::terrain::config::Config;
+use relievo::terrain::fields::Fields;
+use relievo::terrain::generator::Generator;
+use relievo::terrain::morph::Morph;
+use relievo::terrain::morph::reference::morph;
+use relievo::terrain::recipe::Recipe;
+use relievo::terrain::thermal::Thermal;
+
+use crate::frame::{Frame, device};
+use crate::world::{SIZE, camera};
+
+const HERE: [[i32; 2]; 4] = [[-1, -1], [0, -1], [-1, 0], [0, 0]];
+
+fn ends() -> [Config; 2] {
+    [("embed", 6.0), ("another", 9.0)].map(|(seed, height)| Config::new(33, height, seed).expect("valid"))
+}
+
+/// The first is eroded.
+fn recipes() -> [Recipe; 2] {
+    let [from, to] = ends().map(Recipe::new);
+    [Recipe { thermal: Some(Thermal { iterations: 3, ..Thermal::default() }), ..from }, to]
+}
+
+fn source(time: f64) -> TerrainSource {
+    let [from, to] = recipes();
+    TerrainSource::from(from).with_patches(&HERE).with_target(to, Morph { time })
+}
+
+/// Terrain made from the heights at a time, which the host computed.
+fn between(gpu: &Gpu, time: f64) -> TerrainSource {
+    let [from, to] = recipes().map(|recipe| {
+        let generator = Generator::new(gpu, recipe).expect("compiled");
+        let fields = generator.generate(gpu, &HERE, 1, &mut |_| ()).expect("generated").remove(0);
+        fields.read_blocking(gpu).expect("read").concat()
+    });
+    let fields = Fields::new(gpu, "between", 35, 4).expect("allocated");
+    fields.heights.write(gpu, &morph(&from, &to, Morph { time }.fixed_time())).expect("written");
+    TerrainSource::from_fields(ends()[0].clone(), fields, &HERE)
+}
+
+struct Stage {
+    scene: Scene,
+    land: ObjectId,
+    view: View,
+    frame: Frame,
+    renderer: Renderer,
+}
+
+impl Stage {
+    fn new(gpu: &Gpu, source: &TerrainSource) -> Self {
+        let mut scene = Scene::new(gpu).expect("compiled");
+        let land = scene.add_terrain(source).expect("added");
+        let mut view = scene.view(Default::default()).expect("a view");
+        view.set(camera(SIZE)).expect("a camera");
+        let frame = Frame::plain(gpu, SIZE);
+        let renderer = frame.renderer(gpu, &scene);
+        Self { scene, land, view, frame, renderer }
+    }
+
+    fn at(&mut self, time: f64) -> RgbaImage {
+        self.scene.morph_terrain(self.land, Morph { time }).expect("has a target");
+        self.shot()
+    }
+
+    fn shot(&mut self) -> RgbaImage {
+        self.frame.shot(&mut self.scene, &mut self.view, &self.renderer)
+    }
+
+    fn ground(&self) -> Vec<f64> {
+        let places = [(0.25, 0.5), (-7.5, 11.0), (20.0, -30.75)];
+        let point =
+            |(x, z): (f64, f64)| self.scene.ground(self.land, x, z).expect("terrain").expect("inside");
+        places
+            .map(point)
+            .iter()
+            .flat_map(|point| [vec![point.height], point.normal.map(f64::from).to_vec()].concat())
+            .collect()
+    }
+}
+
+/// Each time looks as terrain made from these heights, also after a frame that was never submitted, and on the way back; the
+/// ground is theirs too. Another time looks different, or the comparison would mean nothing.
+#[test]
+fn a_time_looks_as_its_heights() {
+    let gpu = device();
+    let mut stage = Stage::new(&gpu, &source(0.0));
+    let mut pictures = Vec::new();
+    for time in [0.0, 0.25, 0.7, 1.0, 0.25] {
+        let picture = stage.at(time);
+        let mut expected = Stage::new(&gpu, &between(&gpu, time));
+        assert!(picture == expected.shot(), "time {time} looks different");
+        assert_eq!(stage.ground(), expected.ground(), "time {time}");
+        pictures.push(picture);
+    }
+    assert!(pictures[..4].iter().enumerate().all(|(at, picture)| !pictures[..at].contains(picture)));
+    assert!(pictures[4] == pictures[1], "the way back leads elsewhere");
+    assert!(Stage::new(&gpu, &source(0.7)).shot() == pictures[2], "a later start looks different");
+    // Dropped, and given up.
+    stage.scene.morph_terrain(stage.land, Morph { time: 1.0 }).expect("has a target");
+    let mut encoder = gpu.encoder("dropped");
+    stage.scene.record(&mut encoder, &mut [&mut stage.view]).expect("recorded");
+    drop(encoder);
+    stage.scene.invalidate().expect("starts afresh");
+    assert!(stage.shot() == pictures[3], "what was dropped is missing");
+}
+
+#[test]
+fn mistakes_about_targets_are_told() {
+    let gpu = device();
+    let told = |error: relievo::Error| match error {
+        relievo::Error::Input(InputError { path, value, .. }) => (path, value),
+        other => panic!("{other}"),
+    };
+    let pair = |path: &str, value: &str| (path.to_owned(), value.to_owned());
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let [from, to] = ends();
+    let mut refused = |source: TerrainSource| told(scene.add_terrain(&source).expect_err("refused"));
+    let plain = || TerrainSource::new(from.clone());
+    let finer = Config::new(65, 9.0, "finer").expect("valid");
+    let half = Morph { time: 0.5 };
+    assert_eq!(refused(plain().with_target(Recipe::new(finer), half)), pair("target.patchSize", "65"));
+    let wide = Config { terrain_scale: 2.0, ..to.clone() };
+    assert_eq!(refused(plain().with_target(Recipe::new(wide), half)), pair("target.terrainScale", "2"));
+    let beyond = plain().with_target(Recipe::new(to.clone()), Morph { time: 1.5 });
+    assert_eq!(refused(beyond), pair("time", "1.5"));
+    let fields = between(&gpu, 0.5).with_target(Recipe::new(to), half);
+    assert_eq!(refused(fields).0, "target");
+    let mut stage = Stage::new(&gpu, &source(0.25));
+    let before = stage.shot();
+    let error = stage.scene.morph_terrain(stage.land, Morph { time: -0.5 }).expect_err("refused");
+    assert_eq!((error.path, error.value), pair("time", "-0.5"));
+    assert!(stage.shot() == before, "a mistake has changed the picture");
+    let mut alone = Stage::new(&gpu, &plain());
+    let error = alone.scene.morph_terrain(alone.land, half).expect_err("refused");
+    assert_eq!(error.path, "terrain");
+}
