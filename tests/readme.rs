@@ -319,7 +319,7 @@ fn the_creature_has_as_many_bones_vertices_and_triangles() {
     assert!(README.contains(&figures), "{figures}");
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().to_str().expect("UTF-8");
-    for millimetres in [14, 28] {
+    for millimetres in [15, 29] {
         let within = format!("0.0{millimetres}");
         let common = ["skin", "--model", "builtin", "--clip", "walk", "--time", "0.3", "--out", out];
         let run = relievo(&[&common[..], &["--within", &within]].concat());

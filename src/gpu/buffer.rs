@@ -82,7 +82,19 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// # Errors
     /// [`GpuError::Validation`] when `data` is longer than the buffer.
     pub fn write(&self, gpu: &Gpu, data: &[T]) -> Result<(), GpuError> {
-        gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, bytemuck::cast_slice(data)))
+        self.write_at(gpu, 0, data)
+    }
+
+    /// Refuses elements beyond the buffer's end, behind which there may be room.
+    ///
+    /// # Errors
+    /// [`GpuError::Validation`].
+    pub(super) fn has(&self, first: usize, count: usize) -> Result<(), GpuError> {
+        if first.saturating_add(count) > self.len() {
+            let reason = format!("{count} elements from {first} on do not fit a buffer of {}", self.len());
+            return Err(GpuError::Validation { reason });
+        }
+        Ok(())
     }
 
     /// Replaces `data.len()` elements, starting at `first`.
@@ -90,7 +102,8 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// # Errors
     /// [`GpuError::Validation`] when they reach beyond the buffer's end.
     pub fn write_at(&self, gpu: &Gpu, first: usize, data: &[T]) -> Result<(), GpuError> {
-        let offset = first.saturating_mul(size_of::<T>()) as u64;
+        self.has(first, data.len())?;
+        let offset = (first * size_of::<T>()) as u64;
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, offset, bytemuck::cast_slice(data)))
     }
 

@@ -33,8 +33,8 @@ fn verify_writes_every_case() {
     let report = read_json(&path);
     assert_eq!(report["holds"], true);
     let cases = report["cases"].as_array().expect("cases");
-    // Thirteen pairs of a width and iterations, three angles, two buffers each.
-    assert_eq!(cases.len(), 13 * 3 * 2);
+    // Two widths of a thread's columns, thirteen pairs of a width and iterations, three angles, two buffers each.
+    assert_eq!(cases.len(), 2 * 13 * 3 * 2);
     assert!(cases.iter().all(|case| case["stem"] == "terrain/thermal"));
     assert!(cases.iter().all(|case| case["values"].as_u64().is_some_and(|values| values > 0)));
 }

@@ -56,7 +56,7 @@ fn split_batches_of_blend_are_the_same_bits() {
     // Buffers that hold one patch, a few patches, and almost all patches.
     for most in [1, 3, 7] {
         // The largest windows extend five samples beyond a patch: a buffer must hold one window, but not two patches.
-        let gpu = gpu_of_bindings((most * PATCH).max(4 * u64::from(SIZE + 10).pow(2)));
+        let gpu = gpu_of_bindings((most * PATCH).max(4 * u64::from(SIZE + 10).pow(2)).next_multiple_of(16));
         for recipe in [1, 8, 30].into_iter().flat_map(recipes) {
             let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");
             for ((order, patches), margin) in
