@@ -1,6 +1,7 @@
 // Which outputs a thread makes. The outputs of a window are cut into blocks, a thread makes one, and neighbouring threads make
 // neighbouring blocks of a row.
 
+// How the outputs of all windows are cut.
 struct Blocks {
     // Blocks along a row of a window, and in a window.
     per_row: u32,
@@ -11,6 +12,7 @@ struct Blocks {
     rows: u32,
 }
 
+// What a thread makes.
 struct Block {
     // Whether there is one for this thread.
     there: bool,
