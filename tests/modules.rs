@@ -309,9 +309,6 @@ fn is_bound(file: &Path) -> bool {
         || source.lines().filter_map(imported).any(|file| is_bound(&file))
 }
 
-/// How kernels cut windows into blocks for their threads: of no use to a shader that draws.
-const OF_KERNELS: &str = "wgsl/terrain/blocks.wgsl";
-
 /// Each file once, so that all modules can stand in one shader. Those of `wgsl/render/` are of the crate's own drawing.
 #[test]
 fn every_file_that_a_shader_could_import_is_in_one_module() {
@@ -323,7 +320,6 @@ fn every_file_that_a_shader_could_import_is_in_one_module() {
     let importable: BTreeSet<String> = (wgsl_files(&root().join("wgsl")).iter())
         .filter(|file| !file.starts_with(root().join("wgsl/render")) && !is_bound(file))
         .map(|file| file.strip_prefix(root()).expect("below").to_string_lossy().replace('\\', "/"))
-        .filter(|file| file != OF_KERNELS)
         .collect();
     assert!(!importable.is_empty());
     assert_eq!(exported.iter().cloned().collect::<BTreeSet<_>>(), importable);

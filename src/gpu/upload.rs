@@ -36,12 +36,7 @@ pub trait Upload {
     where
         Self: Sized,
     {
-        // The buffer may have room for more.
-        if first.saturating_add(data.len()) > to.len() {
-            let reason =
-                format!("{} elements from {first} on do not fit a buffer of {}", data.len(), to.len());
-            return Err(GpuError::Validation { reason });
-        }
+        to.has(first, data.len())?;
         self.bytes(to.raw(), (first * size_of::<T>()) as u64, bytemuck::cast_slice(data))
     }
 }

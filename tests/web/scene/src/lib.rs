@@ -53,7 +53,7 @@ pub fn collapses() -> Vec<String> {
     alike::hashes().into()
 }
 
-/// What the library says of a write beyond a buffer's end: at once, and once the browser has told the errors so far.
+/// What the library says of a write between two words: at once, and once the browser has told the errors so far.
 #[wasm_bindgen]
 pub async fn mistake() -> Result<Vec<String>, JsValue> {
     made().await.map_err(|error| JsValue::from_str(&error.to_string()))
@@ -66,7 +66,8 @@ async fn made() -> Result<Vec<String>, relievo::Error> {
         Ok(()) => "nothing".to_owned(),
         Err(error) => error.to_string(),
     };
-    let at_once = said(buffer.write_at(&gpu, 2, &[3_u32]));
+    let bytes = Buffer::from_slice(&gpu, "bytes", &[0_u8; 8])?;
+    let at_once = said(bytes.write_at(&gpu, 1, &[9_u8; 4]));
     let later = said(gpu.check_async().await);
     // The buffer and the device are of use afterwards.
     buffer.write_at(&gpu, 1, &[7_u32])?;
