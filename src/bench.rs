@@ -23,6 +23,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::bench::cases },
     Stem { name: "baseline/gather", run: baseline::gather::bench::cases },
     Stem { name: "baseline/loads", run: baseline::loads::bench::cases },
+    Stem { name: "baseline/texels", run: baseline::texels::bench::cases },
     Stem { name: "baseline/words", run: baseline::words::bench::cases },
     Stem { name: "terrain/height", run: terrain::height::bench::cases },
     Stem { name: "terrain/smooth", run: terrain::smooth::bench::cases },

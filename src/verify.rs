@@ -25,6 +25,7 @@ pub static STEMS: &[Stem] = &[
     Stem { name: "baseline/copy", run: baseline::copy::verify::cases },
     Stem { name: "baseline/gather", run: baseline::gather::verify::cases },
     Stem { name: "baseline/loads", run: baseline::loads::verify::cases },
+    Stem { name: "baseline/texels", run: baseline::texels::verify::cases },
     Stem { name: "baseline/words", run: baseline::words::verify::cases },
     Stem { name: "terrain/height", run: terrain::height::verify::cases },
     Stem { name: "terrain/smooth", run: terrain::smooth::verify::cases },

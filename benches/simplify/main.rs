@@ -20,7 +20,7 @@ use std::time::Instant;
 use meshes::Mesh;
 use meshopt::{SimplifyOptions, VertexDataAdapter};
 use peak_alloc::PeakAlloc;
-use relievo::mesh::{Options, Surface, simplify};
+use relievo::mesh::{Options, Simplified, Surface, simplify, simplify_within};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -33,6 +33,28 @@ const PERCENT: [usize; 4] = [50, 20, 10, 2];
 type Simplify = fn(&Mesh, usize, Option<f32>) -> Result<Vec<u32>, Box<dyn Error>>;
 
 fn ours(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>, Box<dyn Error>> {
+    level(mesh, normals, |surface| simplify(surface, &Options { triangles, ..Options::default() }))
+}
+
+/// Within limited distances instead: the smallest that reaches the number of triangles, of those that double from a
+/// hundred-thousandth of the mesh's extent.
+fn within(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>, Box<dyn Error>> {
+    let along = |axis: usize| {
+        let all = || mesh.positions.iter().map(|position| position[axis]);
+        all().fold(f32::NEG_INFINITY, f32::max) - all().fold(f32::INFINITY, f32::min)
+    };
+    let extent = along(0).max(along(1)).max(along(2));
+    let distances: Vec<f32> = (0..17).map(|doubled| extent * 1e-5 * f32::from(2_u16).powi(doubled)).collect();
+    let options = Options { triangles, ..Options::default() };
+    level(mesh, normals, |surface| simplify_within(surface, &options, &distances))
+}
+
+/// The triangles that are left of a mesh.
+fn level(
+    mesh: &Mesh,
+    normals: Option<f32>,
+    simplify: impl Fn(&Surface<'_>) -> Result<Simplified, relievo::InputError>,
+) -> Result<Vec<u32>, Box<dyn Error>> {
     let scaled = normals.map_or_else(Vec::new, |weight| {
         mesh.normals.as_flattened().iter().map(|number| number * weight).collect()
     });
@@ -42,7 +64,7 @@ fn ours(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>,
         attributes: &scaled,
         stride: if normals.is_some() { 3 } else { 0 },
     };
-    let simplified = simplify(&surface, &Options { triangles, ..Options::default() })?;
+    let simplified = simplify(&surface)?;
     Ok(simplified.triangles(&mesh.indices, simplified.collapses().len()))
 }
 
@@ -173,8 +195,9 @@ fn compare(
         left[1]
     );
     if let Some(out) = out {
+        let near = within(mesh, target, normals)?;
         let normals = if normals.is_some() { "_normals" } else { "" };
-        for (name, level) in ["relievo", "meshoptimizer"].iter().zip(&levels) {
+        for (name, level) in [("relievo", &levels[0]), ("meshoptimizer", &levels[1]), ("within", &near)] {
             write_obj(&out.join(format!("{}{normals}_{percent}_{name}.obj", mesh.name)), mesh, level)?;
         }
     }

@@ -22,7 +22,8 @@ const LEAST_SCALE: f32 = 1e-9;
 // For each instance 0 if the view does not see it, else 1 + its list, 1 + 2 · level + mirrored, and from bit
 // `DECISION_MORPH_SHIFT` on how far the level has moved to the next one.
 @group(0) @binding(5) var<storage, read_write> decisions: array<u32>;
-// Three rows for each instance that is seen: the transform from the model's space to the corner of the view's cell.
+// Three rows for each instance that is seen: the transform from the model's space to the corner of the view's cell. From
+// `SelectView.last_levels` on, an element for each instance: what `level_told` makes of its decision in the last frame.
 @group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
 // For each block the number of its instances in each of `OBJECT_LISTS` lists.
 @group(0) @binding(7) var<storage, read_write> counts: array<u32>;
@@ -120,6 +121,14 @@ fn decide(index: u32, object: LodObject) -> u32 {
     return 0u;
 }
 
+// What a decision tells of an instance's level: 1 + the level, or 0 if the instance is not seen, and the steps that the level
+// has moved to the next one.
+fn level_told(decision: u32) -> vec4<f32> {
+    let level = (max(decision & DECISION_LIST, 1u) - 1u) >> 1u;
+    let steps = decision >> (DECISION_MORPH_SHIFT + MORPH_SHIFT);
+    return select(vec4<f32>(f32(1u + level), f32(steps), 0.0, 0.0), vec4<f32>(0.0), decision == 0u);
+}
+
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -140,6 +149,9 @@ fn main(
     workgroupBarrier();
     let index = BLOCK * block + lane;
     let decision = decide(index, objects[owner]);
+    if view.last_levels != 0u {
+        rows[view.last_levels + index] = level_told(select(0u, decisions[index], view.is_next != 0u));
+    }
     decisions[index] = decision;
     if decision > 0u {
         atomicAdd(&tally[(decision & DECISION_LIST) - 1u], 1u);

@@ -29,18 +29,17 @@ const BLOCK: u32 = 64u;
 // Words of a block: how many it keeps, which SCAN replaces by what those before it keep; and a bit for each that it keeps.
 const BLOCK_WORDS: u32 = 3u;
 
-// Words of a vertex's record. The first is its entry in the table, then the leader of its cell.
-const RECORD: u32 = 8u;
-const LEADER = 0u;
-// Those of a leader have the number of its cell's vertices, then the index of the representative;
-const COUNT = 1u;
+// Words of the record of a cell, which is that of its leader:
+const RECORD: u32 = 7u;
+// the number of its vertices, then the index of the representative;
+const COUNT = 0u;
 // the lower halves of the sums, then the mean;
-const LOW = 2u;
+const LOW = 1u;
 // the upper halves of the sums,
-const HIGH = 5u;
+const HIGH = 4u;
 // then the least distance and the source.
-const DISTANCE = 5u;
-const FROM = 6u;
+const DISTANCE = 4u;
+const FROM = 5u;
 
 // The largest magnitude of a position in quanta.
 const FARTHEST: u32 = 0x40000000u;
@@ -84,7 +83,8 @@ struct ClusterCounts {
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
 // Two words for each entry: 1 + the cell, or 0, and the complement of the leader. All are 0 at first.
 @group(0) @binding(3) var<storage, read_write> table: array<atomic<u32>>;
-// `RECORD` words for each vertex, 0 at first.
+// For each vertex its entry in the table, then the leader of its cell; these lie close together, since triangles look up those
+// of their corners. Then `RECORD` words for each vertex, 0 at first.
 @group(0) @binding(4) var<storage, read_write> records: array<atomic<u32>>;
 // `BLOCK_WORDS` for each block of vertices, then for each block of triangles.
 @group(0) @binding(5) var<storage, read_write> blocks: array<u32>;
@@ -120,8 +120,19 @@ fn offset_of(vertex: u32) -> vec3<u32> {
     return min(from_origin, params.extent);
 }
 
+// The cell of an offset. A quotient of floats is at most 1024, so that rounding makes it wrong by one at most: integers say
+// whether it is.
 fn cell_of(offset: vec3<u32>) -> vec3<u32> {
-    return offset / vec3<u32>(params.size);
+    let size = vec3<u32>(params.size);
+    let near = vec3<u32>(vec3<f32>(offset) / vec3<f32>(size));
+    let product = near * size;
+    let more = select(near, near + 1u, offset - product >= size);
+    return select(more, near - 1u, product > offset);
+}
+
+// Where the record of a cell begins, by its leader.
+fn record_of(leader: u32) -> u32 {
+    return params.vertices + RECORD * leader;
 }
 
 fn insert(vertex: u32) {
@@ -141,21 +152,21 @@ fn insert(vertex: u32) {
         }
     }
     atomicMax(&table[2u * entry + 1u], ~vertex);
-    atomicStore(&records[RECORD * vertex + LEADER], entry);
+    atomicStore(&records[vertex], entry);
 }
 
 // The carries of the lower halves are counted in the upper ones, whatever the order of additions is.
 fn add(vertex: u32) {
-    let entry = atomicLoad(&records[RECORD * vertex + LEADER]);
+    let entry = atomicLoad(&records[vertex]);
     let leader = ~atomicLoad(&table[2u * entry + 1u]);
-    atomicStore(&records[RECORD * vertex + LEADER], leader);
+    atomicStore(&records[vertex], leader);
     let offset = offset_of(vertex);
     let inside = offset - cell_of(offset) * params.size;
-    atomicAdd(&records[RECORD * leader + COUNT], 1u);
+    atomicAdd(&records[record_of(leader) + COUNT], 1u);
     for (var axis = 0u; axis < 3u; axis++) {
-        let old = atomicAdd(&records[RECORD * leader + LOW + axis], inside[axis]);
+        let old = atomicAdd(&records[record_of(leader) + LOW + axis], inside[axis]);
         if old + inside[axis] < old {
-            atomicAdd(&records[RECORD * leader + HIGH + axis], 1u);
+            atomicAdd(&records[record_of(leader) + HIGH + axis], 1u);
         }
     }
 }
@@ -179,8 +190,8 @@ fn divided(low: u32, high: u32, count: u32) -> u32 {
 }
 
 fn mean(vertex: u32) {
-    let record = RECORD * vertex;
-    if atomicLoad(&records[record + LEADER]) != vertex {
+    let record = record_of(vertex);
+    if atomicLoad(&records[vertex]) != vertex {
         return;
     }
     let corner = cell_of(offset_of(vertex)) * params.size;
@@ -196,9 +207,9 @@ fn mean(vertex: u32) {
 
 // The leaders of a triangle's corners, and whether they differ.
 fn corners_of(triangle: u32) -> vec4<u32> {
-    let a = atomicLoad(&records[RECORD * indices[3u * triangle] + LEADER]);
-    let b = atomicLoad(&records[RECORD * indices[3u * triangle + 1u] + LEADER]);
-    let c = atomicLoad(&records[RECORD * indices[3u * triangle + 2u] + LEADER]);
+    let a = atomicLoad(&records[indices[3u * triangle]]);
+    let b = atomicLoad(&records[indices[3u * triangle + 1u]]);
+    let c = atomicLoad(&records[indices[3u * triangle + 2u]]);
     return vec4<u32>(a, b, c, u32(a != b && b != c && c != a));
 }
 
@@ -217,7 +228,7 @@ fn mark(block: u32) {
         let first = BLOCK * block;
         let count = min(BLOCK, params.vertices - first);
         for (var at = 0u; at < count; at++) {
-            let bit = u32(atomicLoad(&records[RECORD * (first + at) + LEADER]) == first + at) << (at % 32u);
+            let bit = u32(atomicLoad(&records[first + at]) == first + at) << (at % 32u);
             kept |= select(vec2<u32>(bit, 0u), vec2<u32>(0u, bit), at >= 32u);
         }
     } else {
@@ -235,7 +246,7 @@ fn mark(block: u32) {
 
 // The largest distance along an axis between a vertex and the mean of its cell.
 fn distance_of(vertex: u32, leader: u32) -> u32 {
-    let record = RECORD * leader + LOW;
+    let record = record_of(leader) + LOW;
     let center = vec3<u32>(
         atomicLoad(&records[record]),
         atomicLoad(&records[record + 1u]),
@@ -247,14 +258,14 @@ fn distance_of(vertex: u32, leader: u32) -> u32 {
 }
 
 fn measure(vertex: u32) {
-    let leader = atomicLoad(&records[RECORD * vertex + LEADER]);
-    atomicMin(&records[RECORD * leader + DISTANCE], distance_of(vertex, leader));
+    let leader = atomicLoad(&records[vertex]);
+    atomicMin(&records[record_of(leader) + DISTANCE], distance_of(vertex, leader));
 }
 
 fn choose(vertex: u32) {
-    let leader = atomicLoad(&records[RECORD * vertex + LEADER]);
-    if distance_of(vertex, leader) == atomicLoad(&records[RECORD * leader + DISTANCE]) {
-        atomicMin(&records[RECORD * leader + FROM], vertex);
+    let leader = atomicLoad(&records[vertex]);
+    if distance_of(vertex, leader) == atomicLoad(&records[record_of(leader) + DISTANCE]) {
+        atomicMin(&records[record_of(leader) + FROM], vertex);
     }
 }
 
@@ -311,7 +322,7 @@ fn float_of(quanta: i32) -> u32 {
 
 // Writes the representative of a cell, which a vertex leads.
 fn represent(vertex: u32, slot: u32) {
-    let record = RECORD * vertex;
+    let record = record_of(vertex);
     let x = bitcast<i32>(atomicLoad(&records[record + LOW])) + params.origin.x;
     let y = bitcast<i32>(atomicLoad(&records[record + LOW + 1u])) + params.origin.y;
     let z = bitcast<i32>(atomicLoad(&records[record + LOW + 2u])) + params.origin.z;
@@ -323,8 +334,8 @@ fn represent(vertex: u32, slot: u32) {
 // Writes a triangle that stays.
 fn connect(triangle: u32, slot: u32) {
     for (var corner = 0u; corner < 3u; corner++) {
-        let leader = atomicLoad(&records[RECORD * indices[3u * triangle + corner] + LEADER]);
-        clustered[3u * slot + corner] = atomicLoad(&records[RECORD * leader + COUNT]);
+        let leader = atomicLoad(&records[indices[3u * triangle + corner]]);
+        clustered[3u * slot + corner] = atomicLoad(&records[record_of(leader) + COUNT]);
     }
 }
 

@@ -1,7 +1,7 @@
 // B's transition area (section 3.3.1): samples within `width` of a border move towards the patch that already
 // exists on its other side. The left and right borders are handled first, then the upper and lower ones on
 // their result. A thread makes a block of samples; blocks in the middle of a patch, which no neighbour reaches, have none.
-import package::wgsl::terrain::blocks::{Blocks, block_of, span_of};
+import package::wgsl::terrain::blocks::{Blocks, Thread, block_of, span_of};
 
 // Whether the neighbours lie in `others`, a separate buffer of patches, and not in `heights`.
 override OTHERS: bool = false;
@@ -33,12 +33,8 @@ const BLOCK_WIDTH: u32 = 4u;
 const LANES = vec4<u32>(0u, 1u, 2u, 3u);
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let block = block_of(params.blocks, group, groups, lane);
+fn main(thread: Thread) {
+    let block = block_of(params.blocks, thread);
     let inside = params.size - 2u * params.rim;
     let columns = span_of(block.at.x, BLOCK_WIDTH, params.rim, inside);
     let rows = span_of(block.at.y, params.blocks.rows, params.rim, inside);

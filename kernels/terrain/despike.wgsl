@@ -1,8 +1,8 @@
 // Replaces every point that is further than the threshold from the mean of its four neighbours by that mean (B
 // figure 5.10). Injected points are left alone. Each window loses its outermost ring of samples.
-import package::wgsl::terrain::blocks::Blocks;
+import package::wgsl::terrain::blocks::{Blocks, Thread};
 import package::wgsl::terrain::columns::{QUADS, centers, column_of, right_of, row_at};
-import package::wgsl::terrain::cropped::store_four;
+import package::wgsl::terrain::outputs::store_four;
 import package::wgsl::terrain::fixed::mean_of_sums;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_bits};
 
@@ -17,12 +17,8 @@ struct DespikeParams {
 @group(0) @binding(0) var<uniform> params: DespikeParams;
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let column = column_of(params.in_width, params.blocks, group, groups, lane);
+fn main(thread: Thread) {
+    let column = column_of(params.in_width, params.blocks, thread);
     if column.rows == 0u {
         return;
     }

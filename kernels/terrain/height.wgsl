@@ -4,7 +4,7 @@
 // diamonds on the rim of its cells a second time, so that threads need no barrier and a level is one dispatch.
 // With two levels per dispatch, the rows of the level in between stream through registers too and are neither
 // stored nor loaded.
-import package::wgsl::terrain::blocks::block_of;
+import package::wgsl::terrain::blocks::{Thread, block_of};
 import package::wgsl::terrain::fixed::{held, mean_of_sums};
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, feature_at, feature_bits, injected_lanes};
 import package::wgsl::terrain::level::{
@@ -29,12 +29,8 @@ struct DiamondRow {
 }
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let block = block_of(level.blocks, group, groups, lane);
+fn main(thread: Thread) {
+    let block = block_of(level.blocks, thread);
     if !block.there {
         return;
     }

@@ -1,17 +1,19 @@
 // One cycle of hydraulic erosion (virtual pipes after Mei, Decaudin and Hu 2007, in integers). Each sample has ground, water,
-// suspended sediment, and the shares of both that leave for its four neighbours. A cycle moves these shares, lets ground creep and banks slide,
-// erodes or deposits, evaporates, rains, and computes the next shares from the surfaces before the cycle, so that it reads one
-// sample around. Whatever moves between two samples is computed alike by both, from the old state alone. Each window loses its
+// suspended sediment, and the shares of both that leave for its four neighbours. A cycle moves these shares, lets ground creep and
+// banks slide, erodes or deposits, evaporates, rains, and computes the next shares from the surfaces before the cycle, so that it
+// reads one sample around. Whatever moves between two samples is computed from the old state alone. Each window loses its
 // outermost ring of samples.
+//
+// A thread makes a column of samples, four wide. It streams the rows of the window through registers, and computes what two
+// samples exchange once for both.
+import package::wgsl::terrain::blocks::{Blocks, Thread, block_of};
 import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
+import package::wgsl::terrain::outputs::store_four;
 
 // The most water on a sample, in 1/65536 height units.
 const WATER_LIMIT: i32 = 0x4000000;
 // The most sediment in the water of a sample, in 1/65536 height units.
 const SEDIMENT_LIMIT: i32 = 0x4000000;
-
-// The rows of a thread, which goes down a column of samples.
-override ROWS: u32 = 8u;
 
 struct HydraulicParams {
     in_width: u32,
@@ -27,7 +29,7 @@ struct HydraulicParams {
     deposition: i32,
     // Sediment for each unit of discharge at a slope of 1, in 1/256.
     capacity: i32,
-    // The discharge up to which nothing is carried, in 1/65536 height units.
+    // The discharge up to which nothing is carried, and the most that spreads to each neighbour, in 1/65536 height units.
     threshold: i32,
     // The fall to the next sample at a slope of 1; steeper ones count as this.
     steepest: i32,
@@ -40,131 +42,291 @@ struct HydraulicParams {
     creep: i32,
 }
 
-struct Cell {
-    ground: i32,
-    water: i32,
-    sediment: i32,
-    // The shares that leave to the west, east, north and south, in 1/32768.
-    shares: vec4<i32>,
-}
-
 @group(0) @binding(0) var<uniform> params: HydraulicParams;
 @group(0) @binding(1) var<storage, read> windows: array<i32>;
-@group(0) @binding(2) var<storage, read> flows: array<vec4<i32>>;
-@group(0) @binding(3) var<storage, read_write> cropped: array<i32>;
-@group(0) @binding(4) var<storage, read_write> cropped_flows: array<vec4<i32>>;
+@group(0) @binding(3) var<storage, read> flows: array<vec4<i32>>;
+@group(0) @binding(4) var<storage, read_write> flow_outputs: array<vec4<i32>>;
+// Four samples wide.
+@group(0) @binding(5) var<uniform> blocks: Blocks;
+
+// Four samples.
+struct Cells {
+    ground: vec4<i32>,
+    water: vec4<i32>,
+    sediment: vec4<i32>,
+    // The shares, in 1/32768, that leave to the west, in the low half, and to the east; to the north, and to the south.
+    across: vec4<i32>,
+    along: vec4<i32>,
+}
+
+// The samples of a row: those to the west of the column, its own, and those to the east.
+struct Row {
+    west: Cells,
+    own: Cells,
+    east: Cells,
+}
+
+// What four pairs of neighbours exchange.
+struct Exchange {
+    // From the first to the second, less what returns.
+    water: vec4<i32>,
+    sediment: vec4<i32>,
+    ground: vec4<i32>,
+    // Water that moves either way.
+    discharge: vec4<i32>,
+    // The water in the share of the first, and of the second, whether there is room for it or not.
+    leaving: vec4<i32>,
+    returning: vec4<i32>,
+}
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let width = params.in_width - 2u;
-    let first = id.y * ROWS;
-    if id.x >= width || first >= width {
+fn main(thread: Thread) {
+    let block = block_of(blocks, thread);
+    if !block.there {
         return;
     }
-    let last = min(first + ROWS, width);
-    var at = (id.z * params.in_width + first) * params.in_width + id.x + 1u;
-    var to = (id.z * width + first) * width + id.x;
-    var north = cell_at(at);
-    at += params.in_width;
-    var here = cell_at(at);
+    let width = params.in_width - 2u;
+    let column = 4u * block.at.x;
+    let first = blocks.rows * block.at.y;
+    let last = min(first + blocks.rows, width);
+    var source = (block.window * params.in_width + first) * params.in_width + column;
+    var row = (block.window * width + first) * width;
+    var above = row_at(source).own;
+    source += params.in_width;
+    var here = row_at(source);
+    var north = exchange(above, high(above.along), here.own, low(here.own.along));
     for (var y = first; y < last; y++) {
-        let south = cell_at(at + params.in_width);
-        let state = cycle(here, cell_at(at - 1u), cell_at(at + 1u), north, south);
-        cropped[to] = state.ground + state.sediment * params.settles;
-        cropped_flows[to] = vec4<i32>(
-            state.water, state.sediment, state.shares.x | (state.shares.y << 16u), state.shares.z | (state.shares.w << 16u));
-        north = here;
-        here = south;
-        at += params.in_width;
-        to += width;
+        source += params.in_width;
+        let below = row_at(source);
+        let own = here.own;
+        let west = exchange(here.west, high(here.west.across), own, low(own.across));
+        let east = beside(west, exchange(own, high(own.across), here.east, low(here.east.across)));
+        let south = exchange(own, high(own.along), below.own, low(below.own.along));
+        let made = cycle(here, above, below.own, Exchanges(west, east, north, south));
+        store_four(row, column, width, made.ground + made.sediment * params.settles);
+        store_flows(row, column, width, made);
+        row += width;
+        above = own;
+        here = below;
+        north = south;
     }
 }
 
-fn cell_at(at: u32) -> Cell {
+// The row that starts at sample `first`.
+fn row_at(first: u32) -> Row {
+    let ground = vec4<i32>(windows[first + 1u], windows[first + 2u], windows[first + 3u], windows[first + 4u]);
+    let before = flow_at(first);
+    let a = flow_at(first + 1u);
+    let b = flow_at(first + 2u);
+    let c = flow_at(first + 3u);
+    let d = flow_at(first + 4u);
+    let behind = flow_at(first + 5u);
+    return Row(
+        cells(vec4<i32>(windows[first], ground.xyz), before, a, b, c),
+        cells(ground, a, b, c, d),
+        cells(vec4<i32>(ground.yzw, windows[first + 5u]), b, c, d, behind));
+}
+
+fn flow_at(at: u32) -> vec4<i32> {
     // What the buffer held before the first cycle does not count; it may be shorter then.
-    let flow = select(vec4<i32>(0), flows[at * u32(params.wet)], vec4<bool>(params.wet != 0));
-    let shares = vec4<i32>(flow.z & 0xffff, flow.z >> 16u, flow.w & 0xffff, flow.w >> 16u);
-    return Cell(windows[at], flow.x, flow.y, shares);
+    return select(vec4<i32>(0), flows[at], vec4<bool>(params.wet != 0));
 }
 
-// A cycle of one sample, from its neighbours, which lanes hold in the order of the shares. After the last cycle the sediment
-// counts as settled.
-fn cycle(cell: Cell, west: Cell, east: Cell, north: Cell, south: Cell) -> Cell {
-    let ground = vec4<i32>(west.ground, east.ground, north.ground, south.ground);
-    let water = vec4<i32>(west.water, east.water, north.water, south.water);
-    let sediment = vec4<i32>(west.sediment, east.sediment, north.sediment, south.sediment);
-    let entering = vec4<i32>(west.shares.y, east.shares.x, north.shares.w, south.shares.z);
-    let room = (HEIGHT_LIMIT - cell.ground - cell.sediment) >> 3u;
-    let rooms = (vec4<i32>(HEIGHT_LIMIT) - ground - sediment) >> vec4<u32>(3u);
-
-    let water_lost = min(part(vec4<i32>(cell.water), cell.shares), (vec4<i32>(WATER_LIMIT) - water) >> vec4<u32>(2u));
-    let water_gained = min(part(water, entering), vec4<i32>((WATER_LIMIT - cell.water) >> 2u));
-    let sediment_lost = min(part(vec4<i32>(cell.sediment), cell.shares),
-        min((vec4<i32>(SEDIMENT_LIMIT) - sediment) >> vec4<u32>(2u), rooms));
-    let sediment_gained = min(part(sediment, entering), vec4<i32>(min((SEDIMENT_LIMIT - cell.sediment) >> 2u, room)));
-    let moved = cell.water - total(water_lost) + total(water_gained);
-    let suspended = cell.sediment - total(sediment_lost) + total(sediment_gained);
-
-    let steps = vec4<i32>(cell.ground) - ground;
-    let excess = max(abs(steps) - vec4<i32>(params.talus), vec4<i32>(0)) >> vec4<u32>(3u);
-    let sliding = excess + part(abs(steps), vec4<i32>(params.creep));
-    let slid = min(select(vec4<i32>(0), sliding, steps < vec4<i32>(0)), vec4<i32>(room))
-        - min(select(vec4<i32>(0), sliding, steps > vec4<i32>(0)), rooms);
-
-    let surface = min(cell.ground + cell.water, HEIGHT_LIMIT);
-    let falls = vec4<i32>(surface) - min(ground + water, vec4<i32>(HEIGHT_LIMIT));
-    let carried = capacity((total(water_lost) + total(water_gained)) >> 1u, max(largest(falls), 0));
-    let lifted = lifted(steps, moved, carried - suspended);
-    let left = min(moved - part_of(moved, params.evaporation) + params.rain, WATER_LIMIT);
-    return Cell(cell.ground - lifted + total(slid), left, suspended + lifted, next_shares(cell, falls, left));
+fn cells(ground: vec4<i32>, a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> Cells {
+    return Cells(
+        ground, vec4<i32>(a.x, b.x, c.x, d.x), vec4<i32>(a.y, b.y, c.y, d.y), vec4<i32>(a.z, b.z, c.z, d.z),
+        vec4<i32>(a.w, b.w, c.w, d.w));
 }
 
-// The sediment that a discharge carries down a surface that falls so far to the next sample.
-fn capacity(discharge: i32, fall: i32) -> i32 {
-    let slope = ((min(fall, params.steepest) >> params.slope_shift) * params.slope_factor) >> 15u;
-    let rate = min((slope * params.capacity) >> 8u, 0x40000);
-    let driving = clamp(discharge - params.threshold, 0, WATER_LIMIT);
-    let high = driving >> 12u;
-    // A rate beyond this carries more than the limit, and its product might overflow.
-    let safe = min(rate, 1i << (countLeadingZeros(u32(max(high, 1))) - 2u));
-    return min(high * safe + (((driving & 4095) * rate) >> 12u), SEDIMENT_LIMIT);
+fn store_flows(row: u32, column: u32, width: u32, made: Cells) {
+    store_flow(row, column, width, vec4<i32>(made.water.x, made.sediment.x, made.across.x, made.along.x));
+    store_flow(row, column + 1u, width, vec4<i32>(made.water.y, made.sediment.y, made.across.y, made.along.y));
+    store_flow(row, column + 2u, width, vec4<i32>(made.water.z, made.sediment.z, made.across.z, made.along.z));
+    store_flow(row, column + 3u, width, vec4<i32>(made.water.w, made.sediment.w, made.across.w, made.along.w));
+}
+
+fn store_flow(row: u32, column: u32, width: u32, flow: vec4<i32>) {
+    if column < width {
+        flow_outputs[row + column] = flow;
+    }
+}
+
+fn low(words: vec4<i32>) -> vec4<i32> {
+    return words & vec4<i32>(0xffff);
+}
+
+fn high(words: vec4<i32>) -> vec4<i32> {
+    return words >> vec4<u32>(16u);
+}
+
+// What samples `a` exchange with samples `b`, given their shares towards each other.
+fn exchange(a: Cells, a_shares: vec4<i32>, b: Cells, b_shares: vec4<i32>) -> Exchange {
+    let leaving = part(a.water, a_shares);
+    let returning = part(b.water, b_shares);
+    let gone = min(leaving, (vec4<i32>(WATER_LIMIT) - b.water) >> vec4<u32>(2u));
+    let back = min(returning, (vec4<i32>(WATER_LIMIT) - a.water) >> vec4<u32>(2u));
+    let a_room = (vec4<i32>(HEIGHT_LIMIT) - a.ground - a.sediment) >> vec4<u32>(3u);
+    let b_room = (vec4<i32>(HEIGHT_LIMIT) - b.ground - b.sediment) >> vec4<u32>(3u);
+    let silt_gone = min(part(a.sediment, a_shares), min((vec4<i32>(SEDIMENT_LIMIT) - b.sediment) >> vec4<u32>(2u), b_room));
+    let silt_back = min(part(b.sediment, b_shares), min((vec4<i32>(SEDIMENT_LIMIT) - a.sediment) >> vec4<u32>(2u), a_room));
+    let step = a.ground - b.ground;
+    let excess = max(abs(step) - vec4<i32>(params.talus), vec4<i32>(0)) >> vec4<u32>(3u);
+    let sliding = excess + part(abs(step), vec4<i32>(params.creep));
+    let slid = select(-min(sliding, a_room), min(sliding, b_room), step > vec4<i32>(0));
+    return Exchange(gone - back, silt_gone - silt_back, slid, gone + back, leaving, returning);
+}
+
+fn surface(cells: Cells) -> vec4<i32> {
+    return min(cells.ground + cells.water, vec4<i32>(HEIGHT_LIMIT));
+}
+
+// What four samples exchange with their neighbours to the east, given what they exchange with those to the west; of `last` only
+// the fourth counts.
+fn beside(west: Exchange, last: Exchange) -> Exchange {
+    return Exchange(
+        vec4<i32>(west.water.yzw, last.water.w), vec4<i32>(west.sediment.yzw, last.sediment.w),
+        vec4<i32>(west.ground.yzw, last.ground.w), vec4<i32>(west.discharge.yzw, last.discharge.w),
+        vec4<i32>(west.leaving.yzw, last.leaving.w), vec4<i32>(west.returning.yzw, last.returning.w));
+}
+
+// What four samples exchange with their neighbours: those to the west and north are the first of their pairs, those to the east
+// and south the second.
+struct Exchanges {
+    west: Exchange,
+    east: Exchange,
+    north: Exchange,
+    south: Exchange,
+}
+
+// A cycle of the samples of a row, given those above and below them.
+fn cycle(row: Row, above: Cells, below: Cells, sides: Exchanges) -> Cells {
+    let own = row.own;
+    let water = gained(own.water, sides.west.water, sides.east.water, sides.north.water, sides.south.water);
+    let sediment = gained(own.sediment, sides.west.sediment, sides.east.sediment, sides.north.sediment, sides.south.sediment);
+    let slid = gained(own.ground, sides.west.ground, sides.east.ground, sides.north.ground, sides.south.ground);
+    let left = water - part(water, vec4<i32>(params.evaporation)) + vec4<i32>(params.rain);
+    let next_water = min(left, vec4<i32>(WATER_LIMIT));
+
+    let top = surface(own);
+    let west_fall = top - surface(row.west);
+    let east_fall = top - surface(row.east);
+    let north_fall = top - surface(above);
+    let south_fall = top - surface(below);
+    let exchanged = sides.west.discharge + sides.east.discharge + sides.north.discharge + sides.south.discharge;
+    let eighths = leaving(row.west) + leaving(row.east) + leaving(above) + leaving(below);
+    let slope = slope(max(west_fall, east_fall), max(north_fall, south_fall));
+    let carried = capacity(discharge(exchanged >> vec4<u32>(1u), eighths), slope);
+    let deepest = own.ground - min(min(row.west.ground, row.east.ground), min(above.ground, below.ground));
+    let highest = max(max(row.west.ground, row.east.ground), max(above.ground, below.ground)) - own.ground;
+    let lifted = lifted(deepest, highest, water, carried - sediment);
+
+    let spread = min(next_water >> vec4<u32>(5u), vec4<i32>(params.threshold));
+    let shares = next_shares(
+        flux(sides.west.returning, west_fall, spread), flux(sides.east.leaving, east_fall, spread),
+        flux(sides.north.returning, north_fall, spread), flux(sides.south.leaving, south_fall, spread), next_water);
+    return Cells(slid - lifted, next_water, sediment + lifted, shares.across, shares.along);
+}
+
+// An amount after it has been exchanged with all neighbours.
+fn gained(own: vec4<i32>, west: vec4<i32>, east: vec4<i32>, north: vec4<i32>, south: vec4<i32>) -> vec4<i32> {
+    return own + west - east + north - south;
+}
+
+// An eighth of the water that leaves samples, whether there is room for it or not.
+fn leaving(cells: Cells) -> vec4<i32> {
+    return part(cells.water, low(cells.across) + high(cells.across) + low(cells.along) + high(cells.along)) >> vec4<u32>(3u);
+}
+
+// A quarter of the discharge of a sample, and three quarters of the mean of what leaves its neighbours, given in eighths, so that
+// streams are wider than a sample and run in any direction alike.
+fn discharge(own: vec4<i32>, eighths: vec4<i32>) -> vec4<i32> {
+    return (own >> vec4<u32>(2u)) + eighths + (eighths >> vec4<u32>(1u));
+}
+
+// The slope, in 1/4096, of a surface that falls so far to the lower neighbours across and along. It has the length of these two
+// components, by the larger one and three eighths of the smaller one.
+fn slope(across: vec4<i32>, along: vec4<i32>) -> vec4<i32> {
+    let a = slope_of(across);
+    let b = slope_of(along);
+    return max(a, b) + ((min(a, b) * 3) >> vec4<u32>(3u));
+}
+
+fn slope_of(fall: vec4<i32>) -> vec4<i32> {
+    let steps = clamp(fall, vec4<i32>(0), vec4<i32>(params.steepest)) >> vec4<u32>(params.slope_shift);
+    return (steps * params.slope_factor) >> vec4<u32>(15u);
+}
+
+// The sediment that a discharge carries down a slope.
+fn capacity(discharge: vec4<i32>, slope: vec4<i32>) -> vec4<i32> {
+    let rate = min((slope * params.capacity) >> vec4<u32>(8u), vec4<i32>(0x40000));
+    let driving = clamp(discharge - vec4<i32>(params.threshold), vec4<i32>(0), vec4<i32>(WATER_LIMIT));
+    let high = driving >> vec4<u32>(12u);
+    let low = ((driving & vec4<i32>(4095)) * rate) >> vec4<u32>(12u);
+    // Without the one that is subtracted, the largest product would be 2^32.
+    let product = vec4<u32>(high) * vec4<u32>(min(rate, vec4<i32>(0x40000) - (high >> vec4<u32>(14u))));
+    return vec4<i32>(min(product + vec4<u32>(low), vec4<u32>(u32(SEDIMENT_LIMIT))));
 }
 
 // The ground that goes into suspension, or, below 0, the sediment that settles. Ground sinks no deeper than its lowest neighbour,
 // and rises no higher than its highest or the water.
-fn lifted(steps: vec4<i32>, water: i32, lacking: i32) -> i32 {
-    let eroded = min(part_of(max(lacking, 0), params.erosion), max(largest(steps), 0) >> 3u);
-    let risen = max(max(largest(-steps), 0) >> 3u, water >> 2u);
-    let deposited = min(part_of(max(-lacking, 0), params.deposition), risen);
-    return eroded - deposited;
+fn lifted(deepest: vec4<i32>, highest: vec4<i32>, water: vec4<i32>, lacking: vec4<i32>) -> vec4<i32> {
+    let erodes = lacking > vec4<i32>(0);
+    let moving = part(abs(lacking), select(vec4<i32>(params.deposition), vec4<i32>(params.erosion), erodes));
+    let sunk = max(deepest, vec4<i32>(0)) >> vec4<u32>(3u);
+    let risen = max(max(highest, vec4<i32>(0)) >> vec4<u32>(3u), water >> vec4<u32>(2u));
+    return select(-min(moving, risen), min(moving, sunk), erodes);
 }
 
-// The shares that leave next: each pipe keeps half of its flux and takes a sixteenth of the fall; all together give three
-// quarters of the water at most, so that neighbouring samples do not exchange all of it from cycle to cycle.
-fn next_shares(cell: Cell, falls: vec4<i32>, water: i32) -> vec4<i32> {
-    let old = part(vec4<i32>(cell.water), cell.shares);
-    let flux = clamp(old - (old >> vec4<u32>(1u)) + (falls >> vec4<u32>(4u)), vec4<i32>(0), vec4<i32>(WATER_LIMIT));
-    let whole = u32(max(max(total(flux), water), 1));
-    let shift = 16u - min(countLeadingZeros(whole), 16u);
-    let inverse = 0x80000000u / (whole >> shift);
-    let shares = vec4<i32>(((vec4<u32>(flux) >> vec4<u32>(shift)) * inverse) >> vec4<u32>(16u));
-    return (shares * 3) >> vec4<u32>(2u);
+// The flux of a pipe: it keeps half of what its share was, and takes a sixteenth of the fall. A thirty-second of the water, below
+// the threshold, spreads through each, so that streams do not run along rows and columns.
+fn flux(old: vec4<i32>, fall: vec4<i32>, spread: vec4<i32>) -> vec4<i32> {
+    let pushed = old - (old >> vec4<u32>(1u)) + (fall >> vec4<u32>(4u)) + spread;
+    return clamp(pushed, vec4<i32>(0), vec4<i32>(WATER_LIMIT));
+}
+
+struct Shares {
+    across: vec4<i32>,
+    along: vec4<i32>,
+}
+
+// The shares that leave next: all together give three quarters of the water at most, so that neighbouring samples do not
+// exchange all of it from cycle to cycle.
+fn next_shares(west: vec4<i32>, east: vec4<i32>, north: vec4<i32>, south: vec4<i32>, water: vec4<i32>) -> Shares {
+    let whole = max(max(west + east + north + south, water), vec4<i32>(1));
+    let shift = bits_beyond_16(whole);
+    let inverse = inverse_of(whole >> shift);
+    let bits = vec4<u32>(16u);
+    return Shares(
+        share(west, shift, inverse) | (share(east, shift, inverse) << bits),
+        share(north, shift, inverse) | (share(south, shift, inverse) << bits));
+}
+
+// How many bits more than 16 numbers of 1 to 2^29 - 1 have. The exponent of a float tells it: without its last five bits a number is
+// a float to the bit.
+fn bits_beyond_16(numbers: vec4<i32>) -> vec4<u32> {
+    let exponents = bitcast<vec4<i32>>(vec4<f32>(numbers >> vec4<u32>(5u))) >> vec4<u32>(23u);
+    return vec4<u32>(max(exponents - vec4<i32>(137), vec4<i32>(0)));
+}
+
+fn share(flux: vec4<i32>, shift: vec4<u32>, inverse: vec4<u32>) -> vec4<i32> {
+    return (vec4<i32>(((vec4<u32>(flux) >> shift) * inverse) >> vec4<u32>(16u)) * 3) >> vec4<u32>(2u);
+}
+
+// floor(2^31 / divisor) for divisors of 1 to 65535, exact whatever a device's floats do: integer division is slow where eight
+// lanes share a processor's divider. The first quotient is wrong by 2^-20 of itself and by 2, at most, which leaves a rest below
+// 2^11 + 2 * 65536 in size, whose own quotient is wrong by 1 at most.
+fn inverse_of(divisor: vec4<i32>) -> vec4<u32> {
+    let reciprocal = vec4<f32>(1.0) / vec4<f32>(divisor);
+    let first = vec4<i32>(1073741824.0 * reciprocal) << vec4<u32>(1u);
+    let rest = vec4<i32>(0x80000000u - vec4<u32>(first * divisor));
+    let second = vec4<i32>(floor(vec4<f32>(rest) * reciprocal));
+    let last = rest - second * divisor;
+    let over = select(vec4<i32>(0), vec4<i32>(1), last >= divisor) - select(vec4<i32>(0), vec4<i32>(1), last < vec4<i32>(0));
+    return vec4<u32>(first + second + over);
 }
 
 // floor(amount * share / 32768) for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
 fn part(amounts: vec4<i32>, shares: vec4<i32>) -> vec4<i32> {
     let bits = vec4<u32>(15u);
     return (amounts >> bits) * shares + (((amounts & vec4<i32>(32767)) * shares) >> bits);
-}
-
-fn part_of(amount: i32, share: i32) -> i32 {
-    return (amount >> 15u) * share + (((amount & 32767) * share) >> 15u);
-}
-
-fn total(values: vec4<i32>) -> i32 {
-    return values.x + values.y + values.z + values.w;
-}
-
-fn largest(values: vec4<i32>) -> i32 {
-    return max(max(values.x, values.y), max(values.z, values.w));
 }

@@ -3,7 +3,8 @@
 import package::wgsl::terrain::fixed::held;
 
 struct MorphParams {
-    points: u32,
+    // Of four heights.
+    vectors: u32,
     // The time, 0 to 65536.
     time: u32,
 }
@@ -11,7 +12,8 @@ struct MorphParams {
 @group(0) @binding(0) var<uniform> params: MorphParams;
 @group(0) @binding(1) var<storage, read> start_heights: array<vec4<i32>>;
 @group(0) @binding(2) var<storage, read> target_heights: array<vec4<i32>>;
-@group(0) @binding(3) var<storage, read_write> heights: array<i32>;
+// The last vector may reach beyond the last height, into the room that buffers have.
+@group(0) @binding(3) var<storage, read_write> heights: array<vec4<i32>>;
 
 @compute @workgroup_size(64)
 fn main(
@@ -19,25 +21,14 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let vector = (group.y * groups.x + group.x) * 64u + lane;
-    let index = 4u * vector;
-    if index >= params.points {
+    let index = (group.y * groups.x + group.x) * 64u + lane;
+    if index >= params.vectors {
         return;
     }
-    let start = start_heights[vector];
-    let difference = target_heights[vector] - start;
+    let start = start_heights[index];
+    let difference = target_heights[index] - start;
     // The 48-bit product, computed from the two halves of the difference.
     let high = (difference >> vec4<u32>(16u)) * i32(params.time);
     let low = (vec4<u32>(difference) & vec4<u32>(0xffffu)) * params.time;
-    let blended = held(start + high + vec4<i32>(low >> vec4<u32>(16u)));
-    heights[index] = blended.x;
-    if index + 1u < params.points {
-        heights[index + 1u] = blended.y;
-    }
-    if index + 2u < params.points {
-        heights[index + 2u] = blended.z;
-    }
-    if index + 3u < params.points {
-        heights[index + 3u] = blended.w;
-    }
+    heights[index] = held(start + high + vec4<i32>(low >> vec4<u32>(16u)));
 }

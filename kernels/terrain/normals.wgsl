@@ -1,5 +1,5 @@
 // Central differences (exact) and unit normals of windows. Each window loses its outermost ring of samples.
-import package::wgsl::terrain::blocks::Blocks;
+import package::wgsl::terrain::blocks::{Blocks, Thread};
 import package::wgsl::terrain::columns::{QUADS, centers, column_of, right_of, row_at};
 import package::wgsl::terrain::slope::slope_normal;
 
@@ -16,12 +16,8 @@ struct NormalsParams {
 @group(0) @binding(3) var<storage, read_write> normals: array<f32>;
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let column = column_of(params.in_width, params.blocks, group, groups, lane);
+fn main(thread: Thread) {
+    let column = column_of(params.in_width, params.blocks, thread);
     if column.rows == 0u {
         return;
     }

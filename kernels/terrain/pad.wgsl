@@ -1,7 +1,8 @@
 // Windows around the patches of a batch, gathered from the patches themselves and their neighbours. There is
 // one dispatch for each buffer of patches; it writes the samples that come from that buffer. A thread copies a block of a
 // window that comes from one patch.
-import package::wgsl::terrain::blocks::{Blocks, block_of, span_of};
+import package::wgsl::terrain::blocks::{Blocks, Thread, block_of, span_of};
+import package::wgsl::terrain::outputs::store_four;
 
 struct PadParams {
     blocks: Blocks,
@@ -13,8 +14,7 @@ struct PadParams {
 @group(0) @binding(1) var<storage, read> patches: array<i32>;
 // Nine indices per patch: the patches at and around it, row by row; 0xffffffff where there is none, 0xfffffffe
 // for one that lies in another buffer.
-@group(0) @binding(2) var<storage, read> around: array<u32>;
-@group(0) @binding(3) var<storage, read_write> windows: array<i32>;
+@group(0) @binding(3) var<storage, read> around: array<u32>;
 
 const NONE = 0xffffffffu;
 const ELSEWHERE = 0xfffffffeu;
@@ -22,12 +22,8 @@ const ELSEWHERE = 0xfffffffeu;
 const BLOCK_WIDTH: u32 = 16u;
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let block = block_of(params.blocks, group, groups, lane);
+fn main(thread: Thread) {
+    let block = block_of(params.blocks, thread);
     if !block.there {
         return;
     }
@@ -63,22 +59,6 @@ fn main(
 
 fn four_from(sample: u32, step: u32) -> vec4<i32> {
     return vec4<i32>(patches[sample], patches[sample + step], patches[sample + 2u * step], patches[sample + 3u * step]);
-}
-
-fn store_four(row: u32, column: u32, length: u32, heights: vec4<i32>) {
-    let at = row + column;
-    if column < length {
-        windows[at] = heights.x;
-    }
-    if column + 1u < length {
-        windows[at + 1u] = heights.y;
-    }
-    if column + 2u < length {
-        windows[at + 2u] = heights.z;
-    }
-    if column + 3u < length {
-        windows[at + 3u] = heights.w;
-    }
 }
 
 // The column or row, in the patch of tile `provider`, of the sample at `start` in the window, which lies in tile `tile`.

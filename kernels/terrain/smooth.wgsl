@@ -4,7 +4,7 @@
 // A thread owns 4 x CELL_ROWS coarse cells. It streams the coarse rows through registers: of each the values interpolated along
 // the row, from four of these rows the centers of a row of cells, and from four rows of centers the points on the edges between
 // them. It computes the three centers on either side of its cells that other threads compute too.
-import package::wgsl::terrain::blocks::block_of;
+import package::wgsl::terrain::blocks::{Thread, block_of};
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, feature_at, feature_bits, injected_lanes};
 import package::wgsl::terrain::level::{
@@ -36,12 +36,8 @@ struct Middles {
 }
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let block = block_of(level.blocks, group, groups, lane);
+fn main(thread: Thread) {
+    let block = block_of(level.blocks, thread);
     if !block.there {
         return;
     }

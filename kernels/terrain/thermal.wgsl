@@ -1,9 +1,9 @@
 // One iteration of thermal erosion: between each pair of 4-neighbours, an eighth of the difference beyond the
 // stable one slides downhill. All pairs read the same old field. Each window loses its outermost ring of
 // samples.
-import package::wgsl::terrain::blocks::Blocks;
+import package::wgsl::terrain::blocks::{Blocks, Thread};
 import package::wgsl::terrain::columns::{QUADS, Row, centers, column_of, row_at};
-import package::wgsl::terrain::cropped::store_four;
+import package::wgsl::terrain::outputs::store_four;
 
 struct ThermalParams {
     blocks: Blocks,
@@ -22,12 +22,8 @@ struct Slides {
 }
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let column = column_of(params.in_width, params.blocks, group, groups, lane);
+fn main(thread: Thread) {
+    let column = column_of(params.in_width, params.blocks, thread);
     if column.rows == 0u {
         return;
     }

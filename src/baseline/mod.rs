@@ -6,6 +6,7 @@ pub(crate) mod bench;
 pub(crate) mod copy;
 pub(crate) mod gather;
 pub(crate) mod loads;
+pub(crate) mod texels;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
 pub(crate) mod words;

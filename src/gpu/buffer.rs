@@ -26,7 +26,7 @@ pub struct Buffer<T> {
 
 impl<T: bytemuck::Pod> Buffer<T> {
     /// A buffer of zeros. An empty one gets room for one element, since WebGPU binds no empty ranges, and each has room for
-    /// whole vectors of four words, so that kernels may read words four at a time.
+    /// whole vectors of four words, so that kernels may read and write words four at a time.
     ///
     /// # Errors
     /// [`GpuError::Limit`] when it is larger than a binding may be, [`GpuError::OutOfMemory`].

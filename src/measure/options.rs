@@ -166,6 +166,11 @@ pub enum MeshDetail {
         /// The number of pixels, in 0..=1e6.
         pixels: f32,
     },
+    /// The same, but levels move into each other ([`Transition::Geomorph`](crate::scene::Transition::Geomorph)).
+    Geomorph {
+        /// The number of pixels, in 0..=1e6.
+        pixels: f32,
+    },
 }
 
 /// How a crowd is skinned and drawn. Its scene permits the sum of these pixels and those of the gate, and divides them by
@@ -195,7 +200,9 @@ impl DrawnOptions {
             check("skinning.pixels", pixels.into(), 0.0..=1e6)?;
         }
         match self.mesh {
-            MeshDetail::Bounded { pixels } => check("mesh.pixels", pixels.into(), 0.0..=1e6),
+            MeshDetail::Bounded { pixels } | MeshDetail::Geomorph { pixels } => {
+                check("mesh.pixels", pixels.into(), 0.0..=1e6)
+            }
             MeshDetail::Full => Ok(()),
         }
     }
@@ -247,6 +254,7 @@ impl fmt::Display for MeshDetail {
         match self {
             Self::Full => f.write_str("full"),
             Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
+            Self::Geomorph { pixels } => write!(f, "geomorph:{pixels}"),
         }
     }
 }

@@ -20,6 +20,12 @@
 //!   one end of an edge only, as at the poles of a sphere, adjacent wedges count as one. If every triangle has
 //!   vertices of its own, nothing can collapse: index such meshes first.
 //!
+//! # Parts
+//!
+//! A closed part keeps four triangles, however small it is. Unless [`Options::prune`] is off, parts vanish as a whole: one
+//! does where its points, and those of parts that vanished beside it before, are so near to the other parts that the next
+//! collapse would cost more than half of that distance. (meshoptimizer's option `Prune` compares the radius of a part.)
+//!
 //! # Several poses
 //!
 //! A skinned mesh is simplified for all given poses: the cost of a collapse is its largest cost in any of them
@@ -42,6 +48,7 @@ mod attributes;
 mod marks;
 mod melax;
 mod neighbors;
+mod parts;
 mod points;
 mod quadric;
 mod quadrics;
@@ -77,7 +84,7 @@ pub enum Cost {
     /// collapse, whichever is larger, since a mean hides a single spot. Planes perpendicular to borders and seams hold
     /// these in place (their section 6). Attributes add a cost of their own, separately for each wedge (Hoppe, "New
     /// Quadric Metric for Simplifying Meshes with Appearance Attributes", Visualization 1999); beside them, the point's
-    /// own distance counts by half, always.
+    /// own distance counts by 0.6, always.
     #[default]
     Quadric,
     /// The length of the edge times a measure of how far the normals of the point's triangles turn from those
@@ -95,20 +102,26 @@ pub enum Cost {
 pub struct Options {
     /// The cost function of collapses.
     pub cost: Cost,
-    /// Stop at this number of triangles, or at one less.
+    /// Stop at this number of triangles, or at one less; or at fewer, where a part vanishes.
     pub triangles: usize,
     /// Stop before a collapse that costs more than this, in units of positions; at least 0, may be infinite.
     pub error: f32,
+    /// Whether parts that no triangle connects to the rest may vanish as a whole. That costs half of the largest distance of
+    /// the part's points from what is left of the other parts, in the worst pose, and what its attributes vary, over its
+    /// area; so a screw goes with its plate's details, a lone rock stays. One part stays always. Where there are tens of
+    /// thousands of parts, this search takes longer than all collapses. With [`Cost::Quadric`] only, and not where distances
+    /// are limited ([`simplify_within`]).
+    pub prune: bool,
 }
 
 impl Default for Options {
-    /// Quadrics, without a limit.
+    /// Quadrics, without a limit; parts may vanish.
     fn default() -> Self {
-        Self { cost: Cost::Quadric, triangles: 0, error: f32::INFINITY }
+        Self { cost: Cost::Quadric, triangles: 0, error: f32::INFINITY, prune: true }
     }
 }
 
-/// One collapse: a point was merged into its neighbour.
+/// One collapse: a point was merged into its neighbour, or all points of a part into one of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Collapse {
     /// End of this collapse's range in [`Simplified::moved`].
@@ -205,7 +218,8 @@ impl Simplified {
 
     /// Whether three vertices belong to three different points.
     pub(crate) fn are_apart(&self, vertices: [u32; 3]) -> bool {
-        let [a, b, c] = vertices.map(|vertex| self.point(vertex));
+        let [a, b, c] = vertices;
+        let [a, b, c] = [self.point(a), self.point(b), self.point(c)];
         a != b && b != c && c != a
     }
 
@@ -243,10 +257,10 @@ impl Simplified {
     pub fn triangles(&self, indices: &[u32], collapses: usize) -> Vec<u32> {
         let remap = self.remap(collapses);
         let mut left = Vec::new();
-        for triangle in indices.chunks_exact(3) {
-            let remap = [0, 1, 2].map(|corner| remap[triangle[corner] as usize]);
-            if self.are_apart(remap) {
-                left.extend(remap);
+        for &[a, b, c] in indices.as_chunks().0 {
+            let triangle = [remap[a as usize], remap[b as usize], remap[c as usize]];
+            if self.are_apart(triangle) {
+                left.extend(triangle);
             }
         }
         left
@@ -278,7 +292,7 @@ pub fn simplify(surface: &Surface<'_>, options: &Options) -> Result<Simplified, 
 
 /// Simplifies a mesh as far as possible while every removed point stays within the first of `distances` of the
 /// remaining surface, in every pose; then continues with the next distance, and so on. Each removed point is
-/// close to one triangle, the same in all poses.
+/// close to one triangle, the same in all poses. No part vanishes.
 ///
 /// These distances are measured, whereas [`Options::error`] is an average. At the same number of triangles,
 /// [`simplify()`] has the smaller average error and this function the smaller largest one. It takes a few times

@@ -238,7 +238,7 @@ impl Renderer {
         singles: &DrawnSingles<'a>,
     ) {
         pass.set_bind_group(0, view.group);
-        for DrawnSingle { mesh, part, draw, instance, is_mirrored } in &singles.parts {
+        for DrawnSingle { mesh, part, draw, is_mirrored } in &singles.parts {
             let is_flipped = *is_mirrored != view.mirrors;
             let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped, view) else {
                 continue;
@@ -247,8 +247,8 @@ impl Renderer {
             pass.set_bind_group(1, &mesh.group);
             pass.set_bind_group(2, part.materials.group());
             pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
-            let bytes = [*instance, instance + 1].map(|index| u64::from(index) * size_of::<u32>() as u64);
-            pass.set_vertex_buffer(0, singles.identity.raw().slice(bytes[0]..bytes[1]));
+            let bytes = [*draw, draw + 1].map(|index| u64::from(index) * size_of::<u32>() as u64);
+            pass.set_vertex_buffer(0, singles.entries.raw().slice(bytes[0]..bytes[1]));
             let offset = u64::from(*draw) * size_of::<SceneDraw>() as u64;
             pass.draw_indexed_indirect(singles.draws.raw(), offset);
         }

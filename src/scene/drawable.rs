@@ -241,8 +241,8 @@ pub(crate) struct DrawnObject<'a> {
 pub(crate) struct DrawnSingles<'a> {
     /// The draws of all of them.
     pub draws: &'a Buffer<SceneDraw>,
-    /// 0, 1, 2, …: the list of a single instance.
-    pub identity: &'a Buffer<u32>,
+    /// The list of each draw, which has one entry.
+    pub entries: &'a Buffer<u32>,
     /// The parts, in the order in which they are drawn.
     pub parts: Vec<DrawnSingle<'a>>,
 }
@@ -256,8 +256,6 @@ pub(crate) struct DrawnSingle<'a> {
     pub part: &'a MeshPart,
     /// The index of its draw.
     pub draw: u32,
-    /// The index of the instance in its object.
-    pub instance: u32,
     /// Whether its placement mirrors.
     pub is_mirrored: bool,
 }

@@ -10,6 +10,7 @@ use crate::scene::order::Ordered;
 use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
+use crate::scene::view::lists::Singles;
 use crate::scene::{RECORDINGS, Scene};
 use crate::{Error, InputError};
 
@@ -237,7 +238,7 @@ impl Scene {
     /// What is drawn instance by instance in a view, from back to front.
     pub(crate) fn drawn_singles<'a>(&'a self, view: &'a View) -> Option<DrawnSingles<'a>> {
         let lists = view.lists.as_ref()?;
-        let (_, draws) = lists.singles.as_ref()?;
+        let Singles { draws, entries, .. } = lists.singles.as_ref()?;
         let objects: Vec<&Object> = self.objects.iter().collect();
         let mut parts = Vec::new();
         for Ordered { object, instance, .. } in &lists.order {
@@ -249,10 +250,10 @@ impl Scene {
             for single in &chunk.singles {
                 let Drawable::Mesh(mesh) = &chunk.drawables[single.drawable] else { continue };
                 let (part, draw) = (&mesh.parts[single.part], single.first + instance);
-                parts.push(DrawnSingle { mesh, part, draw, instance, is_mirrored });
+                parts.push(DrawnSingle { mesh, part, draw, is_mirrored });
             }
         }
-        Some(DrawnSingles { draws, identity: &self.layout.as_ref()?.identity, parts })
+        Some(DrawnSingles { draws, entries, parts })
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {

@@ -44,8 +44,6 @@ pub(crate) struct Layout {
     pub draws: Vec<SceneDraw>,
     /// The parts of instances that are drawn one by one.
     pub singles: Buffer<Single>,
-    /// 0, 1, 2, … for as many instances as the largest object with such parts has.
-    pub identity: Buffer<u32>,
     /// What statistics need to know of the objects.
     pub counted: Arc<Counted>,
 }
@@ -65,8 +63,6 @@ impl Layout {
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
         let block_objects: Vec<u32> = (0..).zip(objects).flat_map(of_object).collect();
         let count = end.first as usize;
-        let largest = objects.iter().map(|object| object.instances).max().filter(|_| !singles.is_empty());
-        let identity: Vec<u32> = (0..largest.unwrap_or(0)).collect();
         let instances = Buffer::new(gpu, "instances", count)?;
         let last_instances = match keeps_last {
             true => Buffer::new(gpu, "instances in the last frame", count)?,
@@ -85,7 +81,6 @@ impl Layout {
             list_words: end.first_list,
             draws,
             singles: Buffer::from_slice(gpu, "single instances", singles)?,
-            identity: Buffer::from_slice(gpu, "lists of one", &identity)?,
             counted,
         })
     }

@@ -174,13 +174,19 @@ fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
     if mesh.levels.is_empty() || mesh.partners.is_empty() {
         return Vec::new();
     }
-    let (own, coarsest, slots) = (own_levels(mesh, errors), mesh.coarsest_levels(), clusters.slots());
+    let (coarsest, slots) = (coarsest_levels(mesh, errors), clusters.slots());
     let word = |vertex: &u32| {
         let vertex = *vertex as usize;
-        let level = own.iter().rposition(|level| *level <= coarsest[vertex]).unwrap_or(0) as u32;
-        slots[mesh.partners[vertex] as usize] | level << PARTNER_LEVEL_SHIFT
+        slots[mesh.partners[vertex] as usize] | coarsest[vertex] << PARTNER_LEVEL_SHIFT
     };
     clusters.order.iter().map(word).collect()
+}
+
+/// For each vertex of a merged mesh, the coarsest level of the object that has it; `errors` are those of the object's levels.
+pub(crate) fn coarsest_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
+    let own = own_levels(mesh, errors);
+    let of_object = |coarsest: u32| own.iter().rposition(|level| *level <= coarsest).unwrap_or(0) as u32;
+    mesh.coarsest_levels().into_iter().map(of_object).collect()
 }
 
 /// For each vertex, the part whose triangles use it.

@@ -221,6 +221,14 @@ impl Scene {
         Ok(())
     }
 
+    /// Whether the levels of detail of an object can move into each other: whether it has any, and partners.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene.
+    pub fn can_morph(&self, object: ObjectId) -> Result<bool, InputError> {
+        Ok(self.object_at(object)?.can_morph())
+    }
+
     /// How the levels of detail of an object change.
     ///
     /// # Errors

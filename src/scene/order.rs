@@ -18,7 +18,7 @@ impl Chunk {
             for (part, _) in parts.iter().enumerate().filter(|(_, part)| part.surface.blended) {
                 self.singles.push(SinglePart { drawable, part, first: all.len() as u32 });
                 let first_draw = first_draw + OBJECT_LISTS * part as u32;
-                let single = |at| Single { instance: self.range.first + at, first_draw };
+                let single = |slot| Single { instance: self.range.first + slot, first_draw, slot };
                 all.extend((0..instances).map(single));
             }
             first_draw += OBJECT_LISTS * of.parts() as u32;

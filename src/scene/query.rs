@@ -7,7 +7,7 @@ use crate::InputError;
 use crate::shared::lod::instance::SceneInstance;
 
 #[cfg(feature = "verify")]
-pub(crate) use drawn::DrawnInstance;
+pub(crate) use drawn::{DrawnAs, DrawnInstance};
 
 impl Scene {
     /// All instances of an object, in the order in which views list them. Those of terrain are its patches: they can be
@@ -69,20 +69,29 @@ mod drawn {
     use crate::Error;
     use crate::asset::Affine;
     use crate::lod::OBJECT_LISTS;
-    use crate::scene::Transition;
     use crate::scene::View;
     use crate::scene::drawable::{Drawable, MeshDrawable};
     use crate::scene::view::lists::ViewLists;
-    use crate::shared::lod::object::LIST_INSTANCE;
+    use crate::shared::lod::object::{LIST_INSTANCE, LIST_MORPH_SHIFT, MORPH_SHIFT, MORPH_STEPS};
     use crate::skinning::vertex::Vertex;
 
     /// An instance that a view may show, as the view's last frame drew it.
     #[derive(Debug, Clone, Copy)]
     pub(crate) struct DrawnInstance {
         pub instance: InstanceId,
-        /// Its list, 2 · level + mirrored, and the transform from the model's space to the corner of the view's cell; `None`
-        /// if the instance was not drawn.
-        pub drawn: Option<(u32, Affine)>,
+        /// How it was drawn; `None` if it was not.
+        pub drawn: Option<DrawnAs>,
+    }
+
+    /// How a view drew an instance.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub(crate) struct DrawnAs {
+        /// Its list, 2 · level + mirrored.
+        pub list: u32,
+        /// How far its level had moved to the next coarser one, 0 to 1.
+        pub way: f64,
+        /// The transform from the model's space to the corner of the view's cell.
+        pub rows: Affine,
     }
 
     impl Scene {
@@ -108,11 +117,14 @@ mod drawn {
                 let (range, room) = (chunk.range, chunk.room() as usize);
                 for list in 0..2 * entry.errors.len() {
                     let count = draws[range.first_draw as usize + list].instances as usize;
-                    for index in &lists[range.first_list as usize + list * room..][..count] {
-                        let index = index & LIST_INSTANCE;
+                    for entry in &lists[range.first_list as usize + list * room..][..count] {
+                        let index = entry & LIST_INSTANCE;
+                        let steps = entry >> (LIST_MORPH_SHIFT + MORPH_SHIFT);
+                        let way = f64::from(steps) / f64::from(MORPH_STEPS);
                         let first = 3 * (range.first + index) as usize;
-                        let placed: Affine = [0, 1, 2].map(|row| rows[first + row]);
-                        drawn[chunk.slots.start + index as usize] = Some((list as u32, placed));
+                        let rows: Affine = [0, 1, 2].map(|row| rows[first + row]);
+                        let drawn_as = DrawnAs { list: list as u32, way, rows };
+                        drawn[chunk.slots.start + index as usize] = Some(drawn_as);
                     }
                 }
             }
@@ -142,10 +154,6 @@ mod drawn {
             list: u32,
         ) -> Result<Vec<Vec<[u32; 3]>>, Error> {
             let object = self.object_at(object)?;
-            if object.transition == Transition::Geomorph {
-                let bound = "must change levels of detail at once: triangles on their way are not measured";
-                return Err(InputError::new("object.transition", "geomorph", bound).into());
-            }
             let draws = self.lists_of(view)?.arguments.read_blocking(&self.gpu)?;
             let mut all = Vec::new();
             // All chunks draw the same triangles.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use glam::{DVec3, Quat, Vec3};
 
 use crate::animation::Wrap;
+use crate::scene::Transition;
 use crate::surface::Shadow;
 use crate::surface::relief::Method;
 use crate::terrain::morph::Morph;
@@ -26,6 +27,8 @@ pub(super) struct ObjectEntry {
     pub path: String,
     pub source: Source,
     pub kind: EntryKind,
+    /// How its levels of detail change; as the scene's if it does not say.
+    pub transition: Option<Transition>,
     pub instances: Vec<InstanceEntry>,
     pub scatter: Option<Scatter>,
 }

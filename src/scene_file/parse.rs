@@ -6,11 +6,11 @@ use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
 use super::entries::{ObjectEntry, Spot, TerrainEntry};
 use super::json::{At, Fields, Json};
 use super::limits::COORDINATE;
-use super::parse_object::{character, mesh};
+use super::parse_object::{character, mesh, transition};
 use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
-use crate::scene::Quality;
+use crate::scene::{Quality, Transition};
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
@@ -53,13 +53,15 @@ impl SceneFile {
             all.iter().map(read).collect::<Result<Vec<_>, InputError>>()
         };
         let (sun, shadow) = fields.maybe("light", |at| light(&at))?.unwrap_or_default();
+        let (quality, transition) = fields.maybe("quality", |at| quality(&at))?.unwrap_or_default();
         let scene = Self {
             terrain: fields.maybe("terrain", |at| terrain(&at))?,
             objects: [objects("meshes", mesh)?, objects("characters", character)?].concat(),
             light: sun,
             shadow,
             camera: camera(&fields.need("camera", "where the scene is seen from")?)?,
-            quality: fields.maybe("quality", |at| quality(&at))?.unwrap_or_default(),
+            quality,
+            transition,
             background: fields.maybe("background", |at| color(&at, 1.0))?.unwrap_or(BACKGROUND),
         };
         if scene.terrain.is_none() && scene.objects.is_empty() {
@@ -213,9 +215,11 @@ fn color(at: &At<'_>, most: f64) -> Result<[f32; 3], InputError> {
     Ok(at.numbers::<3>(0.0, most)?.map(|channel| channel as f32))
 }
 
-fn quality(at: &At<'_>) -> Result<Quality, InputError> {
-    let pixels = at.fields(&["pixels"])?.maybe("pixels", |at| at.number(0.0, 1e4))?;
-    Ok(pixels.map_or_else(Quality::default, |pixels| Quality { pixels: pixels as f32 }))
+fn quality(at: &At<'_>) -> Result<(Quality, Transition), InputError> {
+    let fields = at.fields(&["pixels", "transition"])?;
+    let pixels = fields.maybe("pixels", |at| at.number(0.0, 1e4))?;
+    let quality = pixels.map_or_else(Quality::default, |pixels| Quality { pixels: pixels as f32 });
+    Ok((quality, fields.maybe("transition", |at| transition(&at))?.unwrap_or_default()))
 }
 
 fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {

@@ -13,6 +13,7 @@ use super::limits::{COORDINATE, scale};
 use crate::InputError;
 use crate::animation::Wrap;
 use crate::asset::import::ENDINGS;
+use crate::scene::Transition;
 use crate::surface::Shadow;
 use crate::surface::relief::{MAX_SCALE, Method};
 
@@ -29,7 +30,7 @@ const SHADOWS: [(&str, Shadow); 3] = [("none", Shadow::None), ("hard", Shadow::H
 
 /// An entry of `meshes`.
 pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    let fields = at.fields(&["file", "material", "instances", "scatter"])?;
+    let fields = at.fields(&["file", "material", "transition", "instances", "scatter"])?;
     let source = model(&fields, &builtin::MODELS)?;
     let kind = fields.maybe("material", |at| relief(&at))?.map_or(EntryKind::Mesh, EntryKind::Relief);
     placed(at, &fields, (source, kind), MAX_MESHES)
@@ -37,7 +38,8 @@ pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
 
 /// An entry of `characters`.
 pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    let fields = at.fields(&["file", "clip", "rate", "start", "wrap", "instances", "scatter"])?;
+    let fields =
+        at.fields(&["file", "clip", "rate", "start", "wrap", "transition", "instances", "scatter"])?;
     let source = model(&fields, &builtin::CHARACTERS)?;
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
     let kind = EntryKind::Character(play(&fields, &all)?);
@@ -62,7 +64,18 @@ fn placed(
         return Err(fields.missing("instances", "or scatter, to say where it stands"));
     }
     let instances = instances.unwrap_or_default();
-    Ok(ObjectEntry { path: at.path.clone(), source, kind, instances, scatter })
+    let transition = fields.maybe("transition", |at| transition(&at))?;
+    if let (Some(Transition::Geomorph), EntryKind::Relief(_)) = (transition, &kind) {
+        let path = format!("{}.transition", at.path);
+        let bound = "must be hard: a mesh with a relief has one level of detail";
+        return Err(InputError::new(path, "geomorph", bound));
+    }
+    Ok(ObjectEntry { path: at.path.clone(), source, kind, transition, instances, scatter })
+}
+
+/// How levels of detail change.
+pub(super) fn transition(at: &At<'_>) -> Result<Transition, InputError> {
+    at.one_of(Transition::NAMES)
 }
 
 /// The model's `file`.

@@ -11,7 +11,7 @@ use super::world::World;
 use crate::gpu::Gpu;
 use crate::render::target::COLOR_FORMAT;
 use crate::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
-use crate::scene::{Camera, Depth, Quality, View};
+use crate::scene::{Camera, Depth, Quality, Transition, View};
 use crate::{Error, InputError};
 
 /// How frames are drawn.
@@ -30,6 +30,8 @@ pub struct Rendering {
     pub is_split: bool,
     /// How fine.
     pub quality: Quality,
+    /// How the levels of detail of all objects change that can do so; as the scene file says if this does not.
+    pub transition: Option<Transition>,
 }
 
 impl Default for Rendering {
@@ -42,6 +44,7 @@ impl Default for Rendering {
             layer: Layer::Color,
             is_split: false,
             quality: Quality::default(),
+            transition: None,
         }
     }
 }
@@ -101,7 +104,10 @@ impl Player {
     pub fn new(mut world: World, rendering: Rendering) -> Result<Self, Error> {
         rendering.validate()?;
         let gpu = world.scene.gpu().clone();
-        let Rendering { size, samples, depth, layer, is_split, quality } = rendering;
+        let Rendering { size, samples, depth, layer, is_split, quality, transition } = rendering;
+        if let Some(transition) = transition {
+            world.set_transitions(transition)?;
+        }
         let format = format_of(layer).with_samples(samples);
         let format = if depth == Depth::Reversed { format.reversed() } else { format };
         let target = Offscreen::with_format(&gpu, size, format)?;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::camera::CameraPath;
 use super::entries::{EntryKind, ObjectEntry, Source, TerrainEntry};
 use crate::asset::Light;
-use crate::scene::Quality;
+use crate::scene::{Quality, Transition};
 use crate::terrain::config::ZoneTexture;
 
 /// A scene as its file describes it, checked. Files that it names are not read yet.
@@ -19,6 +19,7 @@ pub struct SceneFile {
     pub(super) shadow: Option<SunOptions>,
     pub(super) camera: CameraPath,
     pub(super) quality: Quality,
+    pub(super) transition: Transition,
     pub(super) background: [f32; 3],
 }
 
@@ -47,6 +48,11 @@ impl SceneFile {
     /// How fine the scene is drawn.
     pub fn quality(&self) -> Quality {
         self.quality
+    }
+
+    /// How the levels of detail of objects change that do not say so themselves and can do so.
+    pub fn transition(&self) -> Transition {
+        self.transition
     }
 
     /// The colour behind everything: linear red, green and blue, each 0 to 1.

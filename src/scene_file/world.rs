@@ -12,7 +12,7 @@ use super::scatter::{self, Drawn};
 use super::spec::SunOptions;
 use crate::asset::Model;
 use crate::gpu::Gpu;
-use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource};
+use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
 use crate::{Error, InputError};
 
 /// A scene that was built from a file, with the file's camera and quality.
@@ -43,6 +43,21 @@ pub struct WorldObject {
     pub name: String,
     /// The model of a mesh or a character, with its levels of detail.
     pub model: Option<Arc<Model>>,
+}
+
+impl World {
+    /// Sets how the levels of detail of all objects change that can do so.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that the scene has no longer.
+    pub fn set_transitions(&mut self, transition: Transition) -> Result<(), Error> {
+        for WorldObject { object, .. } in &self.objects {
+            if self.scene.can_morph(*object)? {
+                self.scene.set_transition(*object, transition)?;
+            }
+        }
+        Ok(())
+    }
 }
 
 impl WorldObject {
@@ -102,11 +117,27 @@ impl LoadedScene {
         }
         for (entry, loaded) in file.objects.iter().zip(&self.objects) {
             let found = added(&mut scene, entry, loaded).await?;
+            self.set_transition(&mut scene, entry, found.object)?;
             self.spawn(&mut scene, land, entry, &found)?;
             objects.push(found);
         }
         let (camera, quality, background) = (file.camera.clone(), file.quality, file.background);
         Ok(World { scene, objects, camera, quality, shadow: file.shadow, background })
+    }
+
+    /// An object that says itself how its levels change must be able to.
+    fn set_transition(&self, scene: &mut Scene, entry: &ObjectEntry, object: ObjectId) -> Result<(), Error> {
+        let transition = entry.transition.unwrap_or(self.file.transition);
+        if transition == Transition::Hard || entry.transition.is_none() && !scene.can_morph(object)? {
+            return Ok(());
+        }
+        let path = format!("{}.transition", entry.path);
+        scene.set_transition(object, transition).map_err(|error| match error {
+            Error::Input(error) => {
+                InputError::new(path, "geomorph", format!("{} {}", error.path, error.bound)).into()
+            }
+            other => other,
+        })
     }
 
     fn spawn(

@@ -124,11 +124,4 @@ impl Fields {
         }
         self.heights.check_holds(&format!("{field}.heights"), self.points(0))
     }
-
-    /// The workgroups that give every sample a thread, when the fields are `crop` samples smaller on every
-    /// side.
-    pub(crate) fn workgroups(&self, kernel: &crate::gpu::Kernel, crop: u32) -> [u32; 3] {
-        let width = self.inner_width(crop);
-        [kernel.groups_for(width), width, self.count]
-    }
 }

@@ -75,6 +75,11 @@ fn targets() {
     with(&other("40.0", "-1"), &[], &["target.json", "scaleFactor", "-1"]);
     with(GOOD, &["--time", "1.5"], &["time", "1.5", "0..=1"]);
     with(GOOD, &["--time", "-0.1"], &["time", "-0.1", "0..=1"]);
+    with(GOOD, &["--time", "NaN"], &["time", "NaN", "0..=1"]);
+    with(GOOD, &["--frames", "1"], &["--frames", "1", "2..=10000"]);
+    with(GOOD, &["--frames", "10001"], &["--frames", "10001", "2..=10000"]);
+    with(GOOD, &["--frames", "2", "--time", "1.5"], &["time", "1.5", "0..=1"]);
+    refused(GOOD, &["--frames", "2"], &["--target"]);
     refused(GOOD, &["--target", "nowhere.json"], &["nowhere.json"]);
 }
 

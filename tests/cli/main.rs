@@ -17,6 +17,7 @@ mod rest;
 #[path = "../animation/scene.rs"]
 mod scene;
 mod scene_file;
+mod scene_levels;
 mod scene_mistakes;
 mod simplify;
 mod skin;

@@ -35,7 +35,7 @@ impl Folder {
         self.path(name).to_str().expect("UTF-8").to_owned()
     }
 
-    fn write(&self, name: &str, bytes: &[u8]) {
+    pub fn write(&self, name: &str, bytes: &[u8]) {
         std::fs::write(self.path(name), bytes).expect("written");
     }
 
@@ -46,11 +46,11 @@ impl Folder {
         relievo(&[&["scene", &scene, "--out", &out][..], arguments].concat())
     }
 
-    fn report(&self) -> Value {
+    pub fn report(&self) -> Value {
         serde_json::from_slice(&std::fs::read(self.path("out/report.json")).expect("a report")).expect("JSON")
     }
 
-    fn frame(&self, number: u32) -> image::DynamicImage {
+    pub fn frame(&self, number: u32) -> image::DynamicImage {
         image::open(self.path(&format!("out/frame_{number:04}.png"))).expect("a frame")
     }
 }

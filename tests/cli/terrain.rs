@@ -253,3 +253,42 @@ fn heights_are_on_the_way_to_a_target() {
     let middle = ends.map(|(from, to)| (i64::from(from) + i64::from(to)).div_euclid(2) as i32);
     assert!(middle.eq(read("half")), "the heights are not half way");
 }
+
+/// The pictures of the way begin with the heights of the configuration and end with those at the time that is asked for.
+#[test]
+fn frames_show_the_way_to_a_target() {
+    let config = r#"{"patchSize": 33, "scaleFactor": 9, "seed": "a"}"#;
+    let bench = Bench::new(config);
+    std::fs::write(bench.path("target.json"), config.replace("\"a\"", "\"b\"")).expect("writable");
+    let target = bench.path("target.json");
+    let picture = |name: &str| image::open(bench.path(name)).expect("a picture").into_rgba8();
+    let same = |one: &str, other: &str| picture(one).as_raw() == picture(other).as_raw();
+    let names = |out: &str| {
+        let files = std::fs::read_dir(bench.path(out)).expect("a folder");
+        let names = files.map(|file| file.expect("a file").file_name().into_string().expect("UTF-8"));
+        names.filter(|name| name.starts_with("frame_") || name.starts_with("map_")).count()
+    };
+    let way = ["--target", target.as_str(), "--frames", "3"];
+    let report = bench.terrain("way", &way);
+    let times: Vec<_> = (report["frames"].as_array().expect("frames").iter())
+        .map(|frame| (frame["frame"].as_u64(), frame["time"].as_f64()))
+        .collect();
+    assert_eq!(times, [(Some(0), Some(0.0)), (Some(1), Some(0.5)), (Some(2), Some(1.0))]);
+    assert!(same("way/frame_0002.png", "way/terrain.png") && same("way/map_0002.png", "way/map.png"));
+    assert!(
+        !same("way/frame_0001.png", "way/terrain.png") && !same("way/frame_0001.png", "way/frame_0000.png")
+    );
+    bench.terrain("from", &[]);
+    bench.terrain("half", &["--target", &target]);
+    assert!(same("way/map_0000.png", "from/map.png") && same("way/map_0001.png", "half/map.png"));
+    bench.terrain("cpu", &[&way[..], &["--time", "0.5", "--backend", "cpu"]].concat());
+    let [gpu, cpu] = ["half/map.png", "cpu/map_0002.png"].map(picture);
+    let worst = gpu.iter().zip(cpu.iter()).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(worst <= Some(1), "{worst:?} levels");
+    // What an earlier run left is removed.
+    assert_eq!(names("way"), 6);
+    bench.terrain("way", &["--target", &target, "--frames", "2"]);
+    assert_eq!(names("way"), 4);
+    assert!(bench.terrain("way", &[])["frames"].as_array().is_some_and(Vec::is_empty));
+    assert_eq!(names("way"), 0);
+}

@@ -1,12 +1,16 @@
 //! Levels of detail that move into each other: no pixel changes where one level becomes the next, and in between every
 //! vertex is where the host moves it.
 
+#[cfg(feature = "verify")]
+mod measured;
+mod transparent;
+
 use glam::Vec3;
 use image::RgbaImage;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
 use relievo::mesh::ProgressiveMesh;
-use relievo::render::Renderer;
+use relievo::render::{Layer, Renderer};
 use relievo::samples::{creature, rock};
 use relievo::scene::{
     Camera, ObjectId, Placement, Play, Quality, Scene, Shares, TerrainSource, Transition, View,
@@ -71,7 +75,16 @@ impl Stage {
         // 0.9999 is what a camera keeps back.
         let pixels = allowed * self.focal / 0.9999;
         self.view.set_quality(Quality { pixels }).expect("valid");
-        self.frame.shot(&mut self.scene, &mut self.view, &self.renderer)
+        let gpu = self.scene.gpu().clone();
+        let mut encoder = gpu.encoder("frame");
+        self.scene.record(&mut encoder, &mut [&mut self.view]).expect("recorded");
+        self.frame.pass(&mut encoder, |pass| {
+            for layer in [Layer::Color, Layer::Transparent] {
+                self.renderer.draw(pass, &self.scene, &self.view, layer).expect("drawn");
+            }
+        });
+        gpu.queue().submit([encoder.finish()]);
+        self.frame.read(&gpu)
     }
 
     /// The displacement from which on level `level` is the one that moves into the next: the error of that next one.

@@ -40,11 +40,34 @@ fn stale_handles_are_errors() {
     );
 }
 
-/// Scenes, views and renderers may move to other threads.
+/// Scenes, views and renderers may move to other threads and back, and draw the same there.
 #[test]
 fn scenes_move_between_threads() {
-    fn moves<T: Send>() {}
-    moves::<(relievo::scene::Scene, View, relievo::render::Renderer)>();
+    let gpu = device();
+    let (mut here, mut other) = (World::new(&gpu, 3), World::new(&gpu, 3));
+    let (frame, views) = (Frame::plain(&gpu, SIZE), [here.view(1.0), other.view(1.0)]);
+    let renderers = [&here, &other].map(|world| frame.renderer(&gpu, &world.scene));
+    let shots = |world: &mut World, view: &mut View, renderer: &relievo::render::Renderer| {
+        [0.0, 0.3, 0.2].map(|seconds| {
+            world.scene.advance(seconds).expect("finite");
+            frame.shot(&mut world.scene, view, renderer)
+        })
+    };
+    let ([mut mine, mut view], [own, renderer]) = (views, renderers);
+    let expected = shots(&mut here, &mut mine, &own);
+    assert!(expected[0] != expected[1] && expected[1] != expected[2], "nothing moves");
+    let moved = std::thread::scope(|scope| {
+        let drawn = scope.spawn(|| {
+            let found = shots(&mut other, &mut view, &renderer);
+            (found, other, view, renderer)
+        });
+        drawn.join()
+    });
+    let (found, mut other, mut view, renderer) = moved.expect("drawn");
+    assert!(found == expected, "another thread draws another picture");
+    // And back again.
+    let [back, here] = [shots(&mut other, &mut view, &renderer), shots(&mut here, &mut mine, &own)];
+    assert!(back == here, "what came back draws another picture");
 }
 
 /// Objects grow between frames that are recorded and not yet submitted: each frame shows what there was when it was

@@ -36,6 +36,7 @@ mod shading;
 mod shadow;
 mod sides;
 mod solids;
+mod stage;
 mod surfaces;
 mod targets;
 mod terrain;

@@ -3,8 +3,7 @@
 use image::RgbaImage;
 use relievo::InputError;
 use relievo::gpu::Gpu;
-use relievo::render::Renderer;
-use relievo::scene::{ObjectId, Scene, TerrainSource, View};
+use relievo::scene::{Scene, TerrainSource};
 use relievo::terrain::config::Config;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::generator::Generator;
@@ -13,8 +12,8 @@ use relievo::terrain::morph::reference::morph;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;
 
-use crate::frame::{Frame, device};
-use crate::world::{SIZE, camera};
+use crate::frame::device;
+use crate::stage::Stage;
 
 const HERE: [[i32; 2]; 4] = [[-1, -1], [0, -1], [-1, 0], [0, 0]];
 
@@ -45,44 +44,19 @@ fn between(gpu: &Gpu, time: f64) -> TerrainSource {
     TerrainSource::from_fields(ends()[0].clone(), fields, &HERE)
 }
 
-struct Stage {
-    scene: Scene,
-    land: ObjectId,
-    view: View,
-    frame: Frame,
-    renderer: Renderer,
+fn at(stage: &mut Stage, time: f64) -> RgbaImage {
+    stage.scene.morph_terrain(stage.land, Morph { time }).expect("has a target");
+    stage.shot()
 }
 
-impl Stage {
-    fn new(gpu: &Gpu, source: &TerrainSource) -> Self {
-        let mut scene = Scene::new(gpu).expect("compiled");
-        let land = scene.add_terrain(source).expect("added");
-        let mut view = scene.view(Default::default()).expect("a view");
-        view.set(camera(SIZE)).expect("a camera");
-        let frame = Frame::plain(gpu, SIZE);
-        let renderer = frame.renderer(gpu, &scene);
-        Self { scene, land, view, frame, renderer }
-    }
-
-    fn at(&mut self, time: f64) -> RgbaImage {
-        self.scene.morph_terrain(self.land, Morph { time }).expect("has a target");
-        self.shot()
-    }
-
-    fn shot(&mut self) -> RgbaImage {
-        self.frame.shot(&mut self.scene, &mut self.view, &self.renderer)
-    }
-
-    fn ground(&self) -> Vec<f64> {
-        let places = [(0.25, 0.5), (-7.5, 11.0), (20.0, -30.75)];
-        let point =
-            |(x, z): (f64, f64)| self.scene.ground(self.land, x, z).expect("terrain").expect("inside");
-        places
-            .map(point)
-            .iter()
-            .flat_map(|point| [vec![point.height], point.normal.map(f64::from).to_vec()].concat())
-            .collect()
-    }
+fn ground(stage: &Stage) -> Vec<f64> {
+    let places = [(0.25, 0.5), (-7.5, 11.0), (20.0, -30.75)];
+    let point = |(x, z): (f64, f64)| stage.scene.ground(stage.land, x, z).expect("terrain").expect("inside");
+    places
+        .map(point)
+        .iter()
+        .flat_map(|point| [vec![point.height], point.normal.map(f64::from).to_vec()].concat())
+        .collect()
 }
 
 /// Each time looks as terrain made from these heights, also after a frame that was never submitted, and on the way back; the
@@ -93,10 +67,10 @@ fn a_time_looks_as_its_heights() {
     let mut stage = Stage::new(&gpu, &source(0.0));
     let mut pictures = Vec::new();
     for time in [0.0, 0.25, 0.7, 1.0, 0.25] {
-        let picture = stage.at(time);
+        let picture = at(&mut stage, time);
         let mut expected = Stage::new(&gpu, &between(&gpu, time));
         assert!(picture == expected.shot(), "time {time} looks different");
-        assert_eq!(stage.ground(), expected.ground(), "time {time}");
+        assert_eq!(ground(&stage), ground(&expected), "time {time}");
         pictures.push(picture);
     }
     assert!(pictures[..4].iter().enumerate().all(|(at, picture)| !pictures[..at].contains(picture)));

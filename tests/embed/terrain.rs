@@ -1,19 +1,18 @@
 //! Terrain of the caller's own heights: shared buffers, heights that change, patches that travel, wireframes.
 
-use glam::DVec3;
 use image::RgbaImage;
 use relievo::InputError;
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer};
-use relievo::scene::{ObjectId, Ray, Scene, TerrainSource, TerrainStyle, View};
+use relievo::scene::{Scene, TerrainSource, TerrainStyle};
 use relievo::terrain::config::Config;
 use relievo::terrain::field::field;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;
 
-use crate::frame::{Frame, device};
-use crate::world::{SIZE, camera};
+use crate::frame::device;
+use crate::stage::Stage;
 
 /// The scene generates a recipe with all erosion: its ground is what the CPU computes.
 #[test]
@@ -50,49 +49,8 @@ fn fields(gpu: &Gpu, patches: &[[i32; 2]], margin: u32) -> Fields {
     generator.generate(gpu, patches, margin, &mut |_| ()).expect("generated").remove(0)
 }
 
-/// A scene of one terrain.
-struct Stage {
-    scene: Scene,
-    land: ObjectId,
-    view: View,
-    frame: Frame,
-    renderer: Renderer,
-}
-
-impl Stage {
-    fn new(gpu: &Gpu, source: &TerrainSource) -> Self {
-        let mut scene = Scene::new(gpu).expect("compiled");
-        let land = scene.add_terrain(source).expect("added");
-        let mut view = scene.view(Default::default()).expect("a view");
-        view.set(camera(SIZE)).expect("a camera");
-        let frame = Frame::plain(gpu, SIZE);
-        let renderer = frame.renderer(gpu, &scene);
-        Self { scene, land, view, frame, renderer }
-    }
-
-    fn of(gpu: &Gpu, fields: &Fields, patches: &[[i32; 2]]) -> Self {
-        Self::new(gpu, &TerrainSource::from_fields(config(), fields.clone(), patches))
-    }
-
-    fn shot(&mut self) -> RgbaImage {
-        self.frame.shot(&mut self.scene, &mut self.view, &self.renderer)
-    }
-
-    fn height(&self, x: f64, z: f64) -> Option<f64> {
-        self.scene.ground(self.land, x, z).expect("terrain").map(|point| point.height)
-    }
-
-    /// The distance to the ground straight down.
-    fn below(&self, x: f64, z: f64) -> Option<f64> {
-        let ray = Ray {
-            cell: [0; 3],
-            at: DVec3::new(x, 500.0, z),
-            direction: DVec3::NEG_Y,
-            limit: f64::INFINITY,
-            mask: u16::MAX,
-        };
-        self.scene.pick(&ray).expect("a ray").map(|hit| hit.distance)
-    }
+fn stage_of(gpu: &Gpu, fields: &Fields, patches: &[[i32; 2]]) -> Stage {
+    Stage::new(gpu, &TerrainSource::from_fields(config(), fields.clone(), patches))
 }
 
 /// Adds whole units to all heights.
@@ -108,14 +66,14 @@ fn fields_of_the_caller_look_like_those_of_the_scene() {
     let mut own = Stage::new(&gpu, &TerrainSource::new(config()).with_patches(&HERE));
     let expected = own.shot();
     for margin in [1, 4] {
-        let mut given = Stage::of(&gpu, &fields(&gpu, &HERE, margin), &HERE);
+        let mut given = stage_of(&gpu, &fields(&gpu, &HERE, margin), &HERE);
         assert!(given.shot() == expected, "another picture with a margin of {margin}");
         for (x, z) in [(-7.3, 12.5), (0.0, 0.0), (31.9, -31.9)] {
             assert_eq!(given.height(x, z), own.height(x, z));
             assert!(given.height(x, z).is_some() && given.below(x, z) == own.below(x, z));
         }
     }
-    let other = Stage::of(&gpu, &fields(&gpu, &[[5, 5], [6, 5], [5, 6], [6, 6]], 1), &HERE).shot();
+    let other = stage_of(&gpu, &fields(&gpu, &[[5, 5], [6, 5], [5, 6], [6, 6]], 1), &HERE).shot();
     assert!(other != expected, "other heights look the same");
 }
 
@@ -124,12 +82,12 @@ fn fields_of_the_caller_look_like_those_of_the_scene() {
 fn heights_that_change_show_at_once_and_are_known_when_read() {
     let gpu = device();
     let fields = fields(&gpu, &HERE, 1);
-    let mut stage = Stage::of(&gpu, &fields, &HERE);
+    let mut stage = stage_of(&gpu, &fields, &HERE);
     let (before, height) = (stage.shot(), stage.height(3.0, 4.0).expect("ground"));
     lift(&gpu, &fields, 2);
     let after = stage.shot();
     assert!(after != before, "the picture has not changed");
-    assert!(after == Stage::of(&gpu, &fields, &HERE).shot(), "another picture than a new scene");
+    assert!(after == stage_of(&gpu, &fields, &HERE).shot(), "another picture than a new scene");
     assert_eq!(stage.height(3.0, 4.0), Some(height));
     stage.scene.read_ground(stage.land).expect("read");
     assert_eq!(stage.height(3.0, 4.0), Some(height + 2.0));
@@ -142,7 +100,7 @@ fn heights_that_change_show_at_once_and_are_known_when_read() {
     stage.scene.read_ground(stage.land).expect("read");
     let raised = bounds(&stage);
     assert!(found.iter().zip(&raised).all(|(a, b)| (b.high.y - a.high.y - 300.0).abs() < 0.1));
-    assert!(stage.shot() == Stage::of(&gpu, &fields, &HERE).shot());
+    assert!(stage.shot() == stage_of(&gpu, &fields, &HERE).shot());
 }
 
 /// Fields that show other patches look as if they had been added there. Views cull by the heights that are told.
@@ -151,13 +109,13 @@ fn fields_travel() {
     let gpu = device();
     let there = [[-1, -1], [0, 0], [1, -1]];
     let fields = fields(&gpu, &HERE, 1);
-    let mut stage = Stage::of(&gpu, &fields, &HERE);
+    let mut stage = stage_of(&gpu, &fields, &HERE);
     let handles = stage.scene.instances(stage.land).expect("terrain");
     let before = stage.shot();
     stage.scene.set_patches(stage.land, &there, [-6.0, 6.0]).expect("set");
     let travelled = stage.shot();
     assert!(travelled != before);
-    assert!(travelled == Stage::of(&gpu, &fields, &there).shot(), "another picture than a new scene");
+    assert!(travelled == stage_of(&gpu, &fields, &there).shot(), "another picture than a new scene");
     // The first patch stays, with its handle and its ground; the others are new, and there is one less.
     let now = stage.scene.instances(stage.land).expect("terrain");
     assert_eq!((now.len(), now[0]), (3, handles[0]));
@@ -203,7 +161,7 @@ fn mistakes_about_fields_are_told() {
     assert_eq!(refused(&mut scene, &good, &five), "patches.len");
     assert_eq!(refused(&mut scene, &good, &[[0, 0], [1, 1], [0, 0]]), "patches[2]");
     assert_eq!(refused(&mut scene, &good, &[[0, 0], [3, i32::MAX]]), "patches[1][1]");
-    let mut stage = Stage::of(&gpu, &good, &HERE);
+    let mut stage = stage_of(&gpu, &good, &HERE);
     let before = stage.shot();
     for (patches, heights, expected) in [
         (&five[..], [0.0, 1.0], "patches.len"),

@@ -3,6 +3,7 @@
 
 mod attached;
 mod characters;
+mod geomorph;
 
 use glam::{DMat4, DVec3, Vec3};
 use relievo::asset::material::Alpha;

@@ -1,7 +1,7 @@
 //! The same sequence of collapses on every machine: hashes of meshes that are made without functions that differ. The
 //! crate of `tests/web/scene` computes the same hashes in a browser.
 
-use relievo::mesh::{Options, Surface, simplify, simplify_within};
+use relievo::mesh::{Limits, Options, Reducer, Surface, simplify, simplify_within};
 
 /// A whole number below `most` for a place.
 fn noise(at: u32, most: u32) -> u32 {
@@ -65,4 +65,29 @@ pub fn hashes() -> [String; 4] {
         simplify_within(&plain, &all, &[0.25, 1.0]),
     ]
     .map(|found| found.map_or_else(|error| error.to_string(), |found| found.hash()))
+}
+
+/// Each reducer's hashes but the first one's, whose sequence `hashes` has: of hills with an attribute, and of a ball with
+/// seams, at several numbers of triangles.
+pub fn reduced() -> [String; 6] {
+    let (ground, indices) = hills(24);
+    let values: Vec<f32> = (0..ground.len() as u32).map(|at| noise(at, 7) as f32 * 0.125).collect();
+    let poses = [ground];
+    let valued = Surface { poses: &poses, indices: &indices, attributes: &values, stride: 1 };
+    let (round, corners) = ball(8);
+    let poses = [round];
+    let seams = Surface { poses: &poses, indices: &corners, attributes: &[], stride: 0 };
+    std::array::from_fn(|at| {
+        let (name, reducer) = Reducer::ALL[at + 1];
+        let to = |triangles| Limits { triangles, ..Limits::default() };
+        let found = [(&valued, [800, 300, 50]), (&seams, [500, 200, 60])].map(|(surface, triangles)| {
+            match reducer.reduce_each(surface, &triangles.map(to)) {
+                Ok(all) => {
+                    all.iter().map(|reduced| reduced.hash()[..12].to_owned()).collect::<Vec<_>>().join(" ")
+                }
+                Err(error) => error.to_string(),
+            }
+        });
+        format!("{name}: {} | {}", found[0], found[1])
+    })
 }

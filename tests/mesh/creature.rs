@@ -41,7 +41,8 @@ fn it_keeps_its_shape_in_every_pose() {
     let uv: Vec<f32> = shape.uv.as_flattened().iter().map(|value| value * 0.004).collect();
     let surface = Surface { attributes: &uv, ..shape.with_uv() };
     let start = Instant::now();
-    let simplified = simplify(&surface, &Options { triangles, ..Options::default() }).expect("valid");
+    let simplified =
+        simplify(&surface, &Options { triangles, prune: false, ..Options::default() }).expect("valid");
     let taken = start.elapsed();
     assert!(taken.as_secs_f64() < 1.0, "{taken:?}");
     assert_eq!(simplified.stopped(), Stopped::Triangles);
@@ -67,5 +68,5 @@ fn it_is_simplified_alike_everywhere() {
     let moved = (0..simplified.collapses().len()).flat_map(|at| simplified.moved(at)).flatten();
     let errors = simplified.collapses().iter().map(|collapse| collapse.error.to_bits());
     let words: Vec<i32> = moved.copied().chain(errors).map(|word| word as i32).collect();
-    assert_eq!(sha256(&words), "143829bfedfd52475c4d305f7cc923dce01898bccab1aef56fd36f90ba3e00f5");
+    assert_eq!(sha256(&words), "d706cce43833aed676ed032294f3180835a5de4fe67cc3809910ab472705828c");
 }

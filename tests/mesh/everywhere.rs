@@ -1,16 +1,31 @@
 //! The hashes of `alike`, as this program and a browser compute them (`tests/web/scene.rs`).
 
-use crate::alike::hashes;
+use crate::alike::{hashes, reduced};
 
 /// Known answers; a change of these is a change of every level that anybody has stored.
 const KNOWN: [&str; 4] = [
     "53c122404ee7decd530405091af6776136b5eab5b117ed06f402d1b106d32e27",
-    "18d09f2beda28fe8bcf330b71c8259eae0e66b615c55e436641a128c2b604e0c",
+    "959c38ea89dc9a9cb2e73d6518c6ed2fa547aff598d7184c20b106d434e3d32c",
     "7031ac102718632c3e14406ff18c827b1bedc4e55e0493bd9d17ca28ccccc713",
-    "d2e28fb8d2db2ba3134d1bcbed2b8ebe931d8317604f2b8a08a2d0be446a20b1",
+    "6c5b03e8735d04105f261b35e709b0a7e43c946fd0dbe58b0cd9055f1b173eb6",
 ];
 
 #[test]
 fn sequences_are_the_same_everywhere() {
     assert_eq!(hashes(), KNOWN);
+}
+
+/// Known answers of the other reducers.
+const REDUCED: [&str; 6] = [
+    "melax: 00fad3f92fac cc8c8feaa077 18af20fcfe5f | 13d570f6b90f 594efc88b80f d3595d08c3ab",
+    "full-edge: 778af6b75781 21f4979ee4f4 124bdd8b8bcb | 41767f5e5c77 b20810a2e249 c7b70bbd9de9",
+    "vertex-pair: b1f540c6ce1c 7d39a4e8fff7 9292408056e9 | 41767f5e5c77 b20810a2e249 82136725c4bc",
+    "uniform-clustering: 7e2a8fce1d9e 0a9f28c18215 8eb8f479b803 | f2f36fc6d734 d38971c3fb70 a760c60d4f48",
+    "importance-clustering: 52f79db2b805 81b1e180b399 ef1f67be8281 | 0c32422d1223 69323e43b121 a3aefae84d93",
+    "vertex-removal: 50e5d9f3bde7 ee6c35c80663 271ed5e6e2e6 | b5dfeb134333 a5550fa52a1b 0386da98b794",
+];
+
+#[test]
+fn reduced_meshes_are_the_same_everywhere() {
+    assert_eq!(reduced(), REDUCED);
 }

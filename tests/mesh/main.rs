@@ -9,6 +9,7 @@ mod distance;
 mod everywhere;
 mod input;
 mod measure;
+mod parts;
 mod progressive;
 mod quality;
 mod reduce;

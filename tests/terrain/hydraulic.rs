@@ -101,10 +101,17 @@ fn oracle(torus: &Torus, params: &HydraulicParams) -> Torus {
     for at in 0..ground.len() {
         let around = [0, 1, 2, 3].map(|direction| neighbour(at, direction));
         let falls = around.map(|to| surface(at) - surface(to));
-        let fall = falls.into_iter().max().unwrap_or(0).max(0).min(params.steepest.into());
-        let slope = (fall >> params.slope_shift) * i64::from(params.slope_factor) / 32_768;
+        let [across, along] = [falls[0].max(falls[1]), falls[2].max(falls[3])].map(|fall| {
+            let fall = fall.max(0).min(params.steepest.into());
+            (fall >> params.slope_shift) * i64::from(params.slope_factor) / 32_768
+        });
+        let slope = across.max(along) + across.min(along) * 3 / 8;
+        // What leaves the neighbours, whether or not there is room for it.
+        let leaving = |at: usize| water(at) * shares(flow[at]).iter().sum::<i64>() / 32_768 / 8;
+        let eighths = around.into_iter().map(leaving).sum::<i64>();
+        let discharge = through[at] / 2 / 4 + eighths + eighths / 2;
         let rate = (slope * i64::from(params.capacity) / 256).min(1 << 18);
-        let driving = (through[at] / 2 - i64::from(params.threshold)).clamp(0, WATER_LIMIT.into());
+        let driving = (discharge - i64::from(params.threshold)).clamp(0, WATER_LIMIT.into());
         let lacking = (driving * rate / 4096).min(SEDIMENT_LIMIT.into()) - new[at][2];
         let deepest = around.map(|to| height(at) - height(to)).into_iter().max().unwrap_or(0).max(0);
         let highest = around.map(|to| height(to) - height(at)).into_iter().max().unwrap_or(0).max(0);
@@ -118,7 +125,8 @@ fn oracle(torus: &Torus, params: &HydraulicParams) -> Torus {
             .min(WATER_LIMIT.into());
         let flux = [0, 1, 2, 3].map(|direction| {
             let old = given(at, direction, water(at));
-            (old - old / 2 + falls[direction].div_euclid(16)).clamp(0, WATER_LIMIT.into())
+            let spread = (left / 32).min(params.threshold.into());
+            (old - old / 2 + falls[direction].div_euclid(16) + spread).clamp(0, WATER_LIMIT.into())
         });
         let whole = flux.iter().sum::<i64>().max(left).max(1);
         let mut divisor = whole;

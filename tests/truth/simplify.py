@@ -2,11 +2,11 @@
 
 python3 -m venv venv && venv/bin/pip install libigl && venv/bin/python tests/truth/simplify.py DIR
 
-DIR has MESH.obj, and MESH[_normals]_PERCENT_{relievo,meshoptimizer}.obj. Both directions are measured, at the vertices that
-are used, at the middles of edges and of triangles, and at points spread evenly over the area: root mean square (over the
-latter alone, since only these are spread evenly) and largest. Where normals count, so do their differences, at points
-spread evenly over the mesh and the nearest points of the level: the root mean square length. Prints a table of both
-programs and their ratios, and the geometric means of the ratios.
+DIR has MESH.obj, and MESH[_normals]_PERCENT_{relievo,meshoptimizer,within}.obj, the last of which `simplify_within` made.
+Both directions are measured, at the vertices that are used, at the middles of edges and of triangles, and at points spread
+evenly over the area: root mean square (over the latter alone, since only these are spread evenly) and largest. Where
+normals count, so do their differences, at points spread evenly over the mesh and the nearest points of the level: the root
+mean square length. Prints a table of both programs and their ratios, with the distances of `simplify_within` beside, and the geometric means of the ratios.
 """
 
 import pathlib
@@ -81,19 +81,23 @@ def main(folder):
     pattern = re.compile(r"(.+?)(_normals)?_(\d+)_relievo\.obj")
     found = [match for match in map(lambda path: pattern.fullmatch(path.name), sorted(folder.iterdir())) if match]
     meshes, ratios = {}, {}
-    print("| mesh | normals | % | triangles | rms | largest | bend | rms, ratio | largest, ratio | bend, ratio |\n" + "|---" * 10 + "|")
+    print("| mesh | normals | % | triangles | rms | largest | bend | rms, ratio | largest, ratio | bend, ratio "
+          "| within: triangles | rms | largest |\n" + "|---" * 13 + "|")
     for match in sorted(found, key=lambda match: (match[1], match[2] or "", -int(match[3]))):
         name, normals, percent = match[1], match[2] or "", match[3]
         mesh = meshes.setdefault(name, None) or read(folder / f"{name}.obj")
         meshes[name] = mesh
         levels = [read(folder / f"{name}{normals}_{percent}_{who}.obj") for who in ("relievo", "meshoptimizer")]
+        within = read(folder / f"{name}{normals}_{percent}_within.obj")
+        near = distances(mesh, within)
         ours, theirs = ((*distances(mesh, level), bend(mesh, level)) for level in levels)
         ratio = [a / b if b > 0 else float(a <= b) for a, b in zip(ours, theirs)]
         ratios.setdefault(normals, []).append(ratio)
         both = [f"{a:.4g} / {b:.4g}" for a, b in zip(ours, theirs)]
         count = " / ".join(str(len(level[1])) for level in levels)
         print(f"| {name} | {'yes' if normals else 'no'} | {percent} | {count} | {both[0]} | {both[1]} "
-              f"| {both[2]} | {ratio[0]:.3f} | {ratio[1]:.3f} | {ratio[2]:.3f} |", flush=True)
+              f"| {both[2]} | {ratio[0]:.3f} | {ratio[1]:.3f} | {ratio[2]:.3f} "
+              f"| {len(within[1])} | {near[0]:.4g} | {near[1]:.4g} |", flush=True)
     for normals, all_ratios in ratios.items():
         mean, worst = numpy.exp(numpy.log(numpy.maximum(all_ratios, 1e-9)).mean(axis=0)), numpy.max(all_ratios, axis=0)
         print(f"\n{'with' if normals else 'without'} normals: geometric mean of rms {mean[0]:.3f}, of largest {mean[1]:.3f}, of bend "

@@ -1,6 +1,7 @@
 // Where the instances of a scene were in the last frame, and how far their surfaces moved on the screen since.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
-import package::wgsl::render::scene_vertex::{MORPHED, entry_instance, instances, mesh, morphed, rows, vertex_index_of, vertex_morph, vertices};
+import package::wgsl::lod::object::{OBJECT_LEVELS};
+import package::wgsl::render::scene_vertex::{MORPHED, PARTNER_INDEX, PARTNER_LEVEL_SHIFT, VertexMorph, entry_instance, instances, material_of, mesh, morphed, rows, vertex_index_of, vertex_morph, vertices, way_of};
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_position};
 import package::wgsl::skinning::vertex::vertex_position;
@@ -35,14 +36,41 @@ fn last_local(instance: u32, vertex: u32) -> vec3<f32> {
     return vertex_position(vertices[first], vertices[first + 1u]);
 }
 
-// Where a vertex of an instance, given by the entry of its list, was, relative to the corner of the view's cell. Levels of
-// detail that move into each other count as if they had been as they are.
+// The vertex that stood for another in the last frame, where that vertex went, and how far it had moved there.
+struct LastMorph {
+    standing: u32,
+    to: VertexMorph,
+}
+
+// If the last frame had a coarser level of detail, a vertex was where the one was that had taken its place; if it had a finer
+// one, the vertex had not moved. An instance that the view did not see then counts as if its level had been as it is.
+fn last_morph(entry: u32, vertex: u32) -> LastMorph {
+    let known = rows[6u * arrayLength(&last_instances) + mesh.first_instance + entry_instance(entry)];
+    if known.x == 0.0 || mesh.partners == 0u {
+        return LastMorph(vertex, vertex_morph(entry, vertex));
+    }
+    let level = u32(known.x) - 1u;
+    var standing = vertex;
+    var word = material_of[mesh.partners + standing];
+    for (var step = 0u; step < OBJECT_LEVELS && (word >> PARTNER_LEVEL_SHIFT) < level; step++) {
+        standing = word & PARTNER_INDEX;
+        word = material_of[mesh.partners + standing];
+    }
+    if (word >> PARTNER_LEVEL_SHIFT) != level {
+        return LastMorph(standing, VertexMorph(standing, 0.0));
+    }
+    return LastMorph(standing, VertexMorph(word & PARTNER_INDEX, way_of(u32(known.y))));
+}
+
+// Where a vertex of an instance, given by the entry of its list, was, relative to the corner of the view's cell.
 fn last_position(entry: u32, vertex: u32) -> vec3<f32> {
     let instance = entry_instance(entry);
-    var position = last_local(instance, vertex);
+    var position = vec3<f32>(0.0);
     if MORPHED {
-        let to = vertex_morph(entry, vertex);
-        position = morphed(position, last_local(instance, to.partner), to.way);
+        let last = last_morph(entry, vertex);
+        position = morphed(last_local(instance, last.standing), last_local(instance, last.to.partner), last.to.way);
+    } else {
+        position = last_local(instance, vertex);
     }
     return placed_position(last_rows(mesh.first_instance + instance), position);
 }

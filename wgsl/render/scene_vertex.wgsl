@@ -30,7 +30,9 @@ struct MeshParams {
 
 // Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the
 // view's cell. Only those of instances that the view sees are written. If the scene keeps its last frame, as many follow, of
-// which those of meshes that are attached to bones are written: the transforms that they had then.
+// which those of meshes that are attached to bones are written: the transforms that they had then; and then an element for
+// each instance, of which x is 1 + the level of detail at which the view drew it then, or 0 if it did not, and y the steps
+// that the level had moved.
 @group(0) @binding(1) var<storage, read> rows: array<vec4<f32>>;
 // All instances of the scene.
 @group(0) @binding(2) var<storage, read> instances: array<SceneInstance>;
@@ -90,8 +92,12 @@ fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
     if steps == 0u || mesh.partners == 0u || (word >> PARTNER_LEVEL_SHIFT) != (moved & MORPH_LEVEL) {
         return VertexMorph(vertex, 0.0);
     }
-    // Division may round: all the way is 1.
-    return VertexMorph(word & PARTNER_INDEX, select(f32(steps) / f32(MORPH_STEPS), 1.0, steps == MORPH_STEPS));
+    return VertexMorph(word & PARTNER_INDEX, way_of(steps));
+}
+
+// The way of so many steps. Division may round: all of them are 1.
+fn way_of(steps: u32) -> f32 {
+    return select(f32(steps) / f32(MORPH_STEPS), 1.0, steps == MORPH_STEPS);
 }
 
 // Between two vectors; at 0 and 1 one of them, to the bit.

@@ -12,6 +12,13 @@ struct Blocks {
     rows: u32,
 }
 
+// A thread of a workgroup of 64.
+struct Thread {
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+}
+
 // What a thread makes.
 struct Block {
     // Whether there is one for this thread.
@@ -21,9 +28,9 @@ struct Block {
     at: vec2<u32>,
 }
 
-// The block of a thread of a workgroup of 64.
-fn block_of(blocks: Blocks, group: vec3<u32>, groups: vec3<u32>, lane: u32) -> Block {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
+// The block of a thread.
+fn block_of(blocks: Blocks, thread: Thread) -> Block {
+    let index = (thread.group.y * thread.groups.x + thread.group.x) * 64u + thread.lane;
     let in_window = index % blocks.per_window;
     let at = vec2<u32>(in_window % blocks.per_row, in_window / blocks.per_row);
     return Block(index < blocks.count, index / blocks.per_window, at);

@@ -135,9 +135,9 @@ pub struct Crowd {
     /// bounded:0.5.
     #[arg(long, value_name = "full|bounded:PIXELS")]
     skinning: Option<String>,
-    /// The triangles of the meshes: all; or as few as keep the surface within PIXELS of its place. Default: full; with
-    /// --scene bounded:0.5.
-    #[arg(long, value_name = "full|bounded:PIXELS")]
+    /// The triangles of the meshes: all; or as few as keep the surface within PIXELS of its place, with levels that change at
+    /// once (bounded) or move into each other (geomorph). Default: full; with --scene bounded:0.5.
+    #[arg(long, value_name = "full|bounded:PIXELS|geomorph:PIXELS")]
     mesh: Option<String>,
     /// The folder to write to.
     #[arg(long, value_name = "DIR")]

@@ -13,7 +13,7 @@ use image::RgbaImage;
 use relievo::files::Staged;
 use relievo::measure::{CharacterDump, FrameReport, FrameSummary, ObjectReport, ScenePlay};
 use relievo::render::Layer;
-use relievo::scene::{Depth, Quality};
+use relievo::scene::{Depth, Quality, Transition};
 use relievo::scene_file::{LoadedScene, Rendering};
 use relievo::{Error, InputError};
 use serde::Serialize;
@@ -58,6 +58,10 @@ pub struct Scene {
     /// By how many pixels anything may be off. Default: the scene's own.
     #[arg(long, value_name = "E", conflicts_with = "full", allow_hyphen_values = true)]
     pixels: Option<f32>,
+    /// How levels of detail change: at once, or by a geomorph, in which they move into each other. Default: the scene's own.
+    /// It applies to all objects that have levels.
+    #[arg(long, value_parser = one_of(Transition::NAMES))]
+    transition: Option<Transition>,
     /// Draws everything in full detail.
     #[arg(long, conflicts_with = "compare")]
     full: bool,
@@ -181,6 +185,7 @@ impl Scene {
             layer,
             is_split: self.split,
             quality: quality.unwrap_or_default(),
+            transition: self.transition,
         };
         given.validate()?;
         let loaded = during("loading", || LoadedScene::from_path(&self.file))?;

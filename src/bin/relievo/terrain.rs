@@ -1,6 +1,8 @@
 //! `relievo terrain`: heights, colour maps and views of patches of terrain.
 
 mod erosion;
+mod frames;
+mod injected;
 mod look;
 mod target;
 
@@ -15,10 +17,8 @@ use relievo::gpu::Gpu;
 use relievo::scene::TerrainStyle;
 use relievo::terrain::blend::{Shading, WeightMode};
 use relievo::terrain::color_maps::ColorMaps;
-use relievo::terrain::config::Config;
 use relievo::terrain::despike::Despike;
-use relievo::terrain::export::{Batch, HeightImage, HeightRange, PatchReport, cropped};
-use relievo::terrain::features::{FeatureFile, Features};
+use relievo::terrain::export::{Batch, HeightRange, PatchReport, cropped};
 use relievo::terrain::field::field_with;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
@@ -31,13 +31,14 @@ use serde::Serialize;
 
 use crate::Context;
 use crate::arguments::Backend;
-use crate::arguments::{height_range, one_of, pair};
+use crate::arguments::{one_of, pair};
 use crate::memory;
 use crate::output::say;
 use crate::progress::bar;
 use erosion::Erosion;
+use frames::Frame;
 use look::Look;
-use target::{Target, TargetArguments};
+use target::{Target, TargetArguments, Way};
 
 const FEATURE_MODES: [(&str, FeatureMode); 2] =
     [("keep", FeatureMode::Keep), ("additive", FeatureMode::Additive)];
@@ -49,7 +50,8 @@ const WEIGHT_MODES: [(&str, WeightMode); 2] =
 ///
 /// Writes `terrain.png` (perspective; needs an adapter), `map.png` (from above, north up, one pixel per sample),
 /// `heights_<px>_<py>.png` for each patch (16-bit; report.json and the PNG's text chunk `relievo-heights` have the
-/// mapping to heights), `heights_<px>_<py>.i32` (little-endian rows, in 1/65536 height units), and `report.json`.
+/// mapping to heights), `heights_<px>_<py>.i32` (little-endian rows, in 1/65536 height units), and `report.json`; with --frames also
+/// `frame_0000.png`, `map_0000.png` and so on.
 ///
 /// A configuration: {"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}. Optional fields: roughness,
 /// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, triplanar, variation, zones, and erosion:
@@ -120,6 +122,7 @@ struct Report<'a> {
     seconds: Seconds,
     height_png: HeightRange,
     features: usize,
+    frames: &'a [Frame],
     notes: &'a [String],
 }
 
@@ -149,9 +152,31 @@ struct Made {
     maps: Vec<Vec<u32>>,
     view: Option<RgbaImage>,
     seconds: Seconds,
+    // Between which heights these lie, if they lie between two.
+    way: Option<Way>,
     // The device, if it computed or drew anything.
     gpu: Option<Gpu>,
     notes: Vec<String>,
+}
+
+impl Plan {
+    fn maps(&self) -> ColorMaps<'_> {
+        let Self { recipe, patches, shading, textures, .. } = self;
+        ColorMaps { config: &recipe.config, textures, patches, shading }
+    }
+}
+
+impl Made {
+    /// What a camera sees: the heights, and on the way to others those too, so that the camera stands still.
+    fn range(&self) -> HeightRange {
+        self.way.as_ref().map_or_else(|| ranged(&self.windows), |way| way.range)
+    }
+}
+
+/// The smallest range that holds all heights of windows.
+fn ranged(windows: &[Vec<i32>]) -> HeightRange {
+    let ranges = windows.iter().map(|heights| HeightRange::of(heights));
+    ranges.reduce(HeightRange::union).unwrap_or(HeightRange { low: 0.0, high: 0.0 })
 }
 
 /// The pictures of a terrain that `relievo demo` shows.
@@ -164,9 +189,10 @@ pub struct Pictures {
 impl Terrain {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         let plan = self.plan()?;
-        let staged = Staged::new(&self.out)?;
+        let mut staged = Staged::new(&self.out)?;
         let made = self.make(&plan, context)?;
-        self.write(&plan, &made, staged)?;
+        let frames = self.write_frames(&plan, &made, &mut staged)?;
+        self.write(&plan, &made, &frames, staged)?;
         Ok(ExitCode::SUCCESS)
     }
 
@@ -210,41 +236,15 @@ impl Terrain {
         Ok(Plan { recipe, target, grid, patches, size, shading, textures })
     }
 
-    fn read_features(&self, config: &Config, grid: Grid, width: u32) -> Result<Features, Error> {
-        let mut features = Features::new(config, &[], self.feature_mode)?;
-        let mut add = |path: &PathBuf, file: &FeatureFile| {
-            let added = features.add(config, file).and_then(|()| features.check(config));
-            added.map_err(|source| Error::InputFile { path: path.clone(), source })
-        };
-        for path in &self.features {
-            add(path, &FeatureFile::from_file(path)?)?;
-        }
-        if let (Some(path), Some(every)) = (&self.heights_from, self.every) {
-            let image = HeightImage::from_file(path)?;
-            let range = self.heights_range.as_deref().map(height_range).transpose()?.or(image.range);
-            let symmetric = HeightRange { low: -config.scale_factor, high: config.scale_factor };
-            // The number of samples inside both the image and the grid.
-            let samples = grid.samples(width).min(image.samples.len() as u128);
-            let injected = samples / u128::from(every.max(1)).pow(2);
-            memory::check(&self.patches, grid.bytes(width, injected as u64))?;
-            for file in image.features(config, grid.first, grid.size, every, range.unwrap_or(symmetric))? {
-                add(path, &file)?;
-            }
-        }
-        Ok(features)
-    }
-
     fn make(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {
-        let (config, count) = (&plan.recipe.config, plan.patches.len() as u64);
-        let maps =
-            ColorMaps { config, textures: &plan.textures, patches: &plan.patches, shading: &plan.shading };
+        let (count, maps) = (plan.patches.len() as u64, plan.maps());
         let gpu = self.backend.gpu(context)?;
         let mut made = Made { gpu, ..Made::default() };
         let start = Instant::now();
         let progress = bar(count, "generating");
         let Some(gpu) = made.gpu.clone() else {
             made.windows = field_with(&plan.recipe, &plan.patches, 1, &|| progress.inc(1))?;
-            made.windows = plan.target.windows(&plan.patches, made.windows)?;
+            (made.windows, made.way) = plan.target.windows(&plan.patches, made.windows)?;
             progress.finish_and_clear();
             made.seconds.generate = start.elapsed().as_secs_f64();
             let (start, progress) = (Instant::now(), bar(count, "colouring"));
@@ -256,7 +256,8 @@ impl Terrain {
         };
         let generator = Generator::new(&gpu, plan.recipe.clone())?;
         let parts = generator.generate(&gpu, &plan.patches, 1, &mut |done| progress.inc(done as u64))?;
-        let parts = plan.target.fields(&gpu, &plan.patches, parts)?;
+        let (parts, way) = plan.target.fields(&gpu, &plan.patches, parts)?;
+        made.way = way;
         progress.finish_and_clear();
         for part in &parts {
             made.windows.extend(part.read_blocking(&gpu)?);
@@ -264,7 +265,7 @@ impl Terrain {
         made.seconds.generate = start.elapsed().as_secs_f64();
         let start = Instant::now();
         made.maps = maps.on_device(&gpu, &parts)?;
-        made.view = Some(self.look(plan).picture(&gpu, &parts, &made.windows)?);
+        made.view = Some(self.look(plan).picture(&gpu, &parts, made.range())?);
         made.seconds.render = start.elapsed().as_secs_f64();
         Ok(made)
     }
@@ -273,7 +274,7 @@ impl Terrain {
     fn draw_on_host(&self, plan: &Plan, context: &Context, made: &mut Made) -> Result<(), Error> {
         let drawn = context.gpu().and_then(|gpu| {
             let parts = Fields::of_windows(&gpu, plan.recipe.config.patch_size + 2, &made.windows)?;
-            Ok((self.look(plan).picture(&gpu, &parts, &made.windows)?, gpu))
+            Ok((self.look(plan).picture(&gpu, &parts, made.range())?, gpu))
         });
         match drawn {
             Err(Error::Gpu(error)) => made.notes.push(format!("terrain.png was not made: {error}")),
@@ -293,14 +294,13 @@ impl Terrain {
         Look { config, grid: grid.size, patches, size: *size, shading, textures, style }
     }
 
-    fn write(&self, plan: &Plan, made: &Made, mut staged: Staged) -> Result<(), Error> {
+    fn write(&self, plan: &Plan, made: &Made, frames: &[Frame], mut staged: Staged) -> Result<(), Error> {
         let config = &plan.recipe.config;
         let size = config.patch_size;
         let progress = bar(plan.patches.len() as u64, "writing");
         let heights: Vec<_> =
             made.windows.iter().map(|window| cropped(window, size as usize + 2, 1)).collect();
-        let ranges = heights.iter().map(|heights| HeightRange::of(heights));
-        let range = ranges.reduce(HeightRange::union).unwrap_or(HeightRange { low: 0.0, high: 0.0 });
+        let range = ranged(&heights);
         let batch = Batch { config, patches: &plan.patches, heights: &heights, range, obj: self.obj };
         let patches = batch.write(|name| staged.path(name), || progress.inc(1))?;
         progress.finish_and_clear();
@@ -319,10 +319,11 @@ impl Terrain {
             seconds: made.seconds,
             height_png: range,
             features: plan.recipe.features.len(),
+            frames,
             notes: &made.notes,
         };
         staged.write_json("report.json", &report)?;
-        staged.remove_stale(Batch::is_name);
+        staged.remove_stale(|name| Batch::is_name(name) || frames::is_name(name));
         staged.publish()?;
         say(format_args!(
             "{} {} of {size}×{size} in {:.3} s, pictures in {:.3} s: {}",

@@ -20,10 +20,12 @@ pub struct SelectBuffers<'a> {
     /// Written, one for each instance: the smallest displacement that a view of the frame which sees it allows, in the
     /// model's units; [`UNSEEN_ALLOWED`](crate::lod::select::UNSEEN_ALLOWED) if none sees it.
     pub allowed: &'a Buffer<f32>,
-    /// Written, one for each instance: 0 if the view does not see it, else 1 + 2 · level + mirrored.
+    /// Written, one for each instance: 0 if the view does not see it, else 1 + 2 · level + mirrored. Leave them as they are
+    /// from frame to frame if `SelectView::last_levels` is not 0.
     pub decisions: &'a Buffer<u32>,
     /// Written, three for each instance that is seen: the rows of the transform from the model's space to the corner of
-    /// the view's cell.
+    /// the view's cell. If `SelectView::last_levels` is not 0, there is an element for each instance from it on, which is
+    /// written with the level of the last frame ([`level_told`](crate::lod::select::reference::level_told)).
     pub rows: &'a Buffer<[f32; 4]>,
     /// Written, [`OBJECT_LISTS`] for each block: how many of its instances are in each list.
     pub counts: &'a Buffer<u32>,

@@ -78,6 +78,16 @@ pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -
     Some(Selected { decision: (1 + list) | moved, allowed, rows })
 }
 
+/// What a decision tells of an instance's level: 1 + the level, or 0 if the instance is not seen, and the steps that the
+/// level has moved to the next one. The last two are 0.
+pub fn level_told(decision: u32) -> [f32; 4] {
+    if decision == 0 {
+        return [0.0; 4];
+    }
+    let level = ((decision & DECISION_LIST).max(1) - 1) >> 1;
+    [(1 + level) as f32, (decision >> (DECISION_MORPH_SHIFT + MORPH_SHIFT)) as f32, 0.0, 0.0]
+}
+
 /// How far a level of an object has moved to the next coarser one: the level, and from bit `MORPH_SHIFT` on how many of
 /// `MORPH_STEPS`; 0 where it has not moved. `within` is the displacement that levels may use.
 pub fn morph_within(object: &LodObject, level: u32, within: f32) -> u32 {

@@ -1,6 +1,6 @@
 //! Benchmark cases of `kernels/lod/single.wgsl`.
 
-use super::reference::draws;
+use super::reference::{draws, entries};
 use super::verify::Given;
 use super::{SingleBuffers, SinglePass};
 use crate::Error;
@@ -23,16 +23,18 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             decisions: &Buffer::from_slice(gpu, "decisions", &given.decisions)?,
             arguments: &Buffer::from_slice(gpu, "arguments", &given.arguments)?,
             draws: &Buffer::<SceneDraw>::new(gpu, "draws", count)?,
+            entries: &Buffer::new(gpu, "entries", count)?,
         };
         let job = pass.prepare(gpu, buffers, count as u32)?;
-        // Two words and a decision are read, a draw of five is read and written.
-        let words = 13 * count;
+        // Three words and a decision are read, a draw of five is read and written, and an entry written.
+        let words = 15 * count;
         let copied = copy_of(gpu, words / 2)?;
         let contenders = vec![
             Contender::job(Backend::Gpu, &job),
             Contender::job(Backend::Copy, &copied),
             Contender::host(Backend::Reference, || {
                 drop(std::hint::black_box(draws(&given.singles, &given.decisions, &given.arguments)));
+                drop(std::hint::black_box(entries(&given.singles, &given.decisions)));
             }),
         ];
         bench.case(format!("{count} draws"), (count, "draw"), 4 * words as u64, contenders)?;

@@ -12,12 +12,14 @@ use crate::shared::lod::single::SingleParams;
 pub struct SingleBuffers<'a> {
     /// The parts of instances. Their instances and draws must lie inside `decisions` and `arguments`.
     pub singles: &'a Buffer<Single>,
-    /// One for each instance: 0 if it is not seen, else 1 + its list.
+    /// One for each instance: 0 if it is not seen, else 1 + its list, and above how far its level has moved.
     pub decisions: &'a Buffer<u32>,
     /// The draws of all lists ([`LodObject::draw`](crate::lod::LodObject::draw)).
     pub arguments: &'a Buffer<SceneDraw>,
     /// Written: one for each of `singles`.
     pub draws: &'a Buffer<SceneDraw>,
+    /// Written: the entry of the list of each of `draws`.
+    pub entries: &'a Buffer<u32>,
 }
 
 /// Writes the draws of single instances.
@@ -42,6 +44,7 @@ impl SinglePass {
     pub fn prepare(&self, gpu: &Gpu, buffers: SingleBuffers<'_>, count: u32) -> Result<Job, Error> {
         buffers.singles.check_holds("singles", count as usize)?;
         buffers.draws.check_holds("draws", count as usize)?;
+        buffers.entries.check_holds("entries", count as usize)?;
         let uniform = Uniform::new(gpu, "single", &SingleParams { count })?;
         let group = bindings::Group {
             params: &uniform,
@@ -49,6 +52,7 @@ impl SinglePass {
             decisions: buffers.decisions.slice(),
             arguments: buffers.arguments.slice(),
             draws: buffers.draws.slice(),
+            entries: buffers.entries.slice(),
         };
         let kernel = self.kernel.clone();
         let workgroups = kernel.spread(gpu, count);

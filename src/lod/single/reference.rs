@@ -2,7 +2,7 @@
 
 use super::Single;
 use crate::lod::SceneDraw;
-use crate::shared::lod::object::DECISION_LIST;
+use crate::shared::lod::object::{DECISION_LIST, DECISION_MORPH_SHIFT, LIST_MORPH_SHIFT};
 
 /// The draw of each of `singles`, from the decisions of all instances and the draws of all lists.
 ///
@@ -17,4 +17,13 @@ pub fn draws(singles: &[Single], decisions: &[u32], arguments: &[SceneDraw]) -> 
         }
     };
     singles.iter().map(draw).collect()
+}
+
+/// The entry of the list of each of `singles`, from the decisions of all instances.
+///
+/// # Panics
+/// For an instance without a decision.
+pub fn entries(singles: &[Single], decisions: &[u32]) -> Vec<u32> {
+    let moved = |single: &Single| decisions[single.instance as usize] >> DECISION_MORPH_SHIFT;
+    singles.iter().map(|single| single.slot | moved(single) << LIST_MORPH_SHIFT).collect()
 }

@@ -1,6 +1,6 @@
 //! Parity cases of `kernels/lod/single.wgsl`.
 
-use super::reference::draws;
+use super::reference::{draws, entries};
 use super::{Single, SingleBuffers, SinglePass};
 use crate::Error;
 use crate::animation::verify::Draw;
@@ -8,7 +8,7 @@ use crate::gpu::Buffer;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Cases, compare};
 use crate::lod::{OBJECT_LISTS, SceneDraw};
-use crate::shared::lod::object::DECISION_MORPH_SHIFT;
+use crate::shared::lod::object::{DECISION_MORPH_SHIFT, LIST_INSTANCE};
 
 /// Random singles with decisions of which a part sees nothing, and random draws.
 pub(crate) struct Given {
@@ -25,6 +25,7 @@ impl Given {
         let single = |draw: &mut Draw| Single {
             instance: draw.word() % count.max(1) as u32,
             first_draw: 3 + OBJECT_LISTS * (draw.word() % parts),
+            slot: draw.word() & LIST_INSTANCE,
         };
         let argument = |draw: &mut Draw| SceneDraw {
             indices: draw.word() % 1000,
@@ -35,11 +36,10 @@ impl Given {
         };
         Self {
             singles: (0..count).map(|_| single(&mut draw)).collect(),
-            // What is above a list means nothing here.
             decisions: (0..count)
-                .map(|at| match (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2) {
+                .map(|_| match (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2) {
                     0 => 0,
-                    list => list | (at as u32 % 3) << DECISION_MORPH_SHIFT,
+                    list => list | (draw.word() & 0xfff) << DECISION_MORPH_SHIFT,
                 })
                 .collect(),
             arguments: (0..3 + OBJECT_LISTS * parts).map(|_| argument(&mut draw)).collect(),
@@ -62,17 +62,22 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for count in [1, 63, 64, 65, 500] {
         let given = Given::new(count);
         let output = Poisoned::<SceneDraw>::new(gpu, count)?;
+        let lists = Poisoned::<u32>::new(gpu, count)?;
         let buffers = SingleBuffers {
             singles: &Buffer::from_slice(gpu, "singles", &given.singles)?,
             decisions: &Buffer::from_slice(gpu, "decisions", &given.decisions)?,
             arguments: &Buffer::from_slice(gpu, "arguments", &given.arguments)?,
             draws: &output.buffer,
+            entries: &lists.buffer,
         };
         let job = pass.prepare(gpu, buffers, count as u32)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
         let expected = given.expected();
         let comparison = output.check(gpu, |actual| compare::exact(words(actual), words(&expected)))?;
         cases.add(format!("{count} draws"), comparison);
+        let expected = entries(&given.singles, &given.decisions);
+        let comparison = lists.check(gpu, |actual| compare::exact(actual, &expected))?;
+        cases.add(format!("{count} lists of one"), comparison);
     }
     Ok(())
 }
@@ -96,6 +101,10 @@ mod tests {
             wrong[at].instances ^= 1;
             assert!(!compare::exact(words(&wrong), words(&right)).holds);
         }
+        let lists = entries(&given.singles, &given.decisions);
+        let moved = lists.iter().position(|entry| entry >> 20 > 0).expect("one of 65");
+        let still = entries(&given.singles, &[0; 65]);
+        assert!(still[moved] != lists[moved] && !compare::exact(&still, &lists).holds);
         let mut other = given.singles.clone();
         other[3].first_draw += OBJECT_LISTS;
         let other = draws(&other, &vec![2; 65], &given.arguments);

@@ -2,9 +2,10 @@
 //!
 //! Two surfaces of each instance are compared: the model at full detail, posed by the CPU references at the time of the
 //! scene; and what is drawn, that is the triangles in the draw of the list that the view has put the instance into, between
-//! the vertices that the device has skinned, with bones that keep old poses and influences that have faded. Both have
+//! the vertices that the device has skinned, with bones that keep old poses and influences that have faded, and moved as far
+//! towards the next coarser level as the view has moved them. Both have
 //! samples: vertices, the middles of edges and those of triangles, as far as they lie inside the view volume, hidden or not.
-//! The partner of a sample is the same vertex if the other surface has it. Otherwise it is the nearest point on the other
+//! The partner of a sample is the same vertex if the other surface has it and the vertex is not on its way to another. Otherwise it is the nearest point on the other
 //! surface, among all triangles of the same primitive (which collapses made which triangle is not recorded). The
 //! displacement is the distance between sample and partner in the picture.
 //!
@@ -22,7 +23,7 @@ use serde::Serialize;
 
 use crate::asset::{Affine, Model};
 use crate::lod::OBJECT_LEVELS;
-use crate::scene::query::DrawnInstance;
+use crate::scene::query::{DrawnAs, DrawnInstance};
 use crate::scene::{Camera, InstanceId, ObjectId, Placement, Scene, View};
 use crate::{Error, InputError, skinning};
 use eye::{Eye, is_inside};
@@ -83,6 +84,8 @@ struct Side<'a> {
     surface: &'a Surface,
     points: &'a [DVec3],
     tree: Option<Tree>,
+    /// Which vertices are on their way to others, if any is.
+    moves: &'a [bool],
     clip: &'a DMat4,
 }
 
@@ -132,11 +135,11 @@ impl DisplacementMeter {
         let mut offsets = HashMap::new();
         for watched in &mut self.watched {
             let all = scene.drawn_instances(view, watched.object)?;
-            let lists = all.iter().filter_map(|instance| instance.drawn);
-            lists.for_each(|(list, _)| frame.levels[list as usize / 2] += 1);
+            let drawn = all.iter().filter_map(|instance| instance.drawn);
+            drawn.for_each(|drawn| frame.levels[drawn.list as usize / 2] += 1);
             let each = all.len().div_ceil(self.most).max(1);
             let measured: Vec<_> = all.into_iter().step_by(each).collect();
-            for (list, _) in measured.iter().filter_map(|instance| instance.drawn) {
+            for DrawnAs { list, .. } in measured.iter().filter_map(|instance| instance.drawn) {
                 watched.read_list(scene, view, list)?;
             }
             for (instance, found) in found_of(scene, watched, &measured, (camera, &eye))? {
@@ -223,18 +226,19 @@ fn instance_found(
 ) -> Result<FoundInMeshes, Error> {
     let placed = placed(&scene.placement(*instance)?, camera.cell);
     let right = transformed(&watched.posed(scene.clip_time(*instance)?), &placed);
-    let Some((list, rows)) = drawn else {
+    let Some(drawn) = drawn else {
         let missing = |Primitive { mesh, full, .. }: &Primitive| {
-            (*mesh, inside(&Side::new(full, &right[*mesh], &eye.right, false)))
+            (*mesh, inside(&Side::new(full, &right[*mesh], &eye.right, None)))
         };
         return Ok(watched.primitives.par_iter().map(missing).collect());
     };
-    let shown = transformed(&watched.drawn(vertices, *list)?, &matrix(rows));
+    let shown = transformed(&watched.drawn(vertices, drawn)?, &matrix(&drawn.rows));
+    let moves = watched.moves(drawn);
     let nothing = Surface::default();
     let both = |Primitive { mesh, full, lists, .. }: &Primitive| {
-        let coarse = lists[*list as usize].as_ref().unwrap_or(&nothing);
-        let full = Side::new(full, &right[*mesh], &eye.right, true);
-        let coarse = Side::new(coarse, &shown[*mesh], &eye.drawn, true);
+        let coarse = lists[drawn.list as usize].as_ref().unwrap_or(&nothing);
+        let full = Side::new(full, &right[*mesh], &eye.right, Some(&moves[*mesh]));
+        let coarse = Side::new(coarse, &shown[*mesh], &eye.drawn, Some(&moves[*mesh]));
         let back = Found { offsets: Vec::new(), ..compared(eye, &coarse, &full) };
         [(*mesh, compared(eye, &full, &coarse)), (*mesh, back)]
     };
@@ -242,9 +246,10 @@ fn instance_found(
 }
 
 impl<'a> Side<'a> {
-    fn new(surface: &'a Surface, points: &'a [DVec3], clip: &'a DMat4, is_searched: bool) -> Self {
-        let tree = if is_searched { surface.tree(points) } else { None };
-        Self { surface, points, tree, clip }
+    /// `moves` are the vertices that are on their way, if it is searched for partners.
+    fn new(surface: &'a Surface, points: &'a [DVec3], clip: &'a DMat4, moves: Option<&'a [bool]>) -> Self {
+        let tree = moves.and_then(|_| surface.tree(points));
+        Self { surface, points, tree, moves: moves.unwrap_or_default(), clip }
     }
 
     /// A sample's position, and where it is projected to if that is inside the view volume.
@@ -254,10 +259,17 @@ impl<'a> Side<'a> {
         is_inside(clip).then_some((point, clip))
     }
 
+    /// Whether a vertex is on its way to another.
+    fn moves(&self, vertex: u32) -> bool {
+        self.moves.get(vertex as usize).is_some_and(|moves| *moves)
+    }
+
     /// The partner of a sample of the other side.
     fn partner(&self, sample: &Sample, point: DVec3) -> Option<DVec3> {
         match sample {
-            Sample::Vertex(vertex) if self.surface.has(sample) => Some(self.points[*vertex as usize]),
+            Sample::Vertex(vertex) if self.surface.has(sample) && !self.moves(*vertex) => {
+                Some(self.points[*vertex as usize])
+            }
             _ => {
                 let same = self.surface.has(sample).then(|| sample.position(self.points));
                 self.tree.as_ref().map(|tree| tree.nearest(point, same))

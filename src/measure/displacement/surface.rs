@@ -8,8 +8,8 @@ use super::tree::Tree;
 use crate::animation;
 use crate::asset::{Mesh, Model};
 use crate::lod::OBJECT_LISTS;
-use crate::scene::mesh::{at_rest_merged, moving_merged};
-use crate::scene::query::DrawnInstance;
+use crate::scene::mesh::{at_rest_merged, coarsest_levels, moving_merged};
+use crate::scene::query::{DrawnAs, DrawnInstance};
 use crate::scene::{ClipTime, ObjectId, Scene, View};
 use crate::skinning::clusters::Clusters;
 use crate::skinning::merged::Merged;
@@ -115,14 +115,15 @@ impl Watched {
 
     /// The positions of the vertices that are drawn of an instance of a list, in the model's space, mesh by mesh; `skinned` are
     /// those that the scene tells. Vertices that are not drawn are not numbers.
-    pub fn drawn(&self, skinned: &[Vec<Option<Vertex>>], list: u32) -> Result<Vec<Vec<DVec3>>, Error> {
+    pub fn drawn(&self, skinned: &[Vec<Option<Vertex>>], drawn: &DrawnAs) -> Result<Vec<Vec<DVec3>>, Error> {
         let in_order = |(clusters, vertices): (&Clusters, &Vec<Option<Vertex>>)| match self.is_character {
             true => vertices.clone(),
             false => clusters.in_mesh_order(vertices),
         };
         let skinned: Vec<_> = self.clusters.iter().zip(skinned).map(in_order).collect();
         for Primitive { mesh, lists, .. } in &self.primitives {
-            let mut drawn = lists[list as usize].iter().flat_map(|surface| surface.triangles.as_flattened());
+            let mut drawn =
+                lists[drawn.list as usize].iter().flat_map(|surface| surface.triangles.as_flattened());
             if let Some(vertex) = drawn.find(|vertex| skinned[*mesh][**vertex as usize].is_none()) {
                 let bound = "must lie in a page, since it is drawn";
                 return Err(
@@ -133,8 +134,34 @@ impl Watched {
         let position = |vertex: &Option<Vertex>| {
             vertex.map_or(DVec3::NAN, |vertex| glam::Vec3::from(vertex.position).as_dvec3())
         };
-        Ok(skinned.iter().map(|mesh| mesh.iter().map(position).collect()).collect())
+        let skinned = skinned.iter().map(|mesh| mesh.iter().map(position).collect());
+        let moves = self.moves(drawn);
+        let all = self.merged.model.meshes.iter().zip(&moves).zip(skinned);
+        Ok(all.map(|((mesh, moves), still)| moved((mesh, moves), still, drawn.way)).collect())
     }
+
+    /// For each merged mesh, which of its vertices are on their way to others; nothing if none is.
+    pub fn moves(&self, drawn: &DrawnAs) -> Vec<Vec<bool>> {
+        let errors = &self.merged.errors;
+        let of_mesh = |mesh: &Mesh| match drawn.way > 0.0 && !mesh.partners.is_empty() {
+            true => coarsest_levels(mesh, errors).iter().map(|level| *level == drawn.list / 2).collect(),
+            false => Vec::new(),
+        };
+        self.merged.model.meshes.iter().map(of_mesh).collect()
+    }
+}
+
+/// The vertices of a mesh, of which those that are on their way have moved towards their partners.
+fn moved((mesh, moves): (&Mesh, &[bool]), still: Vec<DVec3>, way: f64) -> Vec<DVec3> {
+    if moves.is_empty() {
+        return still;
+    }
+    let all = still.iter().zip(&mesh.partners).zip(moves);
+    all.map(|((position, partner), moves)| match moves {
+        true => position.lerp(still[*partner as usize], way),
+        false => *position,
+    })
+    .collect()
 }
 
 fn precise(positions: &[[f32; 3]]) -> Vec<DVec3> {

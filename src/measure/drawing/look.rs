@@ -61,6 +61,9 @@ impl Look {
         let mut scene = Scene::new(gpu)?;
         let crowd = scene.add_character(&drawn.model, placements.len())?;
         scene.set_shares(shares)?;
+        if parts.mesh > 0.0 {
+            scene.set_transition(crowd, drawn.transition)?;
+        }
         for (placement, instance) in placements.iter().zip(&stage.instances) {
             let spawned = scene.spawn(crowd, *placement)?;
             scene.play(spawned, &Play { start: -f64::from(instance.start), ..Play::new("0") })?;

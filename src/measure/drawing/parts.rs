@@ -33,7 +33,7 @@ impl Parts {
         };
         let mesh = match drawn.mesh {
             MeshDetail::Full => 0.0,
-            MeshDetail::Bounded { pixels } => pixels,
+            MeshDetail::Bounded { pixels } | MeshDetail::Geomorph { pixels } => pixels,
         };
         Ok(Self { bones, influences, mesh })
     }

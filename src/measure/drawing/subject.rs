@@ -8,6 +8,7 @@ use crate::asset::{Mesh, Model};
 use crate::measure::levels::LevelReport;
 use crate::measure::options::{MeshDetail, Subject};
 use crate::measure::progress::{Listener, during};
+use crate::scene::Transition;
 use crate::scene::mesh::moving_merged;
 use crate::skinning::clusters::Clusters;
 use crate::skinning::{add_levels, poses_of};
@@ -19,6 +20,8 @@ pub(crate) struct DrawnModel {
     pub clusters: u64,
     /// Its levels of detail, itself included.
     pub levels: Vec<LevelReport>,
+    /// How they change.
+    pub transition: Transition,
 }
 
 impl DrawnModel {
@@ -36,7 +39,7 @@ impl DrawnModel {
         let poses = poses_of(clip)?;
         match detail {
             MeshDetail::Full => model.meshes.iter_mut().for_each(|mesh| mesh.levels.clear()),
-            MeshDetail::Bounded { .. } => {
+            MeshDetail::Bounded { .. } | MeshDetail::Geomorph { .. } => {
                 during(listener, "simplifying", || add_levels(&mut model, &[0], poses)).map(drop)?;
             }
         }
@@ -46,7 +49,9 @@ impl DrawnModel {
             Ok(u64::from(clusters.level(0).clusters))
         };
         let clusters = merged.model.meshes.iter().map(clusters).sum::<Result<u64, InputError>>()?;
-        Ok(Self { clusters, levels: LevelReport::of(&merged), model })
+        let morphs = matches!(detail, MeshDetail::Geomorph { .. }) && !merged.errors.is_empty();
+        let transition = if morphs { Transition::Geomorph } else { Transition::Hard };
+        Ok(Self { clusters, levels: LevelReport::of(&merged), transition, model })
     }
 
     /// Number of triangles of an instance in full detail.

@@ -88,7 +88,7 @@ impl ClusterPass {
         buffers.counts.check_holds("counts", 1)?;
         let params = Uniform::new(gpu, "cluster", &size.params(grid)?)?;
         let table = Buffer::<u32>::new(gpu, "cluster table", 2 * size.entries as usize)?;
-        let records = Buffer::<u32>::new(gpu, "cluster records", (RECORD * vertices) as usize)?;
+        let records = Buffer::<u32>::new(gpu, "cluster records", ((1 + RECORD) * vertices) as usize)?;
         let blocks = Buffer::<u32>::new(gpu, "cluster blocks", (BLOCK_WORDS * size.blocks()) as usize)?;
         let group = bindings::Group {
             params: &params,

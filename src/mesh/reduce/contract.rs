@@ -10,9 +10,9 @@ use std::collections::{BinaryHeap, HashMap};
 use glam::DVec3;
 
 use super::Reduced;
-use super::mesh::{Corner, Frame, Mesh, normal};
+use super::mesh::{Corner, Mesh, normal};
 use super::plane_quadric::PlaneQuadric;
-use super::steps::Steps;
+use super::steps::{Solid, Steps};
 use crate::mesh::simplify::{Stopped, Surface};
 use plan::Plan;
 
@@ -31,11 +31,9 @@ type Entry = Reverse<(u64, [u32; 2], [u32; 2])>;
 /// A mesh of which pairs of points are contracted.
 pub(super) struct Contraction {
     pairs: Pairs,
-    frame: Frame,
-    mesh: Mesh,
-    /// The position of each point, as it is given out and in the frame.
+    solid: Solid,
+    /// The position of each point, as it is given out.
     positions: Vec<[f32; 3]>,
-    places: Vec<DVec3>,
     /// The point at each position.
     at: HashMap<[u32; 3], u32>,
     attributes: Vec<f32>,
@@ -48,28 +46,23 @@ pub(super) struct Contraction {
     versions: Vec<u32>,
     /// For each point the others with which it could not be contracted when it was last tried.
     refused: Vec<Vec<u32>>,
-    pending: Option<Plan>,
-    error: f32,
 }
 
 impl Contraction {
     pub(super) fn new(surface: &Surface<'_>, pairs: Pairs) -> Self {
-        let (mesh, positions) = Mesh::new(surface);
-        let frame = Frame::around(&positions);
-        let places: Vec<DVec3> = positions.iter().map(|position| frame.of(*position)).collect();
-        let quadrics = quadrics(&mesh, &places);
+        let (solid, positions) = Solid::new(surface);
+        let Solid { mesh, places, .. } = &solid;
+        let quadrics = quadrics(mesh, places);
         let at = positions.iter().map(|position| bits(*position)).zip(0..).collect();
         let partners = match pairs {
             Pairs::Edges => vec![Vec::new(); mesh.points()],
-            Pairs::Near(fraction) => pairs::near(&mesh, &places, fraction),
+            Pairs::Near(fraction) => pairs::near(mesh, places, fraction),
         };
         let count = mesh.points();
         let mut contraction = Self {
             pairs,
-            frame,
-            mesh,
+            solid,
             positions,
-            places,
             at,
             attributes: surface.attributes.to_vec(),
             stride: surface.stride,
@@ -78,8 +71,6 @@ impl Contraction {
             queue: BinaryHeap::new(),
             versions: vec![0; count],
             refused: vec![Vec::new(); count],
-            pending: None,
-            error: 0.0,
         };
         for point in 0..count as u32 {
             let others = contraction.others(point);
@@ -90,7 +81,7 @@ impl Contraction {
 
     /// The points with which a point makes a pair, ascending.
     fn others(&self, point: u32) -> Vec<u32> {
-        let mut others = self.mesh.neighbors(point);
+        let mut others = self.solid.mesh.neighbors(point);
         others.extend(&self.partners[point as usize]);
         others.sort_unstable();
         others.dedup();
@@ -115,28 +106,13 @@ impl Contraction {
         self.refused[b as usize].push(a);
     }
 
-    /// The cheapest contraction that is legal; of equal ones that of the lower points.
-    fn find(&mut self) -> Option<Plan> {
-        while let Some(Reverse((cost, pair, versions))) = self.queue.pop() {
-            if pair.map(|point| self.versions[point as usize]) != versions {
-                continue;
-            }
-            match self.plan(pair) {
-                Some(plan) if plan.cost.to_bits() > cost => self.push(pair),
-                Some(plan) if self.is_legal(&plan) => return Some(plan),
-                _ => self.refuse(pair),
-            }
-        }
-        None
-    }
-
     /// Whether a contraction keeps the topology, where that is promised, and turns no triangle.
     fn is_legal(&self, plan: &Plan) -> bool {
         let keeps = match self.pairs {
             Pairs::Edges => {
                 let ends = [plan.gone, plan.keep];
-                let borders = ends.map(|point| self.mesh.fan(point).is_some_and(|fan| !fan.is_closed));
-                self.mesh.keeps_topology(ends, borders)
+                let borders = ends.map(|point| self.solid.mesh.fan(point).is_some_and(|fan| !fan.is_closed));
+                self.solid.mesh.keeps_topology(ends, borders)
             }
             Pairs::Near(_) => true,
         };
@@ -151,10 +127,10 @@ impl Contraction {
     /// Whether no triangle at a point, other than those that it shares with the other one, turns by 90° or more or loses its
     /// area when the point moves. Triangles without area may do anything.
     fn stays(&self, [point, other]: [u32; 2], position: [f32; 3]) -> bool {
-        let place = self.frame.of(position);
-        self.mesh.ring(point).filter(|ring| !ring.has(other)).all(|ring| {
-            let [next, last] = [ring.next, ring.last].map(|corner| self.places[corner.point as usize]);
-            match (normal([self.places[point as usize], next, last]), normal([place, next, last])) {
+        let place = self.solid.frame.of(position);
+        self.solid.mesh.ring(point).filter(|ring| !ring.has(other)).all(|ring| {
+            let [next, last] = [ring.next, ring.last].map(|corner| self.solid.places[corner.point as usize]);
+            match (normal([self.solid.places[point as usize], next, last]), normal([place, next, last])) {
                 (None, _) => true,
                 (_, None) => false,
                 (Some(before), Some(after)) => before.dot(after) > 0.0,
@@ -167,21 +143,21 @@ impl Contraction {
         for [from, to] in &plan.vertices {
             self.blend(*from, *to, plan.fraction);
         }
-        for ring in self.mesh.ring(gone).collect::<Vec<_>>() {
+        for ring in self.solid.mesh.ring(gone).collect::<Vec<_>>() {
             if ring.has(keep) {
-                self.mesh.remove(ring.triangle);
+                self.solid.mesh.remove(ring.triangle);
                 continue;
             }
             let to = plan.vertices.iter().find(|[from, _]| *from == ring.vertex);
             let vertex = to.map_or(ring.vertex, |[_, to]| *to);
-            self.mesh.turn_over(ring.triangle, gone, Corner { vertex, point: keep });
+            self.solid.mesh.turn_over(ring.triangle, gone, Corner { vertex, point: keep });
         }
         for point in [gone, keep] {
             self.at.remove(&bits(self.positions[point as usize]));
         }
         self.at.insert(bits(plan.position), keep);
         self.positions[keep as usize] = plan.position;
-        self.places[keep as usize] = self.frame.of(plan.position);
+        self.solid.places[keep as usize] = self.solid.frame.of(plan.position);
         self.quadrics[keep as usize] = self.quadrics[keep as usize].sum(&self.quadrics[gone as usize]);
         self.inherit(gone, keep);
         if self.pairs != Pairs::Edges {
@@ -213,7 +189,7 @@ impl Contraction {
 
     /// Removes pairs of triangles with the same corners that face each other.
     fn drop_opposites(&mut self, point: u32) {
-        let mut rings: Vec<_> = self.mesh.ring(point).collect();
+        let mut rings: Vec<_> = self.solid.mesh.ring(point).collect();
         rings.sort_unstable_by_key(|ring| (ring.next.point, ring.last.point, ring.triangle));
         let mut is_gone = vec![false; rings.len()];
         for (at, ring) in rings.iter().enumerate().filter(|(_, ring)| ring.next.point < ring.last.point) {
@@ -225,28 +201,39 @@ impl Contraction {
             }
         }
         for (ring, _) in rings.iter().zip(is_gone).filter(|(_, is_gone)| *is_gone) {
-            self.mesh.remove(ring.triangle);
+            self.solid.mesh.remove(ring.triangle);
         }
     }
 }
 
 impl Steps for Contraction {
-    fn triangles(&self) -> usize {
-        self.mesh.triangles()
+    type Step = Plan;
+
+    fn solid(&self) -> &Solid {
+        &self.solid
     }
 
-    fn next(&mut self) -> Option<f32> {
-        if self.pending.is_none() {
-            self.pending = self.find();
+    /// The cheapest contraction that is legal; of equal ones that of the lower points.
+    fn find(&mut self) -> Option<Plan> {
+        while let Some(Reverse((cost, pair, versions))) = self.queue.pop() {
+            if pair.map(|point| self.versions[point as usize]) != versions {
+                continue;
+            }
+            match self.plan(pair) {
+                Some(plan) if plan.cost.to_bits() > cost => self.push(pair),
+                Some(plan) if self.is_legal(&plan) => return Some(plan),
+                _ => self.refuse(pair),
+            }
         }
-        let cost = self.pending.as_ref()?.cost;
-        Some(self.error.max(self.frame.distance(cost.sqrt())))
+        None
     }
 
-    fn step(&mut self) {
-        let Some(plan) = self.pending.take() else { return };
-        self.error = self.error.max(self.frame.distance(plan.cost.sqrt()));
-        let around = self.mesh.neighbors(plan.gone);
+    fn cost(plan: &Plan) -> f64 {
+        plan.cost
+    }
+
+    fn take(&mut self, plan: Plan) {
+        let around = self.solid.mesh.neighbors(plan.gone);
         self.apply(&plan);
         self.versions[plan.gone as usize] += 1;
         self.versions[plan.keep as usize] += 1;
@@ -255,7 +242,7 @@ impl Steps for Contraction {
             self.push([plan.keep, other]);
         }
         // What was refused may be legal now.
-        let mut changed = self.mesh.neighbors(plan.keep);
+        let mut changed = self.solid.mesh.neighbors(plan.keep);
         changed.extend(around);
         changed.sort_unstable();
         changed.dedup();
@@ -270,16 +257,16 @@ impl Steps for Contraction {
         }
     }
 
-    fn reduced(&self, stopped: Stopped) -> Reduced {
+    fn reduced(&self, reached: (f32, Stopped)) -> Reduced {
         let (mut corners, mut triangles) = (Vec::new(), Vec::new());
-        for (triangle, origin) in self.mesh.all() {
+        for (triangle, origin) in self.solid.mesh.all() {
             corners.extend(triangle);
             triangles.push(origin);
         }
         let attributes = (self.attributes.as_slice(), self.stride);
         let position = |corner: &Corner| (corner.vertex, self.positions[corner.point as usize]);
         let placed: Vec<_> = corners.iter().map(position).collect();
-        Reduced::placed(&placed, attributes, triangles, (self.error, stopped))
+        Reduced::placed(&placed, attributes, triangles, reached)
     }
 }
 

@@ -12,7 +12,7 @@ pub(super) fn reduce(
 ) -> Result<Vec<Reduced>, InputError> {
     let triangles = limits.iter().map(|limit| limit.triangles).min().unwrap_or(usize::MAX);
     let error = limits.iter().map(|limit| limit.error).fold(0.0, f32::max);
-    let simplified = simplify(surface, &Options { cost, triangles, error })?;
+    let simplified = simplify(surface, &Options { cost, triangles, error, ..Options::default() })?;
     Ok(limits.iter().map(|limit| level(surface, &simplified, limit)).collect())
 }
 

@@ -7,16 +7,16 @@
 //!
 //! | reducer | vertices | topology | triangles | seams and attributes | error |
 //! |---|---|---|---|---|---|
-//! | [`HalfEdge`](Reducer::HalfEdge) | the mesh's own | stays | no step turns one | seams stay | estimated mean, or Melax's cost |
+//! | [`HalfEdge`](Reducer::HalfEdge) | the mesh's own | stays; parts may vanish | no step turns one | seams stay | estimated mean, or Melax's cost |
 //! | [`FullEdge`](Reducer::FullEdge) | new ones | stays | no step turns one | seams stay; interpolated | estimated mean |
 //! | [`VertexPair`](Reducer::VertexPair) | new ones | may change | no step turns one | wedges stay apart; interpolated | estimated mean |
 //! | [`UniformClustering`](Reducer::UniformClustering) | new ones | may change | may turn | may be lost in a cell | largest distance of a vertex from the one that stands for it |
 //! | [`ImportanceClustering`](Reducer::ImportanceClustering) | the mesh's own | may change | may turn | may be lost in a cell | as above |
 //! | [`VertexRemoval`](Reducer::VertexRemoval) | the mesh's own | stays | new ones face as the average plane of the hole | seams stay | largest distance of a vertex from the average plane when it went |
 //!
-//! Where topology stays, closed surfaces stay closed and manifold ones stay manifold, and points where the input is not
-//! manifold are kept. Where it may change, a closed surface stays closed in a weaker sense: each edge has as many triangles on
-//! one side as on the other. All drop triangles of which two corners are at one place.
+//! Where topology stays, closed surfaces stay closed, unless they vanish as a whole, manifold ones stay manifold, and points
+//! where the input is not manifold are kept. Where it may change, a closed surface stays closed in a weaker sense: each edge
+//! has as many triangles on one side as on the other. All drop triangles of which two corners are at one place.
 //!
 //! Every reducer gives the same result on every machine: the code uses only `+ − × ÷` and square roots, in a fixed order, and
 //! ties go to the lower index.

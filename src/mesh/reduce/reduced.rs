@@ -35,6 +35,18 @@ impl Reduced {
         }
     }
 
+    /// The SHA-256 of the mesh, in hexadecimal digits: the bits of positions, attributes and the error, and all indices. It is
+    /// the same on every machine.
+    pub fn hash(&self) -> String {
+        let numbers = self.poses.iter().flatten().flatten().chain(&self.attributes).chain([&self.error]);
+        let mut words: Vec<u32> = numbers.map(|number| number.to_bits()).collect();
+        for part in [&self.indices, &self.vertices, &self.triangles] {
+            words.push(part.len() as u32);
+            words.extend(part);
+        }
+        crate::hash::sha256(&words)
+    }
+
     /// The mesh of triangles whose corners are vertices of the input.
     ///
     /// `corners` has three vertices a triangle, `triangles` the input's triangle of each.

@@ -9,8 +9,8 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::Reduced;
-use super::mesh::{Corner, Fan, Frame, Mesh, Ring, normal};
-use super::steps::Steps;
+use super::mesh::{Corner, Fan, Ring, normal};
+use super::steps::{Solid, Steps};
 use crate::mesh::simplify::{Stopped, Surface};
 
 /// The cosine of the angle between triangles from which their edge is a feature: 45°.
@@ -28,7 +28,7 @@ struct Loop {
 }
 
 /// What takes the place of a point: new triangles instead of its own.
-struct Patch {
+pub(super) struct Patch {
     point: u32,
     cost: f64,
     triangles: Vec<([Corner; 3], u32)>,
@@ -37,26 +37,18 @@ struct Patch {
 /// A mesh of which vertices are removed.
 pub(super) struct Removal<'a> {
     surface: Surface<'a>,
-    frame: Frame,
-    mesh: Mesh,
-    places: Vec<DVec3>,
+    solid: Solid,
     /// Squared distances with points and their versions.
     queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
     versions: Vec<u32>,
-    pending: Option<Patch>,
-    error: f32,
 }
 
 impl<'a> Removal<'a> {
     pub(super) fn new(surface: &Surface<'a>) -> Self {
-        let (mesh, positions) = Mesh::new(surface);
-        let frame = Frame::around(&positions);
-        let places = positions.iter().map(|position| frame.of(*position)).collect();
-        let count = mesh.points();
-        let versions = vec![0; count];
-        let queue = BinaryHeap::new();
-        let mut removal =
-            Self { surface: *surface, frame, mesh, places, queue, versions, pending: None, error: 0.0 };
+        let (solid, _) = Solid::new(surface);
+        let count = solid.mesh.points();
+        let (queue, versions) = (BinaryHeap::new(), vec![0; count]);
+        let mut removal = Self { surface: *surface, solid, queue, versions };
         (0..count as u32).for_each(|point| removal.push(point));
         removal
     }
@@ -69,18 +61,6 @@ impl<'a> Removal<'a> {
         }
     }
 
-    /// The removal with the smallest distance that is possible; of equal ones that of the lowest point.
-    fn find(&mut self) -> Option<Patch> {
-        while let Some(Reverse((_, point, version))) = self.queue.pop() {
-            if self.versions[point as usize] == version
-                && let Some(patch) = self.patch(point)
-            {
-                return Some(patch);
-            }
-        }
-        None
-    }
-
     /// The triangles instead of those of a point, with a feature through it or, if that is not possible, without one.
     fn patch(&self, point: u32) -> Option<Patch> {
         self.filled(point, true).or_else(|| self.filled(point, false))
@@ -90,7 +70,7 @@ impl<'a> Removal<'a> {
         let (loops, cost) = self.loops(point, has_features)?;
         let mut triangles = Vec::new();
         for of in &loops {
-            let new = hole::triangulated(&self.mesh, &self.places, point, of)?;
+            let new = hole::triangulated(&self.solid.mesh, &self.solid.places, point, of)?;
             triangles.extend(new.into_iter().map(|corners| (corners, of.origin)));
         }
         // Two loops with the same chord, or none of which a triangle is left: nothing may remain of an island.
@@ -100,12 +80,12 @@ impl<'a> Removal<'a> {
     /// The loops that a point leaves, and the square of its distance to the average plane, or to the line through its
     /// neighbours along a border, a seam or a feature. `None` if it has to stay.
     fn loops(&self, point: u32, has_features: bool) -> Option<(Vec<Loop>, f64)> {
-        let fan = self.mesh.fan(point)?;
+        let fan = self.solid.mesh.fan(point)?;
         let count = fan.triangles.len();
         if count > MAX_FAN || (fan.is_closed && count < 3) {
             return None;
         }
-        let at = self.places[point as usize];
+        let at = self.solid.places[point as usize];
         let parts: Vec<Vec<Ring>> = match (fan.is_closed, self.lines(at, &fan, has_features).as_slice()) {
             (true, []) => {
                 let of = self.around(point, &fan.triangles, true)?;
@@ -123,7 +103,7 @@ impl<'a> Removal<'a> {
         };
         let chord = [parts[0].first()?.next.point, parts[0].last()?.last.point];
         let loops: Option<Vec<Loop>> = parts.iter().map(|part| self.around(point, part, false)).collect();
-        Some((loops?, line_cost(at, chord.map(|end| self.places[end as usize]))))
+        Some((loops?, line_cost(at, chord.map(|end| self.solid.places[end as usize]))))
     }
 
     /// The triangles of a fan that begin at a seam; if there is none and the point is on no border, those that begin at a
@@ -141,7 +121,11 @@ impl<'a> Removal<'a> {
             return seams;
         }
         let face = |ring: Ring| {
-            normal([at, self.places[ring.next.point as usize], self.places[ring.last.point as usize]])
+            normal([
+                at,
+                self.solid.places[ring.next.point as usize],
+                self.solid.places[ring.last.point as usize],
+            ])
         };
         let is_feature = |start: &usize| match (face(before(*start)), face(triangles[*start])) {
             (Some(a), Some(b)) => a.dot(b) < FEATURE * a.length() * b.length(),
@@ -161,21 +145,22 @@ impl<'a> Removal<'a> {
         let is_whole = rings.iter().enumerate().all(|(at, ring)| {
             ring.vertex == rings[0].vertex && corners[(at + 1) % corners.len()] == ring.last
         });
-        let place = |corner: Corner| self.places[corner.point as usize];
-        let at = self.places[point as usize];
+        let place = |corner: Corner| self.solid.places[corner.point as usize];
+        let at = self.solid.places[point as usize];
         let faces = rings.iter().map(|ring| (place(ring.next) - at).cross(place(ring.last) - at));
         let sum: DVec3 = faces.sum();
-        let origin = rings.iter().filter_map(|ring| self.mesh.origin(ring.triangle)).min()?;
+        let origin = rings.iter().filter_map(|ring| self.solid.mesh.origin(ring.triangle)).min()?;
         let length = sum.length();
         (is_whole && length > 0.0).then(|| Loop { corners, normal: sum / length, origin })
     }
 
     /// The squared distance of a point from the plane through the centers of its triangles, weighted by area.
     fn plane_cost(&self, point: u32, fan: &Fan, direction: DVec3) -> f64 {
-        let at = self.places[point as usize];
+        let at = self.solid.places[point as usize];
         let (mut center, mut weight) = (DVec3::ZERO, 0.0);
         for ring in &fan.triangles {
-            let [next, last] = [ring.next, ring.last].map(|corner| self.places[corner.point as usize] - at);
+            let [next, last] =
+                [ring.next, ring.last].map(|corner| self.solid.places[corner.point as usize] - at);
             let area = next.cross(last).length();
             center += (next + last) * (area / 3.0);
             weight += area;
@@ -193,27 +178,35 @@ fn line_cost(at: DVec3, [from, to]: [DVec3; 2]) -> f64 {
 }
 
 impl Steps for Removal<'_> {
-    fn triangles(&self) -> usize {
-        self.mesh.triangles()
+    type Step = Patch;
+
+    fn solid(&self) -> &Solid {
+        &self.solid
     }
 
-    fn next(&mut self) -> Option<f32> {
-        if self.pending.is_none() {
-            self.pending = self.find();
+    /// The removal with the smallest distance that is possible; of equal ones that of the lowest point.
+    fn find(&mut self) -> Option<Patch> {
+        while let Some(Reverse((_, point, version))) = self.queue.pop() {
+            if self.versions[point as usize] == version
+                && let Some(patch) = self.patch(point)
+            {
+                return Some(patch);
+            }
         }
-        let cost = self.pending.as_ref()?.cost;
-        Some(self.error.max(self.frame.distance(cost.sqrt())))
+        None
     }
 
-    fn step(&mut self) {
-        let Some(patch) = self.pending.take() else { return };
-        self.error = self.error.max(self.frame.distance(patch.cost.sqrt()));
-        let around = self.mesh.neighbors(patch.point);
-        for ring in self.mesh.ring(patch.point).collect::<Vec<_>>() {
-            self.mesh.remove(ring.triangle);
+    fn cost(patch: &Patch) -> f64 {
+        patch.cost
+    }
+
+    fn take(&mut self, patch: Patch) {
+        let around = self.solid.mesh.neighbors(patch.point);
+        for ring in self.solid.mesh.ring(patch.point).collect::<Vec<_>>() {
+            self.solid.mesh.remove(ring.triangle);
         }
         for (corners, origin) in patch.triangles {
-            self.mesh.push(corners, origin);
+            self.solid.mesh.push(corners, origin);
         }
         self.versions[patch.point as usize] += 1;
         for point in around {
@@ -222,12 +215,12 @@ impl Steps for Removal<'_> {
         }
     }
 
-    fn reduced(&self, stopped: Stopped) -> Reduced {
+    fn reduced(&self, reached: (f32, Stopped)) -> Reduced {
         let (mut corners, mut triangles) = (Vec::new(), Vec::new());
-        for (triangle, origin) in self.mesh.all() {
+        for (triangle, origin) in self.solid.mesh.all() {
             corners.extend(triangle.map(|corner| corner.vertex));
             triangles.push(origin);
         }
-        Reduced::of_vertices(&self.surface, &corners, triangles, (self.error, stopped))
+        Reduced::of_vertices(&self.surface, &corners, triangles, reached)
     }
 }

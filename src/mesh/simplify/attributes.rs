@@ -3,13 +3,19 @@
 //!
 //! Weights are areas, and the sums are not divided by them, as those of positions are: a wrong normal disturbs by the
 //! area that it shades (so does meshoptimizer). A mean would count it in the smallest triangle as much as in the largest.
+//!
+//! Sums are in f32, which is half of what has to be read. Where attributes are linear over a flat surface, the cost is
+//! then not quite 0: its root is up to 3 · 10⁻⁴ of what the change in attributes itself would count.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3, Vec4};
 
 use super::Surface;
 use super::points::Points;
 use super::quadric::Quadric;
 use super::turned::normal;
+
+/// Number of vectors of a vertex beside one for each attribute.
+const HEAD: usize = 3;
 
 /// For each vertex, the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
 /// the attribute, k its accumulated constant difference, and d and s are the differences in position and
@@ -17,16 +23,15 @@ use super::turned::normal;
 pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
-    /// The part without s, and the sums of weights.
-    quadrics: Vec<Quadric>,
-    /// For each attribute, the weighted sums of g and of k.
-    sums: Vec<(DVec3, f64)>,
+    /// For each vertex a record: the quadric dᵀ A d + 2 b·d + c of the part without s, as (A's xx, xy, xz, yy), (yz, zz,
+    /// c, sum of weights), (b, 0); and for each attribute the weighted sums of g and of k.
+    records: Vec<Vec4>,
 }
 
 /// What the costs of replacing a vertex depend on.
 pub(crate) struct Own<'a> {
-    quadric: &'a Quadric,
-    sums: &'a [(DVec3, f64)],
+    head: [Vec4; HEAD],
+    sums: &'a [Vec4],
     values: &'a [f32],
 }
 
@@ -35,30 +40,69 @@ impl Own<'_> {
     /// attributes.
     #[inline]
     pub(crate) fn with(&self, shape: &Quadric) -> Quadric {
-        shape.mean_plus(self.quadric)
+        let [first, second, b] = self.head.map(|four| four.as_dvec4());
+        let a = [first.x, first.y, first.z, first.w, second.x, second.y];
+        shape.mean_plus(a, b.truncate(), second.z)
     }
 
     /// The part of the cost that depends on the attributes of the replacement, which is `d` away.
     #[inline]
-    pub(crate) fn change(&self, values: &[f32], d: DVec3) -> f64 {
-        let mut cost = 0.0;
-        for ((to, from), (gradient, lost)) in values.iter().zip(self.values).zip(self.sums) {
-            let s = f64::from(*to) - f64::from(*from);
-            cost += s * (s * self.quadric.weight - 2.0 * (gradient.dot(d) + lost));
+    pub(crate) fn change(&self, values: &[f32], d: Vec3) -> f32 {
+        let (mut sum, mut squares) = (Vec4::ZERO, 0.0);
+        if let ([to_x, to_y, to_z], [x, y, z], [a, b, c]) = (values, self.values, self.sums) {
+            // Normals.
+            let [x, y, z] = [to_x - x, to_y - y, to_z - z];
+            sum = *a * x + *b * y + *c * z;
+            squares = x * x + y * y + z * z;
+        } else {
+            for ((to, from), more) in values.iter().zip(self.values).zip(self.sums) {
+                let s = to - from;
+                sum += *more * s;
+                squares += s * s;
+            }
         }
-        cost
+        squares * self.head[1].w - 2.0 * at(sum, d)
     }
+
+    /// Half the gradient of the part without the replacement's attributes.
+    #[inline]
+    fn slope(&self, d: Vec3) -> Vec3 {
+        let [first, second, b] = self.head;
+        let [x, y, z] = [
+            first.x * d.x + first.y * d.y + first.z * d.z,
+            first.y * d.x + first.w * d.y + second.x * d.z,
+            first.z * d.x + second.x * d.y + second.y * d.z,
+        ];
+        Vec3::new(x + b.x, y + b.y, z + b.z)
+    }
+
+    /// The cost of a replacement that is `d` away.
+    #[inline]
+    fn cost(&self, values: &[f32], d: Vec3) -> f32 {
+        let [_, second, b] = self.head;
+        let twice = self.slope(d) + b.truncate();
+        let same = twice.x * d.x + twice.y * d.y + twice.z * d.z + second.z;
+        (same + self.change(values, d)).max(0.0)
+    }
+}
+
+/// g·d + k.
+#[inline]
+fn at(sum: Vec4, d: Vec3) -> f32 {
+    // In this order on every machine.
+    let [x, y, z, k] = (sum * d.extend(1.0)).to_array();
+    x + y + z + k
 }
 
 impl<'a> Attributes<'a> {
     pub(crate) fn new(surface: &Surface<'a>, points: &Points) -> Self {
         let (values, stride) = (surface.attributes, surface.stride);
-        let quadrics = vec![Quadric::default(); values.len() / stride];
-        let sums = vec![(DVec3::ZERO, 0.0); values.len()];
-        let mut attributes = Self { values, stride, quadrics, sums };
-        for triangle in surface.indices.chunks_exact(3) {
-            let vertices = [0, 1, 2].map(|corner| triangle[corner]);
-            let positions = vertices.map(|vertex| points.position(points.of(vertex), 0));
+        let records = vec![Vec4::ZERO; values.len() / stride * (HEAD + stride)];
+        let mut attributes = Self { values, stride, records };
+        for &vertices in surface.indices.as_chunks().0 {
+            let [a, b, c] = vertices;
+            let position = |vertex: u32| points.position(points.of(vertex), 0);
+            let positions = [position(a), position(b), position(c)];
             if let Ok(normal) = normal(positions) {
                 attributes.add_triangle(vertices, positions, normal);
             }
@@ -66,73 +110,99 @@ impl<'a> Attributes<'a> {
         attributes
     }
 
-    #[inline]
-    fn value(&self, vertex: u32, attribute: usize) -> f64 {
-        f64::from(self.values[vertex as usize * self.stride + attribute])
+    fn record(&mut self, vertex: u32) -> &mut [Vec4] {
+        let len = HEAD + self.stride;
+        &mut self.records[vertex as usize * len..][..len]
     }
 
     /// Adds a triangle; `normal` has twice the triangle's area as its length.
     fn add_triangle(&mut self, vertices: [u32; 3], positions: [DVec3; 3], normal: DVec3) {
         let [first, second] = [positions[1] - positions[0], positions[2] - positions[0]];
         let (square, weight) = (normal.length_squared(), normal.length() * 0.5);
-        let mut quadric = Quadric::linear(DVec3::ZERO, weight);
-        for attribute in 0..self.stride {
-            let [a, b, c] = vertices.map(|vertex| self.value(vertex, attribute));
-            // The gradient lies in the triangle's plane and gives the differences of b − a and c − a along its
-            // edges.
-            let gradient = (second.cross(normal) * (b - a) + normal.cross(first) * (c - a)) / square;
-            quadric.add_unweighted(&Quadric::linear(gradient, weight));
-            for vertex in vertices {
-                self.sums[vertex as usize * self.stride + attribute].0 += gradient * weight;
-            }
+        // The gradient lies in the triangle's plane and gives the differences of b − a and c − a along its edges.
+        let [along_first, along_second] = [second.cross(normal) / square, normal.cross(first) / square];
+        let [a, b, c] = vertices;
+        let [own_a, own_b, own_c] = [self.values_of(a), self.values_of(b), self.values_of(c)];
+        let [mut first_row, mut others] = [DVec3::ZERO; 2];
+        for (attribute, ((a, b), c)) in own_a.iter().zip(own_b).zip(own_c).enumerate() {
+            let [a, b, c] = [f64::from(*a), f64::from(*b), f64::from(*c)];
+            let gradient = along_first * (b - a) + along_second * (c - a);
+            let weighted = gradient * weight;
+            first_row += gradient * weighted.x;
+            others += DVec3::new(gradient.y, gradient.y, gradient.z)
+                * DVec3::new(weighted.y, weighted.z, weighted.z);
+            let more = weighted.as_vec3().extend(0.0);
+            vertices.iter().for_each(|vertex| self.record(*vertex)[HEAD + attribute] += more);
         }
-        vertices.iter().for_each(|vertex| self.quadrics[*vertex as usize].add(&quadric));
+        let (row, [yy, yz, zz]) = (first_row.as_vec3(), others.as_vec3().to_array());
+        let [first, second] = [row.extend(yy), Vec4::new(yz, zz, 0.0, weight as f32)];
+        for vertex in vertices {
+            let record = self.record(vertex);
+            record[0] += first;
+            record[1] += second;
+        }
     }
 
     /// The cost of replacing `vertex` by `target`, which is `d` away.
     pub(crate) fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
-        let quadric = &self.quadrics[vertex as usize];
-        let mut cost = quadric.at(d);
-        for attribute in 0..self.stride {
-            let s = self.value(target, attribute) - self.value(vertex, attribute);
-            let (gradient, lost) = self.sums[vertex as usize * self.stride + attribute];
-            cost += s * (s * quadric.weight - 2.0 * (gradient.dot(d) + lost));
-        }
-        cost.max(0.0)
+        f64::from(self.of(vertex).cost(self.values_of(target), d.as_vec3()))
     }
 
     /// The attributes of a vertex, in no unit.
     #[inline]
-    pub(crate) fn values_of(&self, vertex: u32) -> &[f32] {
+    pub(crate) fn values_of(&self, vertex: u32) -> &'a [f32] {
         &self.values[vertex as usize * self.stride..][..self.stride]
+    }
+
+    /// A number that depends on the first and last sum of a vertex.
+    #[inline]
+    pub(crate) fn touch(&self, vertex: u32) -> u32 {
+        let own = self.of(vertex);
+        own.head[0].x.to_bits() ^ own.sums.last().map_or(0, |last| last.w.to_bits())
     }
 
     /// What the costs of replacing a vertex depend on.
     #[inline]
     pub(crate) fn of(&self, vertex: u32) -> Own<'_> {
-        Own {
-            quadric: &self.quadrics[vertex as usize],
-            sums: &self.sums[vertex as usize * self.stride..][..self.stride],
-            values: self.values_of(vertex),
+        let len = HEAD + self.stride;
+        let (head, sums) = self.records[vertex as usize * len..][..len].split_at(HEAD);
+        Own { head: [head[0], head[1], head[2]], sums, values: self.values_of(vertex) }
+    }
+
+    /// What it costs if the triangles of these vertices vanish: their area times the variance of their attributes.
+    pub(crate) fn lost<I: Iterator<Item = u32>>(&self, vertices: impl Fn() -> I) -> f64 {
+        let weight = |vertex: u32| f64::from(self.of(vertex).head[1].w);
+        let weights: f64 = vertices().map(weight).sum();
+        let mut variance = 0.0;
+        for attribute in 0..self.stride {
+            let value = |vertex: u32| f64::from(self.values_of(vertex)[attribute]);
+            let mean = vertices().map(|vertex| weight(vertex) * value(vertex)).sum::<f64>() / weights;
+            variance += vertices().map(|vertex| weight(vertex) * (value(vertex) - mean).powi(2)).sum::<f64>();
         }
+        // Each triangle counts at three vertices.
+        if weights > 0.0 { variance / 3.0 } else { 0.0 }
     }
 
     /// Replaces `vertex` by `target`, which is `d` away.
     pub(crate) fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
-        let cost = self.cost(vertex, target, d);
-        let [from, to] = [vertex, target].map(|vertex| vertex as usize * self.stride);
-        let weight = self.quadrics[vertex as usize].weight;
-        let mut gradients = DVec3::ZERO;
-        for attribute in 0..self.stride {
-            let s = self.value(target, attribute) - self.value(vertex, attribute);
-            let (gradient, lost) = self.sums[from + attribute];
-            gradients += gradient * s;
-            let sum = &mut self.sums[to + attribute];
-            sum.0 += gradient;
-            sum.1 += gradient.dot(d) + lost - weight * s;
+        let (d, len, values) = (d.as_vec3(), HEAD + self.stride, self.values_of(target));
+        let own = self.of(vertex);
+        let ([first, second, _], cost, mut slope) = (own.head, own.cost(values, d), own.slope(d).extend(0.0));
+        let own_values = self.values_of(vertex);
+        let [from, to] = [vertex, target].map(|vertex| vertex as usize * len);
+        let Ok([from, to]) = self.records.get_disjoint_mut([from..from + len, to..to + len]) else { return };
+        let sums = from[HEAD..].iter().zip(&mut to[HEAD..]);
+        for ((to_value, from_value), (sum, to_sum)) in values.iter().zip(own_values).zip(sums) {
+            let s = to_value - from_value;
+            slope -= *sum * s;
+            let mut more = *sum;
+            more.w = at(*sum, d) - second.w * s;
+            *to_sum += more;
         }
-        let moved = self.quadrics[vertex as usize].moved_by(d, gradients, cost);
-        self.quadrics[target as usize].add(&moved);
+        slope.w = 0.0;
+        let mut middle = second;
+        middle.z = cost;
+        to.iter_mut().zip([first, middle, slope]).for_each(|(sum, more)| *sum += more);
     }
 }
 
@@ -168,7 +238,7 @@ mod tests {
             };
             0.5 * first.cross(second).length() * (square(0) + square(1))
         };
-        let close = |a: f64, b: f64| (a - b).abs() < 1e-12 * (1.0 + b);
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-5 * (1.0 + b);
         let direct = attributes.cost(0, 3, position(3) - position(0));
         assert!(close(direct, off(0, 3)), "{direct}");
         attributes.merge(0, 3, position(3) - position(0));

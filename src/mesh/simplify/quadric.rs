@@ -75,14 +75,12 @@ impl Quadric {
 
     /// The sum of this quadric divided by its weight and another one about the same origin, without weight.
     #[inline]
-    pub(crate) fn mean_plus(&self, other: &Self) -> Self {
+    pub(crate) fn mean_plus(&self, mut a: [f64; 6], b: DVec3, c: f64) -> Self {
         let factor = self.inverse_weight();
-        let mut a = other.a;
         for (sum, value) in a.iter_mut().zip(self.a) {
             *sum += value * factor;
         }
-        let (b, c) = (self.b * factor + other.b, self.c * factor + other.c);
-        Self { a, b, c, weight: 0.0 }
+        Self { a, b: self.b * factor + b, c: self.c * factor + c, weight: 0.0 }
     }
 
     /// A number that depends on the quadric's first and last words.
@@ -100,12 +98,6 @@ impl Quadric {
     /// The same quadric about another origin, at the offset d.
     pub(crate) fn moved(&self, d: DVec3) -> Self {
         Self { a: self.a, b: self.slope(d), c: self.at(d), weight: self.weight }
-    }
-
-    /// As [`Self::moved`], for functions that also change by a constant at the new origin: `gradients`, the sum
-    /// of these constants times the gradients, is subtracted from b, and `c` replaces c.
-    pub(crate) fn moved_by(&self, d: DVec3, gradients: DVec3, c: f64) -> Self {
-        Self { a: self.a, b: self.slope(d) - gradients, c, weight: self.weight }
     }
 }
 

@@ -25,8 +25,8 @@ pub(crate) struct Quadrics<'a> {
 impl<'a> Quadrics<'a> {
     pub(crate) fn new(surface: &Surface<'a>, points: &Points, topology: &Topology) -> Self {
         let mut shape = vec![Quadric::default(); points.len() * points.poses()];
-        for triangle in surface.indices.chunks_exact(3) {
-            add_triangle(&mut shape, points, topology, [0, 1, 2].map(|at| triangle[at]));
+        for &triangle in surface.indices.as_chunks().0 {
+            add_triangle(&mut shape, points, topology, triangle);
         }
         let attributes = (surface.stride > 0).then(|| Attributes::new(surface, points));
         Self { shape, attributes }
@@ -79,7 +79,8 @@ impl<'a> Quadrics<'a> {
                 let all = of.with(&shape);
                 for &[neighbor, _] in ring {
                     let (target, d) = (points.only_wedge(neighbor)?, points.position(neighbor, 0) - origin);
-                    best.add((all.at(d) + of.change(attributes.values_of(target), d)).max(0.0), neighbor);
+                    let change = of.change(attributes.values_of(target), d.as_vec3());
+                    best.add((all.at(d) + f64::from(change)).max(0.0), neighbor);
                 }
             }
         }
@@ -108,12 +109,14 @@ impl<'a> Quadrics<'a> {
         best.found()
     }
 
-    /// A number that depends on the first and last quadric of a point.
+    /// A number that depends on what is stored of a point and of its first vertex.
     #[inline]
-    pub(crate) fn touch(&self, points: &Points, point: u32) -> u64 {
-        let first = point as usize * points.poses();
-        let quadric = &self.shape[first];
-        quadric.touch()
+    pub(crate) fn touch(&self, points: &Points, point: u32) -> u32 {
+        let quadric = self.shape[point as usize * points.poses()].touch() as u32;
+        match (&self.attributes, points.only_wedge(point)) {
+            (Some(attributes), Some(vertex)) => quadric ^ attributes.touch(vertex),
+            _ => quadric,
+        }
     }
 
     /// The sum of squared differences in attributes, by area, if a point collapses and each of its wedges is replaced by the
@@ -145,6 +148,12 @@ impl<'a> Quadrics<'a> {
         let cost = |target| self.attributes.as_ref().map_or(0.0, |all| all.cost(wedge.vertex, target, d));
         let all = neighbors.remap(neighbor, wedge).into_iter().map(|target| (target, cost(target)));
         all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0))
+    }
+
+    /// What the attributes of these points cost if their triangles vanish.
+    pub(crate) fn lost(&self, points: &Points, part: &[u32]) -> f64 {
+        let vertices = || part.iter().flat_map(|point| points.wedges(*point)).copied();
+        self.attributes.as_ref().map_or(0.0, |attributes| attributes.lost(vertices))
     }
 
     /// Merges a point into its neighbour, and its wedges into the vertices that `moved` names.

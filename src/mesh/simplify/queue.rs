@@ -8,10 +8,12 @@ pub(crate) struct Best {
     pub neighbor: u32,
     /// The squared cost; at least 0.
     pub cost: f32,
-    /// As much of the cost as is known before the collapse is checked.
+    /// As much of the cost as is known before it is measured.
     pub base: f32,
     /// Whether a cheaper collapse exists that is not legal at the moment.
     pub is_second: bool,
+    /// Whether the cost has its other part, as long as the point's triangles do not change.
+    pub is_measured: bool,
 }
 
 /// Bits of a cost that choose its bucket: eight of the exponent, two of the mantissa.
@@ -31,6 +33,7 @@ struct State {
     /// The bucket that has the point's valid entry. Entries elsewhere are stale, and dropped when they are reached.
     bucket: u16,
     is_second: bool,
+    is_measured: bool,
 }
 
 /// The best collapse of each point.
@@ -51,29 +54,29 @@ impl Queue {
     /// A queue of this many points, without collapses, of a mesh of this size.
     pub(crate) fn new(points: usize, extent: f64) -> Self {
         let unit = if extent > 0.0 { (1.0 / (extent * extent)) as f32 } else { 1.0 };
-        let state = State { neighbor: 0, cost: 0.0, base: 0.0, bucket: NONE, is_second: false };
+        let state =
+            State { neighbor: 0, cost: 0.0, base: 0.0, bucket: NONE, is_second: false, is_measured: false };
         let (buckets, taken) = (vec![Vec::new(); BUCKETS], vec![0; BUCKETS]);
         Self { states: vec![state; points], buckets, taken, filled: [0; BUCKETS / 64], first: 0, unit }
     }
 
-    /// The best collapse of a point; as it was set last.
+    /// The neighbour into which a point would collapse, as it was set last.
     #[inline]
-    pub(crate) fn best(&self, point: u32) -> Option<Best> {
-        let State { neighbor, cost, base, bucket, is_second } = self.states[point as usize];
-        (bucket != NONE).then_some(Best { neighbor, cost, base, is_second })
+    pub(crate) fn neighbor(&self, point: u32) -> u32 {
+        self.states[point as usize].neighbor
     }
 
     /// Replaces the best collapse of a point.
     #[inline]
     pub(crate) fn set(&mut self, point: u32, best: Option<Best>) {
-        let Some(Best { neighbor, cost, base, is_second }) = best else {
+        let Some(Best { neighbor, cost, base, is_second, is_measured }) = best else {
             self.states[point as usize].bucket = NONE;
             return;
         };
         let bucket = self.bucket_of(cost);
         let state = &mut self.states[point as usize];
         let is_there = state.bucket == bucket;
-        *state = State { neighbor, cost, base, bucket, is_second };
+        *state = State { neighbor, cost, base, bucket, is_second, is_measured };
         if !is_there {
             self.put(point, bucket);
         }
@@ -126,8 +129,8 @@ impl Queue {
                 continue;
             }
             state.bucket = NONE;
-            let State { neighbor, cost, base, is_second, .. } = *state;
-            return Some((point, Best { neighbor, cost, base, is_second }));
+            let State { neighbor, cost, base, is_second, is_measured, .. } = *state;
+            return Some((point, Best { neighbor, cost, base, is_second, is_measured }));
         }
     }
 

@@ -1,9 +1,12 @@
 //! The main loop of simplification: one collapse after the other.
 
 mod search;
+#[cfg(test)]
+mod tests;
 
 use super::marks::Marks;
 use super::neighbors::Neighbors;
+use super::parts::Parts;
 use super::points::Points;
 use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
@@ -21,6 +24,8 @@ struct Reducer<'a> {
     /// Only where distances are limited.
     tracked_samples: Option<TrackedSamples>,
     neighbors: Neighbors,
+    /// The parts that may vanish.
+    parts: Parts,
     /// Points for which a cheaper collapse than the queue's may become legal when triangles around them change.
     watched: Vec<bool>,
     /// Marks for points, and for vertices.
@@ -33,6 +38,9 @@ struct Reducer<'a> {
 pub(crate) fn reduce(surface: &Surface<'_>, options: &Options, distances: &[f32]) -> Simplified {
     let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
     let mut reducer = Reducer::new(surface, options.cost, is_limited);
+    if options.prune && options.cost == Cost::Quadric && !is_limited {
+        reducer.parts = Parts::new(&reducer.points, &reducer.topology);
+    }
     let triangles = reducer.topology.triangles();
     let mut done = Done::default();
     let mut stopped = Stopped::Exhausted;
@@ -66,7 +74,8 @@ impl<'a> Reducer<'a> {
             is_limited.then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3));
         let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
         let (neighbors, changed, watched) = (Neighbors::default(), Vec::new(), vec![false; points.len()]);
-        Self { points, topology, cost, quadrics, tracked_samples, neighbors, watched, marks, changed }
+        let parts = Parts::default();
+        Self { points, topology, cost, quadrics, tracked_samples, neighbors, parts, watched, marks, changed }
     }
 
     /// Collapses until no legal collapse keeps every sample within `distance`, or until a limit of `options` is
@@ -80,17 +89,47 @@ impl<'a> Reducer<'a> {
             if self.topology.triangles() <= options.triangles {
                 return Stopped::Triangles;
             }
-            let Some((point, best)) = self.next(&mut queue) else { return Stopped::Exhausted };
-            let cost = (f64::from(best.cost).sqrt() / self.points.scale()) as f32;
+            let next = self.next(&mut queue);
+            let most = next.map_or(f32::INFINITY, |(_, best)| best.cost);
+            let part = self.take_part(most);
+            let Some(squared) = part.as_ref().map(|part| part.1).or(next.map(|(_, best)| best.cost)) else {
+                return Stopped::Exhausted;
+            };
+            let cost = (f64::from(squared).sqrt() / self.points.scale()) as f32;
             if cost > options.error {
                 return Stopped::Error;
             }
             done.error = done.error.max(cost);
-            self.step(&mut queue, point, best.neighbor, &mut done.moved);
+            match (part, next) {
+                (Some((part, _)), next) => {
+                    next.into_iter().for_each(|(point, best)| queue.set(point, Some(best)));
+                    self.vanish(&mut queue, &part, &mut done.moved);
+                }
+                (None, Some((point, best))) => self.step(&mut queue, point, best.neighbor, &mut done.moved),
+                (None, None) => {}
+            }
             let (error, end) = (done.error, done.moved.len() as u32);
             let triangles = self.topology.triangles() as u32;
             done.collapses.push(Collapse { end, error, distance, triangles });
         }
+    }
+
+    /// Takes a part that may vanish for no more than this.
+    fn take_part(&mut self, most: f32) -> Option<(Vec<u32>, f32)> {
+        let Self { parts, points, topology, quadrics, .. } = self;
+        let lost = |part: &[u32]| quadrics.as_ref().map_or(0.0, |quadrics| quadrics.lost(points, part));
+        parts.take(points, topology, lost, most)
+    }
+
+    /// Merges a whole part into one of its points.
+    fn vanish(&mut self, queue: &mut Queue, part: &[u32], moved: &mut Vec<[u32; 2]>) {
+        let Some(target) = part.first().and_then(|first| self.points.wedges(*first).first()) else { return };
+        for &point in part {
+            queue.set(point, None);
+            let vertices = self.points.wedges(point).iter().filter(|vertex| *vertex != target);
+            moved.extend(vertices.map(|vertex| [*vertex, *target]));
+        }
+        self.topology.vanish(part);
     }
 
     fn queue(&mut self) -> Queue {
@@ -103,9 +142,21 @@ impl<'a> Reducer<'a> {
     fn set(&mut self, queue: &mut Queue, point: u32) {
         self.topology.refresh(point);
         self.topology.take_change(point);
-        let best = self.find(point);
+        let mut best = self.find(point);
         self.watched[point as usize] = best.is_none();
+        if let Some(found) = best.filter(|_| self.is_measured_early()) {
+            best = self.measure(point, found);
+            if best.is_none() {
+                best = self.find_second(point);
+            }
+        }
         queue.set(point, best);
+    }
+
+    /// Whether costs are measured before it is a point's turn. Beside attributes nearly every cost grows by that, and its
+    /// point would have two turns.
+    fn is_measured_early(&self) -> bool {
+        self.quadrics.as_ref().is_some_and(Quadrics::has_attributes)
     }
 
     /// The cheapest legal collapse, up to the width of the queue's buckets.
@@ -114,35 +165,45 @@ impl<'a> Reducer<'a> {
             self.fetch(queue);
             let (point, queued) = queue.pop()?;
             self.topology.refresh(point);
-            let mut best = queued;
-            if self.is_outdated(point, &queued) {
-                let found = self.find(point);
-                self.watched[point as usize] = found.is_none();
-                let Some(found) = found else { continue };
-                best = found;
+            let Some(best) = self.latest(point, queued) else { continue };
+            if queue.is_later(&best, &queued) {
+                queue.set(point, Some(best));
+                continue;
             }
-            if !queue.is_later(&best, &queued) {
-                match self.check(point, best) {
-                    None => {
-                        self.watched[point as usize] = true;
-                        let second = self.find_legal(point);
-                        queue.set(point, second);
-                        continue;
-                    }
-                    Some(checked) => best = checked,
+            let measured = if best.is_measured { Some(best) } else { self.measure(point, best) };
+            match measured {
+                Some(best) if queue.is_later(&best, &queued) => queue.set(point, Some(best)),
+                Some(best) if self.is_allowed(point, best.neighbor) => return Some((point, best)),
+                _ => {
+                    let second = self.find_second(point);
+                    queue.set(point, second);
                 }
             }
-            if !queue.is_later(&best, &queued) {
-                return Some((point, best));
-            }
-            queue.set(point, Some(best));
         }
+    }
+
+    /// The best collapse of a point, all of whose triangles are up to date: what the queue has, or what is found anew.
+    fn latest(&mut self, point: u32, queued: Best) -> Option<Best> {
+        let change = self.topology.take_change(point);
+        if self.is_outdated(point, &queued, change) {
+            let found = self.find(point);
+            self.watched[point as usize] = found.is_none();
+            return found;
+        }
+        let is_measured = queued.is_measured && change == Change::None;
+        Some(Best { is_measured, ..queued })
+    }
+
+    /// The cheapest collapse of a point that is legal, where the cheapest of all is not.
+    fn find_second(&mut self, point: u32) -> Option<Best> {
+        self.watched[point as usize] = true;
+        self.find_legal(point)
     }
 
     /// Whether the best collapse of a point, all of whose triangles are up to date, must be found anew. Where it is not
     /// merged into, its other costs have not changed, and a new neighbour is hardly ever cheaper than the best old one.
-    fn is_outdated(&mut self, point: u32, best: &Best) -> bool {
-        match self.topology.take_change(point) {
+    fn is_outdated(&self, point: u32, best: &Best, change: Change) -> bool {
+        match change {
             Change::None => false,
             Change::Around if self.quadrics.is_some() && self.topology.kind(point) == Kind::Interior => {
                 self.topology.is_gone(best.neighbor) || self.points.only_wedge(point).is_none()
@@ -152,20 +213,24 @@ impl<'a> Reducer<'a> {
     }
 
     /// Reads what the next few points need, so that the processor waits for all of it at once: points that follow each
-    /// other in cost lie anywhere.
+    /// other in cost lie anywhere. Each round of reads tells where the next one is.
     fn fetch(&self, queue: &Queue) {
-        let mut read = 0;
-        for &point in queue.ahead() {
-            read ^= self.topology.touch(point);
-            read ^= self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, point)) as u32;
+        let (mut read, ahead) = (0, queue.ahead());
+        let quadric = |point: u32| match &self.quadrics {
+            Some(quadrics) => quadrics.touch(&self.points, point),
+            None => 0,
+        };
+        for &point in ahead {
+            read ^= queue.neighbor(point) ^ self.topology.touch_span(point) ^ quadric(point);
+        }
+        for &point in ahead {
+            let neighbor = queue.neighbor(point);
+            read ^= self.topology.touch(point) ^ self.topology.touch_span(neighbor) ^ quadric(neighbor);
+        }
+        for &point in ahead {
+            read ^= self.topology.touch(queue.neighbor(point));
             for &[other, _] in self.topology.ring(point) {
                 read ^= self.points.touch(other);
-            }
-            if let Some(best) = queue.best(point) {
-                read ^= self.topology.touch(best.neighbor);
-                read ^=
-                    self.quadrics.as_ref().map_or(0, |quadrics| quadrics.touch(&self.points, best.neighbor))
-                        as u32;
             }
         }
         std::hint::black_box(read);
@@ -252,101 +317,6 @@ impl<'a> Reducer<'a> {
             if !moved[start..live].iter().any(|[from, _]| *from == wedge) {
                 moved.push([wedge, target]);
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A cylinder with a seam and with bumps of the given height, in two poses: straight and bent.
-    fn pipe(bumps: f32, seed: usize) -> ([Vec<[f32; 3]>; 2], Vec<f32>, Vec<u32>) {
-        let (sides, rings) = (9, 8);
-        let (mut positions, mut uv, mut indices) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
-        for ring in 0..=rings {
-            for side in 0..=sides {
-                let turn = std::f32::consts::TAU * (side % sides) as f32 / sides as f32;
-                let along = ring as f32 * 0.5;
-                let bump = ((side % sides) * (ring + 2) * (5 + seed) + ring * seed * seed) % 7;
-                let radius = 1.0 + bumps * bump as f32;
-                let [x, z] = [radius * turn.cos(), -radius * turn.sin()];
-                positions[0].push([x, along, z]);
-                positions[1].push([x + 0.2 * along * along, along, z]);
-                uv.extend([side as f32 / sides as f32, along]);
-            }
-        }
-        for ring in 0..rings {
-            for side in 0..sides {
-                let [a, b] = [0, 1].map(|up| ((ring + up) * (sides + 1) + side) as u32);
-                indices.extend([a, a + 1, b + 1, a, b + 1, b]);
-            }
-        }
-        (positions, uv, indices)
-    }
-
-    /// The cost of the collapse of a point if it were its turn.
-    fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
-        reducer.topology.refresh(point);
-        let found = reducer.find(point)?;
-        let checked = reducer.check(point, found).or_else(|| reducer.find_legal(point));
-        checked.map(|best| best.cost)
-    }
-
-    /// Simplifies until nothing is legal, and compares each collapse with those of all other points. Returns the number of
-    /// steps, how often the collapse was more than a tenth above the cheapest, and how often it was not the cheapest of
-    /// its point.
-    fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
-        let mut reducer = Reducer::new(surface, cost, distance < f32::INFINITY);
-        let most = (f64::from(distance) * reducer.points.scale()) as f32;
-        reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(most));
-        let mut queue = reducer.queue();
-        let (mut moved, [mut steps, mut dearer, mut seconds]) = (Vec::new(), [0; 3]);
-        let find = |reducer: &mut Reducer<'_>, point: u32| {
-            reducer.topology.refresh(point);
-            reducer.find_legal(point)
-        };
-        while let Some((point, best)) = reducer.next(&mut queue) {
-            let all = 0..reducer.points.len() as u32;
-            let costs = all.clone().filter_map(|point| Some(find(&mut reducer, point)?.cost));
-            assert!(best.cost >= costs.fold(f32::INFINITY, f32::min), "{cost:?} after {steps}");
-            let cheapest = all.filter_map(|point| now(&mut reducer, point)).fold(f32::INFINITY, f32::min);
-            dearer += usize::from(best.cost.sqrt() > 1.1 * cheapest.sqrt() + 1e-6);
-            seconds += usize::from(best.is_second);
-            steps += 1;
-            reducer.step(&mut queue, point, best.neighbor, &mut moved);
-        }
-        assert!(
-            (0..reducer.points.len() as u32).all(|point| find(&mut reducer, point).is_none()),
-            "{cost:?}"
-        );
-        [steps, dearer, seconds]
-    }
-
-    /// Collapses come in the order of their costs, up to the width of a bucket and to what became cheaper since the queue
-    /// last looked; nothing that is legal is left.
-    #[test]
-    fn a_cheapest_legal_collapse_is_nearly_always_next() {
-        for (cost, distance) in [
-            (Cost::Quadric, f32::INFINITY),
-            (Cost::Quadric, 0.25),
-            (Cost::Quadric, 0.12),
-            (Cost::Quadric, 0.5),
-            (Cost::Melax { check_normals: false }, f32::INFINITY),
-            (Cost::Melax { check_normals: true }, f32::INFINITY),
-        ] {
-            let mut sums = [0; 3];
-            for seed in 0..6 {
-                let (positions, uv, indices) = pipe([0.03, 0.2][seed % 2], seed);
-                let surface = Surface { poses: &positions, indices: &indices, attributes: &[], stride: 0 };
-                let first = Surface { poses: &positions[..1], attributes: &uv, stride: 2, ..surface };
-                for found in [surface, first].map(|surface| check(cost, &surface, distance)) {
-                    sums = [0, 1, 2].map(|at| sums[at] + found[at]);
-                }
-            }
-            let [steps, dearer, seconds] = sums;
-            assert!(steps > 200 && seconds > 3, "{cost:?} within {distance}: {steps}, {seconds}");
-            assert!(8 * dearer < steps, "{cost:?} within {distance}: {dearer} of {steps}");
         }
     }
 }

@@ -213,6 +213,12 @@ impl Topology {
         self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()
     }
 
+    /// A number that depends on where the triangles of a point are.
+    #[inline]
+    pub(crate) fn touch_span(&self, point: u32) -> u32 {
+        self.spans[point as usize].len
+    }
+
     /// A number that depends on the triangles of a point.
     #[inline]
     pub(crate) fn touch(&self, point: u32) -> u32 {

@@ -17,10 +17,15 @@ pub(crate) struct Flat;
 /// side to which it points.
 #[inline]
 pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
-    let (first, second) = (b - a, c - a);
-    let normal = first.cross(second);
-    let least = NO_AREA * first.length_squared() * second.length_squared();
-    if normal.length_squared() > least { Ok(normal) } else { Err(Flat) }
+    let edges = [b - a, c - a];
+    let normal = edges[0].cross(edges[1]);
+    if is_flat(normal.length_squared(), edges) { Err(Flat) } else { Ok(normal) }
+}
+
+/// Whether a triangle has no area: `square` is that of its normal, which is the cross product of two edges.
+#[inline]
+fn is_flat(square: f64, [first, second]: [DVec3; 2]) -> bool {
+    square <= NO_AREA * first.length_squared() * second.length_squared()
 }
 
 /// The square of the cosine of the largest angle by which a triangle's normal may turn: 75.5°, as meshoptimizer has it. Up
@@ -34,24 +39,27 @@ pub(crate) fn deviation(topology: &Topology, points: &Points, point: u32, neighb
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
         let (from, to) = (points.position(point, pose), points.position(neighbor, pose));
+        let moved = from - to;
         for &[next, last] in topology.ring(point) {
             if next == neighbor || last == neighbor {
                 continue;
             }
             let (next, last) = (points.position(next, pose), points.position(last, pose));
-            let (before, after) = (normal([from, next, last]), normal([to, next, last]));
-            let (Ok(before), Ok(after)) = (before, after) else {
-                match before {
-                    Ok(_) => return None,
-                    Err(Flat) => continue,
+            let before = (next - from).cross(last - from);
+            let after = (next - to).cross(last - to);
+            let (cosine, square) = (before.dot(after), after.length_squared());
+            let is_turned = cosine <= 0.0 || cosine * cosine < LEAST * before.length_squared() * square;
+            if is_turned || is_flat(square, [next - to, last - to]) {
+                if is_flat(before.length_squared(), [next - from, last - from]) {
+                    continue;
                 }
-            };
-            let (cosine, squares) = (before.dot(after), before.length_squared() * after.length_squared());
-            if cosine <= 0.0 || cosine * cosine < LEAST * squares {
                 return None;
             }
-            let off = after.dot(from - to);
-            worst = worst.max(off * off / after.length_squared());
+            if is_flat(before.length_squared(), [next - from, last - from]) {
+                continue;
+            }
+            let off = after.dot(moved);
+            worst = worst.max(off * off / square);
         }
     }
     Some(worst)

@@ -14,6 +14,15 @@ use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 
+/// The draws of instances that are drawn one by one.
+#[derive(Debug)]
+pub(crate) struct Singles {
+    pub job: Job,
+    pub draws: Buffer<SceneDraw>,
+    /// The list of each draw, which has one entry.
+    pub entries: Buffer<u32>,
+}
+
 /// What a view sees, in buffers for one layout of the scene.
 #[derive(Debug)]
 pub(crate) struct ViewLists {
@@ -23,8 +32,9 @@ pub(crate) struct ViewLists {
     /// The draws of all objects.
     pub arguments: Buffer<SceneDraw>,
     /// For each instance that is seen, the rows of its transform from the model's space to the corner of the view's cell.
-    /// If the last frame is kept, as many follow for meshes on bones as they were then.
+    /// If the last frame is kept, as many follow for meshes on bones as they were then, and then a level for each instance.
     pub rows: Buffer<[f32; 4]>,
+    keeps_last: bool,
     /// Bind group 0.
     pub group: Group,
     /// The map of the sun's shadow in it.
@@ -32,7 +42,7 @@ pub(crate) struct ViewLists {
     /// For each terrain, in the order of the objects, where its samples lie, and bind group 1.
     pub terrain: Vec<(Uniform<TerrainView>, Group)>,
     /// The draws of instances that are drawn one by one, if there are any.
-    pub singles: Option<(Job, Buffer<SceneDraw>)>,
+    pub singles: Option<Singles>,
     /// The instances that are drawn one by one, from back to front.
     pub order: Vec<Ordered>,
     pub(super) select: Job,
@@ -51,7 +61,7 @@ impl ViewLists {
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
         let counts = Buffer::new(gpu, "counts of blocks", 16 * layout.blocks as usize)?;
-        let each = if layout.keeps_last { 6 } else { 3 };
+        let each = if layout.keeps_last { 7 } else { 3 };
         let rows = Buffer::new(gpu, "placements in the view", each * instances)?;
         let lists = Buffer::new(gpu, "lists of instances", layout.list_words as usize)?;
         let arguments = Buffer::from_slice(gpu, "draws", &layout.draws)?;
@@ -83,6 +93,7 @@ impl ViewLists {
             lists,
             arguments,
             rows,
+            keeps_last: layout.keeps_last,
             group,
             map: map.cloned(),
             terrain,
@@ -95,6 +106,11 @@ impl ViewLists {
 }
 
 impl ViewLists {
+    /// Where the levels of the last frame begin in the rows; 0 if it is not kept.
+    pub(super) fn last_levels(&self) -> u32 {
+        if self.keeps_last { 6 * (self.rows.len() as u32 / 7) } else { 0 }
+    }
+
     /// Binds another map of the sun's shadow, unless it is bound.
     pub(super) fn bind_map(
         &mut self,
@@ -118,14 +134,15 @@ fn singles(
     layout: &Layout,
     pass: &SinglePass,
     (decisions, arguments): (&Buffer<u32>, &Buffer<SceneDraw>),
-) -> Result<Option<(Job, Buffer<SceneDraw>)>, Error> {
+) -> Result<Option<Singles>, Error> {
     let (singles, count) = (&layout.singles, layout.singles.len());
     if count == 0 {
         return Ok(None);
     }
     let draws = Buffer::new(gpu, "draws of single instances", count)?;
-    let buffers = SingleBuffers { singles, decisions, arguments, draws: &draws };
-    Ok(Some((pass.prepare(gpu, buffers, count as u32)?, draws)))
+    let entries = Buffer::new(gpu, "lists of one", count)?;
+    let buffers = SingleBuffers { singles, decisions, arguments, draws: &draws, entries: &entries };
+    Ok(Some(Singles { job: pass.prepare(gpu, buffers, count as u32)?, draws, entries }))
 }
 
 /// Where a terrain lies in a view, and bind group 1.

@@ -255,7 +255,9 @@ impl View {
         (frame, is_first): (u64, bool),
     ) -> Result<(), Error> {
         let last = self.last.filter(|(last, _)| *last + 1 == frame).map(|(_, camera)| camera);
-        let (camera, view) = self.select_view(blocks, is_first)?;
+        let (camera, mut view) = self.select_view(blocks, is_first)?;
+        view.last_levels = self.lists.as_ref().map_or(0, ViewLists::last_levels);
+        view.is_next = last.is_some().into();
         staged.uniform(&self.select, &view)?;
         staged.uniform(
             &self.drawn,
@@ -316,8 +318,8 @@ impl View {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);
             lists.list.dispatch(pass);
-            if let Some((job, _)) = &lists.singles {
-                job.dispatch(pass);
+            if let Some(singles) = &lists.singles {
+                singles.job.dispatch(pass);
             }
         }
     }

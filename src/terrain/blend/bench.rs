@@ -1,6 +1,7 @@
-//! Benchmark cases of `terrain/blend`: the colour map.
+//! Benchmark cases of `terrain/blend`: the colour map. `limit` loads the same texels and makes nothing of them.
 
 use crate::Error;
+use crate::baseline::texels::TexelsPass;
 use crate::gpu::Buffer;
 use crate::harness::{Backend, Bench, Contender};
 use crate::terrain::bench::{copy_of, some_windows};
@@ -26,9 +27,12 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
     let shading = Shading::default();
     let buffers = BlendBuffers { windows: &windows, places: &places, pixels: &pixels };
     let job = BlendPass::new(gpu)?.prepare(gpu, &cover, &shading, buffers)?;
+    let words = Buffer::new(gpu, "words", points)?;
+    let loaded = TexelsPass::new(gpu)?.prepare(gpu, &cover, BlendBuffers { pixels: &words, ..buffers })?;
     let copied = copy_of(gpu, points)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Limit, &loaded),
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Reference, || {
             let window = &host[..(width * width) as usize];

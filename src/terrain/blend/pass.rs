@@ -6,6 +6,7 @@ use crate::gpu::bindings::terrain::blend as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::blend::MapParams;
 use crate::shared::terrain::light::Light;
+use crate::terrain::blocks::{Blocks, Columns, rows};
 use crate::terrain::config::HEIGHT_ONE;
 use crate::terrain::cover::{Cover, planes};
 use crate::terrain::fields::Fields;
@@ -33,7 +34,7 @@ impl BlendPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { quads: 1 })? })
     }
 
     /// Prepares the colour maps of windows, which it uploads the cover for.
@@ -54,18 +55,15 @@ impl BlendPass {
         windows.check("windows", 1)?;
         places.check_holds("places", windows.count as usize)?;
         pixels.check_holds("pixels", windows.points(1))?;
-        let uniform = Uniform::new(gpu, "colour map", &params(cover, shading, windows.width))?;
-        let zones = Buffer::from_slice(gpu, "zones", &cover.zones)?;
-        let packed = |texel: &[u16; 4]| {
-            let [red, green, blue, height] = texel.map(u32::from);
-            [red | green << 16, blue | height << 16]
-        };
-        let texels: Vec<[u32; 2]> = cover.texels.iter().map(packed).collect();
-        let texels = Buffer::from_slice(gpu, "texels", &texels)?;
+        let columns = Columns { quads: 1, rows: rows(gpu.tuning()) };
+        let blocks = columns.blocks(windows);
+        let uniform = Uniform::new(gpu, "colour map", &params(cover, shading, windows.width, blocks))?;
+        let zones = Uniform::new(gpu, "zones", &cover.packed_zones())?;
+        let texels = Buffer::from_slice(gpu, "texels", &cover.packed_texels())?;
         let group = bindings::Group {
             params: &uniform,
-            windows: windows.heights.slice(),
-            zones: zones.slice(),
+            windows: windows.heights.slice().cast(),
+            zones: &zones,
             texels: texels.slice(),
             places: places.slice(),
             pixels: pixels.slice(),
@@ -73,16 +71,17 @@ impl BlendPass {
         let step = Step {
             kernel: self.kernel.clone(),
             groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: windows.workgroups(&self.kernel, 1),
+            workgroups: blocks.workgroups(gpu, &self.kernel),
         };
         Ok(Job::new(gpu, "terrain/blend", vec![step])?)
     }
 }
 
-fn params(cover: &Cover, shading: &Shading, in_width: u32) -> MapParams {
+fn params(cover: &Cover, shading: &Shading, in_width: u32, blocks: Blocks) -> MapParams {
     let [tiles_per_sample, tiles_per_unit] = cover.steps();
     MapParams {
         light: Light { direction: shading.light.into(), ambient: shading.ambient },
+        blocks,
         in_width,
         run: (2.0 * cover.terrain_scale * HEIGHT_ONE) as f32,
         zone_count: cover.zones.len() as u32,

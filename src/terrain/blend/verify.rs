@@ -5,11 +5,10 @@ use crate::gpu::Buffer;
 use crate::harness::Cases;
 use crate::harness::compare::{LeftOut, levels};
 use crate::harness::poison::Poisoned;
-use crate::hash::{LANES, threefry2x32};
 use crate::terrain::blend::reference::{blend, totals};
 use crate::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
 use crate::terrain::config::{Slope, Zone};
-use crate::terrain::cover::{Cover, MapZone, zone_of};
+use crate::terrain::cover::Cover;
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::random_heights;
 
@@ -33,13 +32,13 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
             for (width, count) in [(3, 1), (66, 3), (67, 2)] {
                 let zones: Vec<_> = (0..zone_count).map(|zone| striped(zone, gap)).collect();
                 let name = format!("{zone_count} zones {gap} apart, {weights:?}");
-                compare(cases, Ground { name, cover: plain(&zones, 0), weights, width, count })?;
+                compare(cases, Ground { name, cover: Cover::random(&zones, 0), weights, width, count })?;
             }
         }
         for (triplanar, variation) in [(false, 0.0), (true, 0.0), (false, 1.0), (true, 0.4)] {
             for edge_log2 in [0, 3, 9] {
                 let zones: Vec<_> = (0..4).map(sloped).collect();
-                let cover = Cover { triplanar, variation, ..plain(&zones, edge_log2) };
+                let cover = Cover { triplanar, variation, ..Cover::random(&zones, edge_log2) };
                 let name =
                     format!("slopes, {} texels, {triplanar}, {variation}, {weights:?}", 1 << edge_log2);
                 compare(cases, Ground { name, cover, weights, width: 67, count: 2 })?;
@@ -83,24 +82,6 @@ fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
     })?;
     cases.add(name, compared);
     Ok(())
-}
-
-/// A cover whose zones have random texels, 4^`edge_log2` each.
-fn plain(zones: &[Zone], edge_log2: u32) -> Cover {
-    let texels = 1_u32 << (2 * edge_log2);
-    let map_zone = |(at, zone): (u32, &Zone)| MapZone { zone: zone_of(zone), first: at * texels, edge_log2 };
-    let random = |at: u32| {
-        let (first, second) = threefry2x32([5, 9], [at; LANES], [edge_log2; LANES]);
-        [first[0] as u16, (first[0] >> 16) as u16, second[0] as u16, (second[0] >> 16) as u16]
-    };
-    Cover {
-        zones: (0..).zip(zones).map(map_zone).collect(),
-        texels: (0..zones.len() as u32 * texels).map(random).collect(),
-        terrain_scale: 20.0,
-        tile: 130.0,
-        variation: 0.0,
-        triplanar: false,
-    }
 }
 
 fn striped(zone: u32, gap: f64) -> Zone {

@@ -65,7 +65,7 @@ impl DespikePass {
         let group = bindings::Group {
             params: &uniform,
             windows: windows.heights.slice().cast(),
-            cropped: cropped.heights.slice(),
+            outputs: cropped.heights.slice(),
         };
         let injected =
             bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };

@@ -34,23 +34,23 @@ pub const MAX_ITERATIONS: u32 = 2048;
 pub struct Hydraulic {
     /// Number of cycles, at most [`MAX_ITERATIONS`]. Default 300.
     pub iterations: u32,
-    /// Depth of the rain in a cycle, in spacings of samples, 0 to 1. Default 0.0005.
+    /// Depth of the rain in a cycle, in spacings of samples, 0 to 1. Default 0.001.
     pub rain: f64,
     /// The fraction of the water that evaporates in a cycle, 0 to 1. Default 0.001.
     pub evaporation: f64,
-    /// The sediment that water carries: for each unit of discharge, at a slope of 1; 0 to 1024. Default 200.
+    /// The sediment that water carries: for each unit of discharge, at a slope of 1; 0 to 1024. Default 100.
     pub capacity: f64,
     /// The discharge below which water carries nothing, as the number of samples whose rain it is; 0 to 65536. It decides how
-    /// far from the watershed valleys begin. Default 8.
+    /// far from the watershed valleys begin, and it is the most water that spreads to each side, whatever the slope. Default 2.
     pub threshold: f64,
     /// The fraction of the lacking sediment that the water takes from the ground in a cycle, 0 to 1. Default 0.01.
     pub erosion: f64,
     /// The fraction of the excess sediment that settles in a cycle, 0 to 1. Default 0.02.
     pub deposition: f64,
-    /// The steepest stable bank, in degrees, 0 to 89. Default 35.
+    /// The steepest stable bank, in degrees, 0 to 89. Default 40.
     pub talus: f64,
     /// The fraction of the difference between two neighbours that creeps down in a cycle, 0 to 1/16. It rounds ridges, and the
-    /// more of it, the further apart are valleys. Default 0.005.
+    /// more of it, the further apart are valleys. Default 0.002.
     pub creep: f64,
 }
 
@@ -58,14 +58,14 @@ impl Default for Hydraulic {
     fn default() -> Self {
         Self {
             iterations: 300,
-            rain: 0.0005,
+            rain: 0.001,
             evaporation: 0.001,
-            capacity: 200.0,
-            threshold: 8.0,
+            capacity: 100.0,
+            threshold: 2.0,
             erosion: 0.01,
             deposition: 0.02,
-            talus: 35.0,
-            creep: 0.005,
+            talus: 40.0,
+            creep: 0.002,
         }
     }
 }

@@ -97,18 +97,30 @@ fn cycle(cell: Cell, around: [Cell; 4], params: &HydraulicParams) -> (i32, Flow)
     let moved = cell.water - lost[0] + gained[0];
     let sediment = cell.sediment - lost[1] + gained[1];
     let falls = around.map(|neighbour| cell.surface() - neighbour.surface());
-    let carried = capacity((lost[0] + gained[0]) >> 1, falls.into_iter().fold(0, i32::max), params);
+    let carried = capacity(discharge((lost[0] + gained[0]) >> 1, around), falls, params);
     let steps = around.map(|neighbour| cell.ground - neighbour.ground);
     let lifted = lifted(steps, moved, carried - sediment, params);
     let water = (moved - part(moved, params.evaporation) + params.rain).min(WATER_LIMIT);
-    let [west, east, north, south] = next_shares(cell, falls, water);
+    let [west, east, north, south] = next_shares(cell, falls, water, params);
     (cell.ground - lifted + slid, [water, sediment + lifted, west | east << 16, north | south << 16])
 }
 
-/// The sediment that a discharge carries down a surface that falls so far to the next sample.
+/// A quarter of the discharge of a sample, and three quarters of the mean of what leaves its neighbours, so that streams are
+/// wider than a sample and run in any direction alike.
 #[inline(always)]
-fn capacity(discharge: i32, fall: i32, params: &HydraulicParams) -> i32 {
-    let slope = ((fall.min(params.steepest) >> params.slope_shift) * params.slope_factor) >> 15;
+fn discharge(own: i32, around: [Cell; 4]) -> i32 {
+    let leaving = |cell: Cell| part(cell.water, cell.shares.into_iter().sum()) >> 3;
+    let eighths: i32 = around.into_iter().map(leaving).sum();
+    (own >> 2) + eighths + (eighths >> 1)
+}
+
+/// The sediment that a discharge carries down a surface that falls so far to the neighbours. A slope has the length of its two
+/// components, by the larger one and three eighths of the smaller one.
+#[inline(always)]
+fn capacity(discharge: i32, falls: [i32; 4], params: &HydraulicParams) -> i32 {
+    let [across, along] = [falls[0].max(falls[1]), falls[2].max(falls[3])]
+        .map(|fall| ((fall.clamp(0, params.steepest) >> params.slope_shift) * params.slope_factor) >> 15);
+    let slope = across.max(along) + ((across.min(along) * 3) >> 3);
     let rate = ((slope * params.capacity) >> 8).min(1 << 18);
     let driving = (discharge - params.threshold).clamp(0, WATER_LIMIT);
     let high = driving >> 12;
@@ -129,14 +141,16 @@ fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -
     -part(-lacking, params.deposition).min((highest >> 3).max(water >> 2))
 }
 
-/// The shares that leave next: each pipe keeps half of its flux and takes a sixteenth of the fall; all together give three
+/// The shares that leave next: each pipe keeps half of its flux and takes a sixteenth of the fall. A thirty-second of the water,
+/// below the threshold, spreads through each, so that streams do not run along rows and columns. All together give three
 /// quarters of the water at most, so that neighbouring samples do not exchange all of it from cycle to cycle.
 #[inline(always)]
-fn next_shares(cell: Cell, falls: [i32; 4], water: i32) -> [i32; 4] {
+fn next_shares(cell: Cell, falls: [i32; 4], water: i32, params: &HydraulicParams) -> [i32; 4] {
+    let spread = (water >> 5).min(params.threshold);
     let mut flux = [0; 4];
     for side in 0..4 {
         let old = part(cell.water, cell.shares[side]);
-        flux[side] = (old - (old >> 1) + (falls[side] >> 4)).clamp(0, WATER_LIMIT);
+        flux[side] = (old - (old >> 1) + (falls[side] >> 4) + spread).clamp(0, WATER_LIMIT);
     }
     let whole = flux.into_iter().sum::<i32>().max(water).max(1) as u32;
     let shift = 16 - whole.leading_zeros().min(16);

@@ -24,7 +24,7 @@ struct Case {
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let rows = [1, 4, 32];
+    let rows = [1, 4, 16];
     for rows in rows {
         let pass = HydraulicPass::with_rows(cases.gpu, rows)?;
         for (width, count) in [(3, 2), (23, 3), (66, 3), (67, 2), (130, 2)] {

@@ -47,7 +47,7 @@ impl MorphPass {
         Ok(self.prepare_first(gpu, buffers, from.len() as u32)?)
     }
 
-    /// Prepares a blend of the first `points` heights, which all buffers hold.
+    /// Prepares a blend of the first `points` heights, which all buffers hold; it writes whole vectors of four.
     pub(crate) fn prepare_first(
         &self,
         gpu: &Gpu,
@@ -55,17 +55,18 @@ impl MorphPass {
         points: u32,
     ) -> Result<MorphJob, GpuError> {
         let MorphBuffers { from, to, heights } = buffers;
-        let params = Uniform::new(gpu, "morph", &MorphParams { points, time: 0 })?;
+        let vectors = points.div_ceil(4);
+        let params = Uniform::new(gpu, "morph", &MorphParams { vectors, time: 0 })?;
         let group = bindings::Group {
             params: &params,
             start_heights: from.slice().cast(),
             target_heights: to.slice().cast(),
-            heights: heights.slice(),
+            heights: heights.slice().cast(),
         };
         let groups = vec![group.bind(gpu, &self.kernel)?];
-        let workgroups = self.kernel.spread(gpu, points.div_ceil(4));
+        let workgroups = self.kernel.spread(gpu, vectors);
         let step = Step { kernel: self.kernel.clone(), groups, workgroups };
-        Ok(MorphJob { params, points, job: Job::new(gpu, "terrain/morph", vec![step])? })
+        Ok(MorphJob { params, vectors, job: Job::new(gpu, "terrain/morph", vec![step])? })
     }
 }
 
@@ -73,7 +74,7 @@ impl MorphPass {
 #[derive(Debug, Clone)]
 pub struct MorphJob {
     params: Uniform<MorphParams>,
-    points: u32,
+    vectors: u32,
     job: Job,
 }
 
@@ -90,7 +91,7 @@ impl MorphJob {
     /// Sets the time where `to` records it.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
-        let params = MorphParams { points: self.points, time: morph.fixed_time() };
+        let params = MorphParams { vectors: self.vectors, time: morph.fixed_time() };
         Ok(to.uniform(&self.params, &params)?)
     }
 

@@ -55,7 +55,7 @@ impl PadPass {
                 params: &uniform,
                 patches: patches.heights.slice(),
                 around: around.slice(),
-                windows: windows.slice(),
+                outputs: windows.slice(),
             };
             steps.push(Step {
                 kernel: self.kernel.clone(),

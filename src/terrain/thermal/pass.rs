@@ -70,7 +70,7 @@ impl ThermalPass {
             let group = bindings::Group {
                 params: &uniform,
                 windows: from.heights.slice().cast(),
-                cropped: to.heights.slice(),
+                outputs: to.heights.slice(),
             };
             let groups = vec![group.bind(gpu, &self.kernel)?];
             steps.push(Step {

@@ -10,7 +10,7 @@ pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
             "must be full or bounded:PIXELS, as a scene skins; `relievo skin --influences` has the others";
         return Err(InputError::new("skinning", text, bound));
     }
-    match bounded("skinning", text) {
+    match pixels("skinning", text, "bounded") {
         Some(pixels) => Ok(SkinningDetail::Bounded { pixels: pixels? }),
         None if text == "full" => Ok(SkinningDetail::Full),
         None => Err(InputError::new("skinning", text, "must be full or bounded:PIXELS")),
@@ -19,18 +19,21 @@ pub fn skinning(text: &str) -> Result<SkinningDetail, InputError> {
 
 /// Parses `--mesh`: the triangles that meshes have.
 pub fn mesh(text: &str) -> Result<MeshDetail, InputError> {
-    match bounded("mesh", text) {
+    if let Some(pixels) = pixels("mesh", text, "geomorph") {
+        return Ok(MeshDetail::Geomorph { pixels: pixels? });
+    }
+    match pixels("mesh", text, "bounded") {
         Some(pixels) => Ok(MeshDetail::Bounded { pixels: pixels? }),
         None if text == "full" => Ok(MeshDetail::Full),
-        None => Err(InputError::new("mesh", text, "must be full or bounded:PIXELS")),
+        None => Err(InputError::new("mesh", text, "must be full, bounded:PIXELS or geomorph:PIXELS")),
     }
 }
 
-/// Parses the pixels of `bounded:PIXELS`; `None` if the text does not begin with `bounded:`.
-fn bounded(field: &str, text: &str) -> Option<Result<f32, InputError>> {
-    let pixels = text.strip_prefix("bounded:")?;
+/// Parses the pixels after a word and a colon; `None` if the text begins otherwise.
+fn pixels(field: &str, text: &str, word: &str) -> Option<Result<f32, InputError>> {
+    let pixels = text.strip_prefix(word)?.strip_prefix(':')?;
     let within = pixels.parse().ok().filter(|pixels| (0.0..=1e6).contains(pixels));
-    Some(within.ok_or_else(|| InputError::new(field, text, "must be bounded: and 0 to 1e6 pixels")))
+    Some(within.ok_or_else(|| InputError::new(field, text, format!("must be {word}: and 0 to 1e6 pixels"))))
 }
 
 #[cfg(test)]
@@ -42,6 +45,11 @@ mod tests {
         for name in ["full", "bounded:0.25"] {
             assert_eq!(skinning(name).expect("valid").to_string(), name);
             assert_eq!(mesh(name).expect("valid").to_string(), name);
+        }
+        assert_eq!(mesh("geomorph:2").expect("valid").to_string(), "geomorph:2");
+        for name in ["geomorph", "geomorph:", "geomorph:-1", "geomorph:1e7"] {
+            assert_eq!(mesh(name).expect_err("refused").path, "mesh", "{name}");
+            assert!(skinning(name).is_err(), "{name}");
         }
         for name in ["fade", "truncate:2", "truncate:x"] {
             assert!(skinning(name).expect_err("refused").bound.contains("relievo skin"), "{name}");

@@ -16,6 +16,9 @@ struct Configured {
 /// A configuration whose zones lie by height and slope.
 const LOOK: &str = include_str!("../../../../examples/terrain.json");
 
+/// Mountains with hydraulic erosion.
+const ERODED: &str = include_str!("../../../../examples/eroded.json");
+
 const VALLEY: &str = include_str!("../../../../examples/valley.json");
 
 const fn plain(
@@ -100,6 +103,13 @@ const ENTRIES: &[Configured] = &[
         "The first patch after despiking and 120 iterations of thermal erosion",
         "--despike 0.6 --thermal 120",
         LOOK,
+    ),
+    plain("uneroded", "Mountains before rain falls on them", "--hydraulic 0", ERODED),
+    plain(
+        "eroded",
+        "The same after 300 cycles of hydraulic erosion: ravines that join into valleys, and fans before the mountains",
+        "",
+        ERODED,
     ),
     plain(
         "blend",

@@ -10,7 +10,8 @@ use relievo::render::Offscreen;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::scene::{Camera, Scene, TerrainSource, TerrainStyle};
 use relievo::terrain::blend::Shading;
-use relievo::terrain::config::{Config, HEIGHT_ONE};
+use relievo::terrain::config::Config;
+use relievo::terrain::export::HeightRange;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::texture::Texture;
 
@@ -32,14 +33,14 @@ pub struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// Draws fields, which show the patches in the order of the fields. `windows` are their heights.
-    pub fn picture(&self, gpu: &Gpu, parts: &[Fields], windows: &[Vec<i32>]) -> Result<RgbaImage, Error> {
+    /// Draws fields, which show the patches in the order of the fields, to a camera that sees all heights of `range`.
+    pub fn picture(&self, gpu: &Gpu, parts: &[Fields], range: HeightRange) -> Result<RgbaImage, Error> {
         let mut scene = self.scene(gpu, parts)?;
         // Draws at twice the size and averages, because edges are jagged with one sample per pixel.
         let twice = self.size.map(|edge| 2 * edge);
         let size = if Offscreen::fits(gpu, twice, COLOR_FORMAT) { twice } else { self.size };
         let target = Offscreen::new(gpu, size, true, 1, false)?;
-        target.draw(&mut scene, self.camera(windows, size), SKY)?;
+        target.draw(&mut scene, self.camera(range, size), SKY)?;
         let image = target.read(gpu)?;
         Ok(if size == self.size {
             image
@@ -66,10 +67,7 @@ impl Look<'_> {
     }
 
     /// A camera that sees the whole grid.
-    fn camera(&self, windows: &[Vec<i32>], size: [u32; 2]) -> Camera {
-        let heights = || windows.iter().flatten();
-        let [low, high] = [heights().min(), heights().max()]
-            .map(|height| height.map_or(0.0, |height| f64::from(*height) / HEIGHT_ONE));
+    fn camera(&self, HeightRange { low, high }: HeightRange, size: [u32; 2]) -> Camera {
         let edge = f64::from(self.config.patch_size - 1) * self.config.terrain_scale;
         let first = self.patches.first().map_or([0.0; 2], |patch| patch.map(|index| f64::from(index) * edge));
         let [east, south] = self.grid.map(|patches| f64::from(patches) * edge);

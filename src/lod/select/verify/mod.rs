@@ -1,5 +1,7 @@
 //! Parity cases of `kernels/lod/select.wgsl`.
 
+mod levels;
+
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Uniform};
 use crate::harness::compare::{Comparison, Judgement, each};
@@ -16,6 +18,7 @@ use crate::shared::lod::object::{
     DECISION_LIST, DECISION_MORPH_SHIFT, MORPH_LEVEL, MORPH_SHIFT, MORPH_STEPS,
 };
 use crate::shared::lod::view::POSITION_SLACK;
+use levels::{before, untouched};
 
 /// How far rounding may move a level or an allowed displacement beyond what it does to positions: kernel and reference
 /// round some 40 times each, by at most 2⁻²³.
@@ -41,10 +44,13 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
         let scene = Scene::new(case, sizes);
         let outputs = Outputs::new(cases.gpu, scene.instances.len())?;
         let mut state = vec![State::Untouched; scene.instances.len()];
-        for (name, view) in frame()? {
+        let count = scene.instances.len() as u32;
+        for (at, (name, view)) in (0..).zip(frame()?) {
             // The last block is the scene's but not the view's, except in the smallest scene.
             let all = scene.blocks.block_objects.len() as u32;
-            let view = SelectView { blocks: all - u32::from(all > 2), ..view };
+            let last_levels = if at == 0 { 0 } else { 3 * count };
+            let blocks = all - u32::from(all > 2);
+            let view = SelectView { blocks, last_levels, is_next: u32::from(at != 2), ..view };
             let (ends, found) = outputs.run(cases.gpu, &scene, &view)?;
             let comparisons = found.compared(&scene, &view, &mut state);
             let name = format!("{} blocks, {name}", view.blocks);
@@ -85,11 +91,13 @@ struct Outputs {
 }
 
 /// What the kernel wrote.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, Default)]
 struct Found {
     allowed: Vec<f32>,
     decisions: Vec<u32>,
     rows: Vec<[f32; 4]>,
+    /// The levels of the last frame.
+    levels: Vec<[f32; 4]>,
     counts: Vec<u32>,
 }
 
@@ -101,7 +109,7 @@ impl Outputs {
         Ok(Self {
             allowed: Poisoned::new(gpu, instances)?,
             decisions: Poisoned::new(gpu, instances)?,
-            rows: Poisoned::new(gpu, 3 * instances)?,
+            rows: Poisoned::new(gpu, 4 * instances)?,
             counts: Poisoned::new(gpu, instances / (BLOCK / OBJECT_LISTS) as usize)?,
         })
     }
@@ -109,6 +117,9 @@ impl Outputs {
     /// Runs the kernel, with the allowed displacements of the views before.
     fn run(&self, gpu: &Gpu, scene: &Scene, view: &SelectView) -> Result<(Ends, Found), Error> {
         self.decisions.poison(gpu)?;
+        if view.last_levels != 0 {
+            self.decisions.buffer.write(gpu, &before(scene.instances.len()))?;
+        }
         self.rows.poison(gpu)?;
         self.counts.poison(gpu)?;
         let buffers = SelectBuffers {
@@ -123,13 +134,14 @@ impl Outputs {
         };
         let job = SelectPass::new(gpu)?.prepare(gpu, buffers)?;
         gpu.run("verify", |encoder| job.record(encoder))?;
-        let mut found = Found { allowed: vec![], decisions: vec![], rows: vec![], counts: vec![] };
+        let mut found = Found::default();
         let ends = vec![
             ("allowed", read(gpu, &self.allowed, &mut found.allowed)?),
             ("decisions", read(gpu, &self.decisions, &mut found.decisions)?),
             ("rows", read(gpu, &self.rows, &mut found.rows)?),
             ("counts", read(gpu, &self.counts, &mut found.counts)?),
         ];
+        found.levels = found.rows.split_off(3 * scene.instances.len());
         Ok((ends, found))
     }
 }
@@ -230,18 +242,19 @@ impl Found {
         scene: &Scene,
         view: &SelectView,
         state: &mut [State],
-    ) -> [(&'static str, Comparison); 4] {
+    ) -> [(&'static str, Comparison); 5] {
         [
             ("decisions", self.compared_decisions(scene, view)),
             ("counts", self.compared_counts(scene, view)),
             ("rows", self.compared_rows(scene, view)),
+            ("levels", self.compared_levels(scene, view)),
             ("allowed", self.compared_allowed(scene, view, state)),
         ]
     }
 
     fn compared_decisions(&self, scene: &Scene, view: &SelectView) -> Comparison {
         let judge = |(index, decision): (usize, &u32)| match scene.object_of(view, index) {
-            None => judgement(*decision == POISON, false),
+            None => judgement(*decision == untouched(view, self.decisions.len(), index), false),
             Some(object) => {
                 let instance = &scene.instances[index];
                 let range = Range::of(view, object, instance);

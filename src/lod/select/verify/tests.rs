@@ -1,7 +1,7 @@
 //! Every comparator of these cases fails on planted faults.
 
 use super::*;
-use crate::lod::select::reference::merged;
+use crate::lod::select::reference::{level_told, merged};
 
 /// What the reference writes.
 fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
@@ -11,6 +11,7 @@ fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
         allowed: allowed.to_vec(),
         decisions: vec![POISON; count],
         rows: vec![[poison; 4]; 3 * count],
+        levels: vec![[poison; 4]; count],
         counts: vec![POISON; count / 4],
     };
     for (index, before) in allowed.iter().enumerate() {
@@ -71,6 +72,7 @@ fn what_is_wrong_of_one_instance_is_seen() {
     assert_eq!(with(&|found| found.rows[3 * seen + 1][3] += 1e-3), ["rows"]);
     assert_eq!(with(&|found| found.rows[3 * seen][0] = f32::NAN), ["rows"]);
     assert_eq!(with(&|found| found.rows[3 * unseen][0] = 0.0), ["rows"]);
+    assert_eq!(with(&|found| found.levels[seen] = [0.0; 4]), ["levels"]);
     assert_eq!(with(&|found| found.allowed[seen] *= 1.02), ["allowed"]);
     assert_eq!(with(&|found| found.allowed[unseen] = 0.0), ["allowed"]);
     assert_eq!(with(&|found| found.allowed[foreign] = -1.0), ["allowed"]);
@@ -92,9 +94,35 @@ fn a_view_that_forgets_the_one_before_is_seen() {
         before.compared(&scene, &first, &mut state);
         found.compared(&scene, &second, &mut state).map(|(_, comparison)| comparison.holds)
     };
-    assert_eq!(compared(&right(&scene, &second, &before.allowed)), [true; 4]);
+    assert_eq!(compared(&right(&scene, &second, &before.allowed)), [true; 5]);
     let forgetful = right(&scene, &SelectView { is_first: 1, ..second }, &before.allowed);
-    assert_eq!(compared(&forgetful), [true, true, true, false]);
+    assert_eq!(compared(&forgetful), [true, true, true, true, false]);
+}
+
+/// What the last frame's decisions tell, and nothing where that frame had no such view.
+#[test]
+fn a_level_of_another_frame_is_seen() {
+    let (scene, view) = scene_and_view();
+    let count = scene.instances.len();
+    let view = SelectView { last_levels: 3 * count as u32, is_next: 1, ..view };
+    let mut found = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
+    for (index, before) in before(count).iter().enumerate() {
+        if scene.object_of(&view, index).is_some() {
+            found.levels[index] = level_told(*before);
+        } else {
+            found.decisions[index] = *before;
+        }
+    }
+    assert_eq!(faults(&scene, &view, &found), Vec::<&str>::new());
+    let other = SelectView { is_next: 0, ..view };
+    assert_eq!(faults(&scene, &other, &found), ["levels"]);
+    let moved = found.levels.iter().position(|level| level[1] > 0.0 && level[1] < 512.0).expect("some");
+    found.levels[moved][1] += 1.0;
+    assert_eq!(faults(&scene, &view, &found), ["levels"]);
+    assert_eq!(
+        (level_told(0), level_told((1 + 2 * 3 + 1) | (500 << 11))),
+        ([0.0; 4], [4.0, 500.0, 0.0, 0.0])
+    );
 }
 
 /// An instance whose sphere touches a plane may be seen or not; only few may.

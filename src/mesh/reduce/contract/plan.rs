@@ -4,7 +4,7 @@ use super::{Contraction, Pairs};
 
 /// A contraction.
 #[derive(Debug, Clone)]
-pub(super) struct Plan {
+pub(in crate::mesh::reduce) struct Plan {
     pub(super) gone: u32,
     pub(super) keep: u32,
     /// Where the point that is kept goes, in the model's units.
@@ -52,8 +52,8 @@ impl Contraction {
     /// The wedges of `other` that can take the place of a point's own. `None` if the point must stay: it is not manifold, it
     /// is on a border and the edge is not, or it has a wedge that the edge does not meet.
     fn leaves(&self, point: u32, other: u32) -> Option<Vec<[u32; 2]>> {
-        let fan = self.mesh.fan(point)?;
-        self.mesh.fan(other)?;
+        let fan = self.solid.mesh.fan(point)?;
+        self.solid.mesh.fan(other)?;
         let shared = fan.triangles.iter().filter(|ring| ring.has(other));
         if shared.clone().count() != if fan.is_closed { 2 } else { 1 } {
             return None;
@@ -62,12 +62,12 @@ impl Contraction {
             let met = shared.clone().filter(|ring| ring.vertex == wedge);
             Some([wedge, met.filter_map(|ring| ring.vertex_of(other)).min()?])
         };
-        self.mesh.wedges(point).into_iter().map(of_wedge).collect()
+        self.solid.mesh.wedges(point).into_iter().map(of_wedge).collect()
     }
 
     /// The wedges of two points that belong to the same side of an edge between them, one by one.
     fn matches(&self, gone: u32, keep: u32) -> Vec<[u32; 2]> {
-        let shared = self.mesh.ring(gone).filter(|ring| ring.has(keep));
+        let shared = self.solid.mesh.ring(gone).filter(|ring| ring.has(keep));
         let mut met: Vec<[u32; 2]> =
             shared.filter_map(|ring| Some([ring.vertex, ring.vertex_of(keep)?])).collect();
         met.sort_unstable();
@@ -80,7 +80,7 @@ impl Contraction {
 
     /// Contracts to the place with the smallest cost.
     fn best(&self, [gone, keep]: [u32; 2], vertices: Vec<[u32; 2]>) -> Plan {
-        let [from, to] = [keep, gone].map(|point| self.places[point as usize]);
+        let [from, to] = [keep, gone].map(|point| self.solid.places[point as usize]);
         let quadric = self.quadrics[gone as usize].sum(&self.quadrics[keep as usize]);
         let middle = (from + to) * 0.5;
         let best = quadric.minimum(middle);
@@ -88,12 +88,12 @@ impl Contraction {
         let place = if best.distance(middle) <= from.distance(to) { best } else { middle };
         let along = (to - from).dot(place - from) / from.distance_squared(to).max(f64::MIN_POSITIVE);
         let fraction = along.clamp(0.0, 1.0) as f32;
-        self.to([gone, keep], self.frame.position(place), fraction, vertices)
+        self.to([gone, keep], self.solid.frame.position(place), fraction, vertices)
     }
 
     fn to(&self, [gone, keep]: [u32; 2], position: [f32; 3], fraction: f32, vertices: Vec<[u32; 2]>) -> Plan {
         let quadric = self.quadrics[gone as usize].sum(&self.quadrics[keep as usize]);
-        let cost = quadric.mean_at(self.frame.of(position));
+        let cost = quadric.mean_at(self.solid.frame.of(position));
         Plan { gone, keep, position, cost, vertices, fraction }
     }
 }

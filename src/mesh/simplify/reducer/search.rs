@@ -14,7 +14,7 @@ const DEVIATION: f64 = 1.0 / 16.0;
 
 /// As [`DEVIATION`], where attributes count too, and added to their cost: theirs is mostly larger, so that a maximum would
 /// not see a spot that is off. Found by trial: with more of it normals suffer.
-const BESIDE_ATTRIBUTES: f64 = 0.25;
+const BESIDE_ATTRIBUTES: f64 = 0.4;
 
 impl Reducer<'_> {
     /// The cheapest collapse of a point, legal or not; of equal ones, that into the lower neighbour.
@@ -30,14 +30,14 @@ impl Reducer<'_> {
         let quadrics = self.quadrics.as_ref().filter(|_| self.topology.kind(point) == Kind::Interior)?;
         let vertex = self.points.only_wedge(point)?;
         let (cost, neighbor) = quadrics.cheapest(&self.points, [point, vertex], self.topology.ring(point))?;
-        Some(Best { neighbor, cost, base: cost, is_second: false })
+        Some(Best { neighbor, cost, base: cost, is_second: false, is_measured: false })
     }
 
     fn find_any(&mut self, point: u32) -> Option<Best> {
         self.neighbors.look(&self.topology, point, &mut self.marks);
         let costs = self.neighbors.all().iter().map(|neighbor| (self.cost(point, neighbor), neighbor.point));
         let (cost, neighbor) = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
-        Some(Best { neighbor, cost, base: cost, is_second: false })
+        Some(Best { neighbor, cost, base: cost, is_second: false, is_measured: false })
     }
 
     /// The cheapest collapse of a point that is legal at the moment.
@@ -50,7 +50,7 @@ impl Reducer<'_> {
         let mut best: Option<Best> = None;
         for (cost, neighbor) in all {
             let cost = f32::from_bits(cost);
-            let candidate = Best { neighbor, cost, base: cost, is_second: true };
+            let candidate = Best { neighbor, cost, base: cost, is_second: true, is_measured: false };
             if best.is_some_and(|best| best.cost <= candidate.cost) {
                 break;
             }
@@ -76,11 +76,14 @@ impl Reducer<'_> {
         cost as f32
     }
 
-    /// Whether a collapse keeps the topology, the orientation of triangles and, where they are limited, the distances
-    /// of samples; and where the cost is that of Melax with normals, whether normals stay alike. If so, the collapse with
-    /// its cost, which counts how far the point would be off the planes of its triangles.
+    /// A collapse with its whole cost, if it is legal.
     pub(super) fn check(&mut self, point: u32, best: Best) -> Option<Best> {
-        let neighbor = best.neighbor;
+        if self.is_allowed(point, best.neighbor) { self.measure(point, best) } else { None }
+    }
+
+    /// Whether a collapse keeps the topology and, where they are limited, the distances of samples; and where the cost is
+    /// that of Melax with normals, whether normals stay alike.
+    pub(super) fn is_allowed(&mut self, point: u32, neighbor: u32) -> bool {
         self.topology.refresh(neighbor);
         let differ = match self.cost {
             Cost::Melax { check_normals: true } => {
@@ -88,21 +91,22 @@ impl Reducer<'_> {
             }
             Cost::Melax { check_normals: false } | Cost::Quadric => false,
         };
-        if differ || !self.topology.keeps_topology(point, neighbor) {
-            return None;
-        }
-        let deviation = deviation(&self.topology, &self.points, point, neighbor)?;
-        if let Some(tracked_samples) = &mut self.tracked_samples
-            && !tracked_samples.keeps_near(&self.topology, &self.points, point, neighbor)
-        {
-            return None;
-        }
-        let Some(quadrics) = &self.quadrics else { return Some(best) };
-        let more = if quadrics.has_attributes() {
-            BESIDE_ATTRIBUTES * deviation
-        } else {
-            (DEVIATION * deviation - f64::from(best.base)).max(0.0)
+        !differ
+            && self.topology.keeps_topology(point, neighbor)
+            && self.tracked_samples.as_mut().is_none_or(|tracked_samples| {
+                tracked_samples.keeps_near(&self.topology, &self.points, point, neighbor)
+            })
+    }
+
+    /// A collapse with its whole cost, which counts how far the point would be off the planes of its triangles. `None` if
+    /// it turns a triangle.
+    pub(super) fn measure(&self, point: u32, best: Best) -> Option<Best> {
+        let deviation = deviation(&self.topology, &self.points, point, best.neighbor)?;
+        let more = match &self.quadrics {
+            None => 0.0,
+            Some(quadrics) if quadrics.has_attributes() => BESIDE_ATTRIBUTES * deviation,
+            Some(_) => (DEVIATION * deviation - f64::from(best.base)).max(0.0),
         };
-        Some(Best { cost: best.base + more as f32, ..best })
+        Some(Best { cost: best.base + more as f32, is_measured: true, ..best })
     }
 }

@@ -14,12 +14,13 @@ impl Topology {
         let span = &mut self.spans[point as usize];
         let ring = &mut self.rings[span.range()];
         let remap = &self.remap;
-        let latest = |mut at: u32| loop {
-            let to = remap[at as usize];
-            if to == at {
-                return at;
+        // Most have collapsed once at most: no step depends on whether they have.
+        let latest = |at: u32| {
+            let mut at = remap[at as usize];
+            while remap[at as usize] != at {
+                at = remap[at as usize];
             }
-            at = to;
+            at
         };
         let mut at = 0;
         let mut len = ring.len();
@@ -65,6 +66,18 @@ impl Topology {
         self.spans[point as usize].len = 0;
         self.kinds[point as usize] = Kind::Locked;
         self.scratch = scratch;
+    }
+
+    /// Merges all points of a part into the first of them, which have no triangles afterwards. All are up to date.
+    pub(crate) fn vanish(&mut self, part: &[u32]) {
+        let Some(first) = part.first() else { return };
+        let mut corners = 0;
+        for &point in part {
+            corners += std::mem::take(&mut self.spans[point as usize].len) as usize;
+            self.remap[point as usize] = *first;
+            self.kinds[point as usize] = Kind::Locked;
+        }
+        self.triangles -= corners / 3;
     }
 
     /// Removes those triangles of a point that have another.

@@ -8,6 +8,9 @@ impl Topology {
     /// of the two points.
     pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32) -> bool {
         let (ring, far) = (self.ring(point), self.ring(neighbor));
+        if [point, neighbor].iter().all(|point| self.kind(*point) == Kind::Interior) {
+            return is_link_of_edge(ring, far);
+        }
         let mut across = [u32::MAX; 2];
         let mut shared = 0;
         for &[next, last] in far {
@@ -38,4 +41,14 @@ impl Topology {
         // Around a point inside the surface, each neighbour is next once.
         !ring.iter().any(|[next, last]| is_common(*next) || !is_inside && is_common(*last))
     }
+}
+
+/// As [`Topology::keeps_topology`], between points inside the surface, of which each neighbour is next once: two neighbours
+/// are common, and the points do not form a tetrahedron with them.
+fn is_link_of_edge(ring: &[[u32; 2]], far: &[[u32; 2]]) -> bool {
+    let mut common = 0;
+    for [next, _] in ring {
+        common += far.iter().map(|[other, _]| u32::from(other == next)).sum::<u32>();
+    }
+    common == 2 && ring.len().max(far.len()) > 3
 }

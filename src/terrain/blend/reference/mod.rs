@@ -11,6 +11,9 @@ use crate::terrain::blend::{Shading, WeightMode};
 use crate::terrain::cover::MapZone;
 use crate::terrain::cover::{Cover, ShaderZone};
 use crate::terrain::normals::reference::unit_normal;
+#[cfg(feature = "verify")]
+pub(crate) use texturing::texel_indices;
+pub(crate) use texturing::tiles_of;
 pub use texturing::{color_variation, triplanar_weights, varied};
 
 /// The tangent of half the angle between a unit normal and the vertical: 0 on level ground, 1 on a wall.
@@ -64,7 +67,6 @@ pub fn zone_fractions(
 pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, place: [u32; 2]) -> Vec<u32> {
     let at = |x: usize, y: usize| window[y * width + x];
     let zones: Vec<ShaderZone> = cover.zones.iter().map(|map_zone| map_zone.zone).collect();
-    let [step, _] = cover.steps();
     let mut pixels = Vec::with_capacity((width - 2) * (width - 2));
     for y in 1..width - 1 {
         for x in 1..width - 1 {
@@ -72,9 +74,7 @@ pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, pla
             let normal = unit_normal(gradient, cover.terrain_scale);
             let facing = Vec3::from(normal).dot(shading.light.into()).max(0.0);
             let light = lambert(shading.ambient, facing);
-            let [east, south] = [(place[0], x), (place[1], y)]
-                .map(|(first, at)| first.wrapping_add((at as u32 - 1).wrapping_mul(step)));
-            let tiles = [east, texturing::tiles_up(at(x, y), cover), south];
+            let tiles = tiles_of(cover, place, [x - 1, y - 1], at(x, y));
             let color = ground_color(cover, &zones, shading.weights, at(x, y), normal, tiles);
             let bytes = color.map(|channel| srgb::byte(channel * light));
             pixels.push(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], 255]));

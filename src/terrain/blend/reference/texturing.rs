@@ -8,34 +8,41 @@ pub fn triplanar_weights([x, y, z]: [f32; 3]) -> [f32; 3] {
     squared.map(|part| part / (squared[0] + squared[1] + squared[2]))
 }
 
-/// A height in 2^-22 tiles, rounded down, without whole multiples of [`TILES_PERIOD`].
-pub(super) fn tiles_up(height: i32, cover: &Cover) -> u32 {
-    ((i64::from(height) * i64::from(cover.steps()[1])) >> 16) as u32
+/// The place in 2^-22 tiles, east, up and south, of a sample so many columns and rows after the one at `place`: without whole
+/// multiples of [`TILES_PERIOD`], and rounded down by height.
+pub(crate) fn tiles_of(cover: &Cover, place: [u32; 2], [columns, rows]: [usize; 2], height: i32) -> [u32; 3] {
+    let [step, per_unit] = cover.steps();
+    let [east, south] = [(place[0], columns), (place[1], rows)]
+        .map(|(first, at)| first.wrapping_add((at as u32).wrapping_mul(step)));
+    [east, ((i64::from(height) * i64::from(per_unit)) >> 16) as u32, south]
 }
 
-/// The linear colour of a zone's texture at a place, and its height.
-pub(super) fn texel(
-    cover: &Cover,
-    zone: &MapZone,
-    normal: [f32; 3],
-    [east, up, south]: [u32; 3],
-) -> [f32; 4] {
-    let texel = |at: [u32; 2]| {
+/// The indices of the texels of a zone at a place: one for each plane.
+pub(crate) fn texel_indices(cover: &Cover, zone: &MapZone, [east, up, south]: [u32; 3]) -> Vec<usize> {
+    let index = |at: [u32; 2]| {
         let edge = 1 << zone.edge_log2;
         let [x, y] = at.map(|tiles| {
             let repeated = u64::from(tiles) * zone.zone.repeats as u64;
             (repeated >> (22 - zone.edge_log2)) as usize % edge
         });
-        cover.texels[zone.first as usize + y * edge + x].map(|channel| f32::from(channel) / 65_535.0)
+        zone.first as usize + y * edge + x
     };
-    let above = texel([east, south]);
-    if !cover.triplanar {
-        return above;
-    }
     let down = up.wrapping_neg();
-    let planes = [above, texel([south, down]), texel([east, down])];
-    let weights = triplanar_weights(normal);
-    std::array::from_fn(|channel| (0..3).map(|plane| weights[plane] * planes[plane][channel]).sum())
+    let planes = [[east, south], [south, down], [east, down]];
+    planes[..if cover.triplanar { 3 } else { 1 }].iter().copied().map(index).collect()
+}
+
+/// The linear colour of a zone's texture at a place, and its height.
+pub(super) fn texel(cover: &Cover, zone: &MapZone, normal: [f32; 3], tiles: [u32; 3]) -> [f32; 4] {
+    let texel = |index: usize| cover.texels[index].map(|channel| f32::from(channel) / 65_535.0);
+    let planes: Vec<[f32; 4]> = texel_indices(cover, zone, tiles).into_iter().map(texel).collect();
+    let [above] = planes[..] else {
+        let weights = triplanar_weights(normal);
+        return std::array::from_fn(|channel| {
+            (0..3).map(|plane| weights[plane] * planes[plane][channel]).sum()
+        });
+    };
+    above
 }
 
 /// The random word of a cell.

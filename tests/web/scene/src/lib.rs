@@ -47,10 +47,10 @@ async fn drawn(gpu: &Gpu, mut world: World) -> Result<Vec<u8>, relievo::Error> {
     Ok(pixels)
 }
 
-/// Hashes of simplified meshes.
+/// Hashes of simplified meshes, and of those that other reducers leave.
 #[wasm_bindgen]
 pub fn collapses() -> Vec<String> {
-    alike::hashes().into()
+    alike::hashes().into_iter().chain(alike::reduced()).collect()
 }
 
 /// What the library says of a write between two words: at once, and once the browser has told the errors so far.

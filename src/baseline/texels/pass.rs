@@ -1,0 +1,64 @@
+//! The GPU pass of `kernels/baseline/texels.wgsl`: loads the texels of colour maps.
+
+use crate::Error;
+use crate::gpu::bindings::baseline::texels as bindings;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::shared::baseline::texels::TexelsParams;
+use crate::terrain::blend::BlendBuffers;
+use crate::terrain::blocks::{Columns, rows};
+use crate::terrain::cover::{Cover, planes};
+
+/// Loads the texels of colour maps.
+#[derive(Debug, Clone)]
+pub(crate) struct TexelsPass {
+    kernel: Kernel,
+}
+
+impl TexelsPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { quads: 1 })? })
+    }
+
+    /// Prepares the loads of the colour maps of a cover; each pixel becomes a word.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for a cover out of bounds, for windows with nothing inside the outermost ring, and for places or an
+    /// output that are too short; [`GpuError`].
+    pub(crate) fn prepare(&self, gpu: &Gpu, cover: &Cover, buffers: BlendBuffers<'_>) -> Result<Job, Error> {
+        let BlendBuffers { windows, places, pixels } = buffers;
+        cover.validate()?;
+        windows.check("windows", 1)?;
+        places.check_holds("places", windows.count as usize)?;
+        pixels.check_holds("pixels", windows.points(1))?;
+        let blocks = Columns { quads: 1, rows: rows(gpu.tuning()) }.blocks(windows);
+        let [tiles_per_sample, tiles_per_unit] = cover.steps();
+        let params = TexelsParams {
+            blocks,
+            in_width: windows.width,
+            zone_count: cover.zones.len() as u32,
+            tiles_per_sample,
+            tiles_per_unit,
+            planes: planes(cover.triplanar),
+        };
+        let zones = Uniform::new(gpu, "zones", &cover.packed_zones())?;
+        let texels = Buffer::from_slice(gpu, "texels", &cover.packed_texels())?;
+        let group = bindings::Group {
+            params: &Uniform::new(gpu, "texels", &params)?,
+            windows: windows.heights.slice().cast(),
+            zones: &zones,
+            texels: texels.slice(),
+            places: places.slice(),
+            words: pixels.slice(),
+        };
+        let step = Step {
+            kernel: self.kernel.clone(),
+            groups: vec![group.bind(gpu, &self.kernel)?],
+            workgroups: blocks.workgroups(gpu, &self.kernel),
+        };
+        Ok(Job::new(gpu, "baseline/texels", vec![step])?)
+    }
+}

@@ -1,0 +1,228 @@
+//! Parts: points that triangles connect. A part vanishes as a whole where the others are so near that the next collapse
+//! would cost more.
+
+mod tree;
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::DVec3;
+
+use super::points::Points;
+use super::topology::Topology;
+use crate::mesh::nearest::precise_nearest_on_triangle;
+use tree::Tree;
+
+/// How much the square of the distance between a part and the others counts: as much as that of a point from the planes of
+/// its triangles counts in the cost of a collapse.
+const FACTOR: f64 = 0.25;
+
+/// A part is not measured before a collapse costs this share of its radius: its own collapses mostly cost less, and a part
+/// of few triangles is measured fast.
+const FIRST: f64 = 0.25;
+
+/// Points that triangles connect.
+struct Part {
+    /// Those that have not collapsed when they were last asked for.
+    points: Vec<u32>,
+    /// Points of parts that have vanished, which are nearest to this one.
+    heritage: Vec<u32>,
+    /// The box around all its points, in each pose.
+    boxes: Vec<[DVec3; 2]>,
+    /// The round in which `points` was brought up to date.
+    updated: u64,
+}
+
+/// The parts of a mesh.
+#[derive(Default)]
+pub(crate) struct Parts {
+    all: Vec<Part>,
+    /// One for each pose.
+    trees: Vec<Tree>,
+    /// The bits of a cost and its part: at least as much as it would cost if that part vanished.
+    waiting: BinaryHeap<Reverse<(u32, u32)>>,
+    /// Number of measured parts.
+    round: u64,
+    /// The points of the part that is measured, each with the part that is nearest, or near enough.
+    heirs: Vec<[u32; 2]>,
+    /// What a search is still to visit.
+    open: Vec<(f64, u32)>,
+}
+
+impl Parts {
+    pub(crate) fn new(points: &Points, topology: &Topology) -> Self {
+        let all = connected(points.len(), topology);
+        if all.len() < 2 {
+            return Self::default();
+        }
+        let part =
+            |of: Vec<u32>| Part { boxes: boxes(points, &of), points: of, heritage: Vec::new(), updated: 0 };
+        let all: Vec<Part> = all.into_iter().map(part).collect();
+        let radius = |part: &Part| {
+            part.boxes.iter().map(|[low, high]| (*high - *low).length() * 0.5).fold(0.0, f64::max)
+        };
+        let first = |part: &Part| (radius(part) * FIRST).powi(2) as f32;
+        let waiting = (0..).zip(&all).map(|(at, part)| Reverse((first(part).to_bits(), at))).collect();
+        let boxes = |pose: usize| all.iter().map(|part| part.boxes[pose]).collect::<Vec<_>>();
+        let trees = (0..points.poses()).map(|pose| Tree::new(&boxes(pose))).collect();
+        Self { trees, all, waiting, round: 0, heirs: Vec::new(), open: Vec::new() }
+    }
+
+    /// Takes the part whose vanishing costs least, if that is no more than this: its points that have not collapsed, and
+    /// the cost. `more` is what the loss of a part costs beside its distance from the others.
+    pub(crate) fn take(
+        &mut self,
+        points: &Points,
+        topology: &mut Topology,
+        more: impl Fn(&[u32]) -> f64,
+        most: f32,
+    ) -> Option<(Vec<u32>, f32)> {
+        loop {
+            let Reverse((bits, part)) = *self.waiting.peek()?;
+            let queued = f32::from_bits(bits);
+            if queued > most {
+                return None;
+            }
+            self.waiting.pop();
+            self.round += 1;
+            self.update(topology, part);
+            let own = std::mem::take(&mut self.all[part as usize].points);
+            let heritage = std::mem::take(&mut self.all[part as usize].heritage);
+            let more = more(&own);
+            // Twice the distance that would do: if that is passed, the part need not be measured again soon.
+            let enough = (f64::from(most) - more).max(0.0) * 4.0 / FACTOR;
+            let cost = (self.distance(points, topology, [&own, &heritage], enough) * FACTOR + more) as f32;
+            let cost = queued.max(cost);
+            let is_first = self.waiting.peek().is_none_or(|Reverse((next, _))| cost.to_bits() <= *next);
+            if cost <= most && (is_first || cost == queued) && cost < f32::INFINITY {
+                for tree in &mut self.trees {
+                    tree.remove(part);
+                }
+                for [point, heir] in self.heirs.drain(..) {
+                    self.all[heir as usize].heritage.push(point);
+                }
+                return Some((own, cost));
+            }
+            self.all[part as usize].points = own;
+            self.all[part as usize].heritage = heritage;
+            if cost < f32::INFINITY {
+                self.waiting.push(Reverse((cost.to_bits(), part)));
+            }
+        }
+    }
+
+    /// The square of the largest distance of these points from all parts that have any of their own, in any pose; infinite
+    /// if no part has. Where it is more than `enough`, something between the two.
+    fn distance(&mut self, points: &Points, topology: &mut Topology, own: [&[u32]; 2], enough: f64) -> f64 {
+        let mut worst = 0.0_f64;
+        for pose in 0..points.poses() {
+            let mut hint = None;
+            self.heirs.clear();
+            for &point in own.into_iter().flatten() {
+                let from = points.position(point, pose);
+                let known = hint.map_or(f64::INFINITY, |part| {
+                    self.nearest_in(points, topology, part, (pose, from), f64::INFINITY)
+                });
+                // Nearer than another point is from the parts: that decides nothing.
+                if known > worst {
+                    let (nearest, part) = self.nearest(points, topology, (pose, from), (known, hint));
+                    (worst, hint) = (worst.max(nearest), part);
+                }
+                if worst > enough {
+                    return worst;
+                }
+                self.heirs.extend(hint.map(|heir| [point, heir]));
+            }
+        }
+        worst
+    }
+
+    /// The square of the distance from the nearest triangle of those parts that have points, and its part; `known` is one
+    /// of them.
+    fn nearest(
+        &mut self,
+        points: &Points,
+        topology: &mut Topology,
+        (pose, from): (usize, DVec3),
+        known: (f64, Option<u32>),
+    ) -> (f64, Option<u32>) {
+        let ((mut best, mut of), mut open) = (known, std::mem::take(&mut self.open));
+        self.trees[pose].start(from, &mut open);
+        while let Some(part) = self.trees[pose].next(from, best, &mut open) {
+            let found = self.nearest_in(points, topology, part, (pose, from), best);
+            if found < best {
+                (best, of) = (found, Some(part));
+            }
+        }
+        self.open = open;
+        (best, of)
+    }
+
+    /// The square of the distance from a part, if it is below `best`.
+    fn nearest_in(
+        &mut self,
+        points: &Points,
+        topology: &mut Topology,
+        part: u32,
+        (pose, from): (usize, DVec3),
+        best: f64,
+    ) -> f64 {
+        let [low, high] = self.all[part as usize].boxes[pose];
+        if from.clamp(low, high).distance_squared(from) >= best {
+            return best;
+        }
+        self.update(topology, part);
+        let mut nearest = best;
+        for &point in &self.all[part as usize].points {
+            for &[next, last] in topology.ring(point) {
+                if point < next && point < last {
+                    let corners = [point, next, last].map(|point| points.position(point, pose));
+                    nearest = nearest.min(precise_nearest_on_triangle(from, corners).distance_squared(from));
+                }
+            }
+        }
+        nearest
+    }
+
+    /// Drops the points of a part that have collapsed, and brings the others up to date, once a round.
+    fn update(&mut self, topology: &mut Topology, part: u32) {
+        let Part { points, updated, .. } = &mut self.all[part as usize];
+        if std::mem::replace(updated, self.round) != self.round {
+            points.retain(|point| !topology.is_gone(*point));
+            points.iter().for_each(|point| topology.refresh(*point));
+        }
+    }
+}
+
+/// The points of each part that has triangles.
+fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
+    let mut is_known = vec![false; count];
+    let mut parts = Vec::new();
+    for first in 0..count as u32 {
+        if is_known[first as usize] || topology.ring(first).is_empty() {
+            continue;
+        }
+        is_known[first as usize] = true;
+        let (mut part, mut at) = (vec![first], 0);
+        while let Some(point) = part.get(at) {
+            // Around a triangle, each point comes next to another.
+            for &[next, _] in topology.ring(*point) {
+                if !std::mem::replace(&mut is_known[next as usize], true) {
+                    part.push(next);
+                }
+            }
+            at += 1;
+        }
+        parts.push(part);
+    }
+    parts
+}
+
+/// The box around the points of a part, in each pose.
+fn boxes(points: &Points, part: &[u32]) -> Vec<[DVec3; 2]> {
+    let in_pose = |pose: usize| {
+        let positions = || part.iter().map(|point| points.position(*point, pose));
+        [positions().fold(DVec3::INFINITY, DVec3::min), positions().fold(DVec3::NEG_INFINITY, DVec3::max)]
+    };
+    (0..points.poses()).map(in_pose).collect()
+}
