@@ -4,6 +4,9 @@ import package::wgsl::terrain::blocks::{Blocks, Thread};
 import package::wgsl::terrain::columns::{centers, column_of, row_at};
 import package::wgsl::terrain::tiles::{MAX_MAP_ZONES, MapZone, PackedZone, plane_tiles, texel_index, tiles_up, unpacked};
 
+// As in the colour map.
+override PLANES: u32 = 3u;
+
 struct TexelsParams {
     blocks: Blocks,
     in_width: u32,
@@ -11,7 +14,6 @@ struct TexelsParams {
     // As in the colour map.
     tiles_per_sample: u32,
     tiles_per_unit: u32,
-    planes: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: TexelsParams;
@@ -46,7 +48,7 @@ fn loaded(heights: vec4<i32>, place: vec2<u32>) -> vec4<u32> {
     var result = vec4<u32>(0u);
     for (var z = 0u; z < params.zone_count; z++) {
         let here = unpacked(zones[z]);
-        for (var plane = 0u; plane < params.planes; plane++) {
+        for (var plane = 0u; plane < PLANES; plane++) {
             result ^= vec4<u32>(
                 texel_of(here, plane, a), texel_of(here, plane, b), texel_of(here, plane, c), texel_of(here, plane, d));
         }

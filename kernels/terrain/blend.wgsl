@@ -1,14 +1,19 @@
 // The top-down colour map of patches: the ground's textures by zones (B equations 3.6 and 3.7) and hill-shading, one sRGB pixel
-// per sample. The kernel reads windows that extend one sample beyond the patch. A thread makes a column of pixels, four wide, so that
-// it reads each zone once for four of them.
+// per sample. The kernel reads windows that extend one sample beyond the patch. A thread makes a column of pixels and
+// reads each zone once for all of them in a row.
 import package::wgsl::terrain::blocks::{Blocks, Thread};
-import package::wgsl::terrain::columns::{centers, column_of, right_of, row_at};
+import package::wgsl::terrain::columns::{Row, centers, column_of, right_of, row_at};
 import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_weight, triplanar_weights, varied};
 import package::wgsl::terrain::tiles::{MAX_MAP_ZONES, MapZone, PackedZone, plane_tiles, texel_index, tiles_up, unpacked};
 import package::wgsl::terrain::zones::{ZoneBlend, steepness, zone_blend, zone_blended, zone_color};
 import package::wgsl::terrain::light::{Light, lit};
+
+// 1 where textures lie on the ground from above alone, 3 where they lie on it from the sides too.
+override PLANES: u32 = 3u;
+// Whether there is a variation of colour. It takes as long as all else, and software adapters run both sides of a branch.
+override VARIED: bool = true;
 
 struct MapParams {
     light: Light,
@@ -20,8 +25,6 @@ struct MapParams {
     // Texture tiles per sample and per unit of height, in 2^-22 tiles.
     tiles_per_sample: u32,
     tiles_per_unit: u32,
-    // 1 where textures lie on the ground from above alone, 3 where they lie on it from the sides too.
-    planes: u32,
     // The strength of the variation of colour.
     variation: f32,
 }
@@ -48,6 +51,14 @@ struct Pixel {
     blend: ZoneBlend,
 }
 
+// Four pixels beside each other.
+struct Quad {
+    a: Pixel,
+    b: Pixel,
+    c: Pixel,
+    d: Pixel,
+}
+
 @compute @workgroup_size(64)
 fn main(thread: Thread) {
     let column = column_of(params.in_width, params.blocks, thread);
@@ -62,9 +73,7 @@ fn main(thread: Thread) {
     for (var y = 0u; y < column.rows; y++) {
         source += params.in_width;
         let below = row_at(source);
-        let along = right_of(here.a, here.b) - here.a;
-        let down = centers(below.a, below.b) - centers(above.a, above.b);
-        store_four(row, column.width, colors(centers(here.a, here.b), along, down, place));
+        store_four(row, column.width, colors(quad(place, above, here, below), min(params.zone_count, 32u * column.rows)));
         row += params.in_width - 2u;
         place.y += params.tiles_per_sample;
         above = here;
@@ -72,49 +81,64 @@ fn main(thread: Thread) {
     }
 }
 
-fn store_four(row: u32, width: u32, colors: vec4<u32>) {
-    pixels[row] = colors.x;
+// The colours of four pixels.
+fn colors(pixels: Quad, zone_count: u32) -> vec4<u32> {
+    var made = pixels;
+    for (var z = 0u; z < zone_count; z++) {
+        made = added(made, unpacked(zones[z]));
+    }
+    return max(vec4<u32>(color(made.a), color(made.b), color(made.c), color(made.d)), vec4<u32>(1u));
+}
+
+// Stores four pixels of a row from `at` on, of which there are `width`.
+fn store_four(at: u32, width: u32, colors: vec4<u32>) {
+    pixels[at] = colors.x;
     if 1u < width {
-        pixels[row + 1u] = colors.y;
+        pixels[at + 1u] = colors.y;
     }
     if 2u < width {
-        pixels[row + 2u] = colors.z;
+        pixels[at + 2u] = colors.z;
     }
     if 3u < width {
-        pixels[row + 3u] = colors.w;
+        pixels[at + 3u] = colors.w;
     }
 }
 
-// The pixels of four samples, given their heights, the differences along x and y, and the place of the first.
-fn colors(heights: vec4<i32>, along: vec4<i32>, down: vec4<i32>, place: vec2<u32>) -> vec4<u32> {
-    let step = vec2<u32>(params.tiles_per_sample, 0u);
-    var a = pixel(heights.x, vec2<i32>(along.x, down.x), place);
-    var b = pixel(heights.y, vec2<i32>(along.y, down.y), place + step);
-    var c = pixel(heights.z, vec2<i32>(along.z, down.z), place + 2u * step);
-    var d = pixel(heights.w, vec2<i32>(along.w, down.w), place + 3u * step);
-    for (var z = 0u; z < params.zone_count; z++) {
-        let here = unpacked(zones[z]);
-        var texel_a = vec4<f32>(0.0);
-        var texel_b = vec4<f32>(0.0);
-        var texel_c = vec4<f32>(0.0);
-        var texel_d = vec4<f32>(0.0);
-        for (var plane = 0u; plane < params.planes; plane++) {
-            texel_a += texel_of(here, a, plane);
-            texel_b += texel_of(here, b, plane);
-            texel_c += texel_of(here, c, plane);
-            texel_d += texel_of(here, d, plane);
-        }
-        a.blend = zone_blended(a.blend, here.zone, a.height, a.steep, texel_a);
-        b.blend = zone_blended(b.blend, here.zone, b.height, b.steep, texel_b);
-        c.blend = zone_blended(c.blend, here.zone, c.height, c.steep, texel_c);
-        d.blend = zone_blended(d.blend, here.zone, d.height, d.steep, texel_d);
+// Four pixels of a row from the one at `place` on, given the rows of samples from the one to the left of it on.
+fn quad(place: vec2<u32>, above: Row, here: Row, below: Row) -> Quad {
+    let heights = centers(here.a, here.b);
+    let along = right_of(here.a, here.b) - here.a;
+    let down = centers(below.a, below.b) - centers(above.a, above.b);
+    let east = vec4<u32>(place.x) + vec4<u32>(0u, 1u, 2u, 3u) * params.tiles_per_sample;
+    return Quad(
+        pixel(heights.x, vec2<i32>(along.x, down.x), vec2<u32>(east.x, place.y)),
+        pixel(heights.y, vec2<i32>(along.y, down.y), vec2<u32>(east.y, place.y)),
+        pixel(heights.z, vec2<i32>(along.z, down.z), vec2<u32>(east.z, place.y)),
+        pixel(heights.w, vec2<i32>(along.w, down.w), vec2<u32>(east.w, place.y)));
+}
+
+// Four pixels after one more zone.
+fn added(quad: Quad, map_zone: MapZone) -> Quad {
+    return Quad(
+        with_zone(quad.a, map_zone), with_zone(quad.b, map_zone), with_zone(quad.c, map_zone), with_zone(quad.d, map_zone));
+}
+
+fn with_zone(before: Pixel, map_zone: MapZone) -> Pixel {
+    var pixel = before;
+    var texel = vec4<f32>(0.0);
+    for (var plane = 0u; plane < PLANES; plane++) {
+        texel += texel_of(map_zone, pixel, plane);
     }
-    return vec4<u32>(color(a), color(b), color(c), color(d));
+    pixel.blend = zone_blended(pixel.blend, map_zone.zone, pixel.height, pixel.steep, texel);
+    return pixel;
 }
 
 fn pixel(height: i32, gradient: vec2<i32>, place: vec2<u32>) -> Pixel {
     let normal = slope_normal(gradient, params.run);
-    let weights = select(vec3<f32>(1.0, 0.0, 0.0), triplanar_weights(normal), params.planes == TRIPLANAR_PLANES);
+    var weights = vec3<f32>(1.0, 0.0, 0.0);
+    if PLANES == TRIPLANAR_PLANES {
+        weights = triplanar_weights(normal);
+    }
     let tiles = vec3<u32>(place.x, tiles_up(height, params.tiles_per_unit), place.y);
     return Pixel(normal, weights, f32(height) / f32(HEIGHT_ONE), steepness(normal), tiles, zone_blend());
 }
@@ -123,14 +147,16 @@ fn pixel(height: i32, gradient: vec2<i32>, place: vec2<u32>) -> Pixel {
 fn texel_of(map_zone: MapZone, pixel: Pixel, plane: u32) -> vec4<f32> {
     let tiles = plane_tiles(plane, pixel.tiles);
     let texel = texels[texel_index(map_zone, tiles)];
-    let weight = triplanar_weight(pixel.weights, plane);
-    return weight * vec4<f32>(unpack2x16unorm(texel.x), unpack2x16unorm(texel.y));
+    let weight = triplanar_weight(pixel.weights, plane) / 65535.0;
+    // Drivers may divide each channel where they unpack normalized numbers.
+    let channels = vec4<u32>(texel.x & 0xffffu, texel.x >> 16u, texel.y & 0xffffu, texel.y >> 16u);
+    return weight * vec4<f32>(vec4<i32>(channels));
 }
 
 // The lit colour of a pixel whose zones have all been added: RGBA, 8 bits each.
 fn color(pixel: Pixel) -> u32 {
     var albedo = zone_color(pixel.blend, params.additive != 0u);
-    if params.variation != 0.0 {
+    if VARIED {
         // 14 bits behind the point fit an f32.
         let tiles = vec2<f32>(pixel.tiles.xz >> vec2<u32>(8u)) / 16384.0;
         albedo = varied(albedo, color_variation(tiles), params.variation);

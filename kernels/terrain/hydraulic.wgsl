@@ -1,82 +1,45 @@
-// One cycle of hydraulic erosion (virtual pipes after Mei, Decaudin and Hu 2007, in integers). Each sample has ground, water,
-// suspended sediment, and the shares of both that leave for its four neighbours. A cycle moves these shares, lets ground creep and
-// banks slide, erodes or deposits, evaporates, rains, and computes the next shares from the surfaces before the cycle, so that it
-// reads one sample around. Whatever moves between two samples is computed from the old state alone. Each window loses its
-// outermost ring of samples.
+// Hydraulic erosion of windows, one cycle of the rule in `wgsl/terrain/pipes.wgsl` after the other. Each cycle takes the outermost
+// ring of samples from a window.
 //
-// A thread makes a column of samples, four wide. It streams the rows of the window through registers, and computes what two
-// samples exchange once for both.
-import package::wgsl::terrain::blocks::{Blocks, Thread, block_of};
-import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
+// A thread makes a column of samples. It streams the rows of the window through registers and, where a dispatch makes two cycles,
+// the rows after the first cycle too. What two samples exchange is written down for each of them; compilers compute it once.
+import package::wgsl::terrain::blocks::{Block, Blocks, Thread, block_of};
 import package::wgsl::terrain::outputs::store_four;
+import package::wgsl::terrain::pipes::{Cells, Exchange, cells_of, cycle, downwards, params, row_of};
 
-// The most water on a sample, in 1/65536 height units.
-const WATER_LIMIT: i32 = 0x4000000;
-// The most sediment in the water of a sample, in 1/65536 height units.
-const SEDIMENT_LIMIT: i32 = 0x4000000;
+// The cycles of a dispatch. 1: a column is four samples wide. 2: it is eight samples wide, and loads and stores, which take most
+// of the time of software adapters, are nearly half as many.
+override CYCLES: u32 = 1u;
 
-struct HydraulicParams {
-    in_width: u32,
-    // 0 in the first cycle, before which there is no water; else 1.
-    wet: i32,
-    // 1 in the last cycle, after which all sediment settles; else 0.
-    settles: i32,
-    // Water that falls on each sample, in 1/65536 height units.
-    rain: i32,
-    // Fractions in 1/32768.
-    evaporation: i32,
-    erosion: i32,
-    deposition: i32,
-    // Sediment for each unit of discharge at a slope of 1, in 1/256.
-    capacity: i32,
-    // The discharge up to which nothing is carried, and the most that spreads to each neighbour, in 1/65536 height units.
-    threshold: i32,
-    // The fall to the next sample at a slope of 1; steeper ones count as this.
-    steepest: i32,
-    // With factor and shift, a fall is a slope in 1/4096: ((fall >> shift) * factor) >> 15.
-    slope_shift: u32,
-    slope_factor: i32,
-    // The largest stable difference between two neighbours.
-    talus: i32,
-    // The fraction of each difference that creeps down, in 1/32768, at most 1/16.
-    creep: i32,
-}
-
-@group(0) @binding(0) var<uniform> params: HydraulicParams;
 @group(0) @binding(1) var<storage, read> windows: array<i32>;
 @group(0) @binding(3) var<storage, read> flows: array<vec4<i32>>;
 @group(0) @binding(4) var<storage, read_write> flow_outputs: array<vec4<i32>>;
-// Four samples wide.
 @group(0) @binding(5) var<uniform> blocks: Blocks;
 
-// Four samples.
-struct Cells {
-    ground: vec4<i32>,
-    water: vec4<i32>,
-    sediment: vec4<i32>,
-    // The shares, in 1/32768, that leave to the west, in the low half, and to the east; to the north, and to the south.
-    across: vec4<i32>,
-    along: vec4<i32>,
+// Eight samples of a row from the first one on; where a column is four wide, the last two have no meaning.
+struct Eight {
+    a: Cells,
+    b: Cells,
 }
 
-// The samples of a row: those to the west of the column, its own, and those to the east.
-struct Row {
-    west: Cells,
-    own: Cells,
-    east: Cells,
+// Twelve samples of a row from the first one on, or the ten in the middle of twelve, of which `c` has two and two without meaning.
+struct Twelve {
+    a: Cells,
+    b: Cells,
+    c: Cells,
 }
 
-// What four pairs of neighbours exchange.
-struct Exchange {
-    // From the first to the second, less what returns.
-    water: vec4<i32>,
-    sediment: vec4<i32>,
-    ground: vec4<i32>,
-    // Water that moves either way.
-    discharge: vec4<i32>,
-    // The water in the share of the first, and of the second, whether there is room for it or not.
-    leaving: vec4<i32>,
-    returning: vec4<i32>,
+// What eight samples of a row exchange with those below.
+struct EightExchange {
+    a: Exchange,
+    b: Exchange,
+}
+
+// What ten do, of which `c` has two.
+struct TenExchange {
+    a: Exchange,
+    b: Exchange,
+    c: Exchange,
 }
 
 @compute @workgroup_size(64)
@@ -85,46 +48,127 @@ fn main(thread: Thread) {
     if !block.there {
         return;
     }
+    if CYCLES == 1u {
+        make_one(block);
+    } else {
+        make_two(block);
+    }
+}
+
+// Makes a column of samples, four wide, by one cycle.
+fn make_one(block: Block) {
     let width = params.in_width - 2u;
     let column = 4u * block.at.x;
     let first = blocks.rows * block.at.y;
     let last = min(first + blocks.rows, width);
     var source = (block.window * params.in_width + first) * params.in_width + column;
     var row = (block.window * width + first) * width;
-    var above = row_at(source).own;
+    var above = eight_at(source);
     source += params.in_width;
-    var here = row_at(source);
-    var north = exchange(above, high(above.along), here.own, low(here.own.along));
+    var here = eight_at(source);
+    var north = downwards(row_of(above.a, above.b).own, row_of(here.a, here.b).own);
     for (var y = first; y < last; y++) {
         source += params.in_width;
-        let below = row_at(source);
-        let own = here.own;
-        let west = exchange(here.west, high(here.west.across), own, low(own.across));
-        let east = beside(west, exchange(own, high(own.across), here.east, low(here.east.across)));
-        let south = exchange(own, high(own.along), below.own, low(below.own.along));
-        let made = cycle(here, above, below.own, Exchanges(west, east, north, south));
-        store_four(row, column, width, made.ground + made.sediment * params.settles);
-        store_flows(row, column, width, made);
+        let below = eight_at(source);
+        let own = row_of(here.a, here.b);
+        let under = row_of(below.a, below.b).own;
+        let south = downwards(own.own, under);
+        store(row, column, width, cycle(own, row_of(above.a, above.b).own, under, north, south, params.rain));
         row += width;
-        above = own;
+        above = here;
         here = below;
         north = south;
     }
 }
 
-// The row that starts at sample `first`.
-fn row_at(first: u32) -> Row {
-    let ground = vec4<i32>(windows[first + 1u], windows[first + 2u], windows[first + 3u], windows[first + 4u]);
-    let before = flow_at(first);
-    let a = flow_at(first + 1u);
-    let b = flow_at(first + 2u);
-    let c = flow_at(first + 3u);
-    let d = flow_at(first + 4u);
-    let behind = flow_at(first + 5u);
-    return Row(
-        cells(vec4<i32>(windows[first], ground.xyz), before, a, b, c),
-        cells(ground, a, b, c, d),
-        cells(vec4<i32>(ground.yzw, windows[first + 5u]), b, c, d, behind));
+// Makes a column of samples, eight wide, by two cycles.
+fn make_two(block: Block) {
+    let width = params.in_width - 4u;
+    let column = 8u * block.at.x;
+    let first = blocks.rows * block.at.y;
+    let rows = min(blocks.rows, width - first);
+    var source = (block.window * params.in_width + first) * params.in_width + column;
+    // The first two of the rows after one cycle make no row after two.
+    var row = (block.window * width + first) * width - 2u * width;
+    var above = twelve_at(source);
+    source += params.in_width;
+    var here = twelve_at(source);
+    var north = ten_downwards(middle(above), middle(here));
+    var next_above: Twelve;
+    var next_here: Twelve;
+    var next_north: EightExchange;
+    for (var y = 0u; y < rows + 2u; y++) {
+        source += params.in_width;
+        let below = twelve_at(source);
+        let south = ten_downwards(middle(here), middle(below));
+        let next_below = after_first(above, here, below, north, south);
+        let next_south = eight_downwards(next_here, next_below);
+        let made = after_second(next_above, next_here, next_below, next_north, next_south);
+        let stored = select(0u, width, y >= 2u);
+        store(row, column, stored, made.a);
+        store(row, column + 4u, stored, made.b);
+        row += width;
+        above = here;
+        here = below;
+        north = south;
+        next_above = next_here;
+        next_here = next_below;
+        next_north = next_south;
+    }
+}
+
+// The ten samples in the middle of twelve.
+fn middle(row: Twelve) -> Twelve {
+    return Twelve(row_of(row.a, row.b).own, row_of(row.b, row.c).own, row_of(row.c, row.c).own);
+}
+
+fn ten_downwards(above: Twelve, below: Twelve) -> TenExchange {
+    return TenExchange(downwards(above.a, below.a), downwards(above.b, below.b), downwards(above.c, below.c));
+}
+
+// What the eight samples in the middle of ten exchange with those below.
+fn eight_downwards(above: Twelve, below: Twelve) -> EightExchange {
+    return EightExchange(
+        downwards(row_of(above.a, above.b).own, row_of(below.a, below.b).own),
+        downwards(row_of(above.b, above.c).own, row_of(below.b, below.c).own));
+}
+
+// The ten samples in the middle of a row of twelve after the first of two cycles.
+fn after_first(above: Twelve, row: Twelve, below: Twelve, north: TenExchange, south: TenExchange) -> Twelve {
+    let over = middle(above);
+    let under = middle(below);
+    return Twelve(
+        cycle(row_of(row.a, row.b), over.a, under.a, north.a, south.a, params.rain),
+        cycle(row_of(row.b, row.c), over.b, under.b, north.b, south.b, params.rain),
+        cycle(row_of(row.c, row.c), over.c, under.c, north.c, south.c, params.rain));
+}
+
+// The eight samples in the middle of a row of ten after the second of two cycles.
+fn after_second(above: Twelve, row: Twelve, below: Twelve, north: EightExchange, south: EightExchange) -> Eight {
+    let over = middle(above);
+    let under = middle(below);
+    return Eight(
+        cycle(row_of(row.a, row.b), over.a, under.a, north.a, south.a, params.second_rain),
+        cycle(row_of(row.b, row.c), over.b, under.b, north.b, south.b, params.second_rain));
+}
+
+fn eight_at(first: u32) -> Eight {
+    return Eight(cells_at(first), cells_at(first + 4u));
+}
+
+fn twelve_at(first: u32) -> Twelve {
+    return Twelve(cells_at(first), cells_at(first + 4u), cells_at(first + 8u));
+}
+
+fn cells_at(first: u32) -> Cells {
+    let a = flow_at(first);
+    let b = flow_at(first + 1u);
+    let c = flow_at(first + 2u);
+    let d = flow_at(first + 3u);
+    return cells_of(
+        vec4<i32>(windows[first], windows[first + 1u], windows[first + 2u], windows[first + 3u]),
+        vec4<i32>(a.x, b.x, c.x, d.x), vec4<i32>(a.y, b.y, c.y, d.y), vec4<i32>(a.z, b.z, c.z, d.z),
+        vec4<i32>(a.w, b.w, c.w, d.w));
 }
 
 fn flow_at(at: u32) -> vec4<i32> {
@@ -132,13 +176,9 @@ fn flow_at(at: u32) -> vec4<i32> {
     return select(vec4<i32>(0), flows[at], vec4<bool>(params.wet != 0));
 }
 
-fn cells(ground: vec4<i32>, a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> Cells {
-    return Cells(
-        ground, vec4<i32>(a.x, b.x, c.x, d.x), vec4<i32>(a.y, b.y, c.y, d.y), vec4<i32>(a.z, b.z, c.z, d.z),
-        vec4<i32>(a.w, b.w, c.w, d.w));
-}
-
-fn store_flows(row: u32, column: u32, width: u32, made: Cells) {
+// Stores the samples `column` to `column` + 3 of a row that starts at `row` and has `width` of them.
+fn store(row: u32, column: u32, width: u32, made: Cells) {
+    store_four(row, column, width, made.ground + made.sediment * params.settles);
     store_flow(row, column, width, vec4<i32>(made.water.x, made.sediment.x, made.across.x, made.along.x));
     store_flow(row, column + 1u, width, vec4<i32>(made.water.y, made.sediment.y, made.across.y, made.along.y));
     store_flow(row, column + 2u, width, vec4<i32>(made.water.z, made.sediment.z, made.across.z, made.along.z));
@@ -149,184 +189,4 @@ fn store_flow(row: u32, column: u32, width: u32, flow: vec4<i32>) {
     if column < width {
         flow_outputs[row + column] = flow;
     }
-}
-
-fn low(words: vec4<i32>) -> vec4<i32> {
-    return words & vec4<i32>(0xffff);
-}
-
-fn high(words: vec4<i32>) -> vec4<i32> {
-    return words >> vec4<u32>(16u);
-}
-
-// What samples `a` exchange with samples `b`, given their shares towards each other.
-fn exchange(a: Cells, a_shares: vec4<i32>, b: Cells, b_shares: vec4<i32>) -> Exchange {
-    let leaving = part(a.water, a_shares);
-    let returning = part(b.water, b_shares);
-    let gone = min(leaving, (vec4<i32>(WATER_LIMIT) - b.water) >> vec4<u32>(2u));
-    let back = min(returning, (vec4<i32>(WATER_LIMIT) - a.water) >> vec4<u32>(2u));
-    let a_room = (vec4<i32>(HEIGHT_LIMIT) - a.ground - a.sediment) >> vec4<u32>(3u);
-    let b_room = (vec4<i32>(HEIGHT_LIMIT) - b.ground - b.sediment) >> vec4<u32>(3u);
-    let silt_gone = min(part(a.sediment, a_shares), min((vec4<i32>(SEDIMENT_LIMIT) - b.sediment) >> vec4<u32>(2u), b_room));
-    let silt_back = min(part(b.sediment, b_shares), min((vec4<i32>(SEDIMENT_LIMIT) - a.sediment) >> vec4<u32>(2u), a_room));
-    let step = a.ground - b.ground;
-    let excess = max(abs(step) - vec4<i32>(params.talus), vec4<i32>(0)) >> vec4<u32>(3u);
-    let sliding = excess + part(abs(step), vec4<i32>(params.creep));
-    let slid = select(-min(sliding, a_room), min(sliding, b_room), step > vec4<i32>(0));
-    return Exchange(gone - back, silt_gone - silt_back, slid, gone + back, leaving, returning);
-}
-
-fn surface(cells: Cells) -> vec4<i32> {
-    return min(cells.ground + cells.water, vec4<i32>(HEIGHT_LIMIT));
-}
-
-// What four samples exchange with their neighbours to the east, given what they exchange with those to the west; of `last` only
-// the fourth counts.
-fn beside(west: Exchange, last: Exchange) -> Exchange {
-    return Exchange(
-        vec4<i32>(west.water.yzw, last.water.w), vec4<i32>(west.sediment.yzw, last.sediment.w),
-        vec4<i32>(west.ground.yzw, last.ground.w), vec4<i32>(west.discharge.yzw, last.discharge.w),
-        vec4<i32>(west.leaving.yzw, last.leaving.w), vec4<i32>(west.returning.yzw, last.returning.w));
-}
-
-// What four samples exchange with their neighbours: those to the west and north are the first of their pairs, those to the east
-// and south the second.
-struct Exchanges {
-    west: Exchange,
-    east: Exchange,
-    north: Exchange,
-    south: Exchange,
-}
-
-// A cycle of the samples of a row, given those above and below them.
-fn cycle(row: Row, above: Cells, below: Cells, sides: Exchanges) -> Cells {
-    let own = row.own;
-    let water = gained(own.water, sides.west.water, sides.east.water, sides.north.water, sides.south.water);
-    let sediment = gained(own.sediment, sides.west.sediment, sides.east.sediment, sides.north.sediment, sides.south.sediment);
-    let slid = gained(own.ground, sides.west.ground, sides.east.ground, sides.north.ground, sides.south.ground);
-    let left = water - part(water, vec4<i32>(params.evaporation)) + vec4<i32>(params.rain);
-    let next_water = min(left, vec4<i32>(WATER_LIMIT));
-
-    let top = surface(own);
-    let west_fall = top - surface(row.west);
-    let east_fall = top - surface(row.east);
-    let north_fall = top - surface(above);
-    let south_fall = top - surface(below);
-    let exchanged = sides.west.discharge + sides.east.discharge + sides.north.discharge + sides.south.discharge;
-    let eighths = leaving(row.west) + leaving(row.east) + leaving(above) + leaving(below);
-    let slope = slope(max(west_fall, east_fall), max(north_fall, south_fall));
-    let carried = capacity(discharge(exchanged >> vec4<u32>(1u), eighths), slope);
-    let deepest = own.ground - min(min(row.west.ground, row.east.ground), min(above.ground, below.ground));
-    let highest = max(max(row.west.ground, row.east.ground), max(above.ground, below.ground)) - own.ground;
-    let lifted = lifted(deepest, highest, water, carried - sediment);
-
-    let spread = min(next_water >> vec4<u32>(5u), vec4<i32>(params.threshold));
-    let shares = next_shares(
-        flux(sides.west.returning, west_fall, spread), flux(sides.east.leaving, east_fall, spread),
-        flux(sides.north.returning, north_fall, spread), flux(sides.south.leaving, south_fall, spread), next_water);
-    return Cells(slid - lifted, next_water, sediment + lifted, shares.across, shares.along);
-}
-
-// An amount after it has been exchanged with all neighbours.
-fn gained(own: vec4<i32>, west: vec4<i32>, east: vec4<i32>, north: vec4<i32>, south: vec4<i32>) -> vec4<i32> {
-    return own + west - east + north - south;
-}
-
-// An eighth of the water that leaves samples, whether there is room for it or not.
-fn leaving(cells: Cells) -> vec4<i32> {
-    return part(cells.water, low(cells.across) + high(cells.across) + low(cells.along) + high(cells.along)) >> vec4<u32>(3u);
-}
-
-// A quarter of the discharge of a sample, and three quarters of the mean of what leaves its neighbours, given in eighths, so that
-// streams are wider than a sample and run in any direction alike.
-fn discharge(own: vec4<i32>, eighths: vec4<i32>) -> vec4<i32> {
-    return (own >> vec4<u32>(2u)) + eighths + (eighths >> vec4<u32>(1u));
-}
-
-// The slope, in 1/4096, of a surface that falls so far to the lower neighbours across and along. It has the length of these two
-// components, by the larger one and three eighths of the smaller one.
-fn slope(across: vec4<i32>, along: vec4<i32>) -> vec4<i32> {
-    let a = slope_of(across);
-    let b = slope_of(along);
-    return max(a, b) + ((min(a, b) * 3) >> vec4<u32>(3u));
-}
-
-fn slope_of(fall: vec4<i32>) -> vec4<i32> {
-    let steps = clamp(fall, vec4<i32>(0), vec4<i32>(params.steepest)) >> vec4<u32>(params.slope_shift);
-    return (steps * params.slope_factor) >> vec4<u32>(15u);
-}
-
-// The sediment that a discharge carries down a slope.
-fn capacity(discharge: vec4<i32>, slope: vec4<i32>) -> vec4<i32> {
-    let rate = min((slope * params.capacity) >> vec4<u32>(8u), vec4<i32>(0x40000));
-    let driving = clamp(discharge - vec4<i32>(params.threshold), vec4<i32>(0), vec4<i32>(WATER_LIMIT));
-    let high = driving >> vec4<u32>(12u);
-    let low = ((driving & vec4<i32>(4095)) * rate) >> vec4<u32>(12u);
-    // Without the one that is subtracted, the largest product would be 2^32.
-    let product = vec4<u32>(high) * vec4<u32>(min(rate, vec4<i32>(0x40000) - (high >> vec4<u32>(14u))));
-    return vec4<i32>(min(product + vec4<u32>(low), vec4<u32>(u32(SEDIMENT_LIMIT))));
-}
-
-// The ground that goes into suspension, or, below 0, the sediment that settles. Ground sinks no deeper than its lowest neighbour,
-// and rises no higher than its highest or the water.
-fn lifted(deepest: vec4<i32>, highest: vec4<i32>, water: vec4<i32>, lacking: vec4<i32>) -> vec4<i32> {
-    let erodes = lacking > vec4<i32>(0);
-    let moving = part(abs(lacking), select(vec4<i32>(params.deposition), vec4<i32>(params.erosion), erodes));
-    let sunk = max(deepest, vec4<i32>(0)) >> vec4<u32>(3u);
-    let risen = max(max(highest, vec4<i32>(0)) >> vec4<u32>(3u), water >> vec4<u32>(2u));
-    return select(-min(moving, risen), min(moving, sunk), erodes);
-}
-
-// The flux of a pipe: it keeps half of what its share was, and takes a sixteenth of the fall. A thirty-second of the water, below
-// the threshold, spreads through each, so that streams do not run along rows and columns.
-fn flux(old: vec4<i32>, fall: vec4<i32>, spread: vec4<i32>) -> vec4<i32> {
-    let pushed = old - (old >> vec4<u32>(1u)) + (fall >> vec4<u32>(4u)) + spread;
-    return clamp(pushed, vec4<i32>(0), vec4<i32>(WATER_LIMIT));
-}
-
-struct Shares {
-    across: vec4<i32>,
-    along: vec4<i32>,
-}
-
-// The shares that leave next: all together give three quarters of the water at most, so that neighbouring samples do not
-// exchange all of it from cycle to cycle.
-fn next_shares(west: vec4<i32>, east: vec4<i32>, north: vec4<i32>, south: vec4<i32>, water: vec4<i32>) -> Shares {
-    let whole = max(max(west + east + north + south, water), vec4<i32>(1));
-    let shift = bits_beyond_16(whole);
-    let inverse = inverse_of(whole >> shift);
-    let bits = vec4<u32>(16u);
-    return Shares(
-        share(west, shift, inverse) | (share(east, shift, inverse) << bits),
-        share(north, shift, inverse) | (share(south, shift, inverse) << bits));
-}
-
-// How many bits more than 16 numbers of 1 to 2^29 - 1 have. The exponent of a float tells it: without its last five bits a number is
-// a float to the bit.
-fn bits_beyond_16(numbers: vec4<i32>) -> vec4<u32> {
-    let exponents = bitcast<vec4<i32>>(vec4<f32>(numbers >> vec4<u32>(5u))) >> vec4<u32>(23u);
-    return vec4<u32>(max(exponents - vec4<i32>(137), vec4<i32>(0)));
-}
-
-fn share(flux: vec4<i32>, shift: vec4<u32>, inverse: vec4<u32>) -> vec4<i32> {
-    return (vec4<i32>(((vec4<u32>(flux) >> shift) * inverse) >> vec4<u32>(16u)) * 3) >> vec4<u32>(2u);
-}
-
-// floor(2^31 / divisor) for divisors of 1 to 65535, exact whatever a device's floats do: integer division is slow where eight
-// lanes share a processor's divider. The first quotient is wrong by 2^-20 of itself and by 2, at most, which leaves a rest below
-// 2^11 + 2 * 65536 in size, whose own quotient is wrong by 1 at most.
-fn inverse_of(divisor: vec4<i32>) -> vec4<u32> {
-    let reciprocal = vec4<f32>(1.0) / vec4<f32>(divisor);
-    let first = vec4<i32>(1073741824.0 * reciprocal) << vec4<u32>(1u);
-    let rest = vec4<i32>(0x80000000u - vec4<u32>(first * divisor));
-    let second = vec4<i32>(floor(vec4<f32>(rest) * reciprocal));
-    let last = rest - second * divisor;
-    let over = select(vec4<i32>(0), vec4<i32>(1), last >= divisor) - select(vec4<i32>(0), vec4<i32>(1), last < vec4<i32>(0));
-    return vec4<u32>(first + second + over);
-}
-
-// floor(amount * share / 32768) for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
-fn part(amounts: vec4<i32>, shares: vec4<i32>) -> vec4<i32> {
-    let bits = vec4<u32>(15u);
-    return (amounts >> bits) * shares + (((amounts & vec4<i32>(32767)) * shares) >> bits);
 }

@@ -240,7 +240,7 @@ impl Generator {
             let buffers = DespikeBuffers { windows: &both[0], features: &features, cropped: &both[1] };
             let job = self.despike.prepare(gpu, despike, buffers)?;
             gpu.run_async("terrain/despike", |encoder| job.record(encoder)).await?;
-            both = after(both, 1);
+            both = after(both, 1, 1);
         }
         both = self.slide(gpu, thermal, both).await?;
         if let (Some(hydraulic), Some(pass)) = (hydraulic, &self.hydraulic) {

@@ -124,13 +124,26 @@ impl Frame {
         draw(&mut pass);
     }
 
-    /// Records a frame of the scene through one view, submits it and reads the picture.
+    /// Records a frame of the scene through one view, submits it and reads the picture of its opaque surfaces.
     pub fn shot(&self, scene: &mut Scene, view: &mut View, renderer: &Renderer) -> RgbaImage {
+        self.shot_of(scene, view, renderer, &[Layer::Color])
+    }
+
+    /// As [`Frame::shot`], of these layers.
+    pub fn shot_of(
+        &self,
+        scene: &mut Scene,
+        view: &mut View,
+        renderer: &Renderer,
+        layers: &[Layer],
+    ) -> RgbaImage {
         let gpu = scene.gpu().clone();
         let mut encoder = gpu.encoder("frame");
         scene.record(&mut encoder, &mut [view]).expect("recorded");
         self.pass(&mut encoder, |pass| {
-            renderer.draw(pass, scene, view, Layer::Color).expect("drawn");
+            for layer in layers {
+                renderer.draw(pass, scene, view, *layer).expect("drawn");
+            }
         });
         gpu.queue().submit([encoder.finish()]);
         self.read(&gpu)

@@ -75,16 +75,8 @@ impl Stage {
         // 0.9999 is what a camera keeps back.
         let pixels = allowed * self.focal / 0.9999;
         self.view.set_quality(Quality { pixels }).expect("valid");
-        let gpu = self.scene.gpu().clone();
-        let mut encoder = gpu.encoder("frame");
-        self.scene.record(&mut encoder, &mut [&mut self.view]).expect("recorded");
-        self.frame.pass(&mut encoder, |pass| {
-            for layer in [Layer::Color, Layer::Transparent] {
-                self.renderer.draw(pass, &self.scene, &self.view, layer).expect("drawn");
-            }
-        });
-        gpu.queue().submit([encoder.finish()]);
-        self.frame.read(&gpu)
+        let layers = [Layer::Color, Layer::Transparent];
+        self.frame.shot_of(&mut self.scene, &mut self.view, &self.renderer, &layers)
     }
 
     /// The displacement from which on level `level` is the one that moves into the next: the error of that next one.

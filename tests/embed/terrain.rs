@@ -223,13 +223,7 @@ fn wireframes_pass_behind_their_prepass() {
     let source = TerrainSource::new(config()).with_patches(&HERE).with_style(TerrainStyle::Wireframe);
     let mut stage = Stage::new(&gpu, &source);
     let plain = stage.shot();
-    let mut encoder = gpu.encoder("frame");
-    stage.scene.record(&mut encoder, &mut [&mut stage.view]).expect("recorded");
-    stage.frame.pass(&mut encoder, |pass| {
-        for layer in [Layer::Depth, Layer::Color] {
-            stage.renderer.draw(pass, &stage.scene, &stage.view, layer).expect("drawn");
-        }
-    });
-    gpu.queue().submit([encoder.finish()]);
-    assert!(stage.frame.read(&gpu) == plain, "another picture behind a prepass");
+    let Stage { scene, view, frame, renderer, .. } = &mut stage;
+    let behind = frame.shot_of(scene, view, renderer, &[Layer::Depth, Layer::Color]);
+    assert!(behind == plain, "another picture behind a prepass");
 }

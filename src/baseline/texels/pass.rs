@@ -11,16 +11,19 @@ use crate::terrain::cover::{Cover, planes};
 /// Loads the texels of colour maps.
 #[derive(Debug, Clone)]
 pub(crate) struct TexelsPass {
-    kernel: Kernel,
+    /// By whether textures lie on the ground from the sides too.
+    kernels: [Kernel; 2],
 }
 
 impl TexelsPass {
-    /// Compiles the pipeline.
+    /// Compiles the pipelines.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { quads: 1 })? })
+        let kernel =
+            |triplanar| bindings::kernel(gpu, &bindings::Constants { quads: 1, planes: planes(triplanar) });
+        Ok(Self { kernels: [kernel(false)?, kernel(true)?] })
     }
 
     /// Prepares the loads of the colour maps of a cover; each pixel becomes a word.
@@ -42,7 +45,6 @@ impl TexelsPass {
             zone_count: cover.zones.len() as u32,
             tiles_per_sample,
             tiles_per_unit,
-            planes: planes(cover.triplanar),
         };
         let zones = Uniform::new(gpu, "zones", &cover.packed_zones())?;
         let texels = Buffer::from_slice(gpu, "texels", &cover.packed_texels())?;
@@ -54,10 +56,11 @@ impl TexelsPass {
             places: places.slice(),
             words: pixels.slice(),
         };
+        let kernel = &self.kernels[usize::from(cover.triplanar)];
         let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: blocks.workgroups(gpu, &self.kernel),
+            kernel: kernel.clone(),
+            groups: vec![group.bind(gpu, kernel)?],
+            workgroups: blocks.workgroups(gpu, kernel),
         };
         Ok(Job::new(gpu, "baseline/texels", vec![step])?)
     }

@@ -13,8 +13,8 @@ use super::topology::Topology;
 use crate::mesh::nearest::precise_nearest_on_triangle;
 use tree::Tree;
 
-/// How much the square of the distance between a part and the others counts: as much as that of a point from the planes of
-/// its triangles counts in the cost of a collapse.
+/// How much the square of the distance between a part and the others counts: a part vanishes for half of the distance, so that it
+/// goes a little before collapses that move the surface as far.
 const FACTOR: f64 = 0.25;
 
 /// A part is not measured before a collapse costs this share of its radius: its own collapses mostly cost less, and a part
@@ -63,8 +63,8 @@ impl Parts {
         };
         let first = |part: &Part| (radius(part) * FIRST).powi(2) as f32;
         let waiting = (0..).zip(&all).map(|(at, part)| Reverse((first(part).to_bits(), at))).collect();
-        let boxes = |pose: usize| all.iter().map(|part| part.boxes[pose]).collect::<Vec<_>>();
-        let trees = (0..points.poses()).map(|pose| Tree::new(&boxes(pose))).collect();
+        let in_pose = |pose: usize| all.iter().map(|part| part.boxes[pose]).collect::<Vec<_>>();
+        let trees = (0..points.poses()).map(|pose| Tree::new(&in_pose(pose))).collect();
         Self { trees, all, waiting, round: 0, heirs: Vec::new(), open: Vec::new() }
     }
 

@@ -92,21 +92,21 @@ impl<'a> Reducer<'a> {
             let next = self.next(&mut queue);
             let most = next.map_or(f32::INFINITY, |(_, best)| best.cost);
             let part = self.take_part(most);
-            let Some(squared) = part.as_ref().map(|part| part.1).or(next.map(|(_, best)| best.cost)) else {
-                return Stopped::Exhausted;
+            let squared = match (&part, next) {
+                (Some((_, squared)), _) => *squared,
+                (None, Some((_, best))) => best.cost,
+                (None, None) => return Stopped::Exhausted,
             };
             let cost = (f64::from(squared).sqrt() / self.points.scale()) as f32;
             if cost > options.error {
                 return Stopped::Error;
             }
             done.error = done.error.max(cost);
-            match (part, next) {
-                (Some((part, _)), next) => {
-                    next.into_iter().for_each(|(point, best)| queue.set(point, Some(best)));
-                    self.vanish(&mut queue, &part, &mut done.moved);
-                }
-                (None, Some((point, best))) => self.step(&mut queue, point, best.neighbor, &mut done.moved),
-                (None, None) => {}
+            if let Some((part, _)) = part {
+                next.into_iter().for_each(|(point, best)| queue.set(point, Some(best)));
+                self.vanish(&mut queue, &part, &mut done.moved);
+            } else if let Some((point, best)) = next {
+                self.step(&mut queue, point, best.neighbor, &mut done.moved);
             }
             let (error, end) = (done.error, done.moved.len() as u32);
             let triangles = self.topology.triangles() as u32;

@@ -11,18 +11,24 @@ use crate::terrain::config::Config;
 use crate::terrain::cover::Cover;
 use crate::terrain::texture::Texture;
 
-/// Measures a batch of 64 patches with four zones.
+/// Measures a batch of 64 patches with four zones: textures from above alone, and all that a cover may have.
 ///
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let plain = Config::new(257, 40.0, "bench")?;
+    case(bench, "257x257 batch 64, 4 zones", &plain)?;
+    let rich = Config { triplanar: true, variation: 0.5, ..plain };
+    case(bench, "257x257 batch 64, 4 zones, triplanar, variation", &rich)
+}
+
+fn case(bench: &mut Bench<'_>, name: &str, config: &Config) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (width, count) = (259_u32, 64);
     let (host, windows) = some_windows(gpu, width, count)?;
     let points = (width as usize - 2).pow(2) * count as usize;
     let pixels = Buffer::new(gpu, "pixels", points)?;
-    let config = Config::new(257, 40.0, "bench")?;
-    let cover = Cover::new(&config, &Texture::of_zones(&config.zones)?)?;
+    let cover = Cover::new(config, &Texture::of_zones(&config.zones)?)?;
     let places = Buffer::from_slice(gpu, "places", &vec![[0_u32; 2]; count as usize])?;
     let shading = Shading::default();
     let buffers = BlendBuffers { windows: &windows, places: &places, pixels: &pixels };
@@ -41,5 +47,5 @@ pub(crate) fn cases(bench: &mut Bench<'_>) -> Result<(), Error> {
             }
         }),
     ];
-    bench.case("257x257 batch 64, 4 zones", (points, "point"), 8 * points as u64, contenders)
+    bench.case(name, (points, "point"), 8 * points as u64, contenders)
 }

@@ -14,7 +14,8 @@ use crate::terrain::fields::Fields;
 /// Draws the top-down colour maps of patches.
 #[derive(Debug, Clone)]
 pub struct BlendPass {
-    kernel: Kernel,
+    /// By whether textures lie on the ground from the sides too, and by whether there is a variation of colour.
+    kernels: [[Kernel; 2]; 2],
 }
 
 /// The buffers of a job of [`BlendPass`].
@@ -29,12 +30,16 @@ pub struct BlendBuffers<'a> {
 }
 
 impl BlendPass {
-    /// Compiles the pipeline.
+    /// Compiles the pipelines.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { quads: 1 })? })
+        let kernel = |triplanar, varied| {
+            bindings::kernel(gpu, &bindings::Constants { quads: 1, planes: planes(triplanar), varied })
+        };
+        let of_planes = |triplanar| Ok::<_, GpuError>([kernel(triplanar, false)?, kernel(triplanar, true)?]);
+        Ok(Self { kernels: [of_planes(false)?, of_planes(true)?] })
     }
 
     /// Prepares the colour maps of windows, which it uploads the cover for.
@@ -68,10 +73,11 @@ impl BlendPass {
             places: places.slice(),
             pixels: pixels.slice(),
         };
+        let kernel = &self.kernels[usize::from(cover.triplanar)][usize::from(cover.variation != 0.0)];
         let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: blocks.workgroups(gpu, &self.kernel),
+            kernel: kernel.clone(),
+            groups: vec![group.bind(gpu, kernel)?],
+            workgroups: blocks.workgroups(gpu, kernel),
         };
         Ok(Job::new(gpu, "terrain/blend", vec![step])?)
     }
@@ -88,7 +94,6 @@ fn params(cover: &Cover, shading: &Shading, in_width: u32, blocks: Blocks) -> Ma
         additive: shading.weights.code(),
         tiles_per_sample,
         tiles_per_unit,
-        planes: planes(cover.triplanar),
         variation: cover.variation,
     }
 }

@@ -12,7 +12,7 @@ pub mod reference;
 #[cfg(feature = "verify")]
 pub(crate) mod verify;
 
-pub use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
+pub use crate::shared::terrain::pipes::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
 #[cfg(feature = "gpu")]
 pub use pass::{HydraulicBuffers, HydraulicPass};
 
@@ -111,6 +111,7 @@ impl Hydraulic {
             wet: (cycle > 0).into(),
             settles: (cycle + 1 == self.iterations).into(),
             rain: if raining { fixed(self.rain * spacing, WATER_LIMIT) } else { 0 },
+            second_rain: 0,
             evaporation: fraction(self.evaporation),
             erosion: fraction(self.erosion),
             deposition: fraction(self.deposition),

@@ -5,6 +5,7 @@ use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::terrain::fields::Fields;
+use crate::terrain::hydraulic::pass::Shape;
 use crate::terrain::hydraulic::reference::{Flow, hydraulic};
 use crate::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use crate::terrain::verify::{LIMIT, random_heights};
@@ -24,9 +25,10 @@ struct Case {
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let rows = [1, 4, 16];
-    for rows in rows {
-        let pass = HydraulicPass::with_rows(cases.gpu, rows)?;
+    let shapes =
+        [[1, 1], [1, 4], [1, 16], [2, 1], [2, 3], [2, 16]].map(|[cycles, rows]| Shape { cycles, rows });
+    for shape in shapes {
+        let pass = HydraulicPass::with_shape(cases.gpu, shape)?;
         for (width, count) in [(3, 2), (23, 3), (66, 3), (67, 2), (130, 2)] {
             for iterations in [1, 2, 5, 10].into_iter().filter(|iterations| 2 * iterations < width) {
                 for (kind, params) in kinds().into_iter().enumerate() {
@@ -35,8 +37,8 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                     let params = Hydraulic { iterations, ..params };
                     let case = Case { width, count, limit, params, terrain_scale };
                     let name =
-                        format!("{width}×{width} × {count}, {iterations} cycles, kind {kind}, {rows} rows");
-                    compare(cases, &pass, &name, &case)?;
+                        format!("{width}×{width} × {count}, {iterations} cycles, kind {kind}, {shape:?}");
+                    compare(cases, (&pass, shape), &name, &case)?;
                 }
             }
         }
@@ -72,7 +74,12 @@ fn kinds() -> [Hydraulic; 4] {
     [ordinary, largest, smallest, Hydraulic { rain: 0.9, capacity: 5.0, evaporation: 0.01, ..ordinary }]
 }
 
-fn compare(cases: &mut Cases<'_>, pass: &HydraulicPass, name: &str, case: &Case) -> Result<(), Error> {
+fn compare(
+    cases: &mut Cases<'_>,
+    (pass, shape): (&HydraulicPass, Shape),
+    name: &str,
+    case: &Case,
+) -> Result<(), Error> {
     let gpu = cases.gpu;
     let Case { width, count, limit, params, terrain_scale } = *case;
     let host = random_heights(width, (width * width * count) as usize, limit);
@@ -89,20 +96,20 @@ fn compare(cases: &mut Cases<'_>, pass: &HydraulicPass, name: &str, case: &Case)
     };
     let job = pass.prepare(gpu, params, terrain_scale, buffers)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
-    let (ground, flow) = expected(host, inner, case);
-    for (at, when) in [(0, "even"), (1, "odd")] {
+    let (ground, flow) = expected(host, inner, case, shape.cycles);
+    for (at, when) in [(0, "an even"), (1, "an odd")] {
         let comparison = heights[at].check(gpu, |actual| exact(actual, &ground[at]))?;
-        cases.add(format!("{name}, heights after {when} cycles"), comparison);
+        cases.add(format!("{name}, heights after {when} number of dispatches"), comparison);
         let words = flow[at].concat();
         let comparison =
             flows[at].check(gpu, |actual: &[Flow]| exact(bytemuck::cast_slice(actual), words.as_slice()))?;
-        cases.add(format!("{name}, flow after {when} cycles"), comparison);
+        cases.add(format!("{name}, flow after {when} number of dispatches"), comparison);
     }
     Ok(())
 }
 
-/// What the cycles leave in the first part of all buffers, over their previous contents.
-fn expected(mut ground: Vec<i32>, inner: usize, case: &Case) -> ([Vec<i32>; 2], [Vec<Flow>; 2]) {
+/// What dispatches of so many cycles leave in the first part of all buffers, over their previous contents.
+fn expected(mut ground: Vec<i32>, inner: usize, case: &Case, cycles: u32) -> ([Vec<i32>; 2], [Vec<Flow>; 2]) {
     let poison = POISON as i32;
     let mut heights = [ground.clone(), vec![poison; inner]];
     let mut flows = [vec![[poison; 4]; inner], vec![[poison; 4]; inner]];
@@ -119,7 +126,10 @@ fn expected(mut ground: Vec<i32>, inner: usize, case: &Case) -> ([Vec<i32>; 2], 
             flow.extend(flows);
         }
         width -= 2;
-        let at = (cycle as usize + 1) % 2;
+        if (cycle + 1) % cycles != 0 && cycle + 1 < case.params.iterations {
+            continue;
+        }
+        let at = (cycle / cycles + 1) as usize % 2;
         heights[at][..ground.len()].copy_from_slice(&ground);
         flows[at][..flow.len()].copy_from_slice(&flow);
     }
