@@ -1,6 +1,6 @@
 // The top-down colour map of patches: the ground's textures by zones (B equations 3.6 and 3.7) and hill-shading, one sRGB pixel
-// per sample. The kernel reads windows that extend one sample beyond the patch. A thread makes a column of pixels and
-// reads each zone once for all of them in a row.
+// per sample. The kernel reads windows that extend one sample beyond the patch. A thread makes a column of pixels, four wide, and
+// reads each zone once for the four of a row.
 import package::wgsl::terrain::blocks::{Blocks, Thread};
 import package::wgsl::terrain::columns::{Row, centers, column_of, right_of, row_at};
 import package::wgsl::terrain::fixed::HEIGHT_ONE;
@@ -12,7 +12,7 @@ import package::wgsl::terrain::light::{Light, lit};
 
 // 1 where textures lie on the ground from above alone, 3 where they lie on it from the sides too.
 override PLANES: u32 = 3u;
-// Whether there is a variation of colour. It takes as long as all else, and software adapters run both sides of a branch.
+// Whether there is a variation of colour. A constant, because software adapters run what a branch leaves out too.
 override VARIED: bool = true;
 
 struct MapParams {
@@ -73,7 +73,9 @@ fn main(thread: Thread) {
     for (var y = 0u; y < column.rows; y++) {
         source += params.in_width;
         let below = row_at(source);
-        store_four(row, column.width, colors(quad(place, above, here, below), min(params.zone_count, 32u * column.rows)));
+        // Every thread has a row. The bound depends on it so that lavapipe does not compile the loop anew for a number of zones.
+        let zone_count = min(params.zone_count, MAX_MAP_ZONES * column.rows);
+        store_four(row, column.width, colors(quad(place, above, here, below), zone_count));
         row += params.in_width - 2u;
         place.y += params.tiles_per_sample;
         above = here;
@@ -87,6 +89,7 @@ fn colors(pixels: Quad, zone_count: u32) -> vec4<u32> {
     for (var z = 0u; z < zone_count; z++) {
         made = added(made, unpacked(zones[z]));
     }
+    // No colour is less than 1; see `held` for what the maximum is there for.
     return max(vec4<u32>(color(made.a), color(made.b), color(made.c), color(made.d)), vec4<u32>(1u));
 }
 

@@ -177,6 +177,7 @@ fn hydraulic() {
     };
     let windows = fields(&gpu, 5, 2);
     assert_eq!(HydraulicPass::flow_points(&windows), 18);
+    assert_eq!([0, 1].map(|cycles| pass.dispatches(cycles)), [0, 1]);
     assert!(prepare(2, 1.0, &windows, [18; 3]).is_ok() && prepare(0, 1.0, &windows, [1; 3]).is_ok());
     refuses(prepare(2, 1.0, &windows, [17, 18, 18]), &["other.heights = [17 elements]", "at least 18"]);
     refuses(prepare(2, 1.0, &windows, [18, 17, 18]), &["flows = [17 elements]", "at least 18"]);
