@@ -1,7 +1,8 @@
 // Windows around the patches of a batch, gathered from the patches themselves and their neighbours. There is
 // one dispatch for each buffer of patches; it writes the samples that come from that buffer. A thread copies a block of a
 // window that comes from one patch.
-import package::wgsl::terrain::blocks::{Blocks, Thread, block_of, span_of};
+import package::wgsl::terrain::blocks::{Blocks, Thread, span_of};
+import package::wgsl::terrain::order::block_in_order;
 import package::wgsl::terrain::outputs::store_four;
 
 struct PadParams {
@@ -23,7 +24,7 @@ const BLOCK_WIDTH: u32 = 16u;
 
 @compute @workgroup_size(64)
 fn main(thread: Thread) {
-    let block = block_of(params.blocks, thread);
+    let block = block_in_order(params.blocks, thread);
     if !block.there {
         return;
     }

@@ -4,7 +4,8 @@
 // A thread owns 4 x CELL_ROWS coarse cells. It streams the coarse rows through registers: of each the values interpolated along
 // the row, from four of these rows the centers of a row of cells, and from four rows of centers the points on the edges between
 // them. It computes the three centers on either side of its cells that other threads compute too.
-import package::wgsl::terrain::blocks::{Thread, block_of};
+import package::wgsl::terrain::blocks::{Thread};
+import package::wgsl::terrain::order::block_in_order;
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, feature_at, feature_bits, injected_lanes};
 import package::wgsl::terrain::level::{
@@ -37,7 +38,7 @@ struct Middles {
 
 @compute @workgroup_size(64)
 fn main(thread: Thread) {
-    let block = block_of(level.blocks, thread);
+    let block = block_in_order(level.blocks, thread);
     if !block.there {
         return;
     }

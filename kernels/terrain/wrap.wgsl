@@ -3,7 +3,8 @@
 // itself, and those to the right of it, below it and diagonally below it. It streams the coarse rows through registers, and
 // computes the diamonds above and to the left of its block a second time.
 import package::wgsl::hash::threefry2x32;
-import package::wgsl::terrain::blocks::{Blocks, Thread, block_of};
+import package::wgsl::terrain::blocks::{Blocks, Thread};
+import package::wgsl::terrain::order::block_in_order;
 import package::wgsl::terrain::fixed::{held, mean_of_sums};
 import package::wgsl::terrain::offset::height_offset;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_at, injected, injected_lanes};
@@ -70,7 +71,7 @@ struct DiamondRow {
 
 @compute @workgroup_size(64)
 fn main(thread: Thread) {
-    let block = block_of(level.blocks, thread);
+    let block = block_in_order(level.blocks, thread);
     if !block.there {
         return;
     }

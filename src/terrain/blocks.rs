@@ -7,10 +7,31 @@ use crate::terrain::fields::Fields;
 /// Rows of a block. Software adapters run few long threads best, hardware many short ones.
 const ROWS_SOFTWARE: u32 = 43;
 const ROWS_HARDWARE: u32 = 4;
+/// The same where neighbouring threads make the blocks of a column.
+const ROWS_DOWNWARDS: u32 = 16;
 
 /// The rows of a block that suit a device.
 pub(crate) fn rows(tuning: Tuning) -> u32 {
     if tuning.wants_long_threads() { ROWS_SOFTWARE } else { ROWS_HARDWARE }
+}
+
+/// The rows of blocks, and which of them neighbouring threads make (`wgsl/terrain/order.wgsl`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Order {
+    /// Rows of a block, at least 1.
+    pub rows: u32,
+    /// Whether neighbouring threads make the blocks of a column, not of a row.
+    pub downwards: bool,
+}
+
+impl Order {
+    pub(crate) const SOFTWARE: Self = Self { rows: ROWS_DOWNWARDS, downwards: true };
+    pub(crate) const HARDWARE: Self = Self { rows: ROWS_HARDWARE, downwards: false };
+
+    /// What suits a device.
+    pub(crate) fn of(tuning: Tuning) -> Self {
+        if tuning.wants_long_threads() { Self::SOFTWARE } else { Self::HARDWARE }
+    }
 }
 
 /// What a thread makes of windows (`wgsl/terrain/columns.wgsl`).
@@ -18,24 +39,26 @@ pub(crate) fn rows(tuning: Tuning) -> u32 {
 pub(crate) struct Columns {
     /// Vectors of four samples along a row: 1 or 4.
     pub quads: u32,
-    /// Rows, at least 1.
-    pub rows: u32,
+    /// Its rows, and the order of threads.
+    pub order: Order,
 }
 
 impl Columns {
+    const SOFTWARE: Self = Self { quads: 4, order: Order::SOFTWARE };
+    const HARDWARE: Self = Self { quads: 1, order: Order::HARDWARE };
+
     /// What suits a device.
     pub(crate) fn of(tuning: Tuning) -> Self {
-        Self { quads: if tuning.wants_long_threads() { 4 } else { 1 }, rows: rows(tuning) }
+        if tuning.wants_long_threads() { Self::SOFTWARE } else { Self::HARDWARE }
     }
 
     /// What suits software adapters, and hardware.
     #[cfg(feature = "verify")]
-    pub(crate) const ALL: [Self; 2] =
-        [Self { quads: 4, rows: ROWS_SOFTWARE }, Self { quads: 1, rows: ROWS_HARDWARE }];
+    pub(crate) const ALL: [Self; 2] = [Self::SOFTWARE, Self::HARDWARE];
 
     /// The blocks of windows that lose their outermost ring.
     pub(crate) fn blocks(self, windows: &Fields) -> Blocks {
-        Blocks::of_squares(windows.cropped(1).width, 4 * self.quads, self.rows, windows.count)
+        Blocks::of_squares(windows.cropped(1).width, 4 * self.quads, self.order.rows, windows.count)
     }
 }
 

@@ -1,5 +1,5 @@
 // Which outputs a thread makes. The outputs of a window are cut into blocks, a thread makes one, and neighbouring threads make
-// neighbouring blocks of a row.
+// neighbouring blocks of a row or of a column.
 
 // How the outputs of all windows are cut.
 struct Blocks {
@@ -28,12 +28,18 @@ struct Block {
     at: vec2<u32>,
 }
 
-// The block of a thread.
+// The block of a thread where neighbouring threads make the blocks of a row.
 fn block_of(blocks: Blocks, thread: Thread) -> Block {
+    return block_in_line(blocks, thread, false);
+}
+
+// The block of a thread where neighbouring threads make the blocks of a row or, if `downwards`, of a column.
+fn block_in_line(blocks: Blocks, thread: Thread, downwards: bool) -> Block {
     let index = (thread.group.y * thread.groups.x + thread.group.x) * 64u + thread.lane;
     let in_window = index % blocks.per_window;
-    let at = vec2<u32>(in_window % blocks.per_row, in_window / blocks.per_row);
-    return Block(index < blocks.count, index / blocks.per_window, at);
+    let line = select(blocks.per_row, blocks.per_window / blocks.per_row, downwards);
+    let at = vec2<u32>(in_window % line, in_window / line);
+    return Block(index < blocks.count, index / blocks.per_window, select(at, at.yx, downwards));
 }
 
 // A part of a row or column of blocks that does not cross from a rim into what lies inside it.

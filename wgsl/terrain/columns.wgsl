@@ -1,7 +1,8 @@
 // Windows of which a thread makes a column of outputs, a sample smaller on every side than the window: 4 * QUADS samples wide
 // and `blocks.rows` long. It streams the rows of the window through registers, so that it loads each of them once, four samples
 // at a time and wherever a row starts.
-import package::wgsl::terrain::blocks::{Blocks, Thread, block_of};
+import package::wgsl::terrain::blocks::{Blocks, Thread};
+import package::wgsl::terrain::order::block_in_order;
 
 // Vectors of four outputs along a row of a column: 1, or 4 for software adapters, which loads per output cost most.
 override QUADS: u32 = 1u;
@@ -32,7 +33,7 @@ struct Row {
 }
 
 fn column_of(in_width: u32, blocks: Blocks, thread: Thread) -> Column {
-    let block = block_of(blocks, thread);
+    let block = block_in_order(blocks, thread);
     let at = block.at * vec2<u32>(4u * QUADS, blocks.rows);
     let width = in_width - 2u;
     return Column(

@@ -5,7 +5,7 @@ use crate::gpu::bindings::baseline::texels as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::baseline::texels::TexelsParams;
 use crate::terrain::blend::BlendBuffers;
-use crate::terrain::blocks::{Columns, rows};
+use crate::terrain::blocks::{Columns, Order};
 use crate::terrain::cover::{Cover, planes};
 
 /// Loads the texels of colour maps.
@@ -21,8 +21,10 @@ impl TexelsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel =
-            |triplanar| bindings::kernel(gpu, &bindings::Constants { quads: 1, planes: planes(triplanar) });
+        let Order { downwards, .. } = Order::of(gpu.tuning());
+        let kernel = |triplanar| {
+            bindings::kernel(gpu, &bindings::Constants { quads: 1, downwards, planes: planes(triplanar) })
+        };
         Ok(Self { kernels: [kernel(false)?, kernel(true)?] })
     }
 
@@ -37,7 +39,7 @@ impl TexelsPass {
         windows.check("windows", 1)?;
         places.check_holds("places", windows.count as usize)?;
         pixels.check_holds("pixels", windows.points(1))?;
-        let blocks = Columns { quads: 1, rows: rows(gpu.tuning()) }.blocks(windows);
+        let blocks = Columns { quads: 1, order: Order::of(gpu.tuning()) }.blocks(windows);
         let [tiles_per_sample, tiles_per_unit] = cover.steps();
         let params = TexelsParams {
             blocks,

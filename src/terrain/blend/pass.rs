@@ -6,7 +6,7 @@ use crate::gpu::bindings::terrain::blend as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::blend::MapParams;
 use crate::shared::terrain::light::Light;
-use crate::terrain::blocks::{Blocks, Columns, rows};
+use crate::terrain::blocks::{Blocks, Columns, Order};
 use crate::terrain::config::HEIGHT_ONE;
 use crate::terrain::cover::{Cover, planes};
 use crate::terrain::fields::Fields;
@@ -16,6 +16,7 @@ use crate::terrain::fields::Fields;
 pub struct BlendPass {
     /// By whether textures lie on the ground from the sides too, and by whether there is a variation of colour.
     kernels: [[Kernel; 2]; 2],
+    order: Order,
 }
 
 /// The buffers of a job of [`BlendPass`].
@@ -35,11 +36,20 @@ impl BlendPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_order(gpu, Order::of(gpu.tuning()))
+    }
+
+    /// As [`BlendPass::new`], with blocks in the given order.
+    pub(crate) fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
         let kernel = |triplanar, varied| {
-            bindings::kernel(gpu, &bindings::Constants { quads: 1, planes: planes(triplanar), varied })
+            let downwards = order.downwards;
+            bindings::kernel(
+                gpu,
+                &bindings::Constants { quads: 1, downwards, planes: planes(triplanar), varied },
+            )
         };
         let of_planes = |triplanar| Ok::<_, GpuError>([kernel(triplanar, false)?, kernel(triplanar, true)?]);
-        Ok(Self { kernels: [of_planes(false)?, of_planes(true)?] })
+        Ok(Self { kernels: [of_planes(false)?, of_planes(true)?], order })
     }
 
     /// Prepares the colour maps of windows, which it uploads the cover for.
@@ -60,7 +70,7 @@ impl BlendPass {
         windows.check("windows", 1)?;
         places.check_holds("places", windows.count as usize)?;
         pixels.check_holds("pixels", windows.points(1))?;
-        let columns = Columns { quads: 1, rows: rows(gpu.tuning()) };
+        let columns = Columns { quads: 1, order: self.order };
         let blocks = columns.blocks(windows);
         let uniform = Uniform::new(gpu, "colour map", &params(cover, shading, windows.width, blocks))?;
         let zones = Uniform::new(gpu, "zones", &cover.packed_zones())?;

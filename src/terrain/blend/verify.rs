@@ -7,18 +7,20 @@ use crate::harness::compare::{LeftOut, levels};
 use crate::harness::poison::Poisoned;
 use crate::terrain::blend::reference::{blend, totals};
 use crate::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
+use crate::terrain::blocks::Order;
 use crate::terrain::config::{Slope, Zone};
 use crate::terrain::cover::Cover;
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::random_heights;
 
-/// One case: its zones, how many samples and windows, and the distance between samples.
+/// One case: its zones, how many samples and windows, and the order of threads.
 struct Ground {
     name: String,
     cover: Cover,
     weights: WeightMode,
     width: u32,
     count: u32,
+    order: Order,
 }
 
 /// The cases cover one to 32 zones, overlapping and apart, both weight modes, heights beyond every zone, slopes, height maps,
@@ -29,10 +31,15 @@ struct Ground {
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
     for weights in [WeightMode::Normalized, WeightMode::Additive] {
         for (zone_count, gap) in [(1, 0.0), (2, 50.0), (4, 0.0), (4, 9.0), (32, -1.0)] {
-            for (width, count) in [(3, 1), (66, 3), (67, 2)] {
+            for (width, count, order) in
+                [(3, 1, Order::HARDWARE), (66, 3, Order::SOFTWARE), (67, 2, Order::HARDWARE)]
+            {
                 let zones: Vec<_> = (0..zone_count).map(|zone| striped(zone, gap)).collect();
                 let name = format!("{zone_count} zones {gap} apart, {weights:?}");
-                compare(cases, Ground { name, cover: Cover::random(&zones, 0), weights, width, count })?;
+                compare(
+                    cases,
+                    Ground { name, cover: Cover::random(&zones, 0), weights, width, count, order },
+                )?;
             }
         }
         for (triplanar, variation) in [(false, 0.0), (true, 0.0), (false, 1.0), (true, 0.4)] {
@@ -41,7 +48,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let cover = Cover { triplanar, variation, ..Cover::random(&zones, edge_log2) };
                 let name =
                     format!("slopes, {} texels, {triplanar}, {variation}, {weights:?}", 1 << edge_log2);
-                compare(cases, Ground { name, cover, weights, width: 67, count: 2 })?;
+                compare(cases, Ground { name, cover, weights, width: 67, count: 2, order: Order::SOFTWARE })?;
             }
         }
     }
@@ -50,7 +57,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let Ground { name, cover, weights, width, count } = ground;
+    let Ground { name, cover, weights, width, count, order } = ground;
     let heights = random_heights(width, (width * width * count) as usize, 60 << 16);
     let windows = Fields::new(gpu, "windows", width, count)?;
     windows.heights.write(gpu, &heights)?;
@@ -60,7 +67,7 @@ fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
         (0..count as i32).map(|index| cover.place([index, -3 * index - 1], width - 2)).collect();
     let place_buffer = Buffer::from_slice(gpu, "places", &places)?;
     let buffers = BlendBuffers { windows: &windows, places: &place_buffer, pixels: &output.buffer };
-    let job = BlendPass::new(gpu)?.prepare(gpu, &cover, &shading, buffers)?;
+    let job = BlendPass::with_order(gpu, order)?.prepare(gpu, &cover, &shading, buffers)?;
     gpu.run("verify", |encoder| job.record(encoder))?;
     let maps = || heights.chunks_exact((width * width) as usize).zip(&places);
     let expected: Vec<u32> =

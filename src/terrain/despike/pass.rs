@@ -39,7 +39,11 @@ impl DespikePass {
 
     /// As [`DespikePass::new`], with the given columns.
     pub(crate) fn with_columns(gpu: &Gpu, with_features: bool, columns: Columns) -> Result<Self, GpuError> {
-        let constants = bindings::Constants { quads: columns.quads, features: with_features.into() };
+        let constants = bindings::Constants {
+            quads: columns.quads,
+            downwards: columns.order.downwards,
+            features: with_features.into(),
+        };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
     }
 

@@ -4,7 +4,7 @@ use super::{Surround, validate};
 use crate::gpu::bindings::terrain::pad as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::pad::{BLOCK_WIDTH, ELSEWHERE, NONE, PadParams};
-use crate::terrain::blocks::{Blocks, rows};
+use crate::terrain::blocks::{Blocks, Order};
 use crate::terrain::fields::{Fields, Place, places};
 use crate::{Error, InputError};
 
@@ -12,6 +12,7 @@ use crate::{Error, InputError};
 #[derive(Debug, Clone)]
 pub struct PadPass {
     kernel: Kernel,
+    order: Order,
 }
 
 impl PadPass {
@@ -20,7 +21,13 @@ impl PadPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
+        Self::with_order(gpu, Order::of(gpu.tuning()))
+    }
+
+    /// As [`PadPass::new`], with blocks in the given order.
+    pub(crate) fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
+        let constants = bindings::Constants { downwards: order.downwards };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, order })
     }
 
     /// Prepares windows that extend `apron` samples beyond their patches, one for each of `surrounds`. It reads
@@ -45,7 +52,7 @@ impl PadPass {
         check_surrounds(surrounds, places.len())?;
         windows.check_holds("windows", surrounds.len() * (width as usize).pow(2))?;
         let tiles: Vec<_> = surrounds.iter().flatten().map(|tile| tile.map(|patch| places[patch])).collect();
-        let blocks = Blocks::with_rim([apron, size], BLOCK_WIDTH, rows(gpu.tuning()), surrounds.len() as u32);
+        let blocks = Blocks::with_rim([apron, size], BLOCK_WIDTH, self.order.rows, surrounds.len() as u32);
         let uniform = Uniform::new(gpu, "pad", &PadParams { blocks, size, apron })?;
         let mut steps = Vec::new();
         for (part, patches) in parts.iter().enumerate() {

@@ -7,6 +7,7 @@ use crate::gpu::Buffer;
 use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
+use crate::terrain::blocks::Order;
 use crate::terrain::fields::Fields;
 use crate::terrain::pad::reference::pad;
 use crate::terrain::pad::{PadPass, surrounds};
@@ -18,13 +19,17 @@ use crate::terrain::verify::{LIMIT, config, random_heights};
 /// # Errors
 /// What the device reports.
 pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let pass = PadPass::new(cases.gpu)?;
+    [Order::SOFTWARE, Order::HARDWARE].into_iter().try_for_each(|order| in_order(cases, order))
+}
+
+fn in_order(cases: &mut Cases<'_>, order: Order) -> Result<(), Error> {
+    let pass = PadPass::with_order(cases.gpu, order)?;
     let grid: Vec<[i32; 2]> = (0..9).map(|i| [i % 3, i / 3 - 2]).collect();
     let holes = vec![[0, 0], [1, 0], [2, 1], [0, 2], [1, 1]];
     for border in [json!("wrap"), json!({"blend": 1})] {
         for (patches, most) in [(&grid, 9), (&grid, 2), (&holes, 5), (&holes, 2)] {
             for shape in [[3, 0], [3, 2], [5, 4], [33, 1], [33, 32], [65, 9]] {
-                case(cases, &pass, &border, (patches, most), shape)?;
+                case(cases, (&pass, order), &border, (patches, most), shape)?;
             }
         }
     }
@@ -34,7 +39,7 @@ pub(crate) fn cases(cases: &mut Cases<'_>) -> Result<(), Error> {
 /// Compares patches that are stored with at most `most` to a buffer.
 fn case(
     cases: &mut Cases<'_>,
-    pass: &PadPass,
+    (pass, order): (&PadPass, Order),
     border: &serde_json::Value,
     (patches, most): (&[[i32; 2]], usize),
     [size, apron]: [u32; 2],
@@ -56,7 +61,8 @@ fn case(
     let expected: Vec<i32> = (around.iter())
         .flat_map(|around| pad(size as usize, apron as usize, around.map(|tile| tile.map(field))))
         .collect();
-    let mut name = format!("{size}×{size} × {} patches, {border}, apron {apron}", patches.len());
+    let mut name =
+        format!("{size}×{size} × {} patches, {border}, apron {apron}, {} rows", patches.len(), order.rows);
     if parts.len() > 1 {
         name += &format!(", {} buffers", parts.len());
     }

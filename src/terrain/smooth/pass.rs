@@ -3,7 +3,7 @@
 use crate::gpu::bindings::terrain::smooth as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::level::Level;
-use crate::terrain::blocks::Blocks;
+use crate::terrain::blocks::{Blocks, Order};
 use crate::terrain::config::{Config, Interpolation, Offset};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fixed::FeatureMode;
@@ -21,7 +21,7 @@ pub struct SmoothPass {
     /// The kernel that starts from the base lattice, and the one for all later levels.
     first: Kernel,
     next: Kernel,
-    cell_rows: u32,
+    order: Order,
     with_features: bool,
 }
 
@@ -31,34 +31,35 @@ impl SmoothPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, Error> {
-        let is_software = gpu.tuning().wants_long_threads();
-        let cell_rows = if is_software { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
-        Self::with_rows(gpu, offset, features, cell_rows)
+        let order = Order::of(gpu.tuning());
+        let rows = if order.downwards { CELL_ROWS_SOFTWARE } else { CELL_ROWS_HARDWARE };
+        Self::with_order(gpu, offset, features, Order { rows, ..order })
     }
 
-    /// As [`SmoothPass::new`], with so many rows of coarse cells per thread.
+    /// As [`SmoothPass::new`], with the given order of threads and rows of coarse cells.
     ///
     /// # Errors
     /// [`InputError`] for no rows; what the driver's compiler reports.
-    pub(crate) fn with_rows(
+    pub(crate) fn with_order(
         gpu: &Gpu,
         offset: Offset,
         features: Option<FeatureMode>,
-        cell_rows: u32,
+        order: Order,
     ) -> Result<Self, Error> {
-        if cell_rows == 0 {
-            return Err(InputError::new("cell_rows", 0, "must be at least 1").into());
+        if order.rows == 0 {
+            return Err(InputError::new("order.rows", 0, "must be at least 1").into());
         }
         let kernel = |first: bool| {
             let constants = bindings::Constants {
-                cell_rows,
+                downwards: order.downwards,
+                cell_rows: order.rows,
                 first,
                 distribution: offset.code(),
                 features: features.map_or(0, FeatureMode::code),
             };
             bindings::kernel(gpu, &constants)
         };
-        Ok(Self { first: kernel(true)?, next: kernel(false)?, cell_rows, with_features: features.is_some() })
+        Ok(Self { first: kernel(true)?, next: kernel(false)?, order, with_features: features.is_some() })
     }
 
     /// Allocates scratch for `count` windows with `apron`.
@@ -145,7 +146,7 @@ impl SmoothPass {
             middle_range: 0,
             edge_range: config.edge_range(level as u32),
             base_range: config.level_range(0),
-            blocks: Blocks::of_squares(cells, 4, self.cell_rows, count),
+            blocks: Blocks::of_squares(cells, 4, self.order.rows, count),
             fine_features: features.grid(level + 1),
             base_features: features.grid(0),
         }

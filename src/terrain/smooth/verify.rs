@@ -6,6 +6,7 @@ use crate::Error;
 use crate::harness::Cases;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
+use crate::terrain::blocks::Order;
 use crate::terrain::config::{Config, Interpolation, Offset};
 use crate::terrain::features::{FeatureFile, Features};
 use crate::terrain::fixed::FeatureMode;
@@ -107,10 +108,13 @@ fn clamped(cases: &mut Cases<'_>) -> Result<(), Error> {
 }
 
 fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
-    for rows in [1, 2, 3, 4, 8, 16, 64] {
-        let pass = SmoothPass::with_rows(cases.gpu, Offset::Signed, None, rows)?;
+    let orders = [1, 2, 3, 4, 8, 16, 64]
+        .into_iter()
+        .flat_map(|rows| [false, true].map(|downwards| Order { rows, downwards }));
+    for order in orders {
+        let pass = SmoothPass::with_order(cases.gpu, Offset::Signed, None, order)?;
         for size in [3, 9, 33, 129] {
-            let config = plain(size, &format!("{rows} rows"), 0)?;
+            let config = plain(size, &format!("{order:?}"), 0)?;
             check(cases, &pass, &config, &Features::default(), &[[0, 0], [-1, 4]], 1)?;
         }
     }

@@ -3,14 +3,23 @@
 use crate::Error;
 use crate::InputError;
 use crate::gpu::bindings::terrain::wrap as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Tuning, Uniform};
 use crate::shared::terrain::wrap::WrapLevel;
-use crate::terrain::blocks::{Blocks, rows};
+use crate::terrain::blocks::{Blocks, Order};
 use crate::terrain::config::{Border, Config, Offset, PATCH_EDGE};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
+
+/// Rows of coarse points of a block on software adapters. Four blocks make the 129 rows of a patch of 257².
+const ROWS_SOFTWARE: u32 = 33;
+
+/// The order of blocks that suits a device.
+fn order_of(tuning: Tuning) -> Order {
+    let order = Order::of(tuning);
+    if order.downwards { Order { rows: ROWS_SOFTWARE, ..order } } else { order }
+}
 
 /// What generation writes.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +36,7 @@ pub struct WrapBuffers<'a> {
 pub struct WrapPass {
     first: Kernel,
     next: Kernel,
+    order: Order,
     with_features: bool,
 }
 
@@ -36,12 +46,26 @@ impl WrapPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
+        Self::with_order(gpu, offset, features, order_of(gpu.tuning()))
+    }
+
+    /// As [`WrapPass::new`], with blocks in the given order.
+    pub(crate) fn with_order(
+        gpu: &Gpu,
+        offset: Offset,
+        features: Option<FeatureMode>,
+        order: Order,
+    ) -> Result<Self, GpuError> {
         let kernel = |first: bool| {
-            let features = features.map_or(0, FeatureMode::code);
-            let constants = bindings::Constants { first, distribution: offset.code(), features };
+            let constants = bindings::Constants {
+                first,
+                downwards: order.downwards,
+                distribution: offset.code(),
+                features: features.map_or(0, FeatureMode::code),
+            };
             bindings::kernel(gpu, &constants)
         };
-        Ok(Self { first: kernel(true)?, next: kernel(false)?, with_features: features.is_some() })
+        Ok(Self { first: kernel(true)?, next: kernel(false)?, order, with_features: features.is_some() })
     }
 
     /// Prepares the generation of `count` patches. `feature_capacity` is the largest number of injected points.
@@ -75,7 +99,7 @@ impl WrapPass {
             let (fine, coarse) =
                 if (levels - level) % 2 == 1 { (output, scratch) } else { (scratch, output) };
             let kernel = if level == 0 { &self.first } else { &self.next };
-            let blocks = Blocks::of_squares(widths[level], 4, rows(gpu.tuning()), count);
+            let blocks = Blocks::of_squares(widths[level], 4, self.order.rows, count);
             let params = WrapLevel {
                 blocks,
                 corners: config.fixed_corners().into(),
