@@ -1,9 +1,10 @@
 //! Terrain between two recipes: pictures, normals and ground are those of the heights in between.
 
+use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use relievo::InputError;
 use relievo::gpu::Gpu;
-use relievo::scene::{Scene, TerrainSource};
+use relievo::scene::{Camera, Scene, TerrainSource};
 use relievo::terrain::config::Config;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::generator::Generator;
@@ -12,8 +13,9 @@ use relievo::terrain::morph::reference::morph;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::thermal::Thermal;
 
-use crate::frame::device;
+use crate::frame::{device, devices};
 use crate::stage::Stage;
+use crate::world::SIZE;
 
 const HERE: [[i32; 2]; 4] = [[-1, -1], [0, -1], [-1, 0], [0, 0]];
 
@@ -83,6 +85,52 @@ fn a_time_looks_as_its_heights() {
     drop(encoder);
     stage.scene.invalidate().expect("starts afresh");
     assert!(stage.shot() == pictures[3], "what was dropped is missing");
+}
+
+/// Patches whose heights enter the view are drawn, though a view that looks over the plain saw none of them, and leave it again.
+#[test]
+fn mountains_rise_into_view() {
+    let gpu = device();
+    let [plain, mountains] = [("plain", 0.01), ("mountains", 300.0)]
+        .map(|(seed, height)| Recipe::new(Config::new(33, height, seed).expect("valid")));
+    let land = |time| {
+        let source = TerrainSource::from(plain.clone()).with_patches(&HERE);
+        Stage::new(&gpu, &source.with_target(mountains.clone(), Morph { time }))
+    };
+    let mut risen = land(1.0);
+    let places = (-31..32).flat_map(|x| (-31..32).map(move |z| [f64::from(x), f64::from(z)]));
+    let peak = places
+        .map(|[x, z]| DVec3::new(x, risen.height(x, z).expect("inside"), z))
+        .max_by(|one, other| one.y.total_cmp(&other.y))
+        .expect("some")
+        .as_vec3();
+    assert!(peak.y > 60.0, "no mountains: {peak}");
+    let mut stage = land(0.0);
+    for view in [&mut risen.view, &mut stage.view] {
+        let eye = peak + Vec3::new(0.0, 0.0, 60.0);
+        view.set(Camera::looking_at(eye, peak, 0.3, [0.5, 400.0], SIZE)).expect("a camera");
+    }
+    let expected = risen.shot();
+    let sky = stage.shot();
+    assert!(sky.pixels().all(|pixel| pixel == sky.get_pixel(0, 0)), "the plain is in view");
+    assert!(expected != sky, "the peak is not in view");
+    assert!(at(&mut stage, 1.0) == expected, "mountains that rose look different");
+    assert!(at(&mut stage, 0.0) == sky, "something stayed");
+}
+
+/// A scene that is made again on another device, since the first was lost, has the heights of the last time.
+#[test]
+fn a_lost_device_keeps_the_time() {
+    let [lost, second] = devices();
+    lost.device().on_uncaptured_error(std::sync::Arc::new(|_| ()));
+    let Stage { mut scene, land, mut view, .. } = Stage::new(&lost, &source(0.25));
+    scene.morph_terrain(land, Morph { time: 0.7 }).expect("has a target");
+    lost.device().destroy();
+    scene.rebuild(&second).expect("a device");
+    view.rebuild(&scene).expect("a device");
+    let mut expected = Stage::new(&second, &source(0.7));
+    let renderer = expected.frame.renderer(&second, &scene);
+    assert!(expected.frame.shot(&mut scene, &mut view, &renderer) == expected.shot(), "another picture");
 }
 
 #[test]
