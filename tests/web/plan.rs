@@ -29,7 +29,7 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("terrain/height", "LEVELS", &[1.0, 2.0]),
     ("terrain/hydraulic", "CYCLES", &[1.0, 2.0]),
     ("terrain/normals", "QUADS", &[1.0, 4.0]),
-    ("terrain/smooth", "CELL_ROWS", &[8.0, 43.0]),
+    ("terrain/smooth", "CELL_ROWS", &[8.0, 22.0]),
     ("terrain/smooth", "DISTRIBUTION", &[0.0, 1.0, 2.0]),
     ("terrain/smooth", "FEATURES", &[0.0, 1.0, 2.0]),
     ("terrain/thermal", "QUADS", &[1.0, 4.0]),

@@ -12,7 +12,7 @@ use crate::{Error, InputError};
 
 /// Rows of coarse cells per thread, which computes six rows of centers more. Software adapters run few long threads best,
 /// hardware many short ones.
-const CELL_ROWS_SOFTWARE: u32 = 43;
+const CELL_ROWS_SOFTWARE: u32 = 22;
 const CELL_ROWS_HARDWARE: u32 = 8;
 
 /// Heights of smooth `seamless` windows. A pass is compiled for one distribution and one mode of injection.
