@@ -128,8 +128,8 @@ fn added(quad: Quad, map_zone: MapZone) -> Quad {
 
 fn with_zone(before: Pixel, map_zone: MapZone) -> Pixel {
     var pixel = before;
-    var texel = vec4<f32>(0.0);
-    for (var plane = 0u; plane < PLANES; plane++) {
+    var texel = texel_of(map_zone, pixel, 0u);
+    for (var plane = 1u; plane < PLANES; plane++) {
         texel += texel_of(map_zone, pixel, plane);
     }
     pixel.blend = zone_blended(pixel.blend, map_zone.zone, pixel.height, pixel.steep, texel);
@@ -167,9 +167,11 @@ fn color(pixel: Pixel) -> u32 {
     return pack4x8unorm(vec4<f32>(srgb(lit(params.light, pixel.normal, albedo)), 1.0));
 }
 
+// sRGB's curve within 1/100 of a level of 255. 1.055 x^(1/2.4) − 0.055 is a polynomial in the fourth root of x whose largest error
+// from 0.0031308 to 1 is the least, 3.4e-5: software adapters take six times as long for a power.
 fn srgb(linear: vec3<f32>) -> vec3<f32> {
     let bounded = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
-    let low = 12.92 * bounded;
-    let high = 1.055 * pow(bounded, vec3<f32>(1.0 / 2.4)) - vec3<f32>(0.055);
-    return select(high, low, bounded <= vec3<f32>(0.0031308));
+    let root = sqrt(sqrt(bounded));
+    let high = (((0.08132998 * root - 0.33550157) * root + 1.12268163) * root + 0.19613586) * root - 0.06461154;
+    return select(high, 12.92 * bounded, bounded <= vec3<f32>(0.0031308));
 }

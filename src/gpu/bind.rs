@@ -56,6 +56,7 @@ impl<const N: usize> SeenAs<f32> for [f32; N] {}
 impl SeenAs<[u32; 4]> for u32 {}
 impl SeenAs<[f32; 4]> for f32 {}
 impl SeenAs<[i32; 4]> for i32 {}
+impl SeenAs<[i32; 4]> for [i32; 2] {}
 // Bits.
 impl SeenAs<[u32; 4]> for [f32; 4] {}
 impl<const N: usize> SeenAs<[u32; 4]> for [[f32; 4]; N] {}

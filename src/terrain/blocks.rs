@@ -60,6 +60,13 @@ impl Columns {
     pub(crate) fn blocks(self, windows: &Fields) -> Blocks {
         Blocks::of_squares(windows.cropped(1).width, 4 * self.quads, self.order.rows, windows.count)
     }
+
+    /// As [`Columns::blocks`], where outputs at the end of a row that make no whole vector belong to the last column.
+    pub(crate) fn blocks_of_whole_vectors(self, windows: &Fields) -> Blocks {
+        let width = windows.cropped(1).width;
+        let columns = (width / 4).max(1).div_ceil(self.quads);
+        Blocks::new([columns, width.div_ceil(self.order.rows)], self.order.rows, windows.count)
+    }
 }
 
 impl Blocks {

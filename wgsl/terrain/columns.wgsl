@@ -43,22 +43,50 @@ fn column_of(in_width: u32, blocks: Blocks, thread: Thread) -> Column {
         width - at.x, select(0u, min(blocks.rows, width - at.y), block.there));
 }
 
-// The row that starts at sample `first`.
-fn row_at(first: u32) -> Row {
+// The vectors that hold a row of the column, of which it starts in the first.
+struct RowWords {
+    a: vec4<i32>,
+    b: vec4<i32>,
+    c: vec4<i32>,
+    // These have no meaning if QUADS is 1.
+    d: vec4<i32>,
+    e: vec4<i32>,
+    f: vec4<i32>,
+    // The number of samples before its start, 0 to 3.
+    before: u32,
+}
+
+// The vectors of the row that starts at sample `first`.
+fn row_words_at(first: u32) -> RowWords {
     let at = first / 4u;
-    let a = windows[at];
-    let b = windows[at + 1u];
-    let c = windows[at + 2u];
     if QUADS == 1u {
         let none = vec4<i32>(0);
-        return Row(starting(first, a, b), starting(first, b, c), none, none, none);
+        return RowWords(windows[at], windows[at + 1u], windows[at + 2u], none, none, none, first & 3u);
     }
-    let d = windows[at + 3u];
-    let e = windows[at + 4u];
-    let f = windows[at + 5u];
+    return RowWords(
+        windows[at], windows[at + 1u], windows[at + 2u], windows[at + 3u], windows[at + 4u], windows[at + 5u], first & 3u);
+}
+
+// The row that starts at sample `first`.
+fn row_at(first: u32) -> Row {
+    let words = row_words_at(first);
+    return Row(
+        starting(first, words.a, words.b), starting(first, words.b, words.c), starting(first, words.c, words.d),
+        starting(first, words.d, words.e), starting(first, words.e, words.f));
+}
+
+// The row without its first samples, 0 to 3 of them.
+fn row_from(words: RowWords, skipped: u32) -> Row {
+    let first = words.before + skipped;
+    let later = first > 3u;
+    let a = select(words.a, words.b, later);
+    let b = select(words.b, words.c, later);
+    let c = select(words.c, words.d, later);
+    let d = select(words.d, words.e, later);
+    let e = select(words.e, words.f, later);
     return Row(
         starting(first, a, b), starting(first, b, c), starting(first, c, d), starting(first, d, e),
-        starting(first, e, f));
+        starting(first, e, words.f));
 }
 
 // Four consecutive samples, of which the first is number `first` % 4 of eight.
@@ -67,6 +95,11 @@ fn starting(first: u32, before: vec4<i32>, behind: vec4<i32>) -> vec4<i32> {
     let near = select(before, vec4<i32>(before.yzw, behind.x), odd);
     let far = select(behind.xy, behind.yz, odd);
     return select(near, vec4<i32>(near.zw, far), (first & 2u) != 0u);
+}
+
+// The row from its fifth sample on.
+fn next_four(row: Row) -> Row {
+    return Row(row.b, row.c, row.d, row.e, row.e);
 }
 
 // The samples at four outputs, given the vector of their left neighbours and the next one of the row.

@@ -51,13 +51,14 @@ fn zone_weight(zone: Zone, height: f32, steep: f32) -> f32 {
     let range = zone.max - zone.min;
     let rise = clamp(zone.rise.x * steep + zone.rise.y, 0.0, 1.0);
     let fall = clamp(zone.fall.x * steep + zone.fall.y, 0.0, 1.0);
-    return max(0.0, (range - abs(height - zone.max)) / range) * (rise * fall);
+    return max(0.0, (range - abs(height - zone.max)) * (1.0 / range)) * (rise * fall);
 }
 
 // The factor of a weight by the height of a texel, 0 to 1: what stands high in its texture shows first where zones meet.
 // 1 without height blending; otherwise down to 16^-4 in the deepest texels.
 fn zone_prominence(zone: Zone, texel_height: f32) -> f32 {
-    let reduced = 1.0 + zone.height_blend * (0.9375 * texel_height - 0.9375);
+    let depth = 0.9375 * zone.height_blend;
+    let reduced = (1.0 - depth) + depth * texel_height;
     let squared = reduced * reduced;
     return squared * squared;
 }

@@ -70,8 +70,8 @@ impl Shading {
 /// The largest difference allowed between a channel of a colour map and the reference: one level of 255. Places in textures and
 /// the cells of the variation are whole numbers, and everything else is continuous. A weight carries at most 2^-16: by height
 /// some 2^-23 · (|height| + |max|) / (max − min), and by slope, whose transitions are at least a degree wide, 115 times the 2^-20
-/// of the steepness. The colour carries that divided by the sum of weights, and the 28 ULP of `pow`. Where the sum is at least
-/// [`MIN_TOTAL`], that is far less than a level, but the rounding to 8 bits may go either way.
+/// of the steepness. The colour carries that divided by the sum of weights, and the 1/100 level of the polynomial for sRGB's curve.
+/// Where the sum is at least [`MIN_TOTAL`], that is far less than a level, but the rounding to 8 bits may go either way.
 pub const MAP_BOUND: u8 = 1;
 
 /// The sum of weights below which [`MAP_BOUND`] does not hold, unless it is 0.

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::gpu::Buffer;
 use crate::harness::Cases;
-use crate::harness::compare::{LeftOut, levels};
+use crate::harness::compare::{Comparison, LeftOut, levels};
 use crate::harness::poison::Poisoned;
 use crate::terrain::blend::reference::{blend, totals};
 use crate::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
@@ -12,6 +12,9 @@ use crate::terrain::config::{Slope, Zone};
 use crate::terrain::cover::Cover;
 use crate::terrain::fields::Fields;
 use crate::terrain::verify::random_heights;
+
+/// One pixel in this many may differ: rounding changes 1 in 50, and a curve that is 1/20 of a level wrong 1 in 10.
+const MOST_DIFFER: usize = 20;
 
 /// One case: its zones, how many samples and windows, and the order of threads.
 struct Ground {
@@ -85,10 +88,21 @@ fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
             .map(|((actual, expected), left_out)| if *left_out { *expected } else { *actual })
             .collect();
         // What was written beyond the output is judged by `output`.
-        levels(&judged, &expected, MAP_BOUND).leaving_out(left_out)
+        nearly_equal(&judged, &expected).leaving_out(left_out)
     })?;
     cases.add(name, compared);
     Ok(())
+}
+
+/// Compares within [`MAP_BOUND`]; most pixels must be equal.
+fn nearly_equal(actual: &[u32], expected: &[u32]) -> Comparison {
+    let values = expected.len();
+    let differ = actual.iter().zip(expected).filter(|(actual, expected)| actual != expected).count();
+    if differ > 1 + values / MOST_DIFFER {
+        let fault = format!("{differ} of {values} pixels differ, and 1 in {MOST_DIFFER} may");
+        return Comparison::failed(values, fault);
+    }
+    levels(actual, expected, MAP_BOUND)
 }
 
 fn striped(zone: u32, gap: f64) -> Zone {

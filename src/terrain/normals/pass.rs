@@ -48,15 +48,16 @@ impl NormalsPass {
         windows.check("windows", 1)?;
         gradients.check_holds("gradients", windows.points(1))?;
         normals.check_holds("normals", 3 * windows.points(1))?;
-        let blocks = self.columns.blocks(windows);
+        let blocks = self.columns.blocks_of_whole_vectors(windows);
         let run = (2.0 * terrain_scale * HEIGHT_ONE) as f32;
-        let params = NormalsParams { blocks, in_width: windows.width, run };
+        let points = windows.points(1) as u32;
+        let params = NormalsParams { blocks, in_width: windows.width, points, run };
         let uniform = Uniform::new(gpu, "normals", &params)?;
         let group = bindings::Group {
             params: &uniform,
             windows: windows.heights.slice().cast(),
-            gradients: gradients.slice(),
-            normals: normals.slice(),
+            gradients: gradients.slice().cast(),
+            normals: normals.slice().cast(),
         };
         let step = Step {
             kernel: self.kernel.clone(),
