@@ -89,8 +89,9 @@ fn colors(pixels: Quad, zone_count: u32) -> vec4<u32> {
     for (var z = 0u; z < zone_count; z++) {
         made = added(made, unpacked(zones[z]));
     }
-    // No colour is less than 1; see `held` for what the maximum is there for.
-    return max(vec4<u32>(color(made.a), color(made.b), color(made.c), color(made.d)), vec4<u32>(1u));
+    // No colour is less than the number of zones; see `held` for what the maximum is there for. Compilers know that none is less than
+    // a constant.
+    return max(vec4<u32>(color(made.a), color(made.b), color(made.c), color(made.d)), vec4<u32>(params.zone_count));
 }
 
 // Stores four pixels of a row from `at` on, of which there are `width`.

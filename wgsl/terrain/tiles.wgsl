@@ -51,5 +51,6 @@ fn texel_index(map_zone: MapZone, tiles: vec2<u32>) -> u32 {
     let edge_log2 = map_zone.edge_log2;
     let mask = vec2<u32>((1u << edge_log2) - 1u);
     let at = ((tiles * u32(map_zone.zone.repeats)) >> vec2<u32>(TILE_BITS - edge_log2)) & mask;
-    return map_zone.first + (at.y << edge_log2) + at.x;
+    // No index is greater; see `held` for what the minimum is there for: lavapipe also loads lane by lane.
+    return min(map_zone.first + (at.y << edge_log2) + at.x, 0x7fffffffu);
 }
