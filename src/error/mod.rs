@@ -28,6 +28,21 @@ impl InputError {
     }
 }
 
+/// The longest text of a value in a message, in characters.
+const SHOWN: usize = 60;
+
+/// A JSON value as messages show it.
+pub(crate) fn shown(value: &serde_json::Value) -> String {
+    let text = match value {
+        serde_json::Value::String(text) => text.clone(),
+        value => value.to_string(),
+    };
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
+}
+
 /// Any failure of the crate.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {

@@ -6,9 +6,7 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
 use crate::InputError;
-
-/// The longest text of a value in a message.
-const SHOWN: usize = 60;
+use crate::error::shown;
 
 /// A JSON value in which no object has a field twice.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,15 +127,9 @@ impl<'a> At<'a> {
         if self.path.is_empty() { "scene" } else { &self.path }
     }
 
-    fn shown(&self) -> String {
-        let text = match self.value {
-            Value::String(text) => text.clone(),
-            value => value.to_string(),
-        };
-        match text.char_indices().nth(SHOWN) {
-            Some((end, _)) => format!("{}…", &text[..end]),
-            None => text,
-        }
+    /// The value as messages show it.
+    pub fn shown(&self) -> String {
+        shown(self.value)
     }
 
     /// The value itself.

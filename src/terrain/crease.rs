@@ -23,7 +23,8 @@ pub struct Crease {
 /// configuration's. Level 0 needs `coarseLevels` 0: its columns are the patch's edges then.
 ///
 /// # Errors
-/// [`InputError`] for a configuration that is out of bounds or not `seamless`, for one with `coarseLevels`, and for no seed.
+/// [`InputError`] for a configuration that is out of bounds or not `seamless`, for one with
+/// `coarseLevels`, for flat terrain, and for no seed.
 pub fn creases(config: &Config, seeds: &[String]) -> Result<Vec<Crease>, InputError> {
     config.validate()?;
     if config.border != Border::Seamless {
@@ -35,6 +36,9 @@ pub fn creases(config: &Config, seeds: &[String]) -> Result<Vec<Crease>, InputEr
     }
     if config.coarse_levels != 0 {
         return Err(InputError::new("coarseLevels", config.coarse_levels, "must be 0"));
+    }
+    if config.scale_factor == 0.0 {
+        return Err(InputError::new("scaleFactor", 0, "must be above 0: flat terrain bends nowhere"));
     }
     if seeds.is_empty() {
         return Err(InputError::new("seeds.len", 0, "must be at least 1"));
@@ -110,6 +114,8 @@ mod tests {
         };
         let (linear, smooth) = (largest(Interpolation::Linear), largest(Interpolation::Smooth));
         assert!(linear > 1.5 && smooth <= 1.15, "linear {linear}, smooth {smooth}");
+        let flat = Config::new(257, 0.0, "").expect("valid");
+        assert_eq!(creases(&flat, &seeds).expect_err("no bends").path, "scaleFactor");
     }
 
     #[test]

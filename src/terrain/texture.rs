@@ -57,7 +57,7 @@ impl Texture {
     pub fn of_zones(zones: &[Zone]) -> Result<Vec<Self>, Error> {
         let texture = |(index, zone): (usize, &Zone)| match zone.texture_at(index) {
             ZoneTexture::BuiltIn(kind) => Ok(Self::built_in(kind)),
-            ZoneTexture::File(path) => Self::from_file(&path),
+            ZoneTexture::File(path) => Self::from_file(&path).map_err(|error| unreadable(index, error)),
         };
         zones.iter().enumerate().map(texture).collect()
     }
@@ -86,5 +86,18 @@ impl Texture {
             mips.push(level.iter().flat_map(encoded).collect());
         }
         Self { mips }
+    }
+}
+
+/// The error of a texture's file, with what the zone may name in its place.
+fn unreadable(zone: usize, error: Error) -> Error {
+    match error {
+        Error::File { path, reason } => {
+            let names = BuiltIn::names();
+            let reason =
+                format!("{reason}; zones[{zone}].texture must be the path of an image, or one of {names}");
+            Error::File { path, reason }
+        }
+        other => other,
     }
 }

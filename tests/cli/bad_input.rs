@@ -110,6 +110,12 @@ fn arguments() {
     refused(GOOD, &["--thermal-after", "5000"], &["thermalAfter.iterations", "5000", "1024"]);
     refused(GOOD, &["--hydraulic", "5000"], &["hydraulic.iterations", "5000", "2048"]);
     refused(GOOD, &["--hydraulic", "5", "--rain", "-1"], &["hydraulic.rain", "-1", "0..=1"]);
+    refused(GOOD, &["--rain", "0.02"], &["rain", "0.02", "--hydraulic"]);
+    let eroded = GOOD.replace('}', r#", "hydraulic": {"iterations": 1}}"#);
+    refused(&eroded, &["--rain", "1.5"], &["hydraulic.rain", "1.5", "0..=1"]);
+    refused(GOOD, &["--hydraulic", "-1"], &["--hydraulic", "'-1'"]);
+    let marble = GOOD.replace('}', r#", "zones": [{"min": 0, "max": 1, "texture": "marble"}]}"#);
+    refused(&marble, &[], &["marble", "zones[0].texture", "sand, grass"]);
     for (field, value, bound) in [
         ("iterations", "2049", "0..=2048"),
         ("iterations", "1.5", "whole number"),

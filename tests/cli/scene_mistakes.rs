@@ -40,7 +40,9 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/terrain/patches/1", "[0, 0.5]", "terrain.patches[1][1] = 0.5", "whole number"),
     // Ranges.
     ("/terrain/config/hydraulic", r#"{"rain": 2}"#, "terrain.config.hydraulic.rain = 2", "0..=1"),
-    ("/terrain/config/thermalAfter", "{}", "terrain.config.thermalAfter", "iterations"),
+    ("/terrain/config/thermalAfter", "{}", "terrain.config.thermalAfter = {}", "iterations"),
+    ("/terrain/config/variation", r#""a""#, "terrain.config.variation = a", "must be a number"),
+    ("/terrain/config/hue", "3", "terrain.config.hue = 3", "unknown field"),
     ("/terrain/config/patchSize", "18", "terrain.config.patchSize = 18", "2^n + 1"),
     ("/terrain/config/zones", "[]", "terrain.config.zones", "1 to 32"),
     ("/terrain/patches", "[]", "terrain.patches.len = 0", "1..=4096"),

@@ -87,7 +87,7 @@ fn how_zones_lie_on_the_ground_is_bounded() {
         (r#""heightBlend": 1.5"#, ["zones[1].heightBlend = 1.5: ", "0..=1"]),
         (r#""repeats": 0"#, ["zones[1].repeats = 0: ", "1..=16"]),
         (r#""repeats": 17"#, ["zones[1].repeats = 17: ", "1..=16"]),
-        (r#""repeats": 2.5"#, ["zones[1].repeats", "2.5 must be a whole number in 1..=16"]),
+        (r#""repeats": 2.5"#, ["zones[1].repeats = 2.5: ", "must be a whole number in 1..=16"]),
     ] {
         refused(&[("zones", &zones(more))], &parts);
     }
@@ -118,7 +118,7 @@ fn fields_that_are_missing_doubled_or_unknown_are_named() {
         refused(&[(field, "")], &["missing field", &format!("`{field}`")]);
     }
     refused(&[("patchsize", "33")], &["unknown field `patchsize`", "`patchSize`"]);
-    refused(&[("smoothness", "1")], &["unknown field `smoothness`", "`roughness`", "line 1"]);
+    refused(&[("smoothness", "1")], &["smoothness = 1: unknown field `smoothness`", "`roughness`"]);
     let zone = r#"[{"min": 0, "max": 1, "colour": "red"}]"#;
     refused(&[("zones", zone)], &["unknown field `colour`", "`texture`"]);
     refused(&[("zones", r#"[{"min": 0}]"#)], &["missing field `max`"]);
@@ -133,14 +133,43 @@ fn what_is_not_one_json_object_is_refused_with_its_place() {
     refuses(Config::from_json("null"), &["config = line 1"]);
     refuses(Config::from_json("\"257\""), &["config = line 1"]);
     refuses(Config::from_json(&json(&[]).replace('}', "")), &["config = line 1", "EOF"]);
-    let error = Config::from_json(&json(&[("seed", "3")])).expect_err("no text").to_string();
-    assert_eq!(error.matches("line 1 column").count(), 1, "{error}");
-    assert!(error.starts_with("seed = line 1 column"), "{error}");
+    let error = Config::from_json(r#"{"patchSize": 33, "seed": ""}"#).expect_err("no scale");
+    assert_eq!(error.to_string().matches("line 1 column").count(), 1, "{error}");
     refuses(Config::from_json(&json(&[("scaleFactor", "NaN")])), &["line 1", "expected value"]);
     for rest in ["}", " {}", "\n, 1", "x"] {
         refuses(Config::from_json(&(json(&[]) + rest)), &["config = line", "trailing characters"]);
     }
     assert!(Config::from_json(&(json(&[]) + " \n")).is_ok());
+}
+
+#[test]
+fn values_of_another_type_are_refused_with_path_value_and_bound() {
+    for (field, value, message) in [
+        ("seed", "3", "seed = 3: must be a string"),
+        ("patchSize", r#""x""#, "patchSize = x: must be a number"),
+        ("scaleFactor", "[40]", "scaleFactor = [40]: must be a number"),
+        ("interpolation", "3", "interpolation = 3: must be `linear` or `smooth`"),
+        ("interpolation", r#""cubic""#, "interpolation = cubic: must be `linear` or `smooth`"),
+        ("offset", "{}", "offset = {}: must be one of `signed`, `positive`, `gaussian`"),
+        ("corners", r#""high""#, "corners = high: must be a height or an array of four heights"),
+        ("border", "true", "border = true: must be \"seamless\", \"wrap\" or {\"blend\": samples}"),
+        ("zones", "{}", "zones = {}: must be a list"),
+        (
+            "zones",
+            r#"[{"min": 0, "max": 1, "repeats": -1}]"#,
+            "zones[0].repeats = -1: must be a whole number in 1..=16",
+        ),
+        ("zones", r#"[{"min": 0, "max": 1, "slope": 4}]"#, "zones[0].slope = 4: must be an object"),
+        ("zones", r#"[{"min": 0}]"#, "zones[0] = {\"min\":0}: missing field `max`"),
+        ("thermal", "{}", "thermal = {}: missing field `iterations`"),
+        ("hydraulic", r#"{"rain": "a"}"#, "hydraulic.rain = a: must be a number"),
+    ] {
+        let error = Recipe::from_json(&json(&[(field, value)])).expect_err(value).to_string();
+        assert_eq!(error, message);
+    }
+    let long = format!("\"{}\"", "x".repeat(100));
+    let error = Config::from_json(&json(&[("patchSize", &long)])).expect_err("no number");
+    assert_eq!(error.value, format!("{}…", "x".repeat(60)));
 }
 
 #[test]
@@ -214,7 +243,7 @@ fn a_value_of_the_wrong_type_is_refused_and_its_field_is_named() {
     refused(&[("seed", "5")], &["seed", "5", "string"]);
     refused(&[("coarseLevels", "true")], &["coarseLevels", "true", "number"]);
     refused(&[("corners", "[1, 2, 3]")], &["corners", "four heights"]);
-    refused(&[("zones", "3")], &["zones", "3", "sequence"]);
+    refused(&[("zones", "3")], &["zones = 3: must be a list"]);
 }
 
 #[test]
@@ -407,10 +436,13 @@ fn feature_values_of_the_wrong_type_are_refused_and_their_field_is_named() {
     refuses(kept(&[([0, 0], "1, 2, 1e999")]), &["precomputedHeights[2]", "out of range"]);
     for patch in ["[0.5, 0]", "[3000000000, 0]"] {
         let text = format!("{{\"patchCoordinates\": {patch}, \"precomputedHeights\": []}}");
-        refuses(FeatureFile::from_json(&text), &["patchCoordinates[0]", &patch[1..patch.len() - 4]]);
+        refuses(
+            FeatureFile::from_json(&text),
+            &["patchCoordinates[0]", &patch[1..patch.len() - 4], "must be a whole number that fits i32"],
+        );
     }
     let one = r#"{"patchCoordinates": [0], "precomputedHeights": []}"#;
-    refuses(FeatureFile::from_json(one), &["patchCoordinates", "length 1", "length 2"]);
+    refuses(FeatureFile::from_json(one), &["patchCoordinates = [0]: ", "length 2"]);
 }
 
 #[test]

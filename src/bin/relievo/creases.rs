@@ -24,10 +24,10 @@ pub struct Creases {
     #[arg(long, value_name = "N", default_value_t = 257)]
     size: u32,
     /// The range of random heights, in samples.
-    #[arg(long, value_name = "UNITS", default_value_t = 40.0)]
+    #[arg(long, value_name = "UNITS", default_value_t = 40.0, allow_hyphen_values = true)]
     scale: f64,
     /// H: the range shrinks by the factor 2^-H a level.
-    #[arg(long, value_name = "H", default_value_t = 1.0)]
+    #[arg(long, value_name = "H", default_value_t = 1.0, allow_hyphen_values = true)]
     roughness: f64,
     /// Number of seeds; the figures are of all of them, the pictures of the first.
     #[arg(long, value_name = "N", default_value_t = 24)]

@@ -5,9 +5,12 @@ use std::marker::PhantomData;
 use std::path::Path;
 
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{DeserializeOwned, MapAccess, Unexpected, Visitor};
+use serde::de::{DeserializeOwned, IntoDeserializer, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+use serde_path_to_error::Segment;
 
+use crate::error::shown;
 use crate::terrain::config::Zone;
 use crate::terrain::config::{Border, Config, Interpolation, Offset};
 use crate::{Error, InputError};
@@ -23,9 +26,9 @@ struct Raw {
     roughness: Option<f64>,
     #[serde(default)]
     coarse_levels: Option<serde_json::Number>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "named")]
     offset: Offset,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "named")]
     interpolation: Interpolation,
     #[serde(default)]
     border: RawBorder,
@@ -150,14 +153,50 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
     let mut reader = serde_json::Deserializer::from_str(text);
     let object: Object<T> = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let path = error.path().to_string();
-        json_error(if matches!(path.as_str(), "." | "?") { what } else { &path }, error.inner())
+        if matches!(path.as_str(), "." | "?") {
+            return json_error(what, error.inner());
+        }
+        refused_value(text, &error).unwrap_or_else(|| json_error(&path, error.inner()))
     })?;
     reader.end().map_err(|error| json_error(what, &error))?;
     Ok(object.0)
 }
 
+/// What is wrong with a value that is JSON but not what its field may be, or with a field that is unknown or given twice, if that is
+/// what is wrong.
+fn refused_value(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> Option<InputError> {
+    let message = error.inner().to_string();
+    let place = format!(" at line {} column {}", error.inner().line(), error.inner().column());
+    let message = message.strip_suffix(&place).unwrap_or(&message);
+    let bound = match message.split_once("expected ") {
+        _ if message.contains(" field `") => message.to_owned(),
+        Some((_, "f64" | "a JSON number")) => "must be a number".to_owned(),
+        Some((_, "i32")) => "must be a whole number that fits i32".to_owned(),
+        Some((_, "a sequence")) => "must be a list".to_owned(),
+        Some((_, expected)) => format!("must be {expected}"),
+        None => return None,
+    };
+    let document: Value = serde_json::from_str(text).ok()?;
+    let value = error.path().iter().try_fold(&document, |value, segment| match segment {
+        Segment::Map { key } => value.get(key),
+        Segment::Seq { index } => value.get(*index),
+        Segment::Enum { .. } | Segment::Unknown => None,
+    })?;
+    Some(InputError::new(error.path().to_string(), shown(value), bound))
+}
+
+/// A name of one of the values of `T`.
+fn named<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
+    // What is no text has no name, and the error lists the names.
+    let name = match Value::deserialize(deserializer)? {
+        Value::String(name) => name,
+        _ => String::new(),
+    };
+    T::deserialize(name.into_deserializer())
+}
+
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "corners is a height or an array of four heights")]
+#[serde(untagged, expecting = "expected a height or an array of four heights")]
 enum RawCorners {
     All(f64),
     Each([f64; 4]),

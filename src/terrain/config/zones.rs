@@ -51,6 +51,11 @@ impl BuiltIn {
     /// Those of zones that name no texture, from the lowest zone to the highest.
     const DEFAULTS: [Self; 4] = [Self::Sand, Self::Grass, Self::Hill, Self::Snow];
 
+    /// The names of all of them, for messages.
+    pub(crate) fn names() -> String {
+        Self::ALL.map(Self::name).join(", ")
+    }
+
     /// The name of the texture in JSON.
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -133,8 +138,7 @@ fn once() -> u32 {
 /// A whole number, as JSON may write it; [`Zone::validate`] checks its bounds.
 fn repeats<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     let number = serde_json::Number::deserialize(deserializer)?;
-    let refused =
-        |_| serde::de::Error::custom(format!("{number} must be a whole number in 1..={MAX_REPEATS}"));
+    let refused = |_| serde::de::Error::custom(format!("expected a whole number in 1..={MAX_REPEATS}"));
     whole("repeats", &number, 0, u32::MAX).map_err(refused)
 }
 
