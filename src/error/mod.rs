@@ -2,6 +2,7 @@
 
 #[cfg(feature = "gpu")]
 mod gpu;
+pub(crate) mod json;
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -25,21 +26,6 @@ impl InputError {
     /// Names path, value and bound.
     pub fn new(path: impl Into<String>, value: impl Display, bound: impl Into<String>) -> Self {
         Self { path: path.into(), value: value.to_string(), bound: bound.into() }
-    }
-}
-
-/// The longest text of a value in a message, in characters.
-const SHOWN: usize = 60;
-
-/// A JSON value as messages show it.
-pub(crate) fn shown(value: &serde_json::Value) -> String {
-    let text = match value {
-        serde_json::Value::String(text) => text.clone(),
-        value => value.to_string(),
-    };
-    match text.char_indices().nth(SHOWN) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text,
     }
 }
 

@@ -6,7 +6,7 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
 use crate::InputError;
-use crate::error::shown;
+use crate::error::json::{shown, unreadable};
 
 /// A JSON value in which no object has a field twice.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,13 +31,6 @@ impl Json {
     pub fn at(&self) -> At<'_> {
         At { path: String::new(), value: &self.0 }
     }
-}
-
-fn unreadable(path: &str, error: &serde_json::Error) -> InputError {
-    let place = format!("line {} column {}", error.line(), error.column());
-    let message = error.to_string();
-    let end = format!(" at {place}");
-    InputError::new(path, place, message.strip_suffix(&end).unwrap_or(&message))
 }
 
 impl<'de> Deserialize<'de> for Json {
@@ -120,16 +113,11 @@ pub(super) struct At<'a> {
 impl<'a> At<'a> {
     /// The error of this value.
     pub fn error(&self, bound: impl Into<String>) -> InputError {
-        InputError::new(self.path(), self.shown(), bound)
+        InputError::new(self.path(), shown(self.value), bound)
     }
 
     fn path(&self) -> &str {
         if self.path.is_empty() { "scene" } else { &self.path }
-    }
-
-    /// The value as messages show it.
-    pub fn shown(&self) -> String {
-        shown(self.value)
     }
 
     /// The value itself.

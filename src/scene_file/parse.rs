@@ -135,11 +135,7 @@ fn terrain_recipe(at: &At<'_>) -> Result<Recipe, InputError> {
     if !at.value().is_object() {
         return Err(at.error("must be an object"));
     }
-    Recipe::from_json(&at.value().to_string()).map_err(|error| {
-        // A place in the text of this value alone says nothing about the file.
-        let value = if error.value.starts_with("line ") { at.shown() } else { error.value.clone() };
-        below(&at.path, "config", InputError { value, ..error })
-    })
+    Recipe::from_value(at.value()).map_err(|error| below(&at.path, "config", error))
 }
 
 /// What the heights of `recipe` become, if anything: half way unless there is a time.

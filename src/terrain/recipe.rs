@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::terrain::config::{Border, Config, RawHydraulic, RawThermal, read_text, whole};
+use crate::terrain::config::{Border, Config, RawErosion, RawHydraulic, RawThermal, read_text, whole};
 use crate::terrain::despike::Despike;
 use crate::terrain::features::Features;
 use crate::terrain::hydraulic::{Hydraulic, MAX_ITERATIONS};
@@ -48,7 +48,19 @@ impl Recipe {
     /// # Errors
     /// [`InputError`] for text that is not such JSON, for unknown keys, and for values out of bounds.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
-        let (config, erosion) = Config::with_erosion(text)?;
+        Self::of_parts(Config::with_erosion(text)?)
+    }
+
+    /// As [`Recipe::from_json`], from an object that has been read.
+    ///
+    /// # Errors
+    /// The same.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn from_value(value: &serde_json::Value) -> Result<Self, InputError> {
+        Self::of_parts(Config::with_erosion_of(value)?)
+    }
+
+    fn of_parts((config, erosion): (Config, RawErosion)) -> Result<Self, InputError> {
         let recipe = Self {
             thermal: erosion.thermal.map(|raw| thermal("thermal", &raw)).transpose()?,
             hydraulic: erosion.hydraulic.map(|raw| hydraulic(&raw)).transpose()?,

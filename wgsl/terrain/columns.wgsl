@@ -97,11 +97,6 @@ fn starting(first: u32, before: vec4<i32>, behind: vec4<i32>) -> vec4<i32> {
     return select(near, vec4<i32>(near.zw, far), (first & 2u) != 0u);
 }
 
-// The row from its fifth sample on.
-fn next_four(row: Row) -> Row {
-    return Row(row.b, row.c, row.d, row.e, row.e);
-}
-
 // The samples at four outputs, given the vector of their left neighbours and the next one of the row.
 fn centers(left: vec4<i32>, next: vec4<i32>) -> vec4<i32> {
     return vec4<i32>(left.yzw, next.x);

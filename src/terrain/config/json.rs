@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_path_to_error::Segment;
 
-use crate::error::shown;
+use crate::error::json::{message, shown, unreadable};
 use crate::terrain::config::Zone;
 use crate::terrain::config::{Border, Config, Interpolation, Offset};
 use crate::{Error, InputError};
@@ -154,30 +154,48 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
     let object: Object<T> = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let path = error.path().to_string();
         if matches!(path.as_str(), "." | "?") {
-            return json_error(what, error.inner());
+            return unreadable(what, error.inner());
         }
-        refused_value(text, &error).unwrap_or_else(|| json_error(&path, error.inner()))
+        // In a text that is JSON, a value is what is wrong.
+        let document: Option<Value> = serde_json::from_str(text).ok();
+        document
+            .and_then(|document| refused_value(&document, &error))
+            .unwrap_or_else(|| unreadable(&path, error.inner()))
     })?;
-    reader.end().map_err(|error| json_error(what, &error))?;
+    reader.end().map_err(|error| unreadable(what, &error))?;
     Ok(object.0)
 }
 
-/// What is wrong with a value that is JSON but not what its field may be, or with a field that is unknown or given twice, if that is
-/// what is wrong.
-fn refused_value(text: &str, error: &serde_path_to_error::Error<serde_json::Error>) -> Option<InputError> {
-    let message = error.inner().to_string();
-    let place = format!(" at line {} column {}", error.inner().line(), error.inner().column());
-    let message = message.strip_suffix(&place).unwrap_or(&message);
+/// As [`from_json_object`], from an object that has been read.
+#[cfg(feature = "gpu")]
+fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) -> Result<T, InputError> {
+    let object: Object<T> = serde_path_to_error::deserialize(value).map_err(|error| {
+        let whole = || InputError::new(what, shown(value), message(error.inner()));
+        if error.path().to_string() == "." {
+            whole()
+        } else {
+            refused_value(value, &error).unwrap_or_else(whole)
+        }
+    })?;
+    Ok(object.0)
+}
+
+/// What is wrong with a value of a document that is not what its field may be, or with a field that is unknown or given twice, if
+/// that is what is wrong.
+fn refused_value(
+    document: &Value,
+    error: &serde_path_to_error::Error<serde_json::Error>,
+) -> Option<InputError> {
+    let message = message(error.inner());
     let bound = match message.split_once("expected ") {
-        _ if message.contains(" field `") => message.to_owned(),
+        _ if message.contains(" field `") => message,
         Some((_, "f64" | "a JSON number")) => "must be a number".to_owned(),
         Some((_, "i32")) => "must be a whole number that fits i32".to_owned(),
         Some((_, "a sequence")) => "must be a list".to_owned(),
         Some((_, expected)) => format!("must be {expected}"),
         None => return None,
     };
-    let document: Value = serde_json::from_str(text).ok()?;
-    let value = error.path().iter().try_fold(&document, |value, segment| match segment {
+    let value = error.path().iter().try_fold(document, |value, segment| match segment {
         Segment::Map { key } => value.get(key),
         Segment::Seq { index } => value.get(*index),
         Segment::Enum { .. } | Segment::Unknown => None,
@@ -228,7 +246,19 @@ impl Config {
     /// # Errors
     /// [`InputError`] for text that is not such JSON, for unknown keys, and for values of the configuration out of bounds.
     pub(crate) fn with_erosion(text: &str) -> Result<(Self, RawErosion), InputError> {
-        let raw: Raw = from_json_object("config", text)?;
+        Self::of_raw(from_json_object("config", text)?)
+    }
+
+    /// As [`Config::with_erosion`], from an object that has been read.
+    ///
+    /// # Errors
+    /// The same.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn with_erosion_of(value: &Value) -> Result<(Self, RawErosion), InputError> {
+        Self::of_raw(from_json_value("config", value)?)
+    }
+
+    fn of_raw(raw: Raw) -> Result<(Self, RawErosion), InputError> {
         let border = match raw.border {
             RawBorder::Seamless => Border::Seamless,
             RawBorder::Wrap => Border::Wrap,
@@ -276,14 +306,6 @@ pub(crate) fn whole(
     .and_then(|value| u32::try_from(value).ok())
     .filter(|value| (low..=high).contains(value))
     .ok_or_else(|| InputError::new(field, number, format!("must be a whole number in {low}..={high}")))
-}
-
-/// Turns a serde error into field, value and bound.
-pub(crate) fn json_error(what: &str, error: &serde_json::Error) -> InputError {
-    let place = format!("line {} column {}", error.line(), error.column());
-    let message = error.to_string();
-    let end = format!(" at {place}");
-    InputError::new(what, place, message.strip_suffix(&end).unwrap_or(&message))
 }
 
 /// Reads a text file.

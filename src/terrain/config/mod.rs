@@ -3,7 +3,7 @@
 mod json;
 mod zones;
 
-pub(crate) use json::{RawHydraulic, RawThermal, from_json_object, read_text, whole};
+pub(crate) use json::{RawErosion, RawHydraulic, RawThermal, from_json_object, read_text, whole};
 pub(crate) use zones::check_range;
 pub use zones::{BuiltIn, MAX_REPEATS, MAX_ZONES, Slope, Zone, ZoneTexture};
 
