@@ -22,7 +22,9 @@ pub enum GpuError {
         reason: String,
     },
     /// The device is lost, and with it everything that was created on it.
-    #[error("the GPU device was lost ({reason}); create a new `Gpu` and everything on it again")]
+    #[error(
+        "the GPU device was lost ({reason}); create a new `Gpu`, and everything on it again (scenes: `Scene::rebuild_all`)"
+    )]
     DeviceLost {
         /// The driver's message.
         reason: String,
@@ -34,7 +36,9 @@ pub enum GpuError {
         reason: String,
     },
     /// wgpu rejected a call.
-    #[error("wgpu refused a call: {reason}; please report this with the output of `relievo info`")]
+    #[error(
+        "wgpu refused a call: {reason}; if it names none of your own resources, please report this with the output of `relievo info`"
+    )]
     Validation {
         /// wgpu's message.
         reason: String,
@@ -85,10 +89,6 @@ impl From<wgpu::Error> for GpuError {
     fn from(error: wgpu::Error) -> Self {
         match error {
             wgpu::Error::OutOfMemory { source } => Self::OutOfMemory { reason: source.to_string() },
-            // A caller's own device has the caller's handlers, so that only the rejected call reveals its loss.
-            wgpu::Error::Validation { description, .. } if description.contains("device is lost") => {
-                Self::DeviceLost { reason: description }
-            }
             wgpu::Error::Validation { description, .. } => Self::Validation { reason: description },
             wgpu::Error::Internal { description, .. } => Self::Internal { reason: description },
         }

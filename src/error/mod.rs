@@ -27,6 +27,26 @@ impl InputError {
     pub fn new(path: impl Into<String>, value: impl Display, bound: impl Into<String>) -> Self {
         Self { path: path.into(), value: value.to_string(), bound: bound.into() }
     }
+
+    /// The same error, of a field of what stands at `parent`.
+    pub(crate) fn below(self, parent: &str) -> Self {
+        Self { path: format!("{parent}.{}", self.path), ..self }
+    }
+
+    /// The same error with the path as JSON files write it, in camel case: `patchSize` for the field `patch_size`.
+    pub fn in_json(self) -> Self {
+        let mut path = String::with_capacity(self.path.len());
+        let mut letters = self.path.chars().peekable();
+        while let Some(letter) = letters.next() {
+            match letters.peek() {
+                Some(next) if letter == '_' && next.is_ascii_lowercase() => {
+                    path.extend(letters.next().map(|next| next.to_ascii_uppercase()));
+                }
+                _ => path.push(letter),
+            }
+        }
+        Self { path, ..self }
+    }
 }
 
 /// Any failure of the crate.

@@ -29,14 +29,24 @@ impl Errors {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Receives what the device reports outside error scopes.
+    /// Receives what the device reports outside error scopes, in place of handlers that were set before.
     pub fn listen(&self, device: &wgpu::Device) {
         let errors = self.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| errors.hear(error.into())));
+        self.listen_for_loss(device);
+    }
+
+    /// Receives the loss of the device. In a browser other callbacks stay in place.
+    pub fn listen_for_loss(&self, device: &wgpu::Device) {
         let errors = self.clone();
         device.set_device_lost_callback(move |reason, message| {
-            errors.lock().lost.get_or_insert(format!("{reason:?}: {message}"));
+            errors.lose(&format!("{reason:?}: {message}"));
         });
+    }
+
+    /// Remembers that the device is lost, with the first reason.
+    fn lose(&self, reason: &str) {
+        self.lock().lost.get_or_insert_with(|| reason.to_owned());
     }
 
     /// Keeps the first error.
@@ -46,11 +56,13 @@ impl Errors {
 
     /// Gives the error away, unless the device is lost: then all that follows fails too.
     fn check(&self) -> Result<(), GpuError> {
-        let mut heard = self.lock();
-        if let Some(reason) = &heard.lost {
-            return Err(GpuError::DeviceLost { reason: reason.clone() });
-        }
-        heard.error.take().map_or(Ok(()), Err)
+        self.check_loss()?;
+        self.lock().error.take().map_or(Ok(()), Err)
+    }
+
+    fn check_loss(&self) -> Result<(), GpuError> {
+        let lost = self.lock().lost.clone();
+        lost.map_or(Ok(()), |reason| Err(GpuError::DeviceLost { reason }))
     }
 
     /// Counts a scope whose error is not known yet.
@@ -93,13 +105,27 @@ impl Gpu {
     /// Checks for errors that the device has reported outside a call that returned them. In a browser these are also
     /// errors of calls that allocate or compile: it tells them late ([`Gpu::check_async`]).
     ///
-    /// A device of an embedding program ([`Gpu::from_wgpu`]) reports its loss, and errors of the program's own calls, to
-    /// the program's handlers alone.
+    /// The loss of the device is among them, whoever opened it. Errors of the embedding program's own calls on its own device
+    /// ([`Gpu::from_wgpu`]) go to the program's handlers alone.
     ///
     /// # Errors
-    /// The first of these errors. The loss of the device is told by every call from then on, any other error once.
+    /// The first of these errors. Every call returns [`GpuError::DeviceLost`] once the device is lost; any other error is
+    /// returned once.
     pub fn check(&self) -> Result<(), GpuError> {
-        self.errors.check()
+        self.errors.check()?;
+        self.check_loss()
+    }
+
+    /// Checks whether the device is lost, without a callback of its own: the embedding program's stays in place.
+    ///
+    /// # Errors
+    /// [`GpuError::DeviceLost`].
+    pub(crate) fn check_loss(&self) -> Result<(), GpuError> {
+        #[cfg(not(target_arch = "wasm32"))]
+        if super::identity::is_lost(&self.device) {
+            self.errors.lose("it refuses all work");
+        }
+        self.errors.check_loss()
     }
 
     /// As [`Gpu::check`], once the errors of all calls so far are known: in a browser some tasks of its event loop later,
@@ -118,7 +144,7 @@ impl Gpu {
     /// # Errors
     /// Out of memory, validation and internal errors caused by `work`, and those of [`Gpu::check`].
     pub fn scoped<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
-        self.check()?;
+        self.errors.check()?;
         let scopes =
             [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation]
                 .map(|filter| self.device.push_error_scope(filter));
@@ -138,11 +164,9 @@ impl Gpu {
             let error = pollster::block_on(scope.pop());
             first = first.or(error);
         }
-        let Some(error) = first else { return Ok(()) };
-        // A lost device rejects every call; polling tells why it was lost.
-        let _ = self.device.poll(wgpu::PollType::Poll);
-        self.check()?;
-        Err(GpuError::from(error))
+        // A lost device ignores calls, and may report what depends on them as invalid.
+        self.check_loss()?;
+        first.map_or(Ok(()), |error| Err(GpuError::from(error)))
     }
 
     /// Pops nested scopes, and lets the browser tell their errors when it knows them.

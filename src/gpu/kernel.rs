@@ -90,7 +90,11 @@ pub(crate) struct Layouts {
 
 impl Layouts {
     /// As [`layouts`].
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] where the device allows less than the shader binds.
     pub(crate) fn new(gpu: &Gpu, shader: &'static Shader) -> Result<Self, GpuError> {
+        gpu.check_limits(shader)?;
         Ok(Self { shader, groups: layouts(gpu, shader)? })
     }
 
@@ -149,9 +153,6 @@ fn pipeline_layout(gpu: &Gpu, shader: &Shader, layouts: &[wgpu::BindGroupLayout]
 }
 
 /// The bind group layouts of a shader, one for every group up to the last that it uses.
-///
-/// # Errors
-/// [`GpuError::Validation`] when the device's limits do not permit them.
 fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
     let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
     gpu.scoped(|| {

@@ -14,8 +14,10 @@ pub(crate) mod bind;
 pub(crate) mod bindings;
 mod buffer;
 mod errors;
+mod identity;
 mod job;
 mod kernel;
+mod limits;
 mod memory;
 mod pending;
 mod readback;
@@ -48,6 +50,7 @@ pub(crate) use tuning::Tuning;
 pub use upload::{Staged, StagingRing, Upload};
 
 use errors::Errors;
+use identity::Identity;
 use shared::{Program, Shared};
 
 /// A device and its queue, with the properties of the adapter that relievo uses. Clones share the device and
@@ -56,6 +59,7 @@ use shared::{Program, Shared};
 pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    identity: Identity,
     summary: AdapterSummary,
     tuning: Tuning,
     errors: Errors,
@@ -99,17 +103,33 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Uses the device of an embedding program. The program's error handlers stay in place; relievo wraps its
-    /// own calls in error scopes.
+    /// Uses the device of an embedding program. The program's handlers of errors and of the device's loss stay in place;
+    /// relievo wraps its own calls in error scopes, and finds out by itself whether the device is lost.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = device.adapter_info();
-        Self::new(device, queue, &info)
+        let gpu = Self::new(device, queue, &info);
+        // A browser calls all callbacks of a device.
+        #[cfg(target_arch = "wasm32")]
+        gpu.errors.listen_for_loss(&gpu.device);
+        gpu
     }
 
     fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
         let (summary, tuning) = (AdapterSummary::of(info), Tuning::of(info));
         let (errors, memory, kernels) = Default::default();
-        Self { device, queue, summary, tuning, errors, memory, kernels, pending: None }
+        let identity = Identity::of(&device);
+        Self { device, queue, identity, summary, tuning, errors, memory, kernels, pending: None }
+    }
+
+    /// Whether another handle is of the same device.
+    pub(crate) fn is_same_device(&self, other: &Self) -> bool {
+        self.identity == other.identity
+    }
+
+    /// Whether an encoder can record this device's resources: `false` for one of another [`wgpu::Instance`]. wgpu itself refuses
+    /// encoders of another device of the same instance.
+    pub(crate) fn takes(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
+        self.identity.takes(encoder)
     }
 
     /// The wgpu device.

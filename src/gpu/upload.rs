@@ -1,7 +1,7 @@
 //! Writes from the host: at once, or staged so that an encoder orders them with the work that it records.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use encase::ShaderSize;
 use encase::internal::WriteInto;
@@ -103,13 +103,33 @@ pub struct StagingRing {
 #[derive(Debug)]
 struct Slot {
     buffer: Option<wgpu::Buffer>,
-    is_busy: Arc<AtomicBool>,
+    state: Arc<AtomicU8>,
+}
+
+/// States of a slot: the last, of a recording whose encoder or command buffer was dropped before it was submitted.
+const FREE: u8 = 0;
+const BUSY: u8 = 1;
+const DROPPED: u8 = 2;
+
+/// A recording, which its encoder owns until the device has executed it.
+struct Recording(Arc<AtomicU8>);
+
+impl Recording {
+    fn is_done(self) {
+        self.0.store(FREE, Ordering::Release);
+    }
+}
+
+impl Drop for Recording {
+    fn drop(&mut self) {
+        let _ = self.0.compare_exchange(BUSY, DROPPED, Ordering::AcqRel, Ordering::Acquire);
+    }
 }
 
 impl StagingRing {
     /// A ring of `slots` buffers, which are allocated when they are first needed.
     pub fn new(slots: usize) -> Self {
-        let slot = || Slot { buffer: None, is_busy: Arc::default() };
+        let slot = || Slot { buffer: None, state: Arc::default() };
         Self { slots: (0..slots).map(|_| slot()).collect(), next: 0 }
     }
 
@@ -145,9 +165,9 @@ impl StagingRing {
                 encoder.copy_buffer_to_buffer(buffer, *from, to, *offset, *len);
             }
         }
-        slot.is_busy.store(true, Ordering::Release);
-        let is_busy = slot.is_busy.clone();
-        encoder.on_submitted_work_done(move || is_busy.store(false, Ordering::Release));
+        slot.state.store(BUSY, Ordering::Release);
+        let recording = Recording(slot.state.clone());
+        encoder.on_submitted_work_done(move || recording.is_done());
         staged.bytes.clear();
         staged.copies.clear();
         Ok(true)
@@ -155,7 +175,12 @@ impl StagingRing {
 
     /// Number of buffers that are not free.
     pub fn busy(&self) -> usize {
-        self.slots.iter().filter(|slot| slot.is_busy.load(Ordering::Acquire)).count()
+        self.slots.iter().filter(|slot| !slot.is(FREE)).count()
+    }
+
+    /// Whether a recording was dropped before it was submitted, so that its writes never happen.
+    pub fn has_dropped(&self) -> bool {
+        self.slots.iter().any(|slot| slot.is(DROPPED))
     }
 
     /// Gives up all recordings that have not been executed: their encoders were dropped, or will be. Buffers that
@@ -167,11 +192,15 @@ impl StagingRing {
 
     fn free(&mut self) -> Option<&mut Slot> {
         let count = self.slots.len();
-        let free = (0..count)
-            .map(|step| (self.next + step) % count)
-            .find(|at| !self.slots[*at].is_busy.load(Ordering::Acquire))?;
+        let free = (0..count).map(|step| (self.next + step) % count).find(|at| self.slots[*at].is(FREE))?;
         self.next = (free + 1) % count;
         self.slots.get_mut(free)
+    }
+}
+
+impl Slot {
+    fn is(&self, state: u8) -> bool {
+        self.state.load(Ordering::Acquire) == state
     }
 }
 
@@ -221,14 +250,22 @@ mod tests {
         gpu.queue().submit([encoder.finish()]);
         gpu.wait().expect("done");
         assert_eq!(ring.busy(), 0);
-        // An encoder that is dropped never frees its buffer.
-        let mut encoder = gpu.encoder("dropped");
-        assert!(record(&mut ring, &mut encoder));
-        drop(encoder);
-        gpu.wait().expect("done");
-        assert_eq!(ring.busy(), 1);
-        ring.invalidate();
-        assert_eq!(ring.busy(), 0);
+        assert!(!ring.has_dropped());
+        // An encoder that is dropped never frees its buffer, and a command buffer neither.
+        for is_finished in [false, true] {
+            let mut encoder = gpu.encoder("dropped");
+            assert!(record(&mut ring, &mut encoder) && !ring.has_dropped());
+            if is_finished {
+                drop(encoder.finish())
+            } else {
+                drop(encoder)
+            }
+            assert!(ring.has_dropped());
+            gpu.wait().expect("done");
+            assert_eq!(ring.busy(), 1);
+            ring.invalidate();
+            assert!(ring.busy() == 0 && !ring.has_dropped());
+        }
     }
 
     #[test]

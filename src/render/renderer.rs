@@ -101,14 +101,13 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1.
-    pub fn with_shading(
-        self,
-        source: &str,
-        layout: Option<&wgpu::BindGroupLayout>,
-    ) -> Result<Self, InputError> {
-        let shading = Some(Shading::new(source, layout)?);
-        Ok(Self { shading, pipelines: HashMap::new(), ..self })
+    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1, and with the
+    /// path `shading.layout` for a layout that does not fit what the text binds, or that exceeds the device's limits together
+    /// with the crate's own groups (a browser tells this later: [`Scene::health`]); [`crate::gpu::GpuError`].
+    pub fn with_shading(self, source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, Error> {
+        let shading = Shading::new(source, layout)?;
+        shading.check_layout(&self.gpu, &self.format, &self.layouts)?;
+        Ok(Self { shading: Some(shading), pipelines: HashMap::new(), ..self })
     }
 
     /// The format of its targets.
@@ -139,7 +138,7 @@ impl Renderer {
     /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device of the same [`wgpu::Instance`]; what the driver's compiler reports.
+    /// [`InputError`] for a scene on another device; what the driver's compiler reports.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         self.check_device(scene)?;
         self.prepare_objects(scene.drawables(), scene.is_shadowed())
@@ -157,16 +156,17 @@ impl Renderer {
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
     /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: bind group 3,
     /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and the samples of the
-    /// renderer's format, which wgpu checks.
+    /// renderer's format, and be of its device, which wgpu checks.
     ///
     /// Each object takes an indirect draw for each of its parts and levels, and as many again if some of its instances are
-    /// mirrored and others are not. A render bundle shows later recordings of the view too. Make it anew after objects were
+    /// mirrored and others are not. A render bundle shows later recordings of the view too, and nothing checks whether the last
+    /// frame recorded the view. Make it anew after objects were
     /// added or grew, after materials were changed, and when an object has its first mirrored instance, or its first that is
     /// not.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; a view of another scene; one that was not recorded since objects were
-    /// added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
+    /// [`InputError`] for a scene on another device; a view of another scene; one that the last [`Scene::record`] left out; one
+    /// that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
     /// of depth; a layer that the format has no attachment for; objects that were added since [`Renderer::prepare`]; and for
     /// [`Layer::Velocity`] a scene that does not keep its last frame.
     pub fn draw<'a>(

@@ -9,8 +9,12 @@ use naga::front::wgsl::parse_str;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Block, Function, GlobalVariable, Handle, Module, Span, Statement, Type, TypeInner};
 
-use crate::InputError;
 use crate::gpu::shaders::{RENDER_SCENE_MESH, Shader};
+use crate::gpu::{Gpu, GpuError};
+use crate::render::format::TargetFormat;
+use crate::render::layer::Layer;
+use crate::scene::layouts::SceneLayouts;
+use crate::{Error, InputError};
 
 /// What the crate's names begin with beside the caller's text.
 pub(super) const PREFIX: &str = "relievo_";
@@ -35,7 +39,7 @@ impl Shading {
     /// # Errors
     /// [`InputError`] whose path is `shading:LINE:COLUMN`, both counted from 1.
     pub fn new(source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, InputError> {
-        let text = format!("{source}\n{}\n{}\n", structure("Surface"), structure("View"));
+        let text = with_structures(source);
         let own = Own { source, text: &text };
         let module = parse_str(&text)
             .map_err(|error| own.refused(error.labels().map(|(span, _)| span), error.message().to_owned()))?;
@@ -50,11 +54,79 @@ impl Shading {
         Ok(Self { source: source.to_owned(), layout: layout.cloned() })
     }
 
+    /// Checks the layout of bind group 3 against what the text binds, and that the device's limits allow it beside the crate's
+    /// own groups: compiles the text alone. In a browser the device tells the errors later.
+    ///
+    /// # Errors
+    /// [`InputError`] for `shading.layout`, with what wgpu says; [`GpuError`] for other failures of the device.
+    pub fn check_layout(
+        &self,
+        gpu: &Gpu,
+        format: &TargetFormat,
+        layouts: &SceneLayouts,
+    ) -> Result<(), Error> {
+        let Some(own) = self.layout.as_ref().filter(|_| format.layers().any(|layer| layer == Layer::Color))
+        else {
+            return Ok(());
+        };
+        for groups in [layouts.of_mesh(), layouts.of_relief(), layouts.of_terrain()] {
+            let groups: Vec<_> = groups.into_iter().chain([own]).map(Some).collect();
+            gpu.scoped(|| self.compile(gpu, format, &groups)).map_err(|error| match error {
+                GpuError::Validation { reason } => {
+                    let bound = format!("must fit the text and the device's limits: {reason}");
+                    InputError::new("shading.layout", "bind group 3", bound).into()
+                }
+                error => Error::from(error),
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Compiles the text with entry points that draw nothing.
+    fn compile(&self, gpu: &Gpu, format: &TargetFormat, groups: &[Option<&wgpu::BindGroupLayout>]) {
+        let (device, label) = (gpu.device(), Some("shading"));
+        let source = wgpu::ShaderSource::Wgsl(format!("{}{ENTRIES}", with_structures(&self.source)).into());
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
+        let layout = wgpu::PipelineLayoutDescriptor { label, bind_group_layouts: groups, immediate_size: 0 };
+        let _ = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label,
+            layout: Some(&device.create_pipeline_layout(&layout)),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: None,
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: format.depth_state(Layer::Color),
+            multisample: wgpu::MultisampleState { count: format.samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: None,
+                compilation_options: Default::default(),
+                targets: &format.targets(Layer::Color),
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+    }
+
     /// The text of a shader that shades as the caller does.
     pub fn text(&self, shader: &'static Shader) -> Cow<'static, str> {
         let ours = shader.source.find(REPLACED).map_or(shader.source, |end| &shader.source[..end]);
         format!("{}\n{ours}", self.source).into()
     }
+}
+
+/// A vertex and a fragment stage for a text alone.
+const ENTRIES: &str = "
+@vertex fn relievo_vertex() -> @builtin(position) vec4<f32> { return vec4<f32>(); }
+@fragment fn relievo_fragment() -> @location(0) vec4<f32> { return shade(Surface(), View()); }
+";
+
+/// A text of the caller's with the structs that it uses.
+fn with_structures(source: &str) -> String {
+    format!("{source}\n{}\n{}\n", structure("Surface"), structure("View"))
 }
 
 /// The declaration of one of the structs that the caller's text uses.
@@ -138,7 +210,8 @@ impl Own<'_> {
     fn check_function(&self, module: &Module) -> Result<(), InputError> {
         let named = |(_, function): &(_, &Function)| function.name.as_deref() == Some("shade");
         let Some((handle, shade)) = module.functions.iter().find(named) else {
-            return Err(self.refused(std::iter::empty(), SIGNATURE.to_owned()));
+            let refused = self.refused(std::iter::empty(), SIGNATURE.to_owned());
+            return Err(InputError { value: "no function `shade`".to_owned(), ..refused });
         };
         let is_named = |ty: Handle<Type>, name: &str| module.types[ty].name.as_deref() == Some(name);
         let arguments: Vec<_> = shade.arguments.iter().map(|argument| argument.ty).collect();

@@ -1,5 +1,7 @@
 //! The camera of a view: the caller's own matrices.
 
+use std::f32::consts::PI;
+
 use glam::camera::rh::proj::directx;
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
@@ -67,7 +69,10 @@ impl Camera {
     /// A perspective camera at `eye` that looks at `target`, both relative to the corner of cell (0, 0, 0), with +Y up.
     /// `field_of_view` is the vertical one, in radians, between 0 and π; `near_far` are the distances of the near and the far
     /// plane in world units, where depth is 0 and 1, and the far one may be infinite; `viewport` is width and height in pixels.
-    /// Straight up and down, the top of the picture is north. [`View::set`](crate::scene::View::set) refuses what is no camera.
+    /// Straight up and down, the top of the picture is north.
+    ///
+    /// For arguments out of these ranges, and an `eye` at its `target`, the matrices hold NaN, which
+    /// [`View::set`](crate::scene::View::set) refuses.
     pub fn looking_at(
         eye: Vec3,
         target: Vec3,
@@ -75,14 +80,16 @@ impl Camera {
         near_far: [f32; 2],
         viewport: [u32; 2],
     ) -> Self {
-        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+        let forward = (target - eye).try_normalize().unwrap_or(Vec3::NAN);
         // Straight up and down, north replaces the undefined up vector.
         let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
         let aspect = viewport[0] as f32 / viewport[1].max(1) as f32;
         let [near, far] = near_far;
-        let clip_from_view = match far == f32::INFINITY {
-            true => directx::perspective_infinite(field_of_view, aspect, near),
-            false => directx::perspective(field_of_view, aspect, near, far),
+        let is_frustum = field_of_view > 0.0 && field_of_view < PI && near > 0.0 && far > near;
+        let clip_from_view = match (is_frustum, far == f32::INFINITY) {
+            (false, _) => Mat4::NAN,
+            (true, true) => directx::perspective_infinite(field_of_view, aspect, near),
+            (true, false) => directx::perspective(field_of_view, aspect, near, far),
         };
         Self {
             cell: [0; 3],
@@ -145,12 +152,16 @@ impl Camera {
             let value = format!("{:?}", self.viewport);
             return Err(InputError::new("camera.viewport", value, "must be at least 1 by 1"));
         }
-        for (path, matrix) in
-            [("camera.view_from_world", self.view_from_world), ("camera.clip_from_view", self.clip_from_view)]
-        {
+        let looking = "an eye that is not at its target";
+        let projection = "a field of view above 0 and below π, near above 0, and far above near";
+        for (path, matrix, needed) in [
+            ("camera.view_from_world", self.view_from_world, looking),
+            ("camera.clip_from_view", self.clip_from_view, projection),
+        ] {
             let determinant = matrix.as_dmat4().determinant();
             if !matrix.is_finite() || determinant == 0.0 {
-                return Err(InputError::new(path, matrix, "must be finite and have an inverse"));
+                let bound = format!("must be finite and have an inverse; Camera::looking_at needs {needed}");
+                return Err(InputError::new(path, matrix, bound));
             }
         }
         if self.view_from_world.row(3) != Vec4::W {
@@ -246,5 +257,26 @@ mod tests {
         let collapsed = Camera { clip_from_view: Mat4::ZERO, ..camera([3, 2]) };
         assert_eq!(path(collapsed), "camera.clip_from_view");
         assert_eq!(camera([3, 2]).validate(), Ok(()));
+    }
+
+    #[test]
+    fn looking_at_nothing_is_refused() {
+        let refused = |target, field_of_view, near_far| {
+            let camera = Camera::looking_at(Vec3::ONE, target, field_of_view, near_far, [3, 2]);
+            camera.validate().expect_err("refused").path
+        };
+        for target in [Vec3::ONE, Vec3::NAN, Vec3::INFINITY] {
+            assert_eq!(refused(target, 0.7, [0.1, 9.0]), "camera.view_from_world", "{target}");
+        }
+        for field_of_view in [4.0, std::f32::consts::PI, 0.0, -0.7, f32::NAN, f32::INFINITY] {
+            assert_eq!(
+                refused(Vec3::ZERO, field_of_view, [0.1, 9.0]),
+                "camera.clip_from_view",
+                "{field_of_view}"
+            );
+        }
+        for planes in [[0.0, 9.0], [-0.1, 9.0], [9.0, 0.1], [1.0, 1.0], [f32::NAN, 9.0], [0.1, f32::NAN]] {
+            assert_eq!(refused(Vec3::ZERO, 0.7, planes), "camera.clip_from_view", "{planes:?}");
+        }
     }
 }

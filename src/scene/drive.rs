@@ -57,8 +57,8 @@ impl Scene {
     /// that are driven ([`Scene::drive`]), whether by a kernel or by copies.
     ///
     /// # Errors
-    /// As [`Scene::record`], and the error of `pose`. Then the frame is not whole: drop the encoder, and call
-    /// [`Scene::invalidate`].
+    /// As [`Scene::record`], and the error of `pose`. Then the frame is not whole: it cannot be drawn, and the next one starts
+    /// afresh.
     pub fn record_with(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

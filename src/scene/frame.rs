@@ -19,12 +19,14 @@ pub(super) type Between<'a> =
     &'a mut dyn FnMut(&mut wgpu::CommandEncoder, Poses<'_>) -> Result<(), InputError>;
 
 impl Scene {
-    /// Gives up all recordings whose encoders were dropped without being submitted, and lets everything start afresh, as
-    /// [`Scene::refresh`] does. Without this, the device would miss what they should have told it.
+    /// Gives up all recordings that the device has not executed, and lets everything start afresh, as [`Scene::refresh`] does.
+    /// [`Scene::record`] does so by itself after an encoder was dropped before it was submitted, because the device misses the
+    /// changes in it. Call it to free the places of encoders that you keep, and will not submit.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub fn invalidate(&mut self) -> Result<(), Error> {
+        self.is_broken = false;
         self.staging.invalidate();
         self.staged = Staged::default();
         if let Some(counts) = &mut self.counts {
@@ -72,18 +74,19 @@ impl Scene {
     /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones.
     ///
     /// Pass every view that the frame draws, in one call: characters are posed and skinned once, as fine as the finest of
-    /// these views needs, and for what these views see. A frame may have other views than the one before. A view that it
-    /// leaves out must not be drawn in it: that view's lists are those of the frame in which it was last recorded, and the
-    /// vertices that they count on may be gone.
+    /// these views needs, and for what these views see. A frame may have other views than the one before.
+    /// [`Renderer::draw`](crate::render::Renderer::draw) refuses a view that the last frame left out: its lists may refer to
+    /// vertices whose memory others have taken.
     ///
     /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
     /// takes one of [`RECORDINGS`] places, which is free again when the device has executed it, and wgpu has noticed
-    /// that: in a submission, or in [`wgpu::Device::poll`]. Of an empty scene nothing is recorded, and nothing
-    /// drawn.
+    /// that: in a submission, or in [`wgpu::Device::poll`]. An encoder may be dropped instead: the next recording starts afresh
+    /// ([`Scene::invalidate`]). Of an empty scene nothing is recorded, and nothing drawn.
     ///
     /// # Errors
-    /// [`InputError`] for no view, a view of another scene or without a camera, and if [`RECORDINGS`] frames have been
-    /// recorded that the device has not executed; [`crate::gpu::GpuError`].
+    /// [`InputError`] for no view, a view of another scene or without a camera, an encoder of another [`wgpu::Instance`], and if
+    /// [`RECORDINGS`] frames have been recorded that the device has not executed; [`crate::gpu::GpuError`], also for the loss of
+    /// the device.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -99,10 +102,18 @@ impl Scene {
         views: &mut [&mut View],
         between: Option<Between<'_>>,
     ) -> Result<(), Error> {
+        self.gpu.check_loss()?;
         self.check(views)?;
+        if !self.gpu.takes(encoder) {
+            let bound = "must be of the device on which the scene was made, or rebuilt";
+            return Err(InputError::new("encoder", "of another wgpu::Instance", bound).into());
+        }
         if self.is_empty() {
             self.uploaded = 0;
             return Ok(());
+        }
+        if self.is_broken || self.staging.has_dropped() {
+            self.invalidate()?;
         }
         self.objects.iter_mut().for_each(|object| object.settle(self.now));
         let sent = self.upload()?;
@@ -120,10 +131,15 @@ impl Scene {
                 terrain.morphing.iter_mut().for_each(|morphing| morphing.record(encoder));
             }
         }
-        self.record_stages(encoder, views, between)?;
-        self.count(encoder, views);
-        views.iter_mut().for_each(|view| view.recorded(self.frames));
+        let staged = self.record_stages(encoder, views, between);
+        if staged.is_ok() {
+            self.count(encoder, views);
+            views.iter_mut().for_each(|view| view.recorded(self.frames));
+        }
         self.frames += 1;
+        // What was staged counts on all stages.
+        self.is_broken = staged.is_err();
+        staged?;
         // Unless the time advances again, the next frame is as this one.
         self.step = 0.0;
         Ok(())
@@ -208,6 +224,10 @@ impl Scene {
         let (Some(lists), Some(recorded)) = (&view.lists, view.last_recorded()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
+        if !view.is_of_frame(self.frames) {
+            let bound = "must be among the views of the last Scene::record";
+            return Err(InputError::new("view", "left out of the last frame", bound));
+        }
         if self.layout.as_ref().is_none_or(|layout| lists.version != layout.version) {
             let bound = "must be recorded again, since objects were added, removed or grew, or the scene started afresh";
             return Err(InputError::new("view", "out of date", bound));

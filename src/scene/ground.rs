@@ -17,8 +17,13 @@ impl Scene {
     /// ([`Scene::read_ground`]), and unknown where [`Scene::set_patches`] has brought a patch since.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, or no terrain.
+    /// [`InputError`] for an object that is not of this scene, or no terrain, and for a position that is not finite.
     pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
+        for (path, value) in [("x", x), ("z", z)] {
+            if !value.is_finite() {
+                return Err(InputError::new(path, value, "must be finite"));
+            }
+        }
         Ok(terrain_of(&self.object_at(terrain)?.kind)?.point_at(x, z))
     }
 

@@ -62,6 +62,7 @@ pub use placement::{ClipTime, Placement, Play};
 pub use poses::PoseBuffers;
 pub use quality::{Quality, Shares};
 pub use ray::{Hit, Ray};
+pub use rebuild::Rebuild;
 pub use relief::{Relief, ReliefSource};
 pub use statistics::{
     CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
@@ -138,6 +139,8 @@ pub struct Scene {
     is_shadowed: bool,
     /// Number of frames that were recorded.
     frames: u64,
+    /// Whether the last frame was not recorded as a whole.
+    is_broken: bool,
     layout: Option<Layout>,
     layouts: u64,
     staging: StagingRing,
@@ -194,6 +197,7 @@ impl Scene {
             keeps_last: false,
             is_shadowed: false,
             frames: 0,
+            is_broken: false,
             layout: None,
             layouts: 0,
             staging: StagingRing::new(RECORDINGS),

@@ -7,11 +7,76 @@ use crate::scene::object::OnDevice;
 use crate::scene::statistics::StageTimer;
 use crate::scene::{Passes, RECORDINGS, Scene};
 
+/// Something that was made on a scene's device, and is made again after the device was lost: a
+/// [`View`](crate::scene::View), a [`Renderer`](crate::render::Renderer), a [`SunShadow`](crate::render::SunShadow), or a type
+/// of the caller's.
+pub trait Rebuild {
+    /// Creates everything again on the device of a scene that was rebuilt there.
+    ///
+    /// # Errors
+    /// Those of the type's own `rebuild`.
+    fn rebuild_for(&mut self, scene: &Scene) -> Result<(), Error>;
+}
+
 impl Scene {
+    /// Rebuilds the scene on another device ([`Scene::rebuild`]), and after it, in their order, its views, shadows and renderers.
+    /// What was forgotten is refused where it is used next, with the name of the function that rebuilds it.
+    ///
+    /// # Errors
+    /// As [`Scene::rebuild`]; nothing has changed then. The first error of a part, whose paths begin with `parts[0]`, …: the
+    /// scene and the parts before it are rebuilt then, the others are not.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::gpu::{Gpu, GpuError};
+    /// # use relievo::render::{Renderer, SunShadow};
+    /// # use relievo::scene::{Scene, View};
+    /// # fn open() -> Gpu { unimplemented!() }
+    /// # fn frame(
+    /// #     (mut scene, mut eye, mut shadow, mut renderer): (Scene, View, SunShadow, Renderer),
+    /// # ) -> Result<(), relievo::Error> {
+    /// if let Err(GpuError::DeviceLost { .. }) = scene.health() {
+    ///     let gpu = open(); // a new device, of the same wgpu::Instance or of another one
+    ///     scene.rebuild_all(&gpu, &mut [&mut eye, &mut shadow, &mut renderer])?;
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn rebuild_all(&mut self, gpu: &Gpu, parts: &mut [&mut dyn Rebuild]) -> Result<(), Error> {
+        self.rebuild(gpu)?;
+        self.rebuild_parts(parts)
+    }
+
+    /// As `Scene::rebuild_all`, but completes once the device has told its errors; see [`Gpu::wait_async`].
+    ///
+    /// # Errors
+    /// As `Scene::rebuild_all`.
+    pub async fn rebuild_all_async(
+        &mut self,
+        gpu: &Gpu,
+        parts: &mut [&mut dyn Rebuild],
+    ) -> Result<(), Error> {
+        self.rebuild_async(gpu).await?;
+        self.rebuild_parts(parts)?;
+        Ok(gpu.check_async().await?)
+    }
+
+    fn rebuild_parts(&self, parts: &mut [&mut dyn Rebuild]) -> Result<(), Error> {
+        for (at, part) in parts.iter_mut().enumerate() {
+            part.rebuild_for(self).map_err(|error| match error {
+                Error::Input(error) => error.below(&format!("parts[{at}]")).into(),
+                other => other,
+            })?;
+        }
+        Ok(())
+    }
+
     /// Creates everything that the scene has on its device again, on another one, after the device was lost. Handles stay valid,
-    /// and so do placements, clips, times, attachments and what else was set. Views and renderers need
-    /// [`View::rebuild`](crate::scene::View::rebuild) and
-    /// [`Renderer::rebuild`](crate::render::Renderer::rebuild). The next frame is that of a scene that was
+    /// and so do placements, clips, times, attachments and what else was set. Views, renderers and shadows need
+    /// [`View::rebuild`](crate::scene::View::rebuild), [`Renderer::rebuild`](crate::render::Renderer::rebuild) and
+    /// [`SunShadow::rebuild`](crate::render::SunShadow::rebuild); [`Scene::rebuild_all`] does it all. The next frame is that of a scene that was
     /// [refreshed](Scene::refresh). If it fails, the scene is as it was.
     ///
     /// What lies in buffers and textures of the caller cannot be brought back: terrain made from fields
@@ -54,6 +119,7 @@ impl Scene {
         (self.timer, self.watch, self.counts) = (timer, watch, None);
         self.attachments.forget_device();
         (self.staging, self.staged) = (StagingRing::new(RECORDINGS), Staged::default());
+        self.is_broken = false;
         self.layout = None;
         Ok(())
     }

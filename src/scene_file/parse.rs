@@ -150,7 +150,7 @@ fn target(
         return time.map_or(Ok(None), missing);
     };
     let target = terrain_recipe(&at)?;
-    let refused = |error| below(&at.path, "config", error);
+    let refused = |error: InputError| below(&at.path, "config", error.in_json());
     check_target(&recipe.config, &target.config).map_err(refused)?;
     target.validate(patches, 1).map_err(refused)?;
     Ok(Some((target, Morph { time: time.unwrap_or(0.5) })))

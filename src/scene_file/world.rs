@@ -168,8 +168,7 @@ impl LoadedScene {
         let path = format!("{}.scatter", entry.path);
         let rectangles = scatter.area.map_or_else(|| self.patches(), |area| vec![area]);
         let ground = |x: f64, z: f64| if land.is_some() { height(scene, land, x, z) } else { Some(0.0) };
-        let all = scatter::drawn(scatter, &rectangles, ground)
-            .map_err(|error| InputError { path: format!("{}.{}", entry.path, error.path), ..error })?;
+        let all = scatter::drawn(scatter, &rectangles, ground).map_err(|error| error.below(&entry.path))?;
         for Drawn { x, y, z, turn, scale, phase } in all {
             let at = DVec3::new(x, y + scatter.lift * f64::from(scale), z);
             let turned =
@@ -241,7 +240,7 @@ fn spawn_one(
 /// A mistake below a path in the scene file.
 fn below(path: &str, error: Error) -> Error {
     match error {
-        Error::Input(error) => Error::Input(InputError { path: format!("{path}.{}", error.path), ..error }),
+        Error::Input(error) => Error::Input(error.below(path)),
         other => other,
     }
 }

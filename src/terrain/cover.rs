@@ -125,7 +125,7 @@ impl Cover {
     pub fn validate(&self) -> Result<(), InputError> {
         check_terrain_scale(self.terrain_scale)?;
         finite("tile", self.tile, f64::MIN_POSITIVE, f64::MAX)?;
-        finite("variation", self.variation.into(), 0.0, 1.0)?;
+        finite("variation", self.variation, 0.0, 1.0)?;
         if self.zones.is_empty() || self.zones.len() > MAX_ZONES {
             let bound = format!("must hold 1 to {MAX_ZONES} zones");
             return Err(InputError::new("zones", format!("[{} zones]", self.zones.len()), bound));
@@ -140,11 +140,11 @@ impl Cover {
         check_range(path, zone.min.into(), zone.max.into())?;
         for (name, line) in [("rise", zone.rise), ("fall", zone.fall)] {
             for (at, value) in line.into_iter().enumerate() {
-                finite(&format!("{path}.{name}[{at}]"), value.into(), -1e6, 1e6)?;
+                finite(&format!("{path}.{name}[{at}]"), value, -1e6, 1e6)?;
             }
         }
-        finite(&format!("{path}.height_blend"), zone.height_blend.into(), 0.0, 1.0)?;
-        finite(&format!("{path}.repeats"), zone.repeats.into(), 1.0, MAX_REPEATS.into())?;
+        finite(&format!("{path}.height_blend"), zone.height_blend, 0.0, 1.0)?;
+        finite(&format!("{path}.repeats"), zone.repeats, 1.0, MAX_REPEATS.into())?;
         if zone.repeats.fract() != 0.0 {
             return Err(InputError::new(format!("{path}.repeats"), zone.repeats, "must be a whole number"));
         }

@@ -35,10 +35,10 @@ pub fn creases(config: &Config, seeds: &[String]) -> Result<Vec<Crease>, InputEr
         ));
     }
     if config.coarse_levels != 0 {
-        return Err(InputError::new("coarseLevels", config.coarse_levels, "must be 0"));
+        return Err(InputError::new("coarse_levels", config.coarse_levels, "must be 0"));
     }
     if config.scale_factor == 0.0 {
-        return Err(InputError::new("scaleFactor", 0, "must be above 0: flat terrain bends nowhere"));
+        return Err(InputError::new("scale_factor", 0, "must be above 0: flat terrain bends nowhere"));
     }
     if seeds.is_empty() {
         return Err(InputError::new("seeds.len", 0, "must be at least 1"));
@@ -115,7 +115,7 @@ mod tests {
         let (linear, smooth) = (largest(Interpolation::Linear), largest(Interpolation::Smooth));
         assert!(linear > 1.5 && smooth <= 1.15, "linear {linear}, smooth {smooth}");
         let flat = Config::new(257, 0.0, "").expect("valid");
-        assert_eq!(creases(&flat, &seeds).expect_err("no bends").path, "scaleFactor");
+        assert_eq!(creases(&flat, &seeds).expect_err("no bends").path, "scale_factor");
     }
 
     #[test]

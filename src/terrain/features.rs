@@ -54,15 +54,15 @@ impl FeatureFile {
         let values = &self.precomputed_heights;
         if !values.len().is_multiple_of(3) {
             let bound = "its length must be a multiple of 3 (x, y, height, …)";
-            return Err(InputError::new("precomputedHeights", format!("[{} numbers]", values.len()), bound));
+            return Err(InputError::new("precomputed_heights", format!("[{} numbers]", values.len()), bound));
         }
         let last = f64::from(config.patch_size - 1);
-        let field = |index: usize| format!("precomputedHeights[{index}]");
+        let field = |index: usize| format!("precomputed_heights[{index}]");
         let mut points = Vec::with_capacity(values.len() / 3);
         for (point, triple) in values.chunks_exact(3).enumerate() {
             for (axis, &value) in triple[..2].iter().enumerate() {
                 if !(value.fract() == 0.0 && (0.0..=last).contains(&value)) {
-                    let bound = format!("must be a whole number in 0..={last} (patchSize − 1)");
+                    let bound = format!("must be a whole number in 0..={last} (a patch has one sample more)");
                     return Err(InputError::new(field(3 * point + axis), value, bound));
                 }
             }
@@ -125,7 +125,7 @@ impl Features {
                     patch[1],
                     f64::from(earlier) / HEIGHT_ONE
                 );
-                let field = format!("precomputedHeights[{}]", 3 * index + 2);
+                let field = format!("precomputed_heights[{}]", 3 * index + 2);
                 return Err(InputError::new(field, f64::from(height) / HEIGHT_ONE, bound));
             }
         }

@@ -67,7 +67,7 @@ impl Recipe {
             thermal_after: erosion.thermal_after.map(|raw| thermal("thermalAfter", &raw)).transpose()?,
             ..Self::new(config)
         };
-        recipe.validate(&[], 0)?;
+        recipe.validate(&[], 0).map_err(InputError::in_json)?;
         Ok(recipe)
     }
 
@@ -116,7 +116,7 @@ impl Recipe {
         self.hydraulic.map_or(Ok(()), |hydraulic| hydraulic.validate())?;
         let after = self.thermal_after.map_or(Ok(()), |thermal| thermal.validate());
         after.map_err(|error| InputError {
-            path: error.path.replacen("thermal", "thermalAfter", 1),
+            path: error.path.replacen("thermal", "thermal_after", 1),
             ..error
         })?;
         let apron = self.apron(margin);

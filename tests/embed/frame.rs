@@ -15,20 +15,35 @@ pub fn device() -> Gpu {
     device
 }
 
-/// So many such devices, of one adapter: wgpu does not tell devices of different instances from each other.
+/// So many such devices, of one adapter.
 pub fn devices<const COUNT: usize>() -> [Gpu; COUNT] {
+    let adapter = adapter();
+    [(); COUNT].map(|()| {
+        let gpu = opened(&adapter, &wgpu::Limits::default());
+        assert_eq!(gpu.device().limits().max_storage_buffers_per_shader_stage, 8);
+        gpu
+    })
+}
+
+/// A device with other limits.
+pub fn device_of(limits: &wgpu::Limits) -> Gpu {
+    opened(&adapter(), limits)
+}
+
+/// The suite's adapter, in an instance of its own.
+fn adapter() -> wgpu::Adapter {
     let name = crate::harness::gpu().adapter().name.clone();
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there");
-    [(); COUNT].map(|()| {
-        let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
-        let (device, queue) = opened.expect("a device");
-        assert_eq!(device.features(), wgpu::Features::empty());
-        assert_eq!(device.limits().max_storage_buffers_per_shader_stage, 8);
-        device.on_uncaptured_error(std::sync::Arc::new(|error| panic!("the device reports: {error}")));
-        Gpu::from_wgpu(device, queue)
-    })
+    adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there")
+}
+
+fn opened(adapter: &wgpu::Adapter, limits: &wgpu::Limits) -> Gpu {
+    let descriptor = wgpu::DeviceDescriptor { required_limits: limits.clone(), ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
+    assert_eq!(device.features(), wgpu::Features::empty());
+    device.on_uncaptured_error(std::sync::Arc::new(|error| panic!("the device reports: {error}")));
+    Gpu::from_wgpu(device, queue)
 }
 
 /// What every colour but the first is cleared to; half floats hold it exactly.

@@ -2,10 +2,10 @@
 
 use relievo::InputError;
 use relievo::asset::{Light, Model};
-use relievo::gpu::Gpu;
+use relievo::gpu::{Gpu, GpuError};
 use relievo::render::{DepthFormat, Layer, Renderer, TargetFormat};
 use relievo::samples::maps::BuiltInMap;
-use relievo::scene::{Placement, Quality, Relief, Scene, TerrainSource};
+use relievo::scene::{Camera, Placement, Quality, Relief, Scene, TerrainSource};
 use relievo::terrain::config::Config;
 use relievo::wgpu::{self, TextureFormat as Format};
 
@@ -127,6 +127,61 @@ fn a_scene_of_another_device_is_refused() {
     own.queue().submit([encoder.finish()]);
     let same = Gpu::from_wgpu(own.device().clone(), own.queue().clone());
     Renderer::new(&same, &frame.format).expect("a format").prepare(&world.scene).expect("the same device");
+}
+
+/// Devices of two instances have equal handles, and wgpu panics where their resources meet.
+#[test]
+fn another_instance_is_refused() {
+    let [own, other] = [device(), device()];
+    assert!(own.device() == other.device(), "wgpu tells instances apart");
+    let mut world = World::new(&own, 1);
+    let mut view = world.view(1.0);
+    let frame = Frame::plain(&own, SIZE);
+    let mut foreign = Renderer::new(&other, &frame.format).expect("a format");
+    assert_eq!(wrong(foreign.prepare(&world.scene)), ["scene", "of another device"]);
+    let mut encoder = other.encoder("of another instance");
+    let recorded = world.scene.record(&mut encoder, &mut [&mut view]);
+    assert_eq!(wrong(recorded), ["encoder", "of another wgpu::Instance"]);
+    other.queue().submit([encoder.finish()]);
+    let renderer = frame.renderer(&own, &world.scene);
+    let mut encoder = own.encoder("frame");
+    world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+    frame.pass(&mut encoder, |pass| {
+        let drawn = foreign.draw(pass, &world.scene, &view, Layer::Color);
+        assert_eq!(wrong(drawn), ["scene", "of another device"]);
+        renderer.draw(pass, &world.scene, &view, Layer::Color).expect("drawn");
+    });
+    own.queue().submit([encoder.finish()]);
+}
+
+/// A device with smaller limits than WebGPU's defaults is told by the limit, what is needed and what helps.
+#[test]
+fn small_limits_are_named() {
+    let gpu = crate::frame::device_of(&wgpu::Limits::downlevel_defaults());
+    for refused in [Scene::new(&gpu).map(|_| ()), Renderer::new(&gpu, &TargetFormat::new(COLOR)).map(|_| ())]
+    {
+        let refused = refused.expect_err("too small");
+        let is_limit = matches!(refused, relievo::Error::Gpu(GpuError::Limit { needed, available, .. }) if needed > available);
+        assert!(is_limit && refused.to_string().contains("wgpu::Limits::default()"), "{refused}");
+    }
+}
+
+/// Places that are no numbers, and cameras that see nothing.
+#[test]
+fn what_is_no_place_and_no_camera_is_refused() {
+    let gpu = device();
+    let world = World::new(&gpu, 1);
+    for (place, path) in [([f64::NAN, 0.0], "x"), ([0.0, f64::NAN], "z"), ([0.0, f64::INFINITY], "z")] {
+        assert_eq!(wrong(world.scene.ground(world.land, place[0], place[1]))[0], path);
+    }
+    assert!(world.scene.ground(world.land, 1e300, 0.0).expect("a place").is_none());
+    let mut view = world.view(1.0);
+    let camera = |eye: glam::Vec3, field_of_view| {
+        Camera::looking_at(eye, glam::Vec3::ONE, field_of_view, [0.1, 100.0], SIZE)
+    };
+    assert_eq!(wrong(view.set(camera(glam::Vec3::ZERO, 4.0)))[0], "camera.clip_from_view");
+    assert_eq!(wrong(view.set(camera(glam::Vec3::ONE, 0.8)))[0], "camera.view_from_world");
+    view.set(camera(glam::Vec3::ZERO, 0.8)).expect("a camera");
 }
 
 /// Formats that a device without features does not have are refused by field, not by the driver's compiler.

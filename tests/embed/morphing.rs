@@ -147,9 +147,9 @@ fn mistakes_about_targets_are_told() {
     let plain = || TerrainSource::new(from.clone());
     let finer = Config::new(65, 9.0, "finer").expect("valid");
     let half = Morph { time: 0.5 };
-    assert_eq!(refused(plain().with_target(Recipe::new(finer), half)), pair("target.patchSize", "65"));
+    assert_eq!(refused(plain().with_target(Recipe::new(finer), half)), pair("target.patch_size", "65"));
     let wide = Config { terrain_scale: 2.0, ..to.clone() };
-    assert_eq!(refused(plain().with_target(Recipe::new(wide), half)), pair("target.terrainScale", "2"));
+    assert_eq!(refused(plain().with_target(Recipe::new(wide), half)), pair("target.terrain_scale", "2"));
     let beyond = plain().with_target(Recipe::new(to.clone()), Morph { time: 1.5 });
     assert_eq!(refused(beyond), pair("time", "1.5"));
     let fields = between(&gpu, 0.5).with_target(Recipe::new(to), half);

@@ -1,11 +1,13 @@
 //! Lost devices, and devices whose memory ends.
 
 use image::RgbaImage;
+use relievo::Error;
 use relievo::asset::Transform;
-use relievo::gpu::Gpu;
-use relievo::render::{Layer, Renderer};
+use relievo::gpu::{Gpu, GpuError};
+use relievo::render::{Layer, Renderer, SunShadow};
 use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{InstanceId, ObjectId, Placement, Quality, Relief, View};
+use relievo::wgpu;
 
 use crate::frame::{Frame, device, devices};
 use crate::world::{SIZE, World, model};
@@ -81,8 +83,8 @@ fn a_lost_device_leaves_no_trace() {
     let before = undisturbed.shot(&frames[0], &renderer);
     assert!(disturbed.shot(&frames[1], &other) == before, "another picture before");
     lost.device().destroy();
-    // wgpu tells the loss to the handler of the device's owner. Recording may succeed or fail, and does not panic.
-    let _ = disturbed.record();
+    let told = disturbed.record().expect_err("lost");
+    assert!(matches!(told, Error::Gpu(GpuError::DeviceLost { .. })), "{told}");
     let frame = Frame::plain(&second, SIZE);
     disturbed.world.scene.rebuild(&second).expect("a device");
     // What was not rebuilt is told, and nothing panics.
@@ -111,6 +113,66 @@ fn a_lost_device_leaves_no_trace() {
     }
     let carrier = disturbed.world.crowd[1];
     assert_eq!(disturbed.world.scene.attached_to(disturbed.carried).expect("there"), Some((carrier, 40)));
+}
+
+/// A device that is lost is called lost by everything that can fail, without a handler of the crate's; one call brings all back
+/// on a device of another instance, and what it was not given is refused there.
+#[test]
+fn one_call_brings_all_back() {
+    let [lost, second] = [device(), device()];
+    let is_heard = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+    let to = is_heard.clone();
+    lost.device().set_device_lost_callback(move |_, _| to.store(true, std::sync::atomic::Ordering::Relaxed));
+    let mut whole = Whole::new(&lost);
+    let mut shadow = SunShadow::new(&mut whole.world.scene, 256).expect("a shadow");
+    let frames = [Frame::plain(&lost, SIZE), Frame::plain(&second, SIZE)];
+    let mut renderer = frames[0].renderer(&lost, &whole.world.scene);
+    let mut forgotten = frames[0].renderer(&lost, &whole.world.scene);
+    let shot = |whole: &mut Whole, shadow: &mut SunShadow, renderer: &Renderer, frame: &Frame| {
+        let Whole { world: World { scene, .. }, view, .. } = whole;
+        shadow.fit(scene, &mut [view], 60.0).expect("fitted");
+        let gpu = scene.gpu().clone();
+        let mut encoder = gpu.encoder("frame");
+        scene.record(&mut encoder, &mut [view, shadow.view()]).expect("recorded");
+        shadow.draw(&mut encoder, scene).expect("drawn");
+        frame.pass(&mut encoder, |pass| renderer.draw(pass, scene, view, Layer::Color).expect("drawn"));
+        gpu.queue().submit([encoder.finish()]);
+        frame.read(&gpu)
+    };
+    let before = shot(&mut whole, &mut shadow, &renderer, &frames[0]);
+    assert!(whole.world.scene.health().is_ok() && lost.check().is_ok());
+    lost.device().destroy();
+    let is_lost = |error: Error| matches!(error, Error::Gpu(GpuError::DeviceLost { .. }));
+    let scene = &mut whole.world.scene;
+    assert!(
+        is_lost(scene.health().expect_err("lost").into()) && is_lost(lost.check().expect_err("lost").into())
+    );
+    assert!(is_lost(scene.add_mesh(&model(), 1).expect_err("lost")));
+    assert!(is_lost(scene.view(Quality::default()).expect_err("lost")));
+    assert!(is_lost(SunShadow::new(scene, 64).expect_err("lost")));
+    assert!(is_lost(Renderer::new(&lost, &frames[0].format).expect_err("lost")));
+    assert!(is_lost(scene.record(&mut second.encoder("frame"), &mut [&mut whole.view]).expect_err("lost")));
+    let _ = lost.device().poll(wgpu::PollType::Poll);
+    assert!(is_heard.load(std::sync::atomic::Ordering::Relaxed), "the program's own callback was replaced");
+    scene.rebuild_all(&second, &mut [&mut whole.view, &mut shadow, &mut renderer]).expect("rebuilt");
+    assert!(shot(&mut whole, &mut shadow, &renderer, &frames[1]) == before, "another picture");
+    let scene = &whole.world.scene;
+    let refused = forgotten.prepare(scene).expect_err("of the lost device").to_string();
+    assert!(refused.contains("another device") && refused.contains("rebuild"), "{refused}");
+    // A part that cannot be rebuilt is told by its number.
+    let layout = lost_layout(&second);
+    let shaded = Renderer::new(&second, &frames[1].format).expect("a format");
+    let mut shaded = shaded.with_shading(SHADING, Some(&layout)).expect("valid");
+    let refused = whole.world.scene.rebuild_all(&second, &mut [&mut whole.view, &mut shaded]);
+    let refused = refused.expect_err("a layout of the lost device").to_string();
+    assert!(refused.starts_with("parts[1].shading.layout = "), "{refused}");
+}
+
+/// A shading that binds nothing.
+const SHADING: &str = "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(1.0); }";
+
+fn lost_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[] })
 }
 
 /// A device without memory refuses what needs some, and the scene goes on as before: then with memory, as if nothing had

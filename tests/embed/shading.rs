@@ -293,6 +293,49 @@ fn mistakes() -> Vec<(String, usize, usize, &'static str)> {
 
 const GOOD: &str = "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(1.0); }";
 
+/// A layout that does not fit the text, or the device, is refused before anything is drawn.
+#[test]
+fn layouts_that_do_not_fit_are_refused() {
+    let gpu = device();
+    let renderer = || Renderer::new(&gpu, &TargetFormat::new(COLOR)).expect("a format");
+    let layout = |entries: &[(u32, wgpu::BindingType)]| {
+        let entry = |(binding, ty): &(u32, wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
+            binding: *binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: *ty,
+            count: None,
+        };
+        let entries: Vec<_> = entries.iter().map(entry).collect();
+        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+        gpu.device().create_bind_group_layout(&descriptor)
+    };
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let (uniform, sampler) = (
+        buffer(wgpu::BufferBindingType::Uniform),
+        wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+    );
+    let text = "@group(3) @binding(2) var<uniform> tone: vec4<f32>;
+fn shade(surface: Surface, view: View) -> vec4<f32> { return tone; }";
+    let wrong =
+        |entries: &[(u32, wgpu::BindingType)]| match renderer().with_shading(text, Some(&layout(entries))) {
+            Ok(_) => "nothing".to_owned(),
+            Err(relievo::Error::Input(error)) => error.path,
+            Err(other) => panic!("no input error: {other}"),
+        };
+    let many: Vec<_> = (0..9).map(|at| (at, uniform)).collect();
+    let cases = [
+        (wrong(&[]), "shading.layout"),
+        (wrong(&[(1, uniform)]), "shading.layout"),
+        (wrong(&[(2, sampler)]), "shading.layout"),
+        (wrong(&many), "shading.layout"),
+        (wrong(&many[..8]), "nothing"),
+        (wrong(&[(2, uniform)]), "nothing"),
+    ];
+    for (at, (found, wanted)) in cases.iter().enumerate() {
+        assert_eq!(found, wanted, "{at}");
+    }
+}
+
 /// Each mistake is told with its own line and column, and a word of its reason.
 #[test]
 fn mistakes_are_told_with_their_lines() {
@@ -302,7 +345,7 @@ fn mistakes_are_told_with_their_lines() {
         gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[] });
     let mut wrong = Vec::new();
     for (source, line, column, word) in mistakes() {
-        let error = renderer().with_shading(&source, Some(&layout)).expect_err("refused");
+        let error = input(renderer().with_shading(&source, Some(&layout)));
         let is_near = error.path == format!("shading:{line}:{column}") && error.bound.contains(word);
         if !is_near {
             wrong.push(format!("{source:?}: {error:?}, not {line}:{column} {word}"));
@@ -310,7 +353,17 @@ fn mistakes_are_told_with_their_lines() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let bound = format!("@group(3) @binding(0) var<uniform> a: vec4<f32>;\n{GOOD}");
-    let error = renderer().with_shading(&bound, None).expect_err("no layout");
+    let error = input(renderer().with_shading(&bound, None));
     assert!(error.bound.contains("no layout"), "{error}");
     assert!(renderer().with_shading(GOOD, None).is_ok());
+    let error = input(renderer().with_shading(&GOOD.replace("shade", "paint"), None));
+    assert_eq!(error.value, "no function `shade`");
+}
+
+/// The mistake of the caller's.
+fn input(result: Result<Renderer, relievo::Error>) -> relievo::InputError {
+    match result.expect_err("refused") {
+        relievo::Error::Input(error) => error,
+        other => panic!("no input error: {other}"),
+    }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use relievo::render::{Layer, Renderer, TargetFormat};
-use relievo::scene::{Camera, Quality, View};
+use relievo::scene::{Camera, Placement, Quality, View};
 use relievo::wgpu;
 
 use crate::frame::{Frame, device};
@@ -100,6 +100,91 @@ fn the_ring_is_full_after_four_recordings() {
     drop(encoder);
     world.scene.invalidate().expect("afresh");
     assert!(frame.shot(&mut world.scene, &mut view, &renderer) == expected, "another picture");
+}
+
+/// What an encoder that is dropped should have told the device is told again by the next frame, which nobody has to ask for.
+#[test]
+fn dropped_encoders_are_harmless() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 4);
+    let mut view = world.view(1.0);
+    let frame = Frame::plain(&gpu, SIZE);
+    let renderer = frame.renderer(&gpu, &world.scene);
+    let mut before = frame.shot(&mut world.scene, &mut view, &renderer);
+    for is_finished in [false, true] {
+        let placement = world.scene.placement(world.crowd[0]).expect("there");
+        let away = Placement { at: placement.at + Vec3::new(2.0, 1.0, 0.0), ..placement };
+        world.scene.move_to(world.crowd[0], away).expect("there");
+        let mut encoder = gpu.encoder("dropped");
+        world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+        if is_finished {
+            drop(encoder.finish())
+        } else {
+            drop(encoder)
+        }
+        let found = frame.shot(&mut world.scene, &mut view, &renderer);
+        world.scene.refresh().expect("afresh");
+        assert!(found == frame.shot(&mut world.scene, &mut view, &renderer), "the move is lost");
+        assert!(found != before, "nothing has moved");
+        before = found;
+    }
+}
+
+/// A frame that the caller's own passes could not finish is not drawn, and the next one is whole, though its encoder was submitted.
+#[test]
+fn a_frame_that_failed_is_not_drawn() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 4);
+    let mut view = world.view(1.0);
+    let frame = Frame::plain(&gpu, SIZE);
+    let renderer = frame.renderer(&gpu, &world.scene);
+    let before = frame.shot(&mut world.scene, &mut view, &renderer);
+    world.scene.advance(0.3).expect("finite");
+    let mut encoder = gpu.encoder("failed");
+    let failure = || relievo::InputError::new("solver", 0, "must converge");
+    let failed = world.scene.record_with(&mut encoder, &mut [&mut view], |_, _| Err(failure()));
+    assert!(failed.expect_err("told").to_string().contains("solver"));
+    frame.pass(&mut encoder, |pass| {
+        let drawn = renderer.draw(pass, &world.scene, &view, Layer::Color);
+        assert_eq!(drawn.expect_err("refused").value, "left out of the last frame");
+    });
+    gpu.queue().submit([encoder.finish()]);
+    let found = frame.shot(&mut world.scene, &mut view, &renderer);
+    world.scene.refresh().expect("afresh");
+    assert!(found == frame.shot(&mut world.scene, &mut view, &renderer) && found != before);
+}
+
+/// A view that the last frame left out is not drawn, since its lists are those of an earlier frame; once it is recorded again it is.
+#[test]
+fn a_view_that_was_left_out_is_refused() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 4);
+    let mut views = [world.view(1.0), world.view(1.0)];
+    let frame = Frame::plain(&gpu, SIZE);
+    let renderer = frame.renderer(&gpu, &world.scene);
+    let record = |world: &mut World, views: &mut [&mut View]| {
+        let mut encoder = gpu.encoder("frame");
+        world.scene.record(&mut encoder, views).expect("recorded");
+        gpu.queue().submit([encoder.finish()]);
+    };
+    let drawn = |world: &World, view: &View| {
+        let (mut encoder, mut drawn) = (gpu.encoder("drawn"), Ok(()));
+        frame.pass(&mut encoder, |pass| {
+            drawn = [Layer::Color, Layer::Transparent]
+                .into_iter()
+                .try_for_each(|layer| renderer.draw(pass, &world.scene, view, layer));
+        });
+        drawn
+    };
+    let [one, other] = &mut views;
+    record(&mut world, &mut [one, other]);
+    assert_eq!((drawn(&world, one), drawn(&world, other)), (Ok(()), Ok(())));
+    record(&mut world, &mut [one]);
+    assert_eq!(drawn(&world, one), Ok(()));
+    let refused = drawn(&world, other).expect_err("left out");
+    assert_eq!((refused.path.as_str(), refused.value.as_str()), ("view", "left out of the last frame"));
+    record(&mut world, &mut [other]);
+    assert!(drawn(&world, other).is_ok() && drawn(&world, one).is_err());
 }
 
 /// A view of another scene, a view without a camera, and no view at all are refused.

@@ -385,7 +385,7 @@ fn parameters_out_of_bounds_are_refused() {
     let config = Config::new(257, 30.0, "s").expect("valid");
     let far = Thermal { iterations: 1025, talus: 30.0 };
     let recipe = Recipe { thermal_after: Some(far), ..Recipe::new(config.clone()) };
-    assert_eq!(recipe.validate(&[], 0).expect_err("refused").path, "thermalAfter.iterations");
+    assert_eq!(recipe.validate(&[], 0).expect_err("refused").path, "thermal_after.iterations");
     let wraps = Config { border: Border::Wrap, ..config };
     let recipe = Recipe { hydraulic: Some(good), ..Recipe::new(wraps) };
     let error = recipe.validate(&[[0, 0]], 0).expect_err("refused");

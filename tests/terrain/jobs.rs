@@ -65,7 +65,7 @@ fn normals() {
     refuses(prepare(1.0, &windows, 17, 54), &["gradients = [17 elements]", "at least 18"]);
     refuses(prepare(1.0, &windows, 18, 53), &["normals = [53 elements]", "at least 54"]);
     for scale in [0.0, -1.0, f64::NAN, 2e6] {
-        refuses(prepare(scale, &windows, 18, 54), &["terrainScale = ", "0.000001..=1000000"]);
+        refuses(prepare(scale, &windows, 18, 54), &["terrain_scale = ", "0.000001..=1000000"]);
     }
     for width in 0..=2 {
         let thin = fields(&gpu, width, 1);
@@ -95,7 +95,7 @@ fn blend() {
     refuses(prepare(&cover, good, &windows, [2, 17]), &["pixels = [17 elements]", "at least 18"]);
     refuses(prepare(&cover, good, &windows, [1, 18]), &["places = [1 elements]", "at least 2"]);
     let endless = Cover { terrain_scale: f64::INFINITY, ..cover.clone() };
-    refuses(prepare(&endless, good, &windows, [2, 18]), &["terrainScale = inf"]);
+    refuses(prepare(&endless, good, &windows, [2, 18]), &["terrain_scale = inf"]);
     refuses(prepare(&Cover { tile: 0.0, ..cover.clone() }, good, &windows, [2, 18]), &["tile = 0"]);
     refuses(
         prepare(&Cover { variation: 1.5, ..cover.clone() }, good, &windows, [2, 18]),
@@ -160,7 +160,7 @@ fn thermal() {
     assert!(prepare(2, 1.0, &windows, 18).is_ok() && prepare(0, 1.0, &windows, 50).is_ok());
     refuses(prepare(2, 1.0, &windows, 17), &["other.heights = [17 elements]", "at least 18"]);
     refuses(prepare(3, 1.0, &windows, 50), &["windows.width = 5: ", "exceed 6"]);
-    refuses(prepare(1, 0.0, &windows, 50), &["terrainScale = 0"]);
+    refuses(prepare(1, 0.0, &windows, 50), &["terrain_scale = 0"]);
     refuses(prepare(1, 1.0, &short(&gpu), 50), &["windows.heights = [49 elements]"]);
 }
 
@@ -184,7 +184,7 @@ fn hydraulic() {
     refuses(prepare(2, 1.0, &windows, [18, 18, 17]), &["other_flows = [17 elements]", "at least 18"]);
     refuses(prepare(3, 1.0, &windows, [50; 3]), &["windows.width = 5: ", "exceed 6"]);
     refuses(prepare(2049, 1.0, &windows, [50; 3]), &["hydraulic.iterations = 2049", "2048"]);
-    refuses(prepare(1, 0.0, &windows, [50; 3]), &["terrainScale = 0"]);
+    refuses(prepare(1, 0.0, &windows, [50; 3]), &["terrain_scale = 0"]);
     refuses(prepare(1, 1.0, &short(&gpu), [50; 3]), &["windows.heights = [49 elements]"]);
 }
 

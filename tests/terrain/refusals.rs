@@ -212,14 +212,14 @@ fn numbers_that_are_not_finite_are_refused() {
             refuses(config.validate(), &[&format!("{field} = {value}: "), "number"]);
         }
     };
-    refuses_all(|config, value| config.scale_factor = value, "scaleFactor");
+    refuses_all(|config, value| config.scale_factor = value, "scale_factor");
     refuses_all(|config, value| config.roughness = value, "roughness");
-    refuses_all(|config, value| config.terrain_scale = value, "terrainScale");
-    refuses_all(|config, value| config.texture_tile = Some(value), "textureTile");
+    refuses_all(|config, value| config.terrain_scale = value, "terrain_scale");
+    refuses_all(|config, value| config.texture_tile = Some(value), "texture_tile");
     refuses_all(|config, value| config.corners[2] = value, "corners[2]");
     refuses_all(|config, value| config.variation = value, "variation");
     refuses_all(|config, value| config.zones[2].slope.fade = value, "zones[2].slope.fade");
-    refuses_all(|config, value| config.zones[2].height_blend = value, "zones[2].heightBlend");
+    refuses_all(|config, value| config.zones[2].height_blend = value, "zones[2].height_blend");
     refuses_all(|config, value| config.zones[1].min = value, "zones[1].min");
     refuses_all(|config, value| config.zones[3].max = value, "zones[3].max");
 }
@@ -274,14 +274,14 @@ fn coarse_levels_are_bounded_and_for_seamless_only() {
 #[test]
 fn a_configuration_made_by_hand_is_checked_as_well() {
     let config = accepted(&[]);
-    refuses(Config { patch_size: 34, ..config.clone() }.validate(), &["patchSize = 34: ", "2^n + 1"]);
-    refuses(Config { coarse_levels: 9, ..config.clone() }.validate(), &["coarseLevels = 9: ", "0..=8"]);
+    refuses(Config { patch_size: 34, ..config.clone() }.validate(), &["patch_size = 34: ", "2^n + 1"]);
+    refuses(Config { coarse_levels: 9, ..config.clone() }.validate(), &["coarse_levels = 9: ", "0..=8"]);
     refuses(
         Config { border: Border::Blend(0), ..config.clone() }.validate(),
         &["border.blend = 0: ", "1..=32"],
     );
     refuses(Config { zones: Vec::new(), ..config }.validate(), &["zones = [0 zones]: ", "1 to 32"]);
-    refuses(Config::new(256, 40.0, "any text"), &["patchSize = 256: ", "2^n + 1"]);
+    refuses(Config::new(256, 40.0, "any text"), &["patch_size = 256: ", "2^n + 1"]);
 }
 
 #[test]
@@ -299,7 +299,7 @@ fn border_is_one_of_three() {
         let border = format!("{{\"blend\": {width}}}");
         refused(&[("border", &border)], &[&format!("border.blend = {width}: "), "1..=4096"]);
     }
-    refused(&[("border", "{\"blend\": 33}")], &["border.blend = 33: ", "1..=32", "patchSize"]);
+    refused(&[("border", "{\"blend\": 33}")], &["border.blend = 33: ", "1..=32", "one sample more"]);
     assert_eq!(accepted(&[("border", "{\"blend\": 32}")]).border, Border::Blend(32));
 }
 
@@ -399,7 +399,8 @@ fn features(config: &Config, files: &[([i32; 2], &str)], mode: FeatureMode) -> R
         format!("{{\"patchCoordinates\": [{x}, {y}], \"precomputedHeights\": [{heights}]}}")
     };
     let files: Result<Vec<_>, _> = files.iter().map(|file| FeatureFile::from_json(&text(file))).collect();
-    Features::new(config, &files?, mode)
+    // Whoever reads files tells the names that stand in them.
+    Features::new(config, &files?, mode).map_err(InputError::in_json)
 }
 
 fn kept(files: &[([i32; 2], &str)]) -> Result<Features, InputError> {
@@ -458,7 +459,7 @@ fn feature_coordinates_lie_in_their_patch() {
     for value in ["-1", "33", "1.5", "0.1", "-0.5", "1e300"] {
         let shown = value.parse::<f64>().expect("a number").to_string();
         let parts =
-            |index| [format!("precomputedHeights[{index}] = {shown}: "), "0..=32 (patchSize".to_owned()];
+            |index| [format!("precomputedHeights[{index}] = {shown}: "), "0..=32 (a patch has".to_owned()];
         let refuses = |heights: String, index| {
             refuses(kept(&[([0, 0], &heights)]), &parts(index).each_ref().map(String::as_str));
         };
@@ -475,7 +476,7 @@ fn feature_heights_are_bounded() {
     }
     for height in [f64::NAN, f64::INFINITY] {
         let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: vec![0.0, 0.0, height] };
-        let value = format!("precomputedHeights[2] = {height}: ");
+        let value = format!("precomputed_heights[2] = {height}: ");
         refuses(Features::new(&accepted(&[]), &[file], FeatureMode::Keep), &[&value, "finite"]);
     }
 }
@@ -504,7 +505,7 @@ fn a_configuration_that_overflows_with_the_features_of_another_is_refused() {
     let loud = accepted(&[("scaleFactor", "2000")]);
     let recipe = |config: &Config| Recipe { features: features.clone(), ..Recipe::new(config.clone()) };
     assert_eq!(recipe(&quiet).validate(&[[0, 0]], 0), Ok(()));
-    refuses(recipe(&loud).validate(&[[0, 0]], 0), &["scaleFactor = 2000: ", "heights could reach"]);
+    refuses(recipe(&loud).validate(&[[0, 0]], 0), &["scale_factor = 2000: ", "heights could reach"]);
 }
 
 #[test]

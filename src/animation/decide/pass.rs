@@ -125,17 +125,9 @@ impl Kernels {
 
 /// The kernel that performs all steps.
 fn whole(gpu: &Gpu, mode: Mode) -> Result<Kernel, GpuError> {
-    let (needed, available) = (needed(), available(gpu));
-    if needed > available {
-        return Err(GpuError::Limit {
-            pass: "animation/decide",
-            limit: "maxStorageBuffersPerShaderStage",
-            needed: needed.into(),
-            available: available.into(),
-            remedy: "take several dispatches, as DecidePass::new does",
-        });
-    }
-    bindings::decide::kernel(gpu, &bindings::decide::Constants { mode: mode.constant() })
+    let constants = bindings::decide::Constants { mode: mode.constant() };
+    bindings::decide::kernel(gpu, &constants)
+        .map_err(|error| error.with_remedy("take several dispatches, as DecidePass::new does"))
 }
 
 fn one(

@@ -209,7 +209,7 @@ impl Terrain {
         let read = Recipe::from_file(&self.config)?;
         let despike = self.despike.map(|threshold| Despike { threshold });
         let mut recipe = Recipe { despike, ..self.erosion.applied(read)? };
-        recipe.validate(&[], 0)?;
+        recipe.validate(&[], 0).map_err(InputError::in_json)?;
         let grid = pair::<u32>("patches", &self.patches, 'x', "must be columns x rows, such as 3x3")?;
         let origin = pair::<i32>("origin", &self.origin, ',', "must be two patch coordinates, such as -1,2")?;
         let size =
@@ -229,7 +229,7 @@ impl Terrain {
         let patches = grid.patches()?;
         recipe.features = self.read_features(&recipe.config, grid, width)?;
         memory::check(&self.patches, words * grid.bytes(width, recipe.features.len() as u64))?;
-        recipe.validate(&patches, 1)?;
+        recipe.validate(&patches, 1).map_err(InputError::in_json)?;
         let target = self.target.read(&recipe, &patches)?;
         let textures = Texture::of_zones(&recipe.config.zones)?;
         let shading = Shading { weights: self.weights, ..Shading::default() };

@@ -156,7 +156,7 @@ impl Stored {
             let coarse = &lists[lists.len() - 1];
             let fine = patch
                 .applied(coarse, &self.partners)
-                .map_err(|error| InputError { path: format!("patches[{at}].{}", error.path), ..error })?;
+                .map_err(|error| error.below(&format!("patches[{at}]")))?;
             lists.push(fine);
         }
         lists.reverse();

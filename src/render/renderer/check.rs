@@ -7,11 +7,12 @@ use crate::scene::Scene;
 use crate::scene::drawable::{DrawnObject, DrawnView};
 
 impl Renderer {
-    /// wgpu does not tell devices of different instances from each other.
+    /// Whether a scene is on the renderer's device.
     pub(super) fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
-        match scene.gpu().device() == self.gpu.device() {
+        let bound = "must be of the renderer's device: rebuild what is of a lost device (Scene::rebuild_all)";
+        match scene.gpu().is_same_device(&self.gpu) {
             true => Ok(()),
-            false => Err(InputError::new("scene", "of another device", "must be of the renderer's device")),
+            false => Err(InputError::new("scene", "of another device", bound)),
         }
     }
 

@@ -2,7 +2,14 @@
 
 use super::Renderer;
 use crate::gpu::Gpu;
+use crate::scene::{Rebuild, Scene};
 use crate::{Error, InputError};
+
+impl Rebuild for Renderer {
+    fn rebuild_for(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.rebuild(scene.gpu())
+    }
+}
 
 impl Renderer {
     /// Compiles its pipelines again on another device, after its own was lost; the scene is rebuilt there too

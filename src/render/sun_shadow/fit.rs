@@ -48,8 +48,9 @@ impl Frustum {
         let plane = if plane.dot(ahead) < 0.0 { -plane } else { plane };
         let begin = plane.dot(place(0.0, 0.0, near));
         if range <= begin {
-            let bound = format!("must be beyond the near plane, {begin} units ahead of the camera");
-            return Err(InputError::new("range", range, bound));
+            // The caller gave f32.
+            let bound = format!("must be beyond the near plane, {} units ahead of the camera", begin as f32);
+            return Err(InputError::new("range", range as f32, bound));
         }
         // An infinite far plane gives what is infinite, or no number.
         let end = plane.dot(place(0.0, 0.0, far));

@@ -8,7 +8,7 @@ use super::layer::Layer;
 use super::renderer::Renderer;
 use crate::gpu::{Gpu, GpuError};
 use crate::scene::layouts::{SHADOW_FORMAT, shadow_map};
-use crate::scene::{Camera, Quality, Scene, View, ViewShadow};
+use crate::scene::{Camera, Quality, Rebuild, Scene, View, ViewShadow};
 use crate::{Error, InputError};
 use fit::{Fit, Frustum};
 
@@ -80,6 +80,7 @@ impl SunShadow {
         renderer.prepare(scene)?;
         let mut view = scene.view(Quality::default())?;
         view.set_casters_only(true);
+        view.remade_by = "SunShadow::rebuild";
         let map = created(&gpu, size)?;
         scene.set_shadowed();
         Ok(Self { size, map, renderer, view })
@@ -200,6 +201,12 @@ impl SunShadow {
         self.renderer.rebuild(scene.gpu())?;
         self.map = map;
         Ok(())
+    }
+}
+
+impl Rebuild for SunShadow {
+    fn rebuild_for(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.rebuild(scene)
     }
 }
 

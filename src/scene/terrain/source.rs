@@ -116,7 +116,7 @@ impl TerrainSource {
             let bound = "must not be given for terrain made from fields: blend them with a pass";
             return Err(InputError::new("target", "a recipe", bound));
         }
-        let below = |error: InputError| InputError { path: format!("target.{}", error.path), ..error };
+        let below = |error: InputError| error.below("target");
         check_target(self.config(), &target.config).map_err(below)?;
         target.validate(&self.patches, 1).map_err(below)?;
         morph.validate()

@@ -82,6 +82,8 @@ pub struct View {
     scene: SceneNumber,
     /// The number of the scene's device on which it was made.
     device: u32,
+    /// The function that makes it again on another device.
+    pub(crate) remade_by: &'static str,
     quality: Quality,
     camera: Option<Camera>,
     /// The camera of its last frame, and the number of that frame.
@@ -121,6 +123,7 @@ impl View {
         Ok(Self {
             scene,
             device,
+            remade_by: "View::rebuild",
             quality,
             camera: None,
             last: None,
@@ -238,6 +241,11 @@ impl View {
     /// What a renderer needs to know of the last frame, if there was one.
     pub(super) fn last_recorded(&self) -> Option<&Recorded> {
         self.recorded.as_ref()
+    }
+
+    /// Whether it was recorded in the last of so many frames.
+    pub(super) fn is_of_frame(&self, frames: u64) -> bool {
+        self.last.is_some_and(|(frame, _)| frame + 1 == frames)
     }
 
     /// Remembers the camera of a frame that was recorded.

@@ -1,9 +1,15 @@
 //! A view on another device, after its scene's was lost.
 
 use super::View;
-use crate::scene::Scene;
 use crate::scene::handles::foreign;
+use crate::scene::{Rebuild, Scene};
 use crate::{Error, InputError};
+
+impl Rebuild for View {
+    fn rebuild_for(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.rebuild(scene)
+    }
+}
 
 impl View {
     /// Creates everything that the view has on the device again, after its scene was rebuilt on another one
@@ -19,7 +25,7 @@ impl View {
         let fresh = Self::new(&scene.gpu, (scene.objects.scene(), scene.device), self.quality)?;
         let Self { device, select, drawn, .. } = fresh;
         (self.device, self.select, self.drawn) = (device, select, drawn);
-        (self.lists, self.counts, self.recorded) = (None, None, None);
+        (self.lists, self.counts, self.recorded, self.last) = (None, None, None, None);
         // Its map was of the lost device.
         self.shadow = None;
         Ok(())
@@ -31,7 +37,7 @@ impl View {
             return Err(foreign(path));
         }
         if self.device != scene.device {
-            let bound = "must be rebuilt after its scene: View::rebuild";
+            let bound = format!("must be rebuilt after its scene: {}", self.remade_by);
             return Err(InputError::new(path, "of a device that was lost", bound));
         }
         Ok(())

@@ -63,7 +63,7 @@ impl Shading {
             let bound = format!("must have length 1, and has {length}");
             return Err(InputError::new("light", format!("{:?}", self.light), bound));
         }
-        finite("ambient", self.ambient.into(), 0.0, 1.0)
+        finite("ambient", self.ambient, 0.0, 1.0)
     }
 }
 

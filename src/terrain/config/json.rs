@@ -286,7 +286,7 @@ impl Config {
                 |zones| zones.into_iter().map(|zone| zone.0).collect(),
             ),
         };
-        config.validate()?;
+        config.validate().map_err(InputError::in_json)?;
         let [thermal, thermal_after] = [raw.thermal, raw.thermal_after].map(|raw| raw.map(|raw| raw.0));
         let hydraulic = raw.hydraulic.map(|raw| raw.0);
         Ok((config, RawErosion { thermal, hydraulic, thermal_after }))

@@ -108,7 +108,7 @@ pub struct Config {
     /// World units between neighbouring samples, > 0. Default 1.
     pub terrain_scale: f64,
     /// World units that a zone's texture covers before it repeats, at least 1/16384 of a patch's edge. Default
-    /// `None`, which stands for (patchSize − 1) / 10 units; with B's terrainScale that is 10 · terrainScale
+    /// `None`, which stands for (`patch_size` − 1) / 10 units; with B's `terrainScale` that is 10 · `terrain_scale`
     /// tiles per patch.
     pub texture_tile: Option<f64>,
     /// Whether textures lie on steep ground from the sides too (triplanar mapping), so that they are not stretched there. Default
@@ -175,19 +175,19 @@ impl Config {
         let size = self.patch_size;
         if !(3..=4097).contains(&size) || !(size - 1).is_power_of_two() {
             return Err(InputError::new(
-                "patchSize",
+                "patch_size",
                 size,
                 "must be 2^n + 1 with n in 1..=12 (3, 5, 9, … 4097)",
             ));
         }
-        finite("scaleFactor", self.scale_factor, 0.0, f64::MAX)?;
+        finite("scale_factor", self.scale_factor, 0.0, f64::MAX)?;
         finite("roughness", self.roughness, 0.0, f64::MAX)?;
         if self.coarse_levels > 8 {
-            return Err(InputError::new("coarseLevels", self.coarse_levels, "must be in 0..=8"));
+            return Err(InputError::new("coarse_levels", self.coarse_levels, "must be in 0..=8"));
         }
         check_terrain_scale(self.terrain_scale)?;
         if let Some(tile) = self.texture_tile {
-            finite("textureTile", tile, self.edge_length() / MAX_TILES, f64::MAX)?;
+            finite("texture_tile", tile, self.edge_length() / MAX_TILES, f64::MAX)?;
         }
         finite("variation", self.variation, 0.0, 1.0)?;
         let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
@@ -214,7 +214,7 @@ impl Config {
             }
         } else if self.coarse_levels != 0 {
             let bound = "must be 0 unless border is \"seamless\": a patch by itself has nothing coarser";
-            return Err(InputError::new("coarseLevels", self.coarse_levels, bound));
+            return Err(InputError::new("coarse_levels", self.coarse_levels, bound));
         }
         if self.interpolation == Interpolation::Smooth && self.border != Border::Seamless {
             let bound =
@@ -223,7 +223,7 @@ impl Config {
         }
         match self.border {
             Border::Blend(width) if width == 0 || width >= self.patch_size => {
-                let bound = format!("must be in 1..={} (patchSize − 1)", self.patch_size - 1);
+                let bound = format!("must be in 1..={} (a patch has one sample more)", self.patch_size - 1);
                 Err(InputError::new("border.blend", width, bound))
             }
             _ => Ok(()),
@@ -235,7 +235,7 @@ impl Config {
     /// refused.
     ///
     /// # Errors
-    /// [`InputError`] that names `scaleFactor` or `precomputedHeights`.
+    /// [`InputError`] that names `scale_factor` or `precomputed_heights`.
     pub(crate) fn check_overflow(&self, largest_feature: i64, additive: bool) -> Result<(), InputError> {
         if self.interpolation == Interpolation::Smooth {
             return self.check_smooth(largest_feature);
@@ -256,7 +256,7 @@ impl Config {
             let bound = format!(
                 "heights could reach {highest:.5} units with these ranges, corners and features; the bound is {most:.5}"
             );
-            return Err(InputError::new("scaleFactor", self.scale_factor, bound));
+            return Err(InputError::new("scale_factor", self.scale_factor, bound));
         }
         Ok(())
     }
@@ -265,8 +265,8 @@ impl Config {
         let most = SMOOTH_LIMIT as f64 / HEIGHT_ONE;
         let feature = largest_feature as f64 / HEIGHT_ONE;
         for (field, units, value) in [
-            ("scaleFactor", self.range(0), self.scale_factor),
-            ("precomputedHeights", largest_feature as f64, feature),
+            ("scale_factor", self.range(0), self.scale_factor),
+            ("precomputed_heights", largest_feature as f64, feature),
         ] {
             if units > SMOOTH_LIMIT as f64 {
                 let bound = format!("must be at most {most} in size where interpolation is smooth");
@@ -335,12 +335,16 @@ impl Config {
 
 /// Checks the distance between neighbouring samples in world units.
 pub(crate) fn check_terrain_scale(terrain_scale: f64) -> Result<(), InputError> {
-    finite("terrainScale", terrain_scale, 1e-6, 1e6)
+    finite("terrain_scale", terrain_scale, 1e-6, 1e6)
 }
 
 /// Checks that a number is finite and in `low..=high`.
-pub(crate) fn finite(field: &str, value: f64, low: f64, high: f64) -> Result<(), InputError> {
-    if value.is_finite() && (low..=high).contains(&value) {
+pub(crate) fn finite<T>(field: &str, value: T, low: f64, high: f64) -> Result<(), InputError>
+where
+    T: Copy + Into<f64> + std::fmt::Display,
+{
+    let number: f64 = value.into();
+    if number.is_finite() && (low..=high).contains(&number) {
         return Ok(());
     }
     let bound = match (low > -f64::MAX, high < f64::MAX) {

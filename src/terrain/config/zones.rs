@@ -180,7 +180,7 @@ impl Zone {
     pub fn validate(&self, path: &str) -> Result<(), InputError> {
         check_range(path, self.min, self.max)?;
         self.slope.validate(&format!("{path}.slope"))?;
-        finite(&format!("{path}.heightBlend"), self.height_blend, 0.0, 1.0)?;
+        finite(&format!("{path}.height_blend"), self.height_blend, 0.0, 1.0)?;
         if !(1..=MAX_REPEATS).contains(&self.repeats) {
             let bound = format!("must be a whole number in 1..={MAX_REPEATS}");
             return Err(InputError::new(format!("{path}.repeats"), self.repeats, bound));

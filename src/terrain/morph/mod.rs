@@ -36,15 +36,15 @@ impl Default for Morph {
 /// Checks that fields of `target` may follow those of `config`: that they have the same number of samples in the same places.
 ///
 /// # Errors
-/// [`InputError`] that names `patchSize` or `terrainScale`.
+/// [`InputError`] that names `patch_size` or `terrain_scale`.
 pub fn check_target(config: &Config, target: &Config) -> Result<(), InputError> {
     if target.patch_size != config.patch_size {
         let bound = format!("must be {}, as at time 0", config.patch_size);
-        return Err(InputError::new("patchSize", target.patch_size, bound));
+        return Err(InputError::new("patch_size", target.patch_size, bound));
     }
     if target.terrain_scale != config.terrain_scale {
         let bound = format!("must be {}, as at time 0", config.terrain_scale);
-        return Err(InputError::new("terrainScale", target.terrain_scale, bound));
+        return Err(InputError::new("terrain_scale", target.terrain_scale, bound));
     }
     Ok(())
 }

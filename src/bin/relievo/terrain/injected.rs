@@ -18,7 +18,7 @@ impl Terrain {
         let mut features = Features::new(config, &[], self.feature_mode)?;
         let mut add = |path: &PathBuf, file: &FeatureFile| {
             let added = features.add(config, file).and_then(|()| features.check(config));
-            added.map_err(|source| Error::InputFile { path: path.clone(), source })
+            added.map_err(|source| Error::InputFile { path: path.clone(), source: source.in_json() })
         };
         for path in &self.features {
             add(path, &FeatureFile::from_file(path)?)?;

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use relievo::Error;
 use relievo::gpu::Gpu;
 use relievo::terrain::config::Config;
 use relievo::terrain::export::HeightRange;
@@ -15,6 +14,7 @@ use relievo::terrain::generator::Generator;
 use relievo::terrain::morph::reference::morph;
 use relievo::terrain::morph::{Morph, MorphedFields, check_target};
 use relievo::terrain::recipe::Recipe;
+use relievo::{Error, InputError};
 
 use super::ranged;
 
@@ -46,7 +46,7 @@ impl TargetArguments {
         let morph = Morph { time };
         morph.validate()?;
         let config = Config::from_file(path)?;
-        let of_file = |source| Error::InputFile { path: path.clone(), source };
+        let of_file = |source: InputError| Error::InputFile { path: path.clone(), source: source.in_json() };
         check_target(&recipe.config, &config).map_err(of_file)?;
         let recipe = Recipe { config, features: Features::default(), ..recipe.clone() };
         recipe.validate(patches, 1).map_err(of_file)?;

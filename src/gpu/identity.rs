@@ -1,0 +1,176 @@
+//! Which device a handle is of, and whether the device is lost.
+//!
+//! wgpu compares handles by identifiers that each [`wgpu::Instance`] counts by itself, so that devices of two instances may
+//! compare equal; and it panics where a resource of one instance is used in the other. It has no query for either question.
+//! Natively the answers come from a call that a working device refuses: whose error scope catches the error?
+
+#[cfg(target_arch = "wasm32")]
+pub(super) use browser::Identity;
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) use native::{Identity, is_lost};
+
+/// In a browser identifiers are unique, and errors are told instead of panics.
+#[cfg(target_arch = "wasm32")]
+mod browser {
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Identity(wgpu::Device);
+
+    impl Identity {
+        pub fn of(device: &wgpu::Device) -> Self {
+            Self(device.clone())
+        }
+
+        pub fn takes(&self, _: &mut wgpu::CommandEncoder) -> bool {
+            true
+        }
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+mod native {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::atomic::{AtomicU32, Ordering};
+    use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+
+    /// The devices of all [`Gpu`](crate::gpu::Gpu)s.
+    static KNOWN: Mutex<Vec<Weak<Device>>> = Mutex::new(Vec::new());
+
+    /// A device, equal among all handles of it.
+    #[derive(Debug, Clone)]
+    pub struct Identity(Arc<Device>);
+
+    #[derive(Debug)]
+    struct Device {
+        device: wgpu::Device,
+        probe: OnceLock<wgpu::Buffer>,
+    }
+
+    impl PartialEq for Identity {
+        fn eq(&self, other: &Self) -> bool {
+            Arc::ptr_eq(&self.0, &other.0)
+        }
+    }
+
+    impl Identity {
+        pub fn of(device: &wgpu::Device) -> Self {
+            let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+            known.retain(|one| one.strong_count() > 0);
+            let same = known.iter().filter_map(Weak::upgrade).find(|one| is_same(&one.device, device));
+            Self(same.unwrap_or_else(|| {
+                let fresh = Arc::new(Device { device: device.clone(), probe: OnceLock::new() });
+                known.push(Arc::downgrade(&fresh));
+                fresh
+            }))
+        }
+
+        /// Whether an encoder can record resources of this device. It records a command without effect.
+        ///
+        /// wgpu panics for an identifier that the encoder's instance does not know. The panic is caught here, before anything
+        /// else is recorded; the program's panic hook sees it.
+        pub fn takes(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
+            let probe = self.0.probe.get_or_init(|| probe(&self.0.device));
+            catch_unwind(AssertUnwindSafe(|| encoder.clear_buffer(probe, 0, Some(0)))).is_ok()
+        }
+    }
+
+    /// Counts the probes of the process.
+    static PROBES: AtomicU32 = AtomicU32::new(0);
+
+    /// Number of identifiers by which successive probes differ.
+    const STEP: u32 = 16;
+
+    /// Number of probes before the differences begin anew.
+    const PROBES_APART: u32 = 64;
+
+    /// A buffer with an identifier that other instances do not have: wgpu numbers each use of a slot, and this slot is used
+    /// more often than others, by another number for each probe.
+    fn probe(device: &wgpu::Device) -> wgpu::Buffer {
+        let number = 1 + PROBES.fetch_add(1, Ordering::Relaxed) % PROBES_APART;
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some("probe of encoders"),
+            size: 4,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        };
+        (0..STEP * number).for_each(|_| drop(device.create_buffer(&descriptor)));
+        device.create_buffer(&descriptor)
+    }
+
+    /// Makes a call that a working device refuses, and a lost device ignores.
+    fn refused(device: &wgpu::Device) {
+        let _ = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("no usage: refused on purpose"),
+            size: 4,
+            usage: wgpu::BufferUsages::empty(),
+            mapped_at_creation: false,
+        });
+    }
+
+    /// Whether a device is lost.
+    pub fn is_lost(device: &wgpu::Device) -> bool {
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        refused(device);
+        pollster::block_on(scope.pop()).is_none()
+    }
+
+    /// Whether two handles are of one device that works.
+    fn is_same(one: &wgpu::Device, other: &wgpu::Device) -> bool {
+        if one != other {
+            return false;
+        }
+        // Keeps the error from the handlers of the other device, if it is another.
+        let outer = other.push_error_scope(wgpu::ErrorFilter::Validation);
+        let inner = one.push_error_scope(wgpu::ErrorFilter::Validation);
+        refused(other);
+        let is_caught = pollster::block_on(inner.pop()).is_some();
+        pollster::block_on(outer.pop());
+        is_caught
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use crate::gpu::{Gpu, Options};
+
+        fn gpu() -> Gpu {
+            Gpu::headless(&Options::default()).expect("the suite needs an adapter")
+        }
+
+        /// Devices of two instances, made alike, have equal handles.
+        #[test]
+        fn devices_of_two_instances_differ() {
+            let [one, two] = [gpu(), gpu()];
+            assert!(one.device() == two.device(), "wgpu tells them apart: is this module still needed?");
+            assert!(!one.is_same_device(&two));
+            let again = Gpu::from_wgpu(one.device().clone(), one.queue().clone());
+            assert!(one.is_same_device(&again) && again.is_same_device(&one));
+            assert!(one.check().is_ok() && two.check().is_ok(), "the calls that tell leave no error");
+        }
+
+        #[test]
+        fn encoders_of_another_instance_are_told() {
+            let [one, two] = [gpu(), gpu()];
+            for (taker, maker) in [(&one, &one), (&one, &two), (&two, &one), (&two, &two)] {
+                let mut encoder = maker.encoder("probed");
+                assert_eq!(taker.takes(&mut encoder), taker.is_same_device(maker));
+                // The encoder records on as if nothing had happened.
+                maker.scoped(|| maker.queue().submit([encoder.finish()])).expect("a valid encoder");
+            }
+        }
+
+        #[test]
+        fn a_loss_is_told_by_the_first_call() {
+            for own in [true, false] {
+                let opened = gpu();
+                let embedded = Gpu::from_wgpu(opened.device().clone(), opened.queue().clone());
+                let gpu = if own { &opened } else { &embedded };
+                assert!(gpu.check().is_ok());
+                gpu.device().destroy();
+                let told = gpu.check().expect_err("lost");
+                assert!(matches!(told, crate::gpu::GpuError::DeviceLost { .. }), "{told}");
+                assert!(gpu.check().is_err(), "told by every call");
+                let told = crate::gpu::Buffer::<u32>::new(gpu, "more", 1).expect_err("lost");
+                assert!(matches!(told, crate::gpu::GpuError::DeviceLost { .. }), "{told}");
+            }
+        }
+    }
+}
