@@ -39,10 +39,10 @@ impl Default for Influences {
 impl Influences {
     /// The influences of vertices, each given as bones and weights in any order. Weights of one bone are added,
     /// weights of 0 are left out, the rest is sorted, the largest first (equal ones by bone), and divided by
-    /// its sum.
+    /// its sum. A vertex whose weights are all 0 follows its first bone with a weight of 1, as in three.js.
     ///
     /// # Errors
-    /// [`InputError`] for weights that are negative or not finite, for a vertex without weights or with more
+    /// [`InputError`] for weights that are negative or not finite, for a vertex without bones or with more
     /// than [`MAX_INFLUENCES`], and for weighted bones that are not below `bones`. In errors, `path` precedes
     /// the vertex's number.
     pub fn new(
@@ -141,10 +141,15 @@ impl Influences {
 
 type Fault = (String, String);
 
-/// Adds the weights of equal bones, drops weights of 0 and sorts.
+/// Adds the weights of equal bones, drops weights of 0 and sorts. If all are 0, the first bone gets a weight of 1.
 fn order(given: &mut Vec<Influence>) -> Result<(), Fault> {
     if let Some(wrong) = given.iter().find(|influence| !(0.0..f32::INFINITY).contains(&influence.weight)) {
         return Err((wrong.weight.to_string(), "must be finite, and not negative".to_owned()));
+    }
+    if given.iter().all(|influence| influence.weight == 0.0)
+        && let Some(first) = given.first_mut()
+    {
+        first.weight = 1.0;
     }
     given.retain(|influence| influence.weight > 0.0);
     given.sort_by_key(|influence| influence.bone);
@@ -161,7 +166,7 @@ fn order(given: &mut Vec<Influence>) -> Result<(), Fault> {
 
 fn check(given: &[Influence], bones: usize) -> Result<(), Fault> {
     if given.is_empty() {
-        return Err(("0".to_owned(), "must follow a bone: all its weights are 0".to_owned()));
+        return Err(("0 weights".to_owned(), "must follow a bone".to_owned()));
     }
     if given.len() > MAX_INFLUENCES {
         return Err((format!("{} weights", given.len()), format!("must be at most {MAX_INFLUENCES}")));
@@ -194,6 +199,8 @@ mod tests {
         assert_eq!(influences(&[(3, f32::MIN_POSITIVE)]), Ok(vec![(3, 1.0)]));
         // The bone of a weight of 0 may have any number.
         assert_eq!(influences(&[(3, 1.0), (99, 0.0)]), Ok(vec![(3, 1.0)]));
+        // All weights are 0: the vertex follows the first bone.
+        assert_eq!(influences(&[(7, 0.0), (1, 0.0), (1, -0.0), (99, 0.0)]), Ok(vec![(7, 1.0)]));
     }
 
     #[test]
@@ -202,8 +209,8 @@ mod tests {
             let error = influences(given).expect_err("refused");
             assert_eq!((error.path.as_str(), error.value.as_str()), ("w[0]", value));
         };
-        refused(&[], "0");
-        refused(&[(0, 0.0), (1, 0.0)], "0");
+        refused(&[], "0 weights");
+        refused(&[(9, 0.0), (1, 0.0)], "joint 9");
         refused(&[(0, -0.5), (1, 1.5)], "-0.5");
         refused(&[(0, f32::NAN)], "NaN");
         refused(&[(0, f32::INFINITY)], "inf");

@@ -101,7 +101,7 @@ impl Files<'_> {
         let path = format!("{}.file", entry.path);
         let model = self.model(&path, &entry.source)?;
         if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
-            let bound = "must have a mesh with triangles (those compressed with Draco are not read)";
+            let bound = "must have a mesh with triangles";
             return Err(InputError::new(path, &entry.source, bound));
         }
         let within = |error: InputError| within(&path, &entry.source, &error);

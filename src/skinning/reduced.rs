@@ -91,7 +91,7 @@ pub fn reduce_model(
     let whole = at_rest(model)?;
     let input = Input::new(&whole, normals);
     if input.indices.is_empty() {
-        let bound = "must be at least 1 (meshes that are compressed with Draco are not read)";
+        let bound = "must be at least 1";
         return Err(InputError::new("model.triangles.len", 0, bound));
     }
     let surface = Surface {

@@ -241,3 +241,106 @@ fn chains_may_be_long() {
     assert_eq!(place(models.last().expect("bones")), [0.0, bones as f32, 0.0]);
     assert_eq!(model.skeleton.joint_parents(), [Some(1), None]);
 }
+
+/// Puts an application's data into every object.
+fn add_extras(value: &mut serde_json::Value, extras: &serde_json::Value) {
+    match value {
+        serde_json::Value::Object(members) => {
+            members.values_mut().for_each(|member| add_extras(member, extras));
+            members.insert("extras".to_owned(), extras.clone());
+        }
+        serde_json::Value::Array(elements) => {
+            elements.iter_mut().for_each(|element| add_extras(element, extras))
+        }
+        _ => {}
+    }
+}
+
+/// A document with a mesh, a material, a texture, an animation and a sparse accessor.
+fn varied() -> Scene {
+    let mut skinned = crate::meshes::Skinned::new();
+    let uv = skinned.0.floats("VEC2", &[0.5; 8]);
+    skinned.attribute("TEXCOORD_0", uv);
+    crate::textures::add_texture(&mut skinned);
+    let mut scene = skinned.0;
+    let (indices, new) = (scene.view(&[1]), scene.view(&[0; 12]));
+    let (times, values) = (scene.floats("SCALAR", &[0.0, 1.0]), scene.floats("VEC3", &[0.5; 6]));
+    scene.json["accessors"][values]["sparse"] = json!({
+        "count": 1, "indices": {"bufferView": indices, "componentType": 5121}, "values": {"bufferView": new}
+    });
+    scene.animate(1, "translation", "LINEAR", times, values);
+    scene.json["scenes"] = json!([{"nodes": [0, 2]}]);
+    scene.json["scene"] = json!(0);
+    scene.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}]);
+    scene
+}
+
+#[test]
+fn extras_may_be_any_value() {
+    let scene = varied();
+    let plain = read(&scene);
+    assert_eq!((plain.meshes.len(), plain.materials.len(), plain.clips.len()), (1, 1, 1));
+    for extras in
+        [json!(null), json!(true), json!(1.5), json!("Blender"), json!([1, "a"]), json!({"a": {"b": 1}})]
+    {
+        let mut changed = Scene { json: scene.json.clone(), buffer: scene.buffer.clone() };
+        // Members of attributes are accessors.
+        let attributes = changed.json["meshes"][0]["primitives"][0]["attributes"].clone();
+        add_extras(&mut changed.json, &extras);
+        changed.json["meshes"][0]["primitives"][0]["attributes"] = attributes;
+        assert_eq!(read(&changed), plain, "{extras}");
+    }
+}
+
+#[test]
+fn integers_may_be_written_with_a_fraction_or_an_exponent() {
+    fn as_floats(value: &mut serde_json::Value) {
+        match value {
+            serde_json::Value::Object(members) => members.values_mut().for_each(as_floats),
+            serde_json::Value::Array(elements) => elements.iter_mut().for_each(as_floats),
+            serde_json::Value::Number(number) => *value = json!(number.as_f64().expect("a number")),
+            _ => {}
+        }
+    }
+    let scene = varied();
+    let plain = read(&scene);
+    let mut changed = Scene { json: scene.json.clone(), buffer: scene.buffer.clone() };
+    as_floats(&mut changed.json);
+    assert!(changed.json["accessors"][0]["count"].is_f64() && changed.json["nodes"][2]["mesh"].is_f64());
+    assert_eq!(read(&changed), plain);
+    let text = String::from_utf8(scene.gltf()).expect("text").replace("\"count\":4,", "\"count\":0.4e1,");
+    assert!(text.contains("0.4e1"));
+    assert_eq!(Model::from_gltf(text.as_bytes(), None).expect("valid"), plain);
+    // Not a whole number.
+    changed.json["accessors"][0]["count"] = json!(4.5);
+    let error = Model::from_gltf(&changed.gltf(), None).expect_err("refused");
+    assert!(error.path == "accessors[0].count" && error.to_string().contains("4.5"), "{error}");
+}
+
+#[test]
+fn a_byte_order_mark_is_skipped() {
+    let scene = Scene::of_two_bones();
+    let text = [b"\xef\xbb\xbf", &scene.gltf()[..]].concat();
+    assert_eq!(Model::from_gltf(&text, None).expect("valid"), read(&scene));
+}
+
+/// A pointer at a part of a node is a channel of this node; pointers at other things are left out.
+#[test]
+fn pointers_at_nodes_are_channels() {
+    let mut scene = Scene::of_two_bones();
+    let (times, values) =
+        (scene.floats("SCALAR", &[0.0, 2.0]), scene.floats("VEC3", &[0.0, 0.0, 0.0, 4.0, 0.0, 0.0]));
+    scene.animate(1, "translation", "LINEAR", times, values);
+    let plain = read(&scene);
+    let pointing = |pointer: &str| json!({"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": pointer}}});
+    let channels = &mut scene.json["animations"][0]["channels"];
+    channels[0]["target"] = pointing("/nodes/1/translation");
+    channels
+        .as_array_mut()
+        .expect("a list")
+        .push(json!({"sampler": 0, "target": pointing("/materials/0/alphaCutoff")}));
+    assert_eq!(read(&scene), plain);
+    scene.json["animations"][0]["channels"][0]["target"] = pointing("/nodes/9/translation");
+    let error = Model::from_gltf(&scene.gltf(), None).expect_err("refused");
+    assert_eq!((&*error.path, &*error.value), ("animations[0].channels[0].target.node", "9"));
+}

@@ -5,6 +5,7 @@ mod arithmetic;
 #[cfg(feature = "verify")]
 mod bounded;
 mod bounds;
+mod compressed;
 mod concatenation;
 #[cfg(feature = "verify")]
 mod crowds;

@@ -148,6 +148,53 @@ fn weights_of_every_type_and_number() {
     assert!((found[0].1 - 0.5).abs() < 1e-6 && (found[1].1 - 0.3).abs() < 1e-6);
 }
 
+/// Exporters write weights of 0 where nobody painted any. Such a vertex follows the joint in its first slot, as in three.js.
+#[test]
+fn vertices_without_weight_follow_their_first_joint() {
+    use relievo::animation::local_to_model::reference::local_to_model;
+    use relievo::skinning::palette::reference::palette_for;
+    use relievo::skinning::skin::reference::skin;
+    use relievo::skinning::{Blend, InstanceLod};
+    let mut skinned = Skinned::new();
+    let given = skinned.0.floats("VEC4", &[[0.0; 4], [1.0, 0.0, 0.0, 0.0], [0.0; 4], [-0.0; 4]].concat());
+    let joints = skinned.0.integers("VEC4", 1, &[1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1]);
+    skinned.attribute("WEIGHTS_0", given);
+    skinned.attribute("JOINTS_0", joints);
+    let mesh = skinned.read().expect("valid");
+    let followed = |mesh: &Mesh| (0..4).flat_map(|vertex| weights(mesh, vertex)).collect::<Vec<_>>();
+    assert_eq!(followed(&mesh), [(1, 1.0), (0, 1.0), (0, 1.0), (1, 1.0)]);
+    // The second joint is raised by 1, and the vertices that follow it too.
+    let model = Model::from_gltf(&skinned.0.gltf(), None).expect("valid");
+    let bones = local_to_model(&model.skeleton, &model.skeleton.rest());
+    let palette = palette_for(&model.skins[0], &bones, Blend::Linear);
+    let vertices = relievo::skinning::morph::reference::morph(&mesh, &[]);
+    let posed = skin(&vertices, &mesh.influences, &palette, InstanceLod::FULL);
+    assert_eq!([0, 1, 2, 3].map(|vertex: usize| posed[vertex].position[1]), [1.0, 0.0, 1.0, 2.0]);
+    // They are written as they are read.
+    let again = Model::from_gltf(&model.to_glb().expect("written"), None).expect("valid");
+    assert_eq!(again.meshes[0].influences, mesh.influences);
+    // A joint of the first slot that the skin lacks is refused, although its weight is 0.
+    let joints = skinned.0.integers("VEC4", 1, &[1, 0, 0, 0, 0, 0, 0, 0, 7, 1, 0, 0, 1, 1, 1, 1]);
+    skinned.attribute("JOINTS_0", joints);
+    skinned.refused("meshes[0].primitives[0].attributes.WEIGHTS_0[2]", "below 2, the skin's joints");
+}
+
+/// glTF lets readers skip primitives without positions; extensions may give them.
+#[test]
+fn primitives_without_positions_are_left_out() {
+    let mut skinned = Skinned::new();
+    let mut bare = skinned.primitive().clone();
+    bare["attributes"].as_object_mut().expect("an object").remove("POSITION");
+    let whole = skinned.primitive().clone();
+    skinned.0.json["meshes"][0]["primitives"] = json!([bare.clone(), whole, bare.clone()]);
+    let model = Model::from_gltf(&skinned.0.gltf(), None).expect("valid");
+    let names: Vec<_> = model.meshes.iter().map(|mesh| (mesh.name.as_str(), mesh.indices.len())).collect();
+    assert_eq!(names, [("body_1", 6)]);
+    // Nothing would be left.
+    skinned.0.json["meshes"][0]["primitives"] = json!([bare]);
+    skinned.refused("meshes[0].primitives[0].attributes.POSITION", "no primitive of the scene has positions");
+}
+
 #[test]
 fn vertices_that_follow_nothing_are_refused() {
     let path = "meshes[0].primitives[0].attributes";
@@ -159,7 +206,6 @@ fn vertices_that_follow_nothing_are_refused() {
         skinned.attribute("WEIGHTS_0", accessor);
         skinned.refused(&vertex, words);
     };
-    wrong([0.0; 4], "all its weights are 0");
     wrong([1.5, -0.5, 0.0, 0.0], "-0.5");
     wrong([f32::NAN, 0.5, 0.0, 0.0], "NaN");
     let mut skinned = Skinned::new();

@@ -196,7 +196,7 @@ fn what_is_required_and_not_read_is_refused_by_name() {
     for (names, at, name) in [
         (json!(["FOO_unknown_ext"]), 0, "FOO_unknown_ext"),
         (json!(["KHR_mesh_quantization", "EXT_mesh_gpu_instancing"]), 1, "EXT_mesh_gpu_instancing"),
-        (json!(["EXT_meshopt_compression"]), 0, "EXT_meshopt_compression"),
+        (json!(["EXT_meshopt_compression", "KHR_lights_punctual"]), 1, "KHR_lights_punctual"),
         (json!(["KHR_texture_transform", "KHR_texture_basisu"]), 1, "KHR_texture_basisu"),
         (json!(["KHR_materials_unlit"]), 0, "KHR_materials_unlit"),
     ] {
@@ -204,24 +204,30 @@ fn what_is_required_and_not_read_is_refused_by_name() {
         assert_eq!((&*error.path, &*error.value), (&*format!("extensionsRequired[{at}]"), name));
         assert!(error.bound.contains("KHR_texture_transform"), "{error}");
     }
-    read(&required(json!(["KHR_texture_transform", "KHR_mesh_quantization", "KHR_draco_mesh_compression"])));
+    read(&required(json!([
+        "KHR_texture_transform",
+        "KHR_mesh_quantization",
+        "KHR_draco_mesh_compression",
+        "EXT_meshopt_compression",
+        "KHR_meshopt_compression",
+        "KHR_materials_pbrSpecularGlossiness",
+    ])));
     let mut used = required(json!([]));
     used.json["extensionsUsed"] = json!(["FOO_unknown_ext"]);
     read(&used);
 }
 
-/// Meshes compressed with Draco have neither vertices nor a buffer view, but their nodes are known.
+/// A node with many copies of its mesh would become one mesh.
 #[test]
-fn compressed_meshes_are_left_out_and_their_bones_are_not() {
+fn copies_of_meshes_are_refused_by_name() {
     let mut scene = with_triangle();
-    scene.push("nodes", json!({"name": "door", "mesh": 0, "translation": [0, 3, 0]}));
-    scene.json["accessors"][0].as_object_mut().expect("an object").remove("bufferView");
-    scene.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-    let model = read(&scene);
-    assert_eq!((bones(&model), model.meshes.len()), (vec!["door"], 0));
-    // Without Draco these accessors are zeros.
-    scene.json["extensionsRequired"] = json!([]);
-    assert_eq!(read(&scene).meshes[0].positions, [[0.0; 3]; 3]);
+    scene.push("nodes", json!({"name": "door", "mesh": 0}));
+    let copies = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}});
+    scene.push("nodes", json!({"name": "tree", "mesh": 0, "extensions": copies}));
+    refused(&scene, "nodes[1].extensions.EXT_mesh_gpu_instancing", "a node for each copy");
+    // A node that the scene lacks.
+    scene.json["scenes"] = json!([{"nodes": [0]}]);
+    assert_eq!(read(&scene).meshes.len(), 1);
 }
 
 /// An import that reads neither materials nor images ignores their extensions, and textures without an image.
@@ -241,6 +247,10 @@ fn who_reads_no_images_needs_none() {
     crate::textures::add_texture(&mut skinned);
     skinned.0.json["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
     assert_eq!(bare(&skinned.0).expect("valid").meshes.len(), 1);
+    refused(&skinned.0, "textures[0].extensions.EXT_texture_webp", "gltf-transform png");
+    skinned.0.json["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
+    refused(&skinned.0, "textures[0].extensions.KHR_texture_basisu", "gltf-transform ktxdecompress");
+    skinned.0.json["textures"] = json!([{}]);
     refused(&skinned.0, "textures[0].source", "must be given");
     // The material is one that no mesh has.
     skinned.0.json["materials"].as_array_mut().expect("a list").push(json!({}));

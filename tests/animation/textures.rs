@@ -361,3 +361,22 @@ fn what_is_no_material_is_refused() {
         skinned.0.json["materials"][0]["alphaMode"] = json!("GLASS");
     });
 }
+
+/// The diffuse colour of `KHR_materials_pbrSpecularGlossiness` takes precedence.
+#[test]
+fn glossy_materials_have_their_diffuse_colour() {
+    let mut skinned = textured();
+    let name = "KHR_materials_pbrSpecularGlossiness";
+    let moved = json!({"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}});
+    let rough = skinned.0.json["materials"][0]["pbrMetallicRoughness"].take();
+    skinned.0.json["materials"][0].as_object_mut().expect("an object").remove("pbrMetallicRoughness");
+    skinned.0.json["materials"][0]["extensions"] = json!({name: {"diffuseFactor": rough["baseColorFactor"], "diffuseTexture": rough["baseColorTexture"]}});
+    assert_eq!(model(&skinned), model(&textured()));
+    skinned.0.json["extensionsRequired"] = json!([name]);
+    skinned.0.json["materials"][0]["extensions"][name]["diffuseTexture"] = moved;
+    let (found, plain) = (model(&skinned), model(&textured()));
+    assert_eq!(found.meshes[0].uv[1][0], plain.meshes[0].uv[1][0] + 0.5);
+    let path = format!("materials[0].extensions.{name}");
+    skinned.0.json["materials"][0]["extensions"][name]["diffuseFactor"] = json!([0, 2, 0, 1]);
+    skinned.refused(&format!("{path}.diffuseFactor[1]"), "in 0..=1");
+}

@@ -389,3 +389,56 @@ fn obj_takes_memory_for_its_bytes() {
         assert!(peak < OBJ * bytes.len(), "{shown:?}: {peak} bytes for {}, {outcome:?}", bytes.len());
     }
 }
+
+/// Compressed meshes whose bytes or counts are damaged take what any document of their size may take.
+#[test]
+fn damaged_compression_allocates_little() {
+    let _alone = alone();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/truth/files");
+    for name in ["draco.glb", "sequential.glb", "meshopt.glb"] {
+        let whole = std::fs::read(folder.join(name)).expect("there");
+        let length = u32::from_le_bytes(whole[12..16].try_into().expect("four bytes")) as usize;
+        let mut json: Value = serde_json::from_slice(&whole[20..20 + length]).expect("JSON");
+        let buffer = whole[28 + length..].to_vec();
+        json["buffers"][0]["uri"] = json!("a.bin");
+        // 128 elements a byte, of some 20 bytes each.
+        let most = SMALL.max(2600 * whole.len());
+        let (mut read, mut failed, mut largest) = (0, 0, 0);
+        let mut look = |json: &Value, buffer: &[u8], what: &str| {
+            let bytes = serde_json::to_vec(json).expect("JSON");
+            let before = MEMORY.current_usage();
+            MEMORY.reset_peak_usage();
+            let outcome = Model::from_gltf_beside(&bytes, &|_| Ok(buffer.to_vec()));
+            let peak = MEMORY.peak_usage().saturating_sub(before);
+            assert!(peak < most, "{name}, {what}: {peak} bytes");
+            largest = largest.max(peak);
+            if outcome.is_ok() { read += 1 } else { failed += 1 }
+        };
+        look(&json, &buffer, "whole");
+        // The first bytes of each view, where counts stand, and some others.
+        for view in json["bufferViews"].as_array().expect("a list") {
+            let place = view.pointer("/extensions/EXT_meshopt_compression").unwrap_or(view);
+            let first = place["byteOffset"].as_u64().unwrap_or(0) as usize;
+            let count = place["byteLength"].as_u64().expect("a length") as usize;
+            for at in (0..count.min(40)).chain((40..count).step_by(97)) {
+                for byte in [0, 0x7f, 0xff] {
+                    let mut changed = buffer.clone();
+                    changed[first + at] = byte;
+                    look(&json, &changed, &format!("{byte} at {}", first + at));
+                }
+            }
+        }
+        let mut numbers = Vec::new();
+        collect(&json["bufferViews"], "/bufferViews".to_owned(), &mut numbers);
+        collect(&json["meshes"], "/meshes".to_owned(), &mut numbers);
+        for pointer in &numbers {
+            for value in [0, 3, 256, 99_999, 1 << 24, 1_u64 << 40] {
+                let mut changed = json.clone();
+                *changed.pointer_mut(pointer).expect("collected") = json!(value);
+                look(&changed, &buffer, &format!("{value} at {pointer}"));
+            }
+        }
+        println!("{name}: {read} read, {failed} refused, at most {largest} bytes");
+        assert!(read > 50 && failed > 50, "{name}: {read} read, {failed} refused");
+    }
+}

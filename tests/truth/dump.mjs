@@ -3,12 +3,14 @@
 //
 // SCENES is the folder of the scene file, to which the files of characters are relative. Each vertex is skinned twice, by the
 // bones of the dump and by those of three.js, and projected by the frame's camera. Exits with 1 if one of a drawn instance,
-// inside the picture, is more than PIXELS apart; by default 0.01, which is for dumps of `--full`. Bones alone are
+// inside the picture, is more than PIXELS apart; by default 0.01, which is for dumps of `--full`. Vertices at the picture's very
+// edge, of which one place lies inside and one outside, are counted apart. Bones alone are
 // compared: levels of detail of meshes and of influences are not in a dump.
 
 import { readFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 import { AnimationMixer, LoopOnce, Matrix4, Quaternion, Vector3, Vector4 } from "three";
+import { Apart } from "./apart.mjs";
 import { load } from "./judge.mjs";
 
 const CELL = 256;
@@ -55,16 +57,9 @@ function skinned(mesh, vertex, of) {
     return sum;
 }
 
-// The place in the picture, in pixels, of a point relative to the camera's cell; undefined outside.
-function pixel({ view_from_world, clip_from_view, viewport }, point) {
-    const clip = point.clone().applyMatrix4(new Matrix4().fromArray(view_from_world));
-    clip.applyMatrix4(new Matrix4().fromArray(clip_from_view));
-    const is_inside = clip.w > 0 && Math.abs(clip.x) <= clip.w && Math.abs(clip.y) <= clip.w && clip.z >= 0 && clip.z <= clip.w;
-    return is_inside ? [0, 1].map((axis) => (0.5 * viewport[axis] * clip.getComponent(axis)) / clip.w) : undefined;
-}
-
 const files = await Promise.all(characters.map(opened));
-let [first, worst, samples, skipped] = [0, 0, 0, 0];
+const apart = new Apart();
+let [first, skipped] = [0, 0];
 for (const { camera, instances } of frames) {
     for (const { character, drawn, cell, at, turn, scale, clip, clip_seconds } of instances) {
         const { bones } = characters[character];
@@ -90,15 +85,12 @@ for (const { camera, instances } of frames) {
             for (let vertex = 0; vertex < count; vertex += Math.ceil(count / MOST)) {
                 const right = skinned(mesh, vertex, (bone) => new Matrix4().multiplyMatrices(world, bone.matrixWorld));
                 const found = skinned(mesh, vertex, (bone) => dumped.get(bone));
-                const [a, b] = [right, found].map((point) => pixel(camera, point));
-                if (!a) continue;
-                samples += 1;
-                worst = Math.max(worst, b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : Infinity);
+                apart.add(camera, right, found);
             }
         }
         stop();
     }
 }
 if (first !== numbers.length) throw new Error(`characters.f32 has ${numbers.length} numbers, not ${first}`);
-console.log(`${frames.length} frames, ${samples} vertices: ${worst.toFixed(4)} pixels apart at most; ${skipped} instances skipped`);
-process.exit(samples > 0 && worst <= Number(limit) ? 0 : 1);
+console.log(`${frames.length} frames, ${apart}; ${skipped} instances skipped`);
+process.exit(apart.holds(Number(limit)) ? 0 : 1);

@@ -177,6 +177,25 @@ function bound() {
     return { "bound.glb": gltf.glb() };
 }
 
+// Vertices whose weights are all 0, as exporters write them where nobody painted weights: each follows the joint in its first
+// slot.
+function unweighted() {
+    const gltf = new Gltf();
+    const joints = chain(gltf, undefined, ["stem", "bough", "twig"], [0, 0.5, 0]);
+    const skin = gltf.skin(joints, binds(gltf, joints));
+    const nest = follows(box([0.3, 0.2, 0.4], [0.2, 1.2, 0]), 2);
+    nest.joints = nest.joints.map((_, at) => [2, 1, 0, 1][at % 4]);
+    nest.weights.fill(0);
+    const shape = joined(limb({ to: 1, radius: 0.1, joints: [0, 1, 2] }), nest);
+    gltf.node(undefined, { name: "tree", mesh: gltf.mesh(gltf.primitive(shape)), skin });
+    gltf.clip("storm", [
+        [joints[0], "rotation", [0, 1], [turn(Z, 0), turn(Z, 0.3)]],
+        [joints[1], "rotation", [0, 0.5, 1], [turn(X, 0), turn(X, 0.8), turn(Z, -0.6)]],
+        [joints[2], "translation", [0, 1], [[0, 0.5, 0], [0.2, 0.6, 0.1]]],
+    ]);
+    return { "unweighted.glb": gltf.glb() };
+}
+
 // Weights of two joints whose integers sum exactly to 1, as glTF requires.
 function whole(weights, one) {
     const first = (at) => Math.round(weights[at - (at % 4)] * one) / one;
@@ -348,5 +367,5 @@ function scenes() {
 }
 
 export function files() {
-    return Object.assign({}, ...[armature, rig, mirrored, bound, packed, keys, parts, still, scenes].map((make) => make()));
+    return Object.assign({}, ...[armature, rig, mirrored, bound, unweighted, packed, keys, parts, still, scenes].map((make) => make()));
 }

@@ -1,11 +1,14 @@
-// node make.mjs             writes the files of this folder, and the numbers that three.js computes from them
+// node make.mjs             writes the files of this folder, and the numbers that three.js computes from them; compressed
+//                           files are decompressed by the programs that compressed them before three.js reads them
 // node make.mjs OUT FILE…   writes the numbers that three.js computes from other files, and copies of the files, to OUT;
 //                           buffers (.bin) are only copied
 
-import { copyFile, mkdir, writeFile } from "node:fs/promises";
+import { copyFile, mkdir, mkdtemp, rm, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { REVISION } from "three";
+import { compressed } from "./compressed.mjs";
 import { files } from "./files.mjs";
 import { judged } from "./judge.mjs";
 
@@ -13,10 +16,11 @@ function documents(names) {
     return names.filter((name) => !name.endsWith(".bin"));
 }
 
-async function judge(folder, names) {
+// Judges files of a folder; of those that lie decompressed in `plain` it reads these.
+async function judge(folder, names, plain = {}) {
     const [index, all] = [[], []];
     for (const name of names) {
-        const { poses, ...rest } = await judged(join(folder, name));
+        const { poses, ...rest } = await judged(plain[name] ?? join(folder, name));
         const listed = poses.map(({ clip, time, numbers }) => {
             const first = all.length;
             for (const number of numbers) all.push(number);
@@ -39,5 +43,13 @@ if (out) {
     await mkdir(folder, { recursive: true });
     const written = files();
     for (const [name, data] of Object.entries(written)) await writeFile(join(folder, name), data);
-    await judge(folder, documents(Object.keys(written)));
+    const packed = await compressed(written);
+    const [plain, aside] = [{}, await mkdtemp(join(tmpdir(), "truth-"))];
+    for (const [name, { bytes, plain: decompressed }] of Object.entries(packed)) {
+        await writeFile(join(folder, name), bytes);
+        plain[name] = join(aside, name);
+        await writeFile(plain[name], decompressed);
+    }
+    await judge(folder, documents([...Object.keys(written), ...Object.keys(packed)]), plain);
+    await rm(aside, { recursive: true });
 }

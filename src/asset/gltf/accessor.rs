@@ -6,6 +6,7 @@ use gltf_json::validation::Checked;
 use gltf_json::{Index, buffer};
 
 use super::document::Document;
+use super::draco::Decompressed;
 use crate::InputError;
 
 /// How an accessor's elements lie in a buffer view.
@@ -30,53 +31,90 @@ enum Kind {
 
 type Decode<T> = fn(Shape, &[u8]) -> T;
 
-impl Document<'_> {
-    /// Reads an accessor as vectors of `N` floats. Normalized integers become fractions.
+/// The elements of an accessor: in a buffer view, or in a compressed primitive.
+#[derive(Clone, Copy)]
+pub struct Elements<'d, 'a> {
+    pub document: &'d Document<'a>,
+    pub accessor: Index<Accessor>,
+    /// The compressed primitive, and which of its attributes the accessor describes.
+    pub compressed: Option<(&'d Decompressed<'d>, &'d str)>,
+}
+
+impl Elements<'_, '_> {
+    /// Reads them as vectors of `N` floats. Normalized integers become fractions.
     ///
     /// # Errors
     /// [`InputError`] with the path of the fault in the file; integers that are not normalized are a fault too.
-    pub fn vectors<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>, InputError> {
-        self.read(index, Kind::Fraction, float)
+    pub fn vectors<const N: usize>(self) -> Result<Vec<[f32; N]>, InputError> {
+        self.read(Kind::Fraction, float)
     }
 
-    /// Reads a vertex attribute: as [`Document::vectors`], and also integers of 8 or 16 bits, as their values.
+    /// Reads a vertex attribute: as [`Elements::vectors`], and also integers of 8 or 16 bits, as their values.
     ///
     /// # Errors
     /// [`InputError`] with the path of the fault in the file.
-    pub fn attributes<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[f32; N]>, InputError> {
-        self.read(index, Kind::Quantized, float)
+    pub fn attributes<const N: usize>(self) -> Result<Vec<[f32; N]>, InputError> {
+        self.read(Kind::Quantized, float)
     }
 
-    /// Reads an accessor as vectors of `N` unsigned integers.
+    /// Reads them as vectors of `N` unsigned integers.
     ///
     /// # Errors
     /// [`InputError`] with the path of the fault in the file; floats and normalized integers are a fault too.
-    pub fn integers<const N: usize>(&self, index: Index<Accessor>) -> Result<Vec<[u32; N]>, InputError> {
-        self.read(index, Kind::Whole, |shape, bytes| whole(shape.component, bytes))
+    pub fn integers<const N: usize>(self) -> Result<Vec<[u32; N]>, InputError> {
+        self.read(Kind::Whole, |shape, bytes| whole(shape.component, bytes))
     }
 
     fn read<const N: usize, T: Copy + Default>(
-        &self,
-        index: Index<Accessor>,
+        self,
         kind: Kind,
         decode: Decode<T>,
     ) -> Result<Vec<[T; N]>, InputError> {
+        let Self { document, accessor: index, compressed } = self;
         let path = format!("accessors[{}]", index.value());
-        let accessor = self.root.accessors.get(index.value());
+        let accessor = document.root.accessors.get(index.value());
         let accessor = accessor.ok_or_else(|| InputError::new(&path, index.value(), "must exist"))?;
         let shape = shape(&path, accessor, N, kind)?;
+        let values = match compressed {
+            Some((primitive, name)) => primitive.attribute(name, shape.component, N)?,
+            None => None,
+        };
+        let values = match values {
+            Some(bytes) => {
+                bytes.chunks_exact(shape.component.size()).map(|bytes| decode(shape, bytes)).collect()
+            }
+            None => document.values(&path, accessor, shape, decode)?,
+        };
+        Ok(values.chunks_exact(N).map(|chunk| std::array::from_fn(|at| chunk[at])).collect())
+    }
+}
+
+impl<'a> Document<'a> {
+    /// An accessor's elements in its buffer view.
+    pub fn elements(&self, accessor: Index<Accessor>) -> Elements<'_, 'a> {
+        Elements { document: self, accessor, compressed: None }
+    }
+
+    /// The components of an accessor at `path`, from its buffer view or zeros, with those that a sparse one replaces.
+    fn values<T: Copy + Default>(
+        &self,
+        path: &str,
+        accessor: &Accessor,
+        shape: Shape,
+        decode: Decode<T>,
+    ) -> Result<Vec<T>, InputError> {
         self.count(&format!("{path}.count"), accessor, shape)?;
         let mut values = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                self.elements(&format!("{path}.byteOffset"), view, offset, shape, decode)?
+                self.decoded(&format!("{path}.byteOffset"), view, offset, shape, decode)?
             }
-            None => vec![T::default(); shape.count * N],
+            None => vec![T::default(); shape.count * shape.components],
         };
         if let Some(sparse) = &accessor.sparse {
             self.replace(&format!("{path}.sparse"), sparse, shape, &mut values, decode)?;
         }
-        Ok(values.chunks_exact(N).map(|chunk| std::array::from_fn(|at| chunk[at])).collect())
+        Ok(values)
     }
 
     /// Charges the elements to the budget before they are read.
@@ -118,7 +156,7 @@ impl Document<'_> {
         let indices = bytes.chunks_exact(component.0.size()).map(|bytes| whole(component.0, bytes));
         let offset = sparse.values.byte_offset.0;
         let at = format!("{path}.values.byteOffset");
-        let new = self.elements(&at, sparse.values.buffer_view, offset, Shape { count, ..shape }, decode)?;
+        let new = self.decoded(&at, sparse.values.buffer_view, offset, Shape { count, ..shape }, decode)?;
         for (at, (index, new)) in indices.zip(new.chunks_exact(shape.components)).enumerate() {
             let index = index as usize;
             if index >= shape.count {
@@ -130,7 +168,7 @@ impl Document<'_> {
         Ok(())
     }
 
-    fn elements<T>(
+    fn decoded<T>(
         &self,
         path: &str,
         view: Index<buffer::View>,

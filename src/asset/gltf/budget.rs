@@ -20,6 +20,9 @@ const MAX_REPEATED: u64 = 1 << 24;
 /// Elements allowed per byte in any case: more than a document has that refers to its bytes once.
 const ELEMENTS_A_BYTE: u64 = 4;
 
+/// As [`ELEMENTS_A_BYTE`], for documents with compressed meshes: Draco takes a byte for a triangle and half a vertex.
+const ELEMENTS_A_PACKED_BYTE: u64 = 16;
+
 /// Texels that the images of any document may have: 64 MiB, one image of 4096².
 const TEXELS: u64 = 1 << 24;
 
@@ -31,14 +34,26 @@ const TEXELS_A_BYTE: u64 = 256;
 const TEXELS_A_PACKED_BYTE: u64 = 8 * 1032;
 
 /// The bytes found so far, and what has been charged to them.
-#[derive(Default)]
 pub struct Budget {
+    elements_a_byte: u64,
     bytes: Cell<u64>,
     elements: Cell<u64>,
     texels: Cell<u64>,
 }
 
+impl Default for Budget {
+    fn default() -> Self {
+        let [bytes, elements, texels] = [(); 3].map(|()| Cell::new(0));
+        Self { elements_a_byte: ELEMENTS_A_BYTE, bytes, elements, texels }
+    }
+}
+
 impl Budget {
+    /// For a document with compressed meshes.
+    pub fn of_compressed() -> Self {
+        Self { elements_a_byte: ELEMENTS_A_PACKED_BYTE, ..Self::default() }
+    }
+
     /// Adds the bytes of a buffer that was read.
     pub fn add_bytes(&self, bytes: usize) {
         self.bytes.set(self.bytes.get().saturating_add(bytes as u64));
@@ -49,16 +64,26 @@ impl Budget {
     /// # Errors
     /// [`InputError`] if there are too many.
     pub fn spend(&self, path: &str, count: usize) -> Result<(), InputError> {
-        let bytes = self.bytes.get();
-        let repeated = bytes.saturating_mul(REPEATED).clamp(ELEMENTS, MAX_REPEATED);
-        let most = bytes.saturating_mul(ELEMENTS_A_BYTE).max(repeated);
+        let most = self.most();
         let all = self.elements.get().saturating_add(count as u64);
         if all > most {
+            let bytes = self.bytes.get();
             let bound = format!("with what came before must be at most {most} elements, for {bytes} bytes");
             return Err(InputError::new(path, count, bound));
         }
         self.elements.set(all);
         Ok(())
+    }
+
+    /// How many elements can still be charged.
+    pub fn left(&self) -> u64 {
+        self.most().saturating_sub(self.elements.get())
+    }
+
+    fn most(&self) -> u64 {
+        let bytes = self.bytes.get();
+        let repeated = bytes.saturating_mul(REPEATED).clamp(ELEMENTS, MAX_REPEATED);
+        bytes.saturating_mul(self.elements_a_byte).max(repeated)
     }
 
     /// Refuses more zeros than there are bytes, beyond a fixed allowance.
@@ -109,7 +134,7 @@ mod tests {
             let error = budget.spend("a.count", usize::MAX).expect_err("too many");
             let most: usize = error.bound.split(' ').find_map(|word| word.parse().ok()).expect("a number");
             assert_eq!(budget.spend("a", most - 1), Ok(()));
-            assert_eq!(budget.spend("a", 1), Ok(()));
+            assert_eq!((budget.left(), budget.spend("a", 1), budget.left()), (1, Ok(()), 0));
             assert_eq!(budget.spend("a.count", 1).expect_err("one too many").path, "a.count");
             most
         };
@@ -117,6 +142,9 @@ mod tests {
             [0, 100, 3400, 1 << 20, 1 << 30].map(found),
             [1 << 16, 1 << 16, 128 * 3400, 1 << 24, 1 << 32]
         );
+        let compressed = Budget::of_compressed();
+        compressed.add_bytes(1 << 30);
+        assert_eq!(compressed.left(), 1 << 34);
     }
 
     #[test]

@@ -44,7 +44,7 @@ fn clip(
         };
         let Some(place) = keys else {
             let input = animation.samplers[sampler].input;
-            let times = document.vectors::<1>(input)?.into_iter().flatten();
+            let times = document.elements(input).vectors::<1>()?.into_iter().flatten();
             duration = times.filter(|time| time.is_finite()).fold(duration, f32::max);
             continue;
         };
@@ -79,10 +79,15 @@ fn keys_of(
             return Err(InputError::new(format!("{path}.interpolation"), "unknown", bound));
         }
     };
-    let times = document.vectors::<1>(sampler.input)?.into_iter().flatten().collect();
+    let times = document.elements(sampler.input).vectors::<1>()?.into_iter().flatten().collect();
     let values = match property {
-        Property::Rotation => document.vectors::<4>(sampler.output)?,
-        _ => document.vectors::<3>(sampler.output)?.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect(),
+        Property::Rotation => document.elements(sampler.output).vectors::<4>()?,
+        _ => document
+            .elements(sampler.output)
+            .vectors::<3>()?
+            .into_iter()
+            .map(|[x, y, z]| [x, y, z, 0.0])
+            .collect(),
     };
     let keys = Keys { times, values, interpolation };
     let paths = [format!("{path}.input"), format!("{path}.output")];

@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::{AlphaMode, Material as GltfMaterial};
-use gltf_json::texture::{MagFilter, MinFilter, Sampler, Texture as GltfTexture, WrappingMode};
+use gltf_json::texture::{Info, MagFilter, MinFilter, Sampler, Texture as GltfTexture, WrappingMode};
 use gltf_json::validation::Checked;
 use gltf_json::{Image, Index};
 use image::{ImageFormat, ImageReader, RgbaImage};
@@ -40,19 +40,14 @@ impl Materials {
         }
         let path = format!("materials[{at}]");
         let material = &document.root.materials[at];
-        let base = &material.pbr_metallic_roughness;
-        let of_color = format!("{path}.pbrMetallicRoughness");
-        let color = base.base_color_factor.0;
+        let Base { color, texture, names } = Base::of(material);
         if let Some(channel) = color.iter().position(|value| !(0.0..=1.0).contains(value)) {
-            let field = format!("{of_color}.baseColorFactor[{channel}]");
+            let field = format!("{path}.{}[{channel}]", names[0]);
             return Err(InputError::new(field, color[channel], "must be in 0..=1"));
         }
-        let texture = match &base.base_color_texture {
-            Some(info) => {
-                Some(self.texture(document, &format!("{of_color}.baseColorTexture"), info.index)?)
-            }
-            None => None,
-        };
+        let texture = texture
+            .map(|info| self.texture(document, &format!("{path}.{}", names[1]), info.index))
+            .transpose()?;
         let (normal, normal_scale) = self.normal(document, &path, index)?;
         let alpha = alpha(&path, material)?;
         let name = material.name.clone().unwrap_or_else(|| format!("material_{at}"));
@@ -100,8 +95,13 @@ impl Materials {
             None => Sampling::default(),
         };
         if texture.source.value() >= document.root.images.len() {
-            let bound = "must be given: images of extensions are not read";
-            return Err(InputError::new(format!("textures[{at}].source"), "missing", bound));
+            return Err(match document.extensions.unread_images.get(at).copied().flatten() {
+                Some((name, remedy)) => {
+                    let path = format!("textures[{at}].extensions.{name}");
+                    InputError::new(path, "given", format!("is not read: {remedy}"))
+                }
+                None => InputError::new(format!("textures[{at}].source"), "missing", "must be given"),
+            });
         }
         Ok(Texture { image: self.image(document, texture.source)?, sampling })
     }
@@ -123,6 +123,36 @@ impl Materials {
         self.images.push(decoded);
         self.of_images.insert(at, self.images.len() - 1);
         Ok(self.images.len() - 1)
+    }
+}
+
+/// A material's base colour.
+struct Base<'a> {
+    color: [f32; 4],
+    texture: Option<&'a Info>,
+    /// The paths of both within the material.
+    names: [&'static str; 2],
+}
+
+impl<'a> Base<'a> {
+    /// The colour of `KHR_materials_pbrSpecularGlossiness`, if the material has that, and of metal and roughness otherwise.
+    fn of(material: &'a GltfMaterial) -> Self {
+        let glossy = material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref());
+        match (glossy, &material.pbr_metallic_roughness) {
+            (Some(glossy), _) => Self {
+                color: glossy.diffuse_factor.0,
+                texture: glossy.diffuse_texture.as_ref(),
+                names: [
+                    "extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor",
+                    "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
+                ],
+            },
+            (None, rough) => Self {
+                color: rough.base_color_factor.0,
+                texture: rough.base_color_texture.as_ref(),
+                names: ["pbrMetallicRoughness.baseColorFactor", "pbrMetallicRoughness.baseColorTexture"],
+            },
+        }
     }
 }
 
@@ -205,7 +235,7 @@ pub struct Coordinates<'a> {
 impl<'a> Coordinates<'a> {
     /// Those of the base colour; `None` if it has no texture.
     pub fn of_color(material: &'a GltfMaterial) -> Option<Self> {
-        let info = material.pbr_metallic_roughness.base_color_texture.as_ref()?;
+        let info = Base::of(material).texture?;
         let transform = info.extensions.as_ref().and_then(|all| all.texture_transform.as_ref());
         Some(Self::new(info.tex_coord, transform))
     }
@@ -213,7 +243,7 @@ impl<'a> Coordinates<'a> {
     /// Those of the normal map; `None` if there is none.
     pub fn of_normals(document: &'a Document<'_>, index: Index<GltfMaterial>) -> Option<Self> {
         let info = document.root.materials[index.value()].normal_texture.as_ref()?;
-        let transform = document.normal_transforms.get(index.value()).and_then(Option::as_ref);
+        let transform = document.extensions.normal_transforms.get(index.value()).and_then(Option::as_ref);
         Some(Self::new(info.tex_coord, transform))
     }
 

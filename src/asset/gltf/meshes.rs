@@ -1,4 +1,8 @@
-//! Reads the meshes of nodes: a mesh a primitive, with the weights of its morph targets and their keys.
+//! Reads the meshes of nodes: a mesh a primitive, with the weights of its morph targets and their keys. Primitives without
+//! positions are left out.
+
+use gltf_json::mesh::Semantic;
+use gltf_json::validation::Checked;
 
 use super::document::Document;
 use super::materials::Materials;
@@ -14,6 +18,9 @@ const PRIMITIVE: usize = 32;
 
 /// Reads every primitive of the scene's nodes that have a skin, in the order of the nodes; then those of nodes
 /// without a skin.
+///
+/// # Errors
+/// [`InputError`] with the path of the fault in the file, and if no primitive has positions.
 pub fn meshes(
     document: &Document<'_>,
     nodes: &Nodes,
@@ -25,6 +32,7 @@ pub fn meshes(
     let mirrored = mirrored(&nodes.skeleton);
     let mirrors: Vec<_> = nodes.skins.iter().map(|skin| mirrors(&mirrored, skin)).collect();
     let mut meshes = Vec::new();
+    let mut left_out = None;
     for (node, skin, is_rigid) in skinned.chain(rigid) {
         let Some(mesh) = document.root.nodes[node].mesh else { continue };
         let mesh = mesh.value();
@@ -35,9 +43,15 @@ pub fn meshes(
         let name = node_name(&document.root, node);
         for (at, primitive) in document.root.meshes[mesh].primitives.iter().enumerate() {
             let path = format!("meshes[{mesh}].primitives[{at}]");
+            if !primitive.attributes.contains_key(&Checked::Valid(Semantic::Positions)) {
+                left_out.get_or_insert(path);
+                continue;
+            }
             document.budget.spend(&path, PRIMITIVE + keys)?;
             let is_bare = materials.is_unread;
-            let reader = Reader { document, primitive, path, is_rigid, is_bare };
+            let draco = document.extensions.draco(mesh, at);
+            let decompressed = draco.map(|draco| draco.decompressed(document, &path)).transpose()?;
+            let reader = Reader { document, primitive, path, is_rigid, is_bare, decompressed };
             let mut read = reader.mesh(&nodes.skins[skin], weights.len())?;
             turn_mirrored(&mut read, &mirrors[skin]);
             let material =
@@ -52,5 +66,11 @@ pub fn meshes(
             });
         }
     }
-    Ok(meshes)
+    match left_out.filter(|_| meshes.is_empty()) {
+        None => Ok(meshes),
+        Some(path) => {
+            let bound = "must be given: no primitive of the scene has positions";
+            Err(InputError::new(format!("{path}.attributes.POSITION"), "missing", bound))
+        }
+    }
 }

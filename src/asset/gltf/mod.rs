@@ -20,11 +20,12 @@
 //!   in the same order. Each of the latter follows one bone, through a skin of its own: the lowest node, at or
 //!   above its own, that is a joint, an ancestor of joints, or animated. If there is none, it follows the root
 //!   of its tree, which never moves. Such a node becomes a bone together with all its ancestors, but not a
-//!   joint. Strips and fans become lists of triangles; points and lines are left out. Missing normals are
+//!   joint. Strips and fans become lists of triangles; points and lines are left out. So are primitives without
+//!   positions, unless there are no others: then the document is refused. Missing normals are
 //!   smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace, from the
 //!   texture coordinates of the normal texture if there is one, before any `KHR_texture_transform`. A vertex
 //!   whose corners have different tangents is repeated at the end of its primitive, one copy per tangent.
-//!   Meshes that are compressed with Draco are left out.
+//!   A vertex whose weights are all 0 follows the joint in its first slot, as in three.js.
 //! - The winding of triangles that are mirrored at rest is reversed: for a whole mesh, or triangle by triangle
 //!   in a mesh where some bones mirror and others do not; see [`Mesh::indices`](crate::asset::Mesh::indices). A
 //!   clip whose scale has another sign than at rest shows such triangles from inside.
@@ -36,15 +37,44 @@
 //!   [`Model::blend`](crate::asset::Model::blend) turns into blending. Vertex colours, everything else in
 //!   materials, and materials that no mesh uses are left out.
 //!
-//! Of `extensionsRequired`, `KHR_draco_mesh_compression` (without the meshes), `KHR_mesh_quantization` and
-//! `KHR_texture_transform` are read, and every other one is refused. Those that concern materials and images
-//! matter only where these are read.
+//! `extras` may be any value. Integers may be written with a fraction of 0 or an exponent.
+//!
+//! # Extensions
+//!
+//! A document that requires any other extension than those in the first table is refused by the extension's name. Of those
+//! that a document merely uses:
+//!
+//! | read | |
+//! |---|---|
+//! | `KHR_draco_mesh_compression` | decompressed, also if there is an uncompressed form |
+//! | `EXT_meshopt_compression`, `KHR_meshopt_compression` | decompressed, also if there is an uncompressed form |
+//! | `KHR_mesh_quantization` | |
+//! | `KHR_texture_transform` | of the base colour and the normal map |
+//! | `KHR_materials_pbrSpecularGlossiness` | the diffuse colour is the base colour |
+//! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes; not if it is required |
+//!
+//! | refused where it matters | |
+//! |---|---|
+//! | `EXT_mesh_gpu_instancing` | on a node of the scene |
+//! | `KHR_texture_basisu` (KTX2), `EXT_texture_webp`, `EXT_texture_avif`, `MSFT_texture_dds` | in a texture that is read and has no PNG or JPEG beside it; the error says how to convert it |
+//!
+//! | left out | |
+//! |---|---|
+//! | other `KHR_materials_*` | as everything in materials but base colour, normal map, alpha and `doubleSided`; meshes have their default material of `KHR_materials_variants` |
+//! | `KHR_lights_punctual`, cameras | |
+//! | `KHR_animation_pointer` at anything else | |
+//! | `KHR_node_visibility` | hidden nodes are read like others |
+//! | `MSFT_lod` | the finest level is read |
+//! | `EXT_mesh_features`, `EXT_structural_metadata`, and others that add data to meshes | |
+//!
+//! [`Model::from_file_bare`](crate::asset::Model::from_file_bare) ignores those that concern materials and images.
 //!
 //! Every error names the fault with its path in the file (`accessors[3].count`). No file causes a panic, or an
 //! allocation that its bytes do not account for: counts are checked against the bytes present. Data that takes
 //! no bytes has limits of its own. An accessor without a buffer view has at most 65,536 elements, or one for
 //! each byte of the document and its buffers. Data that is read repeatedly (meshes of several nodes, keys of
-//! several channels) has at most 128 elements per byte up to 16 million, or 4 per byte. Images have at most 256
+//! several channels) has at most 128 elements per byte up to 16 million, or 4 per byte, 16 if meshes are compressed.
+//! Images have at most 256
 //! texels per byte, or 16 million, and 8192 in width and height.
 
 mod accessor;
@@ -52,8 +82,12 @@ pub(super) mod budget;
 mod clips;
 mod container;
 mod document;
+mod draco;
+mod extensions;
+mod json;
 pub(super) mod materials;
 mod meshes;
+mod meshopt;
 mod nodes;
 mod primitive;
 mod rigid;
@@ -107,11 +141,7 @@ impl Model {
         let document = Document::new(bytes, beside, materials.is_unread)?;
         let nodes = nodes::Nodes::new(&document)?;
         let clips = clips::clips(&document, &nodes)?;
-        // Meshes that are compressed with Draco have no vertices that can be read.
-        let meshes = match document.is_draco {
-            true => Vec::new(),
-            false => meshes::meshes(&document, &nodes, &mut materials)?,
-        };
+        let meshes = meshes::meshes(&document, &nodes, &mut materials)?;
         let Materials { materials, images, .. } = materials;
         let own = nodes.own_skins();
         let skinned = meshes.iter().take_while(|mesh| mesh.skin < own).count();

@@ -28,6 +28,7 @@ impl Nodes {
     pub fn new(document: &Document<'_>) -> Result<Self, InputError> {
         let root = &document.root;
         let scene = Scene::new(root)?;
+        document.extensions.check_copies(|node| scene.contains[node])?;
         let used = used_skins(root, &scene);
         let joints = joints(root, &used)?;
         let animated = animated(root);
@@ -193,7 +194,7 @@ fn read_skin(document: &Document<'_>, index: usize, bones: &[Option<u32>]) -> Re
     let skin = &document.root.skins[index];
     let joints: Vec<u32> = skin.joints.iter().filter_map(|joint| bones[joint.value()]).collect();
     let mut inverse_binds = match skin.inverse_bind_matrices {
-        Some(accessor) => document.vectors::<16>(accessor)?,
+        Some(accessor) => document.elements(accessor).vectors::<16>()?,
         None => vec![glam::Mat4::IDENTITY.to_cols_array(); joints.len()],
     };
     let path = format!("skins[{index}].inverseBindMatrices");

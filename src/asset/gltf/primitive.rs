@@ -6,7 +6,9 @@ use gltf_json::material::Material as GltfMaterial;
 use gltf_json::mesh::{Mode, MorphTarget as GltfTarget, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
+use super::accessor::Elements;
 use super::document::Document;
+use super::draco::Decompressed;
 use super::materials::Coordinates;
 use super::tangents::{Surface, Tangents};
 use crate::InputError;
@@ -28,16 +30,18 @@ pub(super) struct Reader<'a, 'd> {
     pub(super) is_rigid: bool,
     /// Whether materials are left out.
     pub(super) is_bare: bool,
+    /// The primitive decompressed, if it is compressed with Draco.
+    pub(super) decompressed: Option<Decompressed<'a>>,
 }
 
-impl Reader<'_, '_> {
+impl<'d> Reader<'_, 'd> {
     /// The primitive as a mesh of skin 0 without a name, a material and weights, for a `skin` with its bones and
     /// as many morph `targets` as the mesh's first primitive has.
     pub(super) fn mesh(&self, skin: &Skin, targets: usize) -> Result<Mesh, InputError> {
         let Some(positions) = self.accessor(&Semantic::Positions) else {
             return Err(InputError::new(self.named("POSITION"), "missing", "must be given"));
         };
-        let positions = self.document.attributes::<3>(positions)?;
+        let positions = self.elements("POSITION", positions).attributes::<3>()?;
         if positions.len() > MAX_VERTICES {
             let bound = format!("must be at most {MAX_VERTICES}");
             return Err(InputError::new(format!("{}.count", self.named("POSITION")), positions.len(), bound));
@@ -166,6 +170,11 @@ impl Reader<'_, '_> {
         self.primitive.attributes.get(&Checked::Valid(semantic.clone())).copied()
     }
 
+    fn elements<'s>(&'s self, attribute: &'s str, accessor: Index<Accessor>) -> Elements<'s, 'd> {
+        let compressed = self.decompressed.as_ref().map(|primitive| (primitive, attribute));
+        Elements { document: self.document, accessor, compressed }
+    }
+
     /// An attribute with one value per vertex, in range, or `None` if the primitive lacks it.
     fn attribute<const N: usize>(
         &self,
@@ -174,7 +183,7 @@ impl Reader<'_, '_> {
         vertices: usize,
     ) -> Result<Option<Vec<[f32; N]>>, InputError> {
         let Some(accessor) = self.accessor(semantic) else { return Ok(None) };
-        let values = self.document.attributes::<N>(accessor)?;
+        let values = self.elements(name, accessor).attributes::<N>()?;
         self.one_a_vertex(&self.named(name), values.len(), vertices)?;
         in_range(&self.named(name), &values)?;
         Ok(Some(values))
@@ -223,8 +232,8 @@ impl Reader<'_, '_> {
                         return Err(InputError::new(self.named(&lacking), "missing", bound));
                     }
                 };
-            let (joints, weights) =
-                (self.document.integers::<4>(joints)?, self.document.vectors::<4>(weights)?);
+            let joints = self.elements(&joints_name, joints).integers::<4>()?;
+            let weights = self.elements(&weights_name, weights).vectors::<4>()?;
             self.one_a_vertex(&self.named(&joints_name), joints.len(), vertices)?;
             self.one_a_vertex(&self.named(&weights_name), weights.len(), vertices)?;
             for (all, (joints, weights)) in all.iter_mut().zip(joints.iter().zip(&weights)) {
@@ -236,9 +245,12 @@ impl Reader<'_, '_> {
 
     /// Converts lists, strips and fans to lists. Points and lines give no triangles.
     fn triangles(&self, vertices: usize) -> Result<Vec<u32>, InputError> {
-        let indices: Vec<u32> = match self.primitive.indices {
-            Some(accessor) => self.document.integers::<1>(accessor)?.into_iter().flatten().collect(),
-            None => (0..vertices as u32).collect(),
+        let indices: Vec<u32> = match (&self.decompressed, self.primitive.indices) {
+            (Some(decompressed), _) => decompressed.indices(),
+            (None, Some(accessor)) => {
+                self.document.elements(accessor).integers::<1>()?.into_iter().flatten().collect()
+            }
+            (None, None) => (0..vertices as u32).collect(),
         };
         if let Some(at) = indices.iter().position(|index| *index as usize >= vertices) {
             let bound = format!("must be below {vertices}, the number of vertices");
@@ -247,6 +259,8 @@ impl Reader<'_, '_> {
         let Checked::Valid(mode) = self.primitive.mode else {
             return Err(InputError::new(format!("{}.mode", self.path), "unknown", "must be one of glTF's"));
         };
+        // Draco has triangles, whatever the mode is without compression.
+        let mode = if self.decompressed.is_some() { Mode::Triangles } else { mode };
         // Strips and fans have one triangle per index.
         self.document.budget.spend(&self.path, 3 * indices.len())?;
         // Strips are joined by triangles without area.
@@ -288,7 +302,7 @@ impl Reader<'_, '_> {
         let mut deltas = vec![MorphDelta::default(); vertices];
         let mut add = |name: &str, accessor: Option<Index<Accessor>>, set: fn(&mut MorphDelta, [f32; 3])| {
             let Some(accessor) = accessor else { return Ok(()) };
-            let values = self.document.attributes::<3>(accessor)?;
+            let values = self.document.elements(accessor).attributes::<3>()?;
             let path = format!("{}.targets[{at}].{name}", self.path);
             self.one_a_vertex(&path, values.len(), vertices)?;
             in_range(&path, &values)?;

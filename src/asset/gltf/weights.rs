@@ -51,7 +51,8 @@ pub fn weight_keys(
                 Checked::Valid(GltfInterpolation::CubicSpline) => Interpolation::CubicSpline,
                 _ => Interpolation::Linear,
             };
-            let floats = |accessor| Ok(document.vectors::<1>(accessor)?.into_iter().flatten().collect());
+            let floats =
+                |accessor| Ok(document.elements(accessor).vectors::<1>()?.into_iter().flatten().collect());
             let paths = [format!("{path}.input"), format!("{path}.output")];
             let (times, values) = (floats(sampler.input)?, floats(sampler.output)?);
             let keys = WeightKeys::new([&paths[0], &paths[1]], times, values, interpolation, targets)?;

@@ -101,7 +101,7 @@ impl Simplify {
         let model = open(&self.model)?;
         let in_file = |source: InputError| Error::InputFile { path: self.model.clone(), source };
         if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
-            let bound = "must be at least 1 (meshes that are compressed with Draco are not read)";
+            let bound = "must be at least 1";
             return Err(in_file(InputError::new("triangles", 0, bound)));
         }
         if self.compare {

@@ -102,7 +102,7 @@ impl Skin {
         let instance_lod = instance_lod(&self.influences)?;
         let mut model = open(&self.model)?;
         if model.meshes.is_empty() {
-            let bound = "must be at least one that is not compressed with Draco";
+            let bound = "must be at least 1";
             return Err(Error::InputFile {
                 path: self.model.clone(),
                 source: InputError::new("meshes.len", 0, bound),

@@ -29,7 +29,7 @@ impl DrawnModel {
     pub fn new(subject: Subject<'_>, detail: MeshDetail, listener: Listener<'_>) -> Result<Self, InputError> {
         let clip = subject.clip()?;
         if subject.model.meshes.is_empty() {
-            let bound = "must be at least one that is not compressed with Draco";
+            let bound = "must be at least 1";
             return Err(InputError::new("model.meshes.len", 0, bound));
         }
         let mut model = subject.model.clone();

@@ -1,0 +1,103 @@
+//! Primitives that are compressed with Draco (`KHR_draco_mesh_compression`), decompressed by the crate draco-core.
+
+use std::collections::HashMap;
+
+use draco_core::{DecodeLimits, DecoderBuffer, Mesh, MeshDecoder};
+use gltf_json::accessor::ComponentType;
+use gltf_json::{Index, buffer};
+use serde::Deserialize;
+
+use super::document::Document;
+use super::extensions::DRACO;
+use crate::InputError;
+use crate::asset::mesh::MAX_VERTICES;
+
+/// Bytes of an element of the budget: four floats.
+const BYTES_AN_ELEMENT: u64 = 16;
+
+/// Where the compressed bytes of a primitive lie, and which attributes they have.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Draco {
+    buffer_view: u32,
+    /// For each attribute, its number within the compressed bytes.
+    attributes: HashMap<String, u32>,
+}
+
+/// A decompressed primitive.
+pub struct Decompressed<'a> {
+    mesh: Mesh,
+    attributes: &'a HashMap<String, u32>,
+    /// The primitive's extension in the file.
+    path: String,
+}
+
+impl Draco {
+    /// Decompresses the primitive at `path`.
+    ///
+    /// # Errors
+    /// [`InputError`] for damaged bytes, and for more vertices or triangles than meshes may have or the budget allows.
+    pub fn decompressed(&self, document: &Document<'_>, path: &str) -> Result<Decompressed<'_>, InputError> {
+        let path = format!("{path}.extensions.{DRACO}");
+        let (bytes, _) = document.view(Index::<buffer::View>::new(self.buffer_view))?;
+        // A triangle takes three elements, its indices.
+        let elements = document.budget.left();
+        let limits = DecodeLimits::default()
+            .with_max_points(MAX_VERTICES as u64)
+            .with_max_faces(elements / 3)
+            .with_max_decoded_bytes(elements.saturating_mul(BYTES_AN_ELEMENT));
+        let mut mesh = Mesh::new();
+        let read = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(limits), &mut mesh);
+        read.map_err(|error| {
+            let value = format!("[{} bytes]", bytes.len());
+            InputError::new(&path, value, format!("must be a mesh compressed with Draco: {error}"))
+        })?;
+        let elements = mesh.num_points().saturating_mul(self.attributes.len());
+        document.budget.spend(&path, elements.saturating_add(3 * mesh.num_faces()))?;
+        Ok(Decompressed { mesh, attributes: &self.attributes, path })
+    }
+}
+
+impl Decompressed<'_> {
+    /// The corners of the triangles.
+    pub fn indices(&self) -> Vec<u32> {
+        self.mesh.faces().iter().flat_map(|face| face.map(|point| point.0)).collect()
+    }
+
+    /// The values of an attribute, vertex by vertex, as an accessor of this type has them; `None` if it is not compressed.
+    ///
+    /// # Errors
+    /// [`InputError`] if the attribute does not exist, or has another number of components.
+    pub fn attribute(
+        &self,
+        name: &str,
+        component: ComponentType,
+        components: usize,
+    ) -> Result<Option<Vec<u8>>, InputError> {
+        let Some(number) = self.attributes.get(name) else { return Ok(None) };
+        let refused = |value: String, bound: &str| {
+            Err(InputError::new(format!("{}.attributes.{name}", self.path), value, bound))
+        };
+        let Some(attribute) = self.mesh.attribute_by_unique_id(*number) else {
+            return refused(number.to_string(), "must be an attribute of the compressed mesh");
+        };
+        if usize::from(attribute.num_components()) != components {
+            let value = format!("{} components", attribute.num_components());
+            return refused(value, &format!("must have {components}, as the accessor"));
+        }
+        let values = attribute.read_f32s(self.mesh.num_points(), components);
+        Ok(Some(values.into_iter().flat_map(|value| bytes_of(value, component)).collect()))
+    }
+}
+
+/// A number as bytes of a component type; the nearest one that the type has.
+fn bytes_of(value: f32, component: ComponentType) -> Vec<u8> {
+    match component {
+        ComponentType::I8 => (value as i8).to_le_bytes().to_vec(),
+        ComponentType::U8 => (value as u8).to_le_bytes().to_vec(),
+        ComponentType::I16 => (value as i16).to_le_bytes().to_vec(),
+        ComponentType::U16 => (value as u16).to_le_bytes().to_vec(),
+        ComponentType::U32 => (value as u32).to_le_bytes().to_vec(),
+        ComponentType::F32 => value.to_le_bytes().to_vec(),
+    }
+}

@@ -1,0 +1,96 @@
+//! Parses a document's JSON, and rewrites what glTF permits and gltf-json rejects.
+
+use serde_json::{Number, Value};
+
+use crate::InputError;
+
+/// The largest whole number up to which a double holds every whole number: 2⁵³.
+const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// Parses the JSON of a document.
+///
+/// # Errors
+/// [`InputError`] with line and column.
+pub fn parse(json: &[u8]) -> Result<Value, InputError> {
+    // glTF lets readers skip a byte order mark.
+    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    let mut value: Value = serde_json::from_slice(json).map_err(|error| {
+        let place = format!("line {} column {}", error.line(), error.column());
+        InputError::new("JSON", place, format!("must be glTF 2.0, as GLB or JSON ({error})"))
+    })?;
+    rewrite(&mut value);
+    for animation in list(&mut value, "animations") {
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            channels.iter_mut().for_each(resolve_pointer);
+            channels.retain(has_node);
+        }
+    }
+    for primitive in list(&mut value, "meshes").flat_map(|mesh| list(mesh, "primitives")) {
+        if let Some(attributes) = primitive.get_mut("attributes").and_then(Value::as_object_mut) {
+            attributes.retain(|name, _| !is_foreign(name));
+        }
+    }
+    // A scene may lack its list of nodes.
+    for scene in list(&mut value, "scenes").filter_map(Value::as_object_mut) {
+        scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
+    }
+    Ok(value)
+}
+
+/// The elements of a list of an object; none if it has no such list.
+fn list<'a>(value: &'a mut Value, name: &str) -> impl Iterator<Item = &'a mut Value> {
+    value.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten()
+}
+
+/// Removes all `extras`, which may be any value and are not read, and writes whole numbers as integers: `1.0` is one too.
+fn rewrite(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            members.remove("extras");
+            members.values_mut().for_each(rewrite);
+        }
+        Value::Array(elements) => elements.iter_mut().for_each(rewrite),
+        Value::Number(number) => {
+            if let Some(whole) = whole(number) {
+                *number = whole;
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The integer that a number with a fraction or an exponent stands for. `-0.0` is none, since integers have no such sign.
+fn whole(number: &Number) -> Option<Number> {
+    let value = number.as_f64().filter(|_| number.is_f64())?;
+    let is_whole =
+        value.fract() == 0.0 && value.abs() <= MOST_EXACT && !(value == 0.0 && value.is_sign_negative());
+    is_whole.then(|| Number::from(value as i64))
+}
+
+/// Whether an attribute is one of an application (`_NAME`) or of an extension (`EXTENSION:NAME`).
+fn is_foreign(attribute: &str) -> bool {
+    attribute.starts_with('_') || attribute.contains(':')
+}
+
+/// Names the node and the path of a channel that `KHR_animation_pointer` points at a node, as `/nodes/3/rotation` does.
+fn resolve_pointer(channel: &mut Value) {
+    let target = channel.get_mut("target").and_then(Value::as_object_mut);
+    let Some(target) = target.filter(|target| !target.contains_key("node")) else { return };
+    let pointer = target.get("extensions").and_then(|all| all.pointer("/KHR_animation_pointer/pointer"));
+    let parts =
+        pointer.and_then(Value::as_str).and_then(|pointer| pointer.strip_prefix("/nodes/")?.split_once('/'));
+    let of_node = parts.and_then(|(node, path)| Some((node.parse::<u32>().ok()?, path.to_owned())));
+    if let Some((node, path)) =
+        of_node.filter(|(_, path)| ["translation", "rotation", "scale", "weights"].contains(&path.as_str()))
+    {
+        target.insert("node".to_owned(), node.into());
+        target.insert("path".to_owned(), path.into());
+    }
+}
+
+/// Whether a channel has a target node. glTF lets extensions animate other things than nodes, and readers that do not know them
+/// skip such channels.
+fn has_node(channel: &Value) -> bool {
+    let target = channel.get("target").and_then(Value::as_object);
+    target.is_none_or(|target| target.contains_key("node"))
+}

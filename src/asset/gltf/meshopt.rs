@@ -1,0 +1,101 @@
+//! Buffer views that meshoptimizer compressed (`EXT_meshopt_compression` and `KHR_meshopt_compression`), decompressed by the
+//! crate meshoptimizer-rs.
+
+use meshoptimizer_rs::codec::{
+    decode_filter_color, decode_filter_exp, decode_filter_oct, decode_filter_quat, decode_index_buffer,
+    decode_index_sequence, decode_vertex_buffer,
+};
+use meshoptimizer_rs::{Error, Workspace};
+use serde::Deserialize;
+
+use super::document::Document;
+use crate::InputError;
+
+/// Bytes of decompressed data that count as an element of the budget, as four floats do.
+const BYTES_AN_ELEMENT: usize = 16;
+
+/// Where the compressed bytes of a view lie, and what they become.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Meshopt {
+    /// The extension's name.
+    #[serde(skip)]
+    extension: &'static str,
+    buffer: u32,
+    #[serde(default)]
+    byte_offset: u64,
+    byte_length: u64,
+    /// Bytes of an element.
+    byte_stride: usize,
+    /// Number of elements.
+    count: usize,
+    mode: Mode,
+    #[serde(default)]
+    filter: Filter,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+enum Mode {
+    Attributes,
+    Triangles,
+    Indices,
+}
+
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+enum Filter {
+    #[default]
+    None,
+    Octahedral,
+    Quaternion,
+    Exponential,
+    Color,
+}
+
+impl Meshopt {
+    /// The same, with the name of the extension.
+    pub fn named(self, extension: &'static str) -> Self {
+        Self { extension, ..self }
+    }
+
+    /// The decompressed bytes of view `index`.
+    ///
+    /// # Errors
+    /// [`InputError`] for bytes that do not lie in the buffer, for damaged ones, and for more than the budget allows.
+    pub fn decompressed(&self, document: &Document<'_>, index: usize) -> Result<Vec<u8>, InputError> {
+        let path = format!("bufferViews[{index}].extensions.{}", self.extension);
+        let buffer = gltf_json::Index::new(self.buffer);
+        let bytes =
+            document.slice(&format!("{path}.byteLength"), buffer, self.byte_offset, self.byte_length)?;
+        let size = self.count.saturating_mul(self.byte_stride);
+        document.budget.spend(&format!("{path}.count"), size.div_ceil(BYTES_AN_ELEMENT))?;
+        // The crate refuses sizes and shapes that do not belong together.
+        self.decode(bytes).map_err(|error| {
+            let value = format!("[{} bytes]", bytes.len());
+            let bound =
+                format!("must decompress to {} elements of {} bytes: {error}", self.count, self.byte_stride);
+            InputError::new(path, value, bound)
+        })
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Result<Vec<u8>, Error> {
+        let (count, stride) = (self.count, self.byte_stride);
+        let mut space = Workspace::default();
+        let decode = match self.mode {
+            Mode::Attributes => decode_vertex_buffer,
+            Mode::Triangles => decode_index_buffer,
+            Mode::Indices => decode_index_sequence,
+        };
+        let mut data = decode(count, stride, bytes, &mut space)?;
+        let filter = match self.filter {
+            Filter::None => return Ok(data),
+            Filter::Octahedral => decode_filter_oct,
+            Filter::Quaternion => decode_filter_quat,
+            Filter::Exponential => decode_filter_exp,
+            Filter::Color => decode_filter_color,
+        };
+        filter(&mut data, count, stride, &mut space)?;
+        Ok(data)
+    }
+}
