@@ -1,33 +1,29 @@
-//! What README.md says, held against the program: commands and their options, kernels, fields, links, and figures
-//! that are the same on every machine.
+//! What README.md and docs/*.md say, held against the program: code, names of items, commands and their options, kernels,
+//! fields, links, and figures that are the same on every machine.
 #![cfg(feature = "cli")]
 
+#[path = "readme/blocks.rs"]
+mod blocks;
 #[path = "harness/mod.rs"]
 mod harness;
+#[path = "readme/names.rs"]
+mod names;
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use harness::relievo;
-use relievo::animation::ModelMatrices;
+use relievo::InputError;
 use relievo::animation::{bounds, keyframe_cursor, local_to_model, sample};
-use relievo::asset::Model;
-use relievo::gpu::{Gpu, shaders};
-use relievo::render::SunShadow;
+use relievo::gpu::shaders;
 use relievo::samples::creature;
-use relievo::scene::{Scene, TerrainSource, View};
 use relievo::scene_file::SceneFile;
 use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
-use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::{Blend, InstanceLod};
 use relievo::skinning::{morph, morph_weights, palette, skin};
 use relievo::surface::{cone_map, tangent};
-use relievo::terrain::config::{Config, Offset};
-use relievo::terrain::features::Features;
+use relievo::terrain::config::Config;
 use relievo::terrain::fields::Fields;
-use relievo::terrain::height::{HeightBatch, HeightPass};
 use relievo::terrain::normals;
-use relievo::{Error, InputError};
 
 const README: &str = include_str!("../README.md");
 
@@ -129,13 +125,11 @@ fn the_configuration_has_the_fields_and_defaults_of_the_table() {
 
 #[test]
 fn the_scene_file_is_one() {
-    let blocks: Vec<_> =
-        README.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert!(!blocks.is_empty());
-    for text in blocks {
-        let scene = SceneFile::from_json(text).expect("valid");
-        assert_eq!(scene.files().len(), 2, "{text}");
-    }
+    let documents = documents();
+    let blocks = documents.iter().flat_map(Document::blocks).filter(|[language, _]| *language == "json");
+    let scenes: Vec<_> = blocks.map(|[_, text]| SceneFile::from_json(text).expect(text)).collect();
+    assert!(!scenes.is_empty());
+    assert!(scenes.iter().any(|scene| scene.files().len() == 2), "the README's names two models");
 }
 
 #[test]
@@ -176,69 +170,112 @@ fn every_example_is_named() {
     assert!(programs > 1);
 }
 
-/// Compiles the README's example of embedding, with the variables that it leaves out.
-#[allow(dead_code, reason = "it is compiled, not run")]
-fn embedding(
-    (device, queue): (&wgpu::Device, &wgpu::Queue),
-    patches: Vec<[i32; 2]>,
-    mut encoder: wgpu::CommandEncoder,
-    mut scene: Scene,
-) -> Result<(), Error> {
-    let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
-    let config = Config::new(257, 40.0, "any text")?;
-    let pass = HeightPass::new(&gpu, Offset::Signed, None)?;
-    let batch = HeightBatch::new(&gpu, &pass, &config, [64, 1], 0)?;
-    let land = TerrainSource::from_fields(config, batch.fields()[0].clone(), &[]);
-    let land = scene.add_terrain(&land)?;
-    batch.set(&gpu, &patches, &Features::default())?;
-    batch.record(&mut encoder);
-    scene.set_patches(land, &patches, [-80.0, 80.0])?;
-    Ok(())
+/// A Markdown file of the repository, and its text.
+struct Document {
+    path: String,
+    text: String,
 }
 
-/// Compiles the README's example of a shadow, with the variables that it leaves out.
-#[allow(dead_code, reason = "it is compiled, not run")]
-fn shadow((mut scene, mut eye): (Scene, View), mut encoder: wgpu::CommandEncoder) -> Result<(), Error> {
-    let mut shadow = SunShadow::new(&mut scene, 2048)?;
-    shadow.fit(&scene, &mut [&mut eye], 120.0)?;
-    scene.record(&mut encoder, &mut [&mut eye, shadow.view()])?;
-    shadow.draw(&mut encoder, &scene)?;
-    Ok(())
+/// README.md and `docs/*.md`, in the order of their paths.
+fn documents() -> Vec<Document> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let names = std::fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry"));
+    let mut paths: Vec<_> = names.map(|entry| format!("docs/{}", entry.file_name().display())).collect();
+    paths.push("README.md".to_owned());
+    paths.sort();
+    let read = |path: String| Document {
+        text: std::fs::read_to_string(root.join(&path)).expect("a document"),
+        path,
+    };
+    paths.into_iter().map(read).collect()
 }
 
-/// Compiles the README's example of skinning, with the variables that it leaves out.
-#[allow(dead_code, reason = "it is compiled, not run")]
-fn skinning(
-    (gpu, mut encoder): (Gpu, wgpu::CommandEncoder),
-    (fox, matrices): (Model, &ModelMatrices),
-    lods: &[InstanceLod],
-) -> Result<(), Error> {
-    let skin = SkinFrame::new(&gpu, &fox, 0, matrices, 1000, Blend::Linear)?;
-    skin.crowd.instance_lods.write(&gpu, lods)?;
-    skin.record_updated_bones(&mut encoder);
-    let (vertices, triangles) = (&skin.skinned, &skin.mesh.indices);
-    assert!(!vertices.is_empty() && !triangles.is_empty());
-    Ok(())
+impl Document {
+    /// Its code blocks, each with its language.
+    fn blocks(&self) -> Vec<[&str; 2]> {
+        let fenced = self.text.split("\n```").skip(1).step_by(2);
+        fenced
+            .map(|block| block.split_once('\n').map_or([block, ""], |(language, code)| [language, code]))
+            .collect()
+    }
+
+    /// Its text without code blocks.
+    fn prose(&self) -> String {
+        self.text.split("\n```").step_by(2).collect()
+    }
+}
+
+#[test]
+fn every_block_is_in_a_language_that_is_checked() {
+    for document in documents() {
+        for [language, code] in document.blocks() {
+            let is_checked = match language {
+                "rust" | "json" => true,
+                "sh" | "wgsl" => document.path == "README.md",
+                _ => false,
+            };
+            assert!(is_checked, "{}: ```{language}\n{code}", document.path);
+        }
+    }
 }
 
 #[test]
 fn rust_is_compiled_as_it_stands_there() {
-    let squeezed = |text: &str| text.split_whitespace().collect::<String>();
-    let compiled = [
-        include_str!("readme.rs"),
-        include_str!("../examples/engine/main.rs"),
-        include_str!("web/scene/src/lib.rs"),
-        include_str!("web/scene/src/picture.rs"),
-    ];
-    let compiled: String = compiled.map(squeezed).concat();
-    let lines = code("rust", "//");
-    assert!(!lines.is_empty());
-    for line in lines {
-        assert!(
-            compiled.contains(&squeezed(line)),
-            "neither tests/readme.rs nor examples/engine nor tests/web/scene holds `{line}`"
-        );
+    let mut written = Vec::new();
+    for document in documents() {
+        let rust = document.blocks().into_iter().filter(|[language, _]| *language == "rust");
+        written.extend(rust.map(|[_, code]| format!("{}\n{code}", document.path)));
     }
+    let compiled = include_str!("readme/blocks.rs").split("\n    // begin ").skip(1);
+    let compiled: Vec<String> = compiled
+        .filter_map(|rest| rest.split_once("\n    // end"))
+        .map(|(block, _)| block.replace("\n    ", "\n"))
+        .collect();
+    assert!(!written.is_empty());
+    for (written, compiled) in written.iter().zip(&compiled) {
+        assert_eq!(written, compiled, "tests/readme/blocks.rs has another text");
+    }
+    assert_eq!(
+        written.len(),
+        compiled.len(),
+        "blocks without a function in tests/readme/blocks.rs, or the reverse"
+    );
+}
+
+/// The paths in the prose, such as `Scene::new` or `mesh::simplify`, and names of types, such as `SunShadow`.
+fn names_in(prose: &str) -> BTreeSet<String> {
+    let is_word =
+        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    let is_type = |name: &str| {
+        name.starts_with(|c: char| c.is_ascii_uppercase())
+            && name.contains(|c: char| c.is_ascii_lowercase())
+            && name.chars().filter(char::is_ascii_uppercase).count() > 1
+    };
+    quoted(prose)
+        .into_iter()
+        .map(|text| text.trim_end_matches("()"))
+        .filter(|text| text.split("::").all(is_word) && (text.contains("::") || is_type(text)))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Each name that the documents mention is in `tests/readme/names.rs`, which the compiler reads.
+#[test]
+fn names_in_the_prose_exist() {
+    let mentioned: BTreeSet<String> =
+        documents().iter().flat_map(|document| names_in(&document.prose())).collect();
+    let mut compiled = BTreeSet::new();
+    for (code, name) in include_str!("readme/names.rs").lines().filter_map(|line| line.split_once("; // ")) {
+        // A field is named after a value of its type.
+        let (owner, last) = name.rsplit_once("::").unwrap_or(("", name));
+        let is_module = owner.starts_with(|c: char| c.is_ascii_lowercase());
+        let is_named =
+            if is_module { code.contains(&format!("relievo::{owner}")) } else { code.contains(owner) };
+        assert!(is_named && code.contains(last), "`{code}` is not {name}");
+        compiled.insert(name.to_owned());
+    }
+    assert!(mentioned.len() > 30, "{mentioned:?}");
+    assert_eq!(mentioned, compiled, "tests/readme/names.rs has other names than the documents");
 }
 
 /// Runs the README's WGSL as a fragment shader after the module, on the device.

@@ -86,8 +86,9 @@ impl Range {
         Ok(())
     }
 
-    /// Ω at a distance, in 65536ths. **Decided**: `(max − d)/(max − min)`. A prints `(d − min)/(max − min)`,
-    /// which contradicts its own end points.
+    /// Ω at a distance, in 65536ths.
+    ///
+    /// **Decided**: `(max − d)/(max − min)`. A prints `(d − min)/(max − min)` (12.10), which contradicts its own end points.
     pub fn omega(&self, distance: f32) -> u32 {
         let fraction =
             (f64::from(self.max) - f64::from(distance)) / (f64::from(self.max) - f64::from(self.min));

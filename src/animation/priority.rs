@@ -15,12 +15,18 @@
 //!
 //! A priority is the weighted mean of the terms.
 //!
-//! **Decided**, where A contradicts itself: its rotation term is a dot product of quaternions, which is
-//! *largest* when nothing rotates and which distinguishes q from −q; its prose means the angle. Its depth term
-//! grows away from the root (12.7), but its prose gives the root the highest priority (10.5, 11.5), which is
-//! taken. If a largest value is below [`NOISE`], for translations relative to the model's size, its term is 0,
-//! so that noise never becomes important. The last key is followed by the bone's first if the clip loops;
-//! otherwise nothing follows it, and its first three terms are 0.
+//! If a largest value is below [`NOISE`], for translations relative to the model's size, its term is 0, so that noise
+//! never becomes important. The last key is followed by the bone's first if the clip loops; otherwise nothing follows
+//! it, and its first three terms are 0.
+//!
+//! **Decided**: a key is compared with the next one, as in A's equations (12.2 to 12.4). A's prose compares it with the
+//! previous one (10.6, 14). A bone that skips updates after a key misses the motion towards the next.
+//!
+//! **Decided**: the rotation term is the angle, as A's prose means it (11.2). A's equation (12.3) is the dot product of
+//! two quaternions, which is *largest* when nothing rotates, and which distinguishes q from −q.
+//!
+//! **Decided**: the depth term is highest at the root, as in A's prose (10.5, 11.5). The equation of 12.7, d/D, grows
+//! away from the root; that of 10.5, D/d, divides by 0 at the root.
 
 mod analyze;
 mod differences;
@@ -227,6 +233,20 @@ mod tests {
             ],
         );
         assert!(found.of(3).is_empty());
+    }
+
+    /// The root stands still, jumps, and stands still: the key before the jump counts, and not the one behind it.
+    #[test]
+    fn a_key_is_compared_with_the_next_one() {
+        let x = |x: f32| [x, 0.0, 0.0, 0.0];
+        let moves = keys(&[0.0, 1.0, 2.0, 3.0], &[x(0.0), x(0.0), x(3.0), x(3.0)]);
+        let bones = [BoneKeys { translation: moves, ..BoneKeys::default() }];
+        let bones: Vec<_> = bones.into_iter().chain(vec![BoneKeys::default(); 3]).collect();
+        let clip = Clip::new("test", &skeleton(), &bones, 0.0).expect("valid");
+        let found =
+            Priorities::new(&skeleton(), &clip, false, &Weights::default(), &[0.5; 4]).expect("valid");
+        let terms: Vec<f32> = found.of(0).iter().map(|key| key.terms[0]).collect();
+        assert_eq!(terms, [0.0, 1.0, 0.0, 0.0]);
     }
 
     #[test]

@@ -93,6 +93,9 @@ pub enum Cost {
     Melax {
         /// Whether to refuse a collapse where the normals of the two points are more than 90° apart in the
         /// first pose (B section 3.2.3).
+        ///
+        /// **Decided**: a point's normal is the sum of its triangles' *unit* normals, which B's equation 3.1 compares. B
+        /// defines them as cross products (3.2.3), which would weight them by area.
         check_normals: bool,
     },
 }

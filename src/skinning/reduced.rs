@@ -25,6 +25,9 @@ pub enum Normals {
     Carry,
     /// Computed again: the normalized sums of the normals of the triangles around each vertex, weighted by area. Hard edges
     /// are lost.
+    ///
+    /// **Decided**: the sum of B's equation 3.2 is over cross products of edges, B's definition of a triangle's normal
+    /// (3.2.3), so that slivers count little. B's equation 3.1 needs unit normals, which would count equally here.
     Recompute,
 }
 

@@ -34,6 +34,9 @@ pub struct Material {
     /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].
     pub scale: f32,
     /// Height of the polygon within the relief, 0 (bottom) to 1 (top).
+    ///
+    /// **Decided**: 1 by default, for every method. B's text has the polygon at the top (3.1.2), its table 4.4 at the
+    /// bottom, and its bias of parallax in the middle (3.1.1), which is ½ here.
     pub plane: f32,
     /// Unit vector towards the light, in world space.
     pub light: [f32; 3],

@@ -1,4 +1,7 @@
 //! Seeded terrain: integer heights that are the same bits on every device (B section 3.3 and 4.4).
+//!
+//! **Decided**: heights are integers. B requires the exact same content on every client (3.3), but computes in floating
+//! point, which devices round differently.
 
 #[cfg(feature = "verify")]
 pub(crate) mod bench;

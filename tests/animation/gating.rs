@@ -3,7 +3,7 @@
 use relievo::animation::budget::reference::rank_of;
 use relievo::animation::compact::reference::Work;
 use relievo::animation::frame::reference::Crowd;
-use relievo::animation::gate::reference::{gate, is_skipped};
+use relievo::animation::gate::reference::{gate, is_skipped, scramble};
 use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
@@ -231,21 +231,65 @@ fn skip_period_is_the_specifications() {
     }
 }
 
+/// A's example (section 12.10): at 16 ms a frame, a level of 48 ms skips every third update, and one of 32 ms every second.
+#[test]
+fn skip_period_skips_as_often_as_in_the_example_of_a() {
+    for (level, every) in [(48, 3), (32, 2)] {
+        let skipped: Vec<u32> = (1..=60).filter(|frame| is_skipped(level, 16 * frame, 16)).collect();
+        assert_eq!(skipped.len(), 60 / every as usize, "{level}");
+        assert!(skipped.windows(2).all(|pair| pair[1] - pair[0] == every), "{level}: {skipped:?}");
+    }
+}
+
+/// The gate by the priorities of the creature's keys. The period of a second has 65,536 ticks.
+fn skip_period(stage: &Stage, weights: &Weights) -> Gate {
+    let user = vec![USER_DEFAULT; stage.skeleton.len()];
+    let of = |clip| Priorities::new(&stage.skeleton, clip, true, weights, &user).expect("fits");
+    let priorities: Vec<_> = stage.clips.iter().map(of).collect();
+    let table = PriorityTable::new(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
+    Gate::SkipPeriod { table, period: 65536 }
+}
+
+/// All priorities are ½. The clock of an instance is ahead by a hash of its number. A bone skips an update where that clock
+/// passes a multiple of the period of the frame, whatever the period was before.
+#[test]
+fn skip_period_counts_from_multiples_of_the_period() {
+    let stage = Stage::creature();
+    let gate = skip_period(&stage, &Weights([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+    let mut crowd = stage.crowd(&gate, RotationPath::Slerp, &[Instance::new(0, Wrap::Loop, 0.0, 1.0); 20]);
+    let mut skipped = vec![Vec::new(); 20];
+    for number in 0..200 {
+        // Far away for a while, near for a while.
+        let omega = if number / 37 % 2 == 0 { OMEGA_ONE / 4 } else { OMEGA_ONE / 3 };
+        crowd.lods.fill(Lod { omega, ..Lod::FULL });
+        let work = crowd.advance(&frame(number), number as f32 / 60.0);
+        if number == 0 {
+            continue;
+        }
+        let period = omega / 2;
+        for instance in 0..20 {
+            let clock = frame(number).ticks + (scramble(instance) & 0xffff);
+            let passes = clock / period != (clock - 1092) / period;
+            assert_eq!(!work.instances.contains(&instance), passes, "instance {instance}, frame {number}");
+            skipped[instance as usize].push(passes);
+        }
+    }
+    let patterns: std::collections::BTreeSet<_> = skipped.into_iter().collect();
+    assert!(patterns.len() > 10, "instances skip in step: {} patterns", patterns.len());
+}
+
 /// A's rule skips a bone once per period: never at Ω = 1, always at Ω = 0, and more often at low priorities.
 #[test]
 fn skip_period_skips_once_a_period() {
     let stage = Stage::creature();
-    let user = vec![USER_DEFAULT; stage.skeleton.len()];
-    let of = |clip| Priorities::new(&stage.skeleton, clip, true, &Weights::default(), &user).expect("fits");
-    let priorities: Vec<_> = stage.clips.iter().map(of).collect();
-    let table = PriorityTable::new(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
-    // The period of a second has 65,536 ticks.
-    let gate = Gate::SkipPeriod { table, period: 65536 };
+    let gate = skip_period(&stage, &Weights::default());
     let fraction = |omega: u32| {
         let done = pairs_a_frame(&stage, &gate, Lod { omega, ..Lod::FULL }, 241);
         done[1..].iter().map(|work| work.pairs.len()).sum::<usize>() as f64 / (240.0 * 20.0)
     };
     let moving = fraction(OMEGA_ONE);
+    let all = pairs_a_frame(&stage, &stage.off(), Lod::FULL, 2)[1].pairs.len();
+    assert_eq!(moving, all as f64 / 20.0, "an update was skipped at Ω = 1");
     // Priorities near ½ at Ω = ½ skip once every quarter of a second, which is 15 frames.
     let half = fraction(OMEGA_ONE / 2) / moving;
     assert!((0.8..0.96).contains(&half), "{half}");

@@ -5,6 +5,7 @@ mod attributes;
 mod closed;
 mod creature;
 mod damaged;
+mod decided;
 mod distance;
 mod everywhere;
 mod input;

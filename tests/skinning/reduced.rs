@@ -90,6 +90,27 @@ fn hard_edges_do_not_hinder_and_stay() {
     }
 }
 
+/// A square of 4 and a triangle of ½ stand upright on each other: the vertices that they share have the normal of
+/// the sum of their areas.
+#[test]
+fn recomputed_normals_weight_triangles_by_area() {
+    let text = "v 0 0 0\nv 0 0 4\nv 1 0 4\nv 1 0 0\nv 0.5 1 0\nf 1 2 3 4\nf 1 4 5\n";
+    let found = reduced(&model(text), 3, Normals::Recompute);
+    assert_eq!(found.triangles(), 3);
+    let mesh = &found.model.meshes[0];
+    let normal = |place: [f32; 3]| {
+        let at = mesh.positions.iter().position(|position| *position == place).expect("kept");
+        Vec3::from(mesh.normals[at])
+    };
+    let triangle = normal([0.5, 1.0, 0.0]);
+    assert_eq!(triangle.abs(), Vec3::Z);
+    // One of the two halves of the square, or both, at either end of the shared edge.
+    let both = [normal([0.0; 3]), normal([1.0, 0.0, 0.0])];
+    let mut areas: Vec<f32> = both.iter().map(|normal| (normal.y / normal.z).abs()).collect();
+    areas.sort_by(f32::total_cmp);
+    assert!((areas[0] - 4.0).abs() < 1e-5 && (areas[1] - 8.0).abs() < 1e-5, "{both:?}");
+}
+
 /// Triangles that share no vertices, as exporters write flat shading.
 #[test]
 fn loose_triangles_are_joined() {

@@ -5,6 +5,7 @@ mod bounds;
 #[cfg(feature = "verify")]
 mod compared;
 mod crossings;
+mod decided;
 mod errors;
 mod tangents;
 

@@ -7,6 +7,7 @@ mod harness;
 #[cfg(feature = "verify")]
 mod arithmetic;
 mod borders;
+mod decided;
 mod erosion_fields;
 mod ground;
 mod hydraulic;

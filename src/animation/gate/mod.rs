@@ -26,6 +26,16 @@ pub enum Gate {
     /// Every bone that moves is sampled.
     Off(AnimatedBones),
     /// A's rule (section 12.10): a bone *skips* one update per period of `priority · Ω · period` ticks.
+    ///
+    /// **Decided**: the period is the time between two *skipped* updates, as in A's example. A also calls it the time
+    /// step of updates, which would update important bones least.
+    ///
+    /// **Decided**: at Ω = 1 no update is skipped, as A says of near objects. A's rule alone would still skip one per
+    /// `priority · period` there.
+    ///
+    /// **Decided**: an update is skipped where the clock passes a multiple of the current period. A does not say from
+    /// when it counts. The clock needs no memory per bone where priority and Ω change. A hash of the instance's number
+    /// sets its clock forward by 0 to 65,535 ticks, so that instances do not skip in step.
     SkipPeriod {
         /// The priorities of each clip's bones.
         table: PriorityTable,

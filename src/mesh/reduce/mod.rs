@@ -111,6 +111,9 @@ impl Default for Limits {
 
 impl Reducer {
     /// Each reducer, with the name that [`FromStr`] reads and [`Reducer::name`] returns.
+    ///
+    /// **Decided**: `melax` is B's equation 3.1 without the check of normals. In B the check is on, an addition that can be
+    /// disabled for each mesh (3.2.3). [`Cost::Melax`] has both.
     pub const ALL: [(&str, Self); 7] = [
         ("quadric", Self::HalfEdge { cost: Cost::Quadric }),
         ("melax", Self::HalfEdge { cost: Cost::Melax { check_normals: false } }),

@@ -43,6 +43,9 @@ pub enum Method {
     /// None: the polygon's own texture coordinates.
     Plain = trace::SURFACE_PLAIN,
     /// Parallax mapping: one height, one shift (Kaneko 2001).
+    ///
+    /// **Decided**: the bias is −`plane` · `scale`. B takes +½ · `scale` (3.1.1), but wants heights remapped around 0, which
+    /// needs the minus.
     Parallax = trace::SURFACE_PARALLAX,
     /// Parallax mapping with Welsh's offset limiting.
     ParallaxLimited = trace::SURFACE_PARALLAX_LIMITED,
@@ -128,6 +131,9 @@ pub struct March {
     pub address: Address,
     /// Numbers of linear steps for rays straight down and at the horizon, each 1 to [`MAX_STEPS`]; in between
     /// ⌈mix(min, max, 1 − V.z)⌉.
+    ///
+    /// **Decided**: the number grows with the angle from the normal, as in B's text (3.1.2). B's table 4.4 takes 10 steps at
+    /// every angle.
     pub steps: [u32; 2],
     /// Number of binary steps after the linear steps or the cones, up to [`MAX_BINARY`].
     pub binary_steps: u32,

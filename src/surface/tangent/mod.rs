@@ -6,7 +6,7 @@
 //! `w · cross(normal, tangent)` and points along ∂P/∂v, which is down the image where v starts at the top.
 //! (glTF's bitangent points up the image, so that its `w` has the opposite sign.)
 //!
-//! **Decided:** B sums the solved tangents as they are, so that the triangle with the smallest extent in the
+//! **Decided**: B sums the solved tangents as they are, so that the triangle with the smallest extent in the
 //! texture dominates, above all a sliver. Here each triangle is weighted by the chord of its angle at the
 //! vertex, 2·sin(θ/2). That is close to the angle of Thürmer and Wüthrich (1998), which does not depend on how
 //! a surface is triangulated, and needs no arc cosine.

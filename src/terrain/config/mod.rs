@@ -90,6 +90,9 @@ pub struct Config {
     /// Samples along a patch's edge: 2^n + 1, n in 1..=12.
     pub patch_size: u32,
     /// Range of the random offsets at the coarsest level, in height units; ≥ 0.
+    ///
+    /// **Decided**: the first subdivision has the whole range, as in B's steps 1 and 2 (3.3.1), and so has the lattice of
+    /// `seamless`. B's text also halves the range at the start of each subdivision, the first included.
     pub scale_factor: f64,
     /// Any text. The same seed gives the same world at every resolution.
     pub seed: String,
