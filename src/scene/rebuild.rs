@@ -54,6 +54,7 @@ impl Scene {
         (self.timer, self.watch, self.counts) = (timer, watch, None);
         self.attachments.forget_device();
         (self.staging, self.staged) = (StagingRing::new(RECORDINGS), Staged::default());
+        self.pose_staging = StagingRing::new(RECORDINGS);
         self.layout = None;
         Ok(())
     }
