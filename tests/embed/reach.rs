@@ -141,12 +141,12 @@ fn poses_on_the_host_are_those_of_the_device() {
     assert_eq!(stage.scene.pose(statue).expect_err("refused").path, "instance");
 }
 
-/// Pixels, all of them, in which a ray meets something and the picture shows the sky, or the other way round.
+/// Of every other pixel of every other row: how many show the creature, and for how many a ray says otherwise.
 fn wrong(stage: &Stage, picture: &RgbaImage) -> (usize, usize) {
     let sky = *picture.get_pixel(0, 0);
     let camera = stage.view.camera().expect("set");
     let mut counts = (0, 0);
-    for (x, y, pixel) in picture.enumerate_pixels() {
+    for (x, y, pixel) in picture.enumerate_pixels().filter(|(x, y, _)| x % 2 == 0 && y % 2 == 0) {
         let ray = Ray::through(camera, [x as f32 + 0.5, y as f32 + 0.5]).expect("a pixel");
         let hit = stage.scene.pick(&ray).expect("a ray");
         counts.0 += usize::from(*pixel != sky);
@@ -168,7 +168,7 @@ fn rays_and_boxes_follow_written_bones() {
     let picture = stage.shot(Some(&pose));
     let (drawn, off) = wrong(&stage, &picture);
     println!("{off} of {drawn} pixels that are drawn are wrong");
-    assert!(drawn > 600 && off <= 4, "{off} of {drawn}");
+    assert!(drawn > 150 && off <= 1, "{off} of {drawn}");
     let hand = pose.world(stage.arm.end).expect("a bone");
     let [low, high] = stage.scene.tight_bounds(stage.waver).expect("there").world();
     assert!((low - 0.5).cmple(hand).all() && hand.cmple(high + 0.5).all(), "{low} {hand} {high}");
@@ -178,9 +178,10 @@ fn rays_and_boxes_follow_written_bones() {
     // A frame that writes nothing shows the clip, and rays meet the clip: most of the arm is elsewhere.
     let clip = stage.shot(None);
     let (_, off) = wrong(&stage, &clip);
-    assert!(off <= 4, "{off}");
+    assert!(off <= 1, "{off}");
     let (_, off) = wrong(&stage, &picture);
-    assert!(off > 60, "{off}: the comparison sees nothing");
+    println!("{off} if rays ignore what is written");
+    assert!(off > 15, "{off}: the comparison sees nothing");
     assert_eq!(stage.scene.tight_bounds(stage.waver).expect("there").world(), before);
 }
 
