@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let [x, z] = [46.0 + 18.0 * f64::from(at), 34.0];
         let place = ground(&scene, x, z);
         scene.spawn(statues, ground(&scene, x + 8.0, z).turned(0.4).scaled(4.0))?;
-        scene.spawn(wall, Placement { at: place.at + Vec3::Y * 4.0, ..place.scaled(10.0) })?;
+        scene.spawn(wall, Placement { offset: place.offset + Vec3::Y * 4.0, ..place.scaled(10.0) })?;
     }
 
     // Load: pipelines for the program's targets, and a view.
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (cube, targets) = (own::Cube::new(&device), own::Targets::new(&device));
 
     // A frame.
-    let focus = ground(&scene, 62.0, 50.0).position().as_vec3();
+    let focus = ground(&scene, 62.0, 50.0).world().as_vec3();
     let position = focus + Vec3::new(6.0, 14.0, 36.0);
     let camera = Camera::looking_at(position, focus, 0.8, [0.1, 600.0], own::SIZE);
     eye.set(camera)?;
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     {
         let mut pass = targets.pass(&mut encoder);
         let place = Mat4::from_translation(focus + Vec3::Y * 2.0) * Mat4::from_scale(Vec3::splat(3.0));
-        cube.draw(&queue, &mut pass, camera.clip_from_world() * place);
+        cube.draw(&queue, &mut pass, camera.clip_from_cell() * place);
         renderer.draw(&mut pass, &scene, &eye, Layer::Color)?;
     }
     queue.submit([encoder.finish()]);

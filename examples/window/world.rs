@@ -71,7 +71,7 @@ impl World {
             let [x, z] = center(at);
             // Between two rounds, a little of it below the ground.
             let foot = on_ground(&scene, land, x, z + 0.5 * SPACING);
-            let place = Placement { at: foot.at + Vec3::Y * 3.0, ..foot };
+            let place = Placement { offset: foot.offset + Vec3::Y * 3.0, ..foot };
             scene.spawn(wall, place.turned(0.2 * at as f32).scaled(8.0))?;
         }
 
@@ -108,7 +108,7 @@ impl World {
         }
         let mut position = eye.position();
         let ground = on_ground(&self.scene, self.land, position.x.into(), position.z.into());
-        position.y = position.y.max(ground.position().y as f32 + 1.5);
+        position.y = position.y.max(ground.world().y as f32 + 1.5);
         // The viewport counts physical pixels, and so does the view's quality.
         let camera = Camera::looking_at(position, position + eye.ahead(), 0.9, [0.2, 1500.0], size);
         self.view.set(camera)?;

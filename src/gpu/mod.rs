@@ -47,6 +47,7 @@ pub use readback_ring::ReadbackRing;
 #[cfg(not(target_arch = "wasm32"))]
 pub use timer::{Measurement, TimedBy, Timer};
 pub(crate) use tuning::Tuning;
+pub(crate) use upload::StagingStream;
 pub use upload::{Staged, StagingRing, Upload};
 
 use errors::Errors;

@@ -66,10 +66,7 @@ struct Copy {
 impl Upload for Staged {
     fn bytes(&mut self, to: &wgpu::Buffer, offset: u64, bytes: &[u8]) -> Result<(), GpuError> {
         let (from, len) = (self.bytes.len() as u64, bytes.len() as u64);
-        if offset + len > to.size() || !(offset | len).is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT) {
-            let reason = format!("{len} bytes at {offset} do not fit a buffer of {} bytes", to.size());
-            return Err(GpuError::Validation { reason });
-        }
+        check_fits(to, offset, len)?;
         self.bytes.extend_from_slice(bytes);
         if len > 0 {
             self.copies.push(Copy { to: to.clone(), offset, from, len });
@@ -148,29 +145,23 @@ impl StagingRing {
     ) -> Result<bool, GpuError> {
         let Some(slot) = self.free() else { return Ok(false) };
         let needed = staged.bytes.len() as u64;
-        if slot.buffer.as_ref().is_none_or(|buffer| buffer.size() < needed) {
-            let size = needed.next_power_of_two().max(LEAST);
-            slot.buffer = Some(gpu.scoped(|| {
-                gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("staging"),
-                    size,
-                    usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            })?);
-        }
+        slot.make_room(gpu, needed)?;
         if let Some(buffer) = slot.buffer.as_ref().filter(|_| needed > 0) {
             gpu.scoped(|| gpu.queue().write_buffer(buffer, 0, &staged.bytes))?;
             for Copy { to, offset, from, len } in &staged.copies {
                 encoder.copy_buffer_to_buffer(buffer, *from, to, *offset, *len);
             }
         }
-        slot.state.store(BUSY, Ordering::Release);
-        let recording = Recording(slot.state.clone());
-        encoder.on_submitted_work_done(move || recording.is_done());
+        slot.occupy(encoder);
         staged.bytes.clear();
         staged.copies.clear();
         Ok(true)
+    }
+
+    /// Begins writes that are recorded one by one, with room for so many bytes; `None` if no buffer is free.
+    pub(crate) fn stream<'a>(&'a mut self, gpu: &'a Gpu, room: usize) -> Option<StagingStream<'a>> {
+        let slot = self.free()?;
+        Some(StagingStream { gpu, slot, room, bytes: Vec::new(), is_used: false })
     }
 
     /// Number of buffers that are not free.
@@ -202,6 +193,99 @@ impl Slot {
     fn is(&self, state: u8) -> bool {
         self.state.load(Ordering::Acquire) == state
     }
+
+    /// Replaces a buffer that is too small by one of twice the size.
+    fn make_room(&mut self, gpu: &Gpu, needed: u64) -> Result<(), GpuError> {
+        if self.buffer.as_ref().is_none_or(|buffer| buffer.size() < needed) {
+            let size = needed.next_power_of_two().max(LEAST);
+            self.buffer = Some(gpu.scoped(|| {
+                gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("staging"),
+                    size,
+                    usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                })
+            })?);
+        }
+        Ok(())
+    }
+
+    /// It is busy until the device has executed what `encoder` records.
+    fn occupy(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.state.store(BUSY, Ordering::Release);
+        let recording = Recording(self.state.clone());
+        encoder.on_submitted_work_done(move || recording.is_done());
+    }
+}
+
+/// Writes that are recorded one by one, among other work of an encoder. Their bytes go to the device in one piece in the end.
+#[derive(Debug)]
+pub(crate) struct StagingStream<'a> {
+    gpu: &'a Gpu,
+    slot: &'a mut Slot,
+    /// Bytes that are expected.
+    room: usize,
+    /// What is to be in the slot's buffer when the encoder is submitted.
+    bytes: Vec<u8>,
+    is_used: bool,
+}
+
+impl StagingStream<'_> {
+    /// Records a write of bytes into a buffer, from `offset` on; both are multiples of 4.
+    ///
+    /// # Errors
+    /// [`GpuError`], also where the bytes reach beyond the buffer's end.
+    pub fn write(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        to: &wgpu::Buffer,
+        offset: u64,
+        bytes: &[u8],
+    ) -> Result<(), GpuError> {
+        check_fits(to, offset, bytes.len() as u64)?;
+        let needed = self.bytes.len() + bytes.len();
+        let has_room = |buffer: &wgpu::Buffer| needed as u64 <= buffer.size();
+        if !self.slot.buffer.as_ref().is_some_and(has_room) {
+            // The copies that were recorded go on reading the old buffer.
+            self.send()?;
+            self.slot.make_room(self.gpu, needed.max(self.room) as u64)?;
+            self.bytes.clear();
+        }
+        let Some(from) = &self.slot.buffer else { return Ok(()) };
+        encoder.copy_buffer_to_buffer(from, self.bytes.len() as u64, to, offset, bytes.len() as u64);
+        self.bytes.extend_from_slice(bytes);
+        self.is_used = true;
+        Ok(())
+    }
+
+    /// Ends the writes. The buffer is free again once the device has executed what `encoder` records.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn finish(self, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
+        self.send()?;
+        if self.is_used {
+            self.slot.occupy(encoder);
+        }
+        Ok(())
+    }
+
+    fn send(&self) -> Result<(), GpuError> {
+        match &self.slot.buffer {
+            Some(buffer) if !self.bytes.is_empty() => {
+                self.gpu.scoped(|| self.gpu.queue().write_buffer(buffer, 0, &self.bytes))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn check_fits(to: &wgpu::Buffer, offset: u64, len: u64) -> Result<(), GpuError> {
+    if offset + len > to.size() || !(offset | len).is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT) {
+        let reason = format!("{len} bytes at {offset} do not fit a buffer of {} bytes", to.size());
+        return Err(GpuError::Validation { reason });
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -234,6 +318,35 @@ mod tests {
         gpu.queue().submit([encoder.finish()]);
         assert_eq!(seen.read_blocking(&gpu).expect("read"), [11, 22]);
         assert_eq!(source.read_blocking(&gpu).expect("read"), [7, 22]);
+        assert_eq!(ring.busy(), 0);
+    }
+
+    /// Writes that are recorded one by one are seen by what is recorded behind them, also where they exceed their room.
+    #[test]
+    fn streams_write_where_they_are_recorded() {
+        let gpu = gpu();
+        let mut ring = StagingRing::new(1);
+        let source = Buffer::<u32>::new(&gpu, "source", 1).expect("allocated");
+        let count = 3 * LEAST as u32 / 4;
+        let seen = Buffer::<u32>::new(&gpu, "seen", count as usize).expect("allocated");
+        for round in 0..2 {
+            let mut encoder = gpu.encoder("writes");
+            let mut stream = ring.stream(&gpu, 8).expect("free");
+            for at in 0..count {
+                let word = at + round;
+                stream.write(&mut encoder, source.raw(), 0, bytemuck::bytes_of(&word)).expect("fits");
+                encoder.copy_buffer_to_buffer(source.raw(), 0, seen.raw(), 4 * u64::from(at), 4);
+            }
+            assert!(stream.write(&mut encoder, source.raw(), 4, &[0; 4]).is_err());
+            stream.finish(&mut encoder).expect("sent");
+            assert!(ring.stream(&gpu, 8).is_none(), "its buffer is free before it is executed");
+            gpu.queue().submit([encoder.finish()]);
+            let right: Vec<u32> = (round..count + round).collect();
+            assert!(seen.read_blocking(&gpu).expect("read") == right, "round {round}");
+            assert_eq!(ring.busy(), 0);
+        }
+        let mut encoder = gpu.encoder("nothing");
+        ring.stream(&gpu, 8).expect("free").finish(&mut encoder).expect("nothing to send");
         assert_eq!(ring.busy(), 0);
     }
 

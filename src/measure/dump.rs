@@ -96,9 +96,9 @@ impl CharacterDump {
                 instances.push(described(player, character, instance, &placement, seen.contains(&instance))?);
             }
         }
-        let Camera { cell, view_from_world, clip_from_view, viewport, .. } = player.camera();
+        let Camera { cell, view_from_cell, clip_from_view, viewport, .. } = player.camera();
         let [view_from_world, clip_from_view] =
-            [view_from_world, clip_from_view].map(|matrix| matrix.to_cols_array());
+            [view_from_cell, clip_from_view].map(|matrix| matrix.to_cols_array());
         let camera = FrameCamera { cell, view_from_world, clip_from_view, viewport };
         self.frames.push(Frame { seconds: world.scene.time(), camera, instances });
         Ok(())
@@ -113,12 +113,12 @@ fn described(
     drawn: bool,
 ) -> Result<Instance, Error> {
     let time = player.world().scene.clip_time(instance)?;
-    let Placement { cell, at, turn, scale } = *placement;
+    let Placement { cell, offset, turn, scale } = *placement;
     Ok(Instance {
         character,
         drawn,
         cell,
-        at: at.into(),
+        at: offset.into(),
         turn: turn.into(),
         scale: scale.into(),
         clip: time.map_or(0, |time| time.clip),
@@ -129,8 +129,7 @@ fn described(
 /// Writes the matrices of an instance's bones, in the world.
 fn write(numbers: &mut impl Write, placement: &Placement, bones: &[Affine]) -> std::io::Result<()> {
     let turn = DQuat::from_array(placement.turn.to_array().map(f64::from)).normalize();
-    let world =
-        DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, placement.position());
+    let world = DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, placement.world());
     for bone in bones {
         let [x, y, z] = bone.map(|row| DVec4::from(row.map(f64::from)));
         let matrix = world * DMat4::from_cols(x, y, z, DVec4::W).transpose();

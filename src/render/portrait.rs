@@ -43,7 +43,7 @@ pub fn portraits(gpu: &Gpu, models: &[&Model], portrait: &Portrait) -> Result<Ve
 fn drawn(
     gpu: &Gpu,
     standing: &Model,
-    [view_from_world, clip_from_view]: [Mat4; 2],
+    [view_from_cell, clip_from_view]: [Mat4; 2],
     portrait: &Portrait,
 ) -> Result<RgbaImage, Error> {
     for (path, number) in [("portrait.edge", portrait.edge), ("portrait.finer", portrait.finer)] {
@@ -60,7 +60,7 @@ fn drawn(
         scene.spawn(object, Placement::default())?;
     }
     let depth = Depth::Forward;
-    let camera = Camera { cell: [0; 3], view_from_world, clip_from_view, viewport: size, depth };
+    let camera = Camera { cell: [0; 3], view_from_cell, clip_from_view, viewport: size, depth };
     target.draw(&mut scene, camera, portrait.background)?;
     Ok(target.read_linear(gpu)?.reduced(portrait.finer).encoded())
 }

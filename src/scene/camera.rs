@@ -26,7 +26,7 @@ pub enum Depth {
 /// [`Camera::looking_at`] is a shortcut. An engine has matrices of its own:
 ///
 /// ```
-/// use glam::{Mat4, Quat, Vec3};
+/// use glam::{DVec3, Mat4, Quat, Vec3};
 /// use relievo::scene::{Camera, Depth};
 ///
 /// // Two units above the ground, looking north-west (0.8 to the left of −Z), 0.1 downwards.
@@ -34,25 +34,25 @@ pub enum Depth {
 /// let world_from_view = Mat4::from_rotation_translation(turn, Vec3::new(0.0, 2.0, 0.0));
 /// let camera = Camera {
 ///     cell: [0; 3],
-///     view_from_world: world_from_view.inverse(),
+///     view_from_cell: world_from_view.inverse(), // the corner of cell (0, 0, 0) is the world's origin
 ///     // Reversed depth: 1 at 0.1 units ahead, 0 at infinity. The renderer's format says so too.
 ///     clip_from_view: glam::camera::rh::proj::directx::perspective_infinite_reverse(1.0, 16.0 / 9.0, 0.1),
 ///     viewport: [1920, 1080],
 ///     depth: Depth::Reversed,
 /// };
-/// assert!(camera.eye().distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-5);
+/// assert!(camera.world().distance(DVec3::new(0.0, 2.0, 0.0)) < 1e-5);
 /// camera.validate()?;
 /// # Ok::<(), relievo::InputError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// The cell to whose corner the world of `view_from_world` is relative: corner `cell` ·
-    /// [`Placement::CELL`](crate::scene::Placement::CELL) is its origin. Near the origin of the world, (0, 0, 0) will do;
-    /// kilometres away, the eye's own cell keeps the picture from trembling.
+    /// The cell from whose corner `view_from_cell` leads ([`Placement::corner`](crate::scene::Placement::corner)). Near the
+    /// origin of the world, (0, 0, 0) will do; kilometres away, the eye's own cell keeps the picture from trembling.
     pub cell: [i32; 3],
-    /// The matrix from the world, relative to the cell's corner, to the camera's space: a rotation and a translation. It
-    /// may mirror, as for a reflection in water.
-    pub view_from_world: Mat4,
+    /// The matrix from the cell's space, which is the world's moved to the cell's corner, to the camera's space: a rotation and
+    /// a translation. With cell (0, 0, 0) it is the engine's own matrix from the world. It may mirror, as for a reflection in
+    /// water.
+    pub view_from_cell: Mat4,
     /// The projection, to clip space: +X to the right, +Y up, depth 0 to 1. It says which way the camera looks: along −Z if it
     /// is made for right-handed spaces, as those of glam's `camera::rh::proj::directx` are, among them
     /// `perspective_infinite_reverse` for [`Depth::Reversed`].
@@ -66,7 +66,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A perspective camera at `eye` that looks at `target`, both relative to the corner of cell (0, 0, 0), with +Y up.
+    /// A perspective camera at `eye` that looks at `target`, both in world coordinates, with +Y up. Its cell is (0, 0, 0);
+    /// kilometres from the origin, [`Camera::looking_at_world`] keeps the picture from trembling.
     /// `field_of_view` is the vertical one, in radians, between 0 and π; `near_far` are the distances of the near and the far
     /// plane in world units, where depth is 0 and 1, and the far one may be infinite; `viewport` is width and height in pixels.
     /// Straight up and down, the top of the picture is north.
@@ -93,16 +94,29 @@ impl Camera {
         };
         Self {
             cell: [0; 3],
-            view_from_world: glam::camera::rh::view::look_at_mat4(eye, eye + forward, up),
+            view_from_cell: glam::camera::rh::view::look_at_mat4(eye, eye + forward, up),
             clip_from_view,
             viewport,
             depth: Depth::Forward,
         }
     }
 
+    /// As [`Camera::looking_at`], anywhere in the world: the cell is that of the eye.
+    pub fn looking_at_world(
+        eye: impl Into<DVec3>,
+        target: impl Into<DVec3>,
+        field_of_view: f32,
+        near_far: [f32; 2],
+        viewport: [u32; 2],
+    ) -> Self {
+        let Placement { cell, offset: eye, .. } = Placement::at_world(eye);
+        let target = (target.into() - Placement::corner(cell)).as_vec3();
+        Self { cell, ..Self::looking_at(eye, target, field_of_view, near_far, viewport) }
+    }
+
     /// A perspective camera that sees a box along the axes of the world from the south at a low angle, as large as the picture
-    /// allows. `low` and `high` are opposite corners in world units from the origin of the world, wherever that is;
-    /// `viewport` is width and height in pixels.
+    /// allows. `low` and `high` are opposite corners in world coordinates
+    /// ([`Bounds::world`](crate::scene::Bounds::world)); `viewport` is width and height in pixels.
     pub fn framing(low: DVec3, high: DVec3, viewport: [u32; 2]) -> Self {
         let (center, extent) = ((low + high) / 2.0, (high - low).max(DVec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;
@@ -113,16 +127,14 @@ impl Camera {
         let eye = center + distance * DVec3::new(-0.30, 0.52, 0.80).normalize();
         // The near edge takes more of the picture than the far edge, so the target is shifted.
         let target = center + radius * DVec3::new(-0.03, -0.10, 0.05);
-        let Placement { cell, at: eye, .. } = Placement::at_world(eye);
-        let forward = (target
-            - (DVec3::from(cell.map(f64::from)) * f64::from(Placement::CELL) + eye.as_dvec3()))
-        .normalize_or(DVec3::NEG_Z)
-        .as_vec3();
+        let Placement { cell, offset: eye, .. } = Placement::at_world(eye);
+        let forward =
+            (target - (Placement::corner(cell) + eye.as_dvec3())).normalize_or(DVec3::NEG_Z).as_vec3();
         let aspect = viewport[0] as f32 / viewport[1].max(1) as f32;
         let [near, far] = [distance / 1000.0, 2.0 * distance + 2.0 * radius].map(|plane| plane as f32);
         Self {
             cell,
-            view_from_world: glam::camera::rh::view::look_to_mat4(eye, forward, Vec3::Y),
+            view_from_cell: glam::camera::rh::view::look_to_mat4(eye, forward, Vec3::Y),
             clip_from_view: directx::perspective(field_of_view, aspect, near, far),
             viewport,
             depth: Depth::Forward,
@@ -145,7 +157,7 @@ impl Camera {
     /// Checks the matrices and the viewport.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, a matrix without inverse, a `view_from_world` that is no affine one,
+    /// [`InputError`] for values that are not finite, a matrix without inverse, a `view_from_cell` that is no affine one,
     /// and an empty viewport.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.viewport.contains(&0) {
@@ -155,7 +167,7 @@ impl Camera {
         let looking = "an eye that is not at its target";
         let projection = "a field of view above 0 and below π, near above 0, and far above near";
         for (path, matrix, needed) in [
-            ("camera.view_from_world", self.view_from_world, looking),
+            ("camera.view_from_cell", self.view_from_cell, looking),
             ("camera.clip_from_view", self.clip_from_view, projection),
         ] {
             let determinant = matrix.as_dmat4().determinant();
@@ -164,16 +176,16 @@ impl Camera {
                 return Err(InputError::new(path, matrix, bound));
             }
         }
-        if self.view_from_world.row(3) != Vec4::W {
+        if self.view_from_cell.row(3) != Vec4::W {
             let bound = "must have the last row (0, 0, 0, 1): the projection belongs into clip_from_view";
-            return Err(InputError::new("camera.view_from_world", self.view_from_world, bound));
+            return Err(InputError::new("camera.view_from_cell", self.view_from_cell, bound));
         }
         Ok(())
     }
 
-    /// The matrix from the world, relative to the cell's corner, to clip space.
-    pub fn clip_from_world(&self) -> Mat4 {
-        self.clip_from_view * self.view_from_world
+    /// The matrix from the cell's space to clip space.
+    pub fn clip_from_cell(&self) -> Mat4 {
+        self.clip_from_view * self.view_from_cell
     }
 
     /// For a parallel camera, the unit vector along which distance grows and nothing moves in the picture.
@@ -193,12 +205,17 @@ impl Camera {
     /// The matrix to clip space with depth that grows with distance, whatever its range.
     fn clip_with_distance(&self) -> Mat4 {
         let direction = if self.depth == Depth::Reversed { -1.0 } else { 1.0 };
-        Mat4::from_scale(Vec3::new(1.0, 1.0, direction)) * self.clip_from_world()
+        Mat4::from_scale(Vec3::new(1.0, 1.0, direction)) * self.clip_from_cell()
+    }
+
+    /// The position of the eye in world coordinates.
+    pub fn world(&self) -> DVec3 {
+        Placement::corner(self.cell) + self.eye_offset().as_dvec3()
     }
 
     /// The position of the eye relative to the cell's corner.
-    pub fn eye(&self) -> Vec3 {
-        self.view_from_world.inverse().w_axis.truncate()
+    pub fn eye_offset(&self) -> Vec3 {
+        self.view_from_cell.inverse().w_axis.truncate()
     }
 }
 
@@ -235,7 +252,7 @@ mod tests {
                 let cell = DVec3::from(camera.cell.map(f64::from)) * 256.0;
                 let places = (0..8).map(|at| {
                     let place = (origin + size * corner(at) - cell).as_vec3();
-                    camera.clip_from_world().project_point3(place)
+                    camera.clip_from_cell().project_point3(place)
                 });
                 let [low, high] = places
                     .fold([Vec3::MAX, Vec3::MIN], |[low, high], place| [low.min(place), high.max(place)]);
@@ -250,10 +267,10 @@ mod tests {
         let path = |camera: Camera| camera.validate().expect_err("refused").path;
         let camera = |viewport| Camera::looking_at(Vec3::ONE, Vec3::ZERO, 0.7, [0.1, 9.0], viewport);
         assert_eq!(path(camera([0, 0])), "camera.viewport");
-        let Camera { view_from_world, clip_from_view, .. } = camera([3, 2]);
+        let Camera { view_from_cell, clip_from_view, .. } = camera([3, 2]);
         let exchanged =
-            Camera { view_from_world: clip_from_view, clip_from_view: view_from_world, ..camera([3, 2]) };
-        assert_eq!(path(exchanged), "camera.view_from_world");
+            Camera { view_from_cell: clip_from_view, clip_from_view: view_from_cell, ..camera([3, 2]) };
+        assert_eq!(path(exchanged), "camera.view_from_cell");
         let collapsed = Camera { clip_from_view: Mat4::ZERO, ..camera([3, 2]) };
         assert_eq!(path(collapsed), "camera.clip_from_view");
         assert_eq!(camera([3, 2]).validate(), Ok(()));
@@ -266,7 +283,7 @@ mod tests {
             camera.validate().expect_err("refused").path
         };
         for target in [Vec3::ONE, Vec3::NAN, Vec3::INFINITY] {
-            assert_eq!(refused(target, 0.7, [0.1, 9.0]), "camera.view_from_world", "{target}");
+            assert_eq!(refused(target, 0.7, [0.1, 9.0]), "camera.view_from_cell", "{target}");
         }
         for field_of_view in [4.0, std::f32::consts::PI, 0.0, -0.7, f32::NAN, f32::INFINITY] {
             assert_eq!(

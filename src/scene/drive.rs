@@ -1,36 +1,108 @@
 //! Poses of the caller: bones that it drives itself, between sampling and model matrices.
 
-use crate::Error;
-use crate::InputError;
-use crate::scene::Scene;
+use crate::animation::crowd::{Local, packed};
+use crate::asset::Transform;
+use crate::gpu::{Gpu, GpuError, StagingRing, StagingStream};
 use crate::scene::handles::{InstanceId, Slots, stale};
 use crate::scene::object::{Kind, Object};
 use crate::scene::poses::PoseBuffers;
 use crate::scene::view::View;
+use crate::scene::{RECORDINGS, Scene};
+use crate::{Error, InputError};
 
 /// The poses of all characters in a frame whose bones have been sampled, for [`Scene::record_with`].
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct Poses<'a> {
-    pub(super) objects: &'a Slots<Object>,
+    objects: &'a mut Slots<Object>,
+    /// `None` if all buffers are taken.
+    stream: Option<StagingStream<'a>>,
+    failure: Option<GpuError>,
 }
 
 impl<'a> Poses<'a> {
-    /// The buffers in which the pose of an instance lies.
+    pub(super) fn new(gpu: &'a Gpu, objects: &'a mut Slots<Object>, staging: &'a mut StagingRing) -> Self {
+        let driven = objects.iter().map(|object| match &object.kind {
+            Kind::Character(character) => character.driven_bones(),
+            _ => 0,
+        });
+        let room = driven.sum::<usize>() * size_of::<Local>();
+        Self { objects, stream: staging.stream(gpu, room), failure: None }
+    }
+
+    /// The buffers in which the pose of an instance lies, for kernels of the caller.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, or is no character.
-    pub fn of(&self, instance: InstanceId) -> Result<PoseBuffers<'a>, InputError> {
+    pub fn of(&self, instance: InstanceId) -> Result<PoseBuffers<'_>, InputError> {
         let InstanceId { index, generation, .. } = instance;
         let object = self.objects.existing(instance).ok_or_else(|| stale("instance", index, generation))?;
         let found = match &object.kind {
             Kind::Character(character) => character.pose_buffers(index),
             _ => None,
         };
-        found.ok_or_else(|| InputError::new("instance", "no character", "must be an instance of a character"))
+        found.ok_or_else(no_character)
+    }
+
+    /// Writes the transform of a driven bone ([`Scene::drive`]) from the host: `local` leads from the bone's space to its
+    /// parent's, as [`InstancePose::local`](crate::scene::InstancePose::local) gives it, and `bone` is an index
+    /// ([`Scene::bone`]).
+    ///
+    /// It is recorded as a copy of 48 bytes into `encoder`, which must be the one that `pose` was given: work that is recorded
+    /// behind it there sees what was written. It counts for this frame. In the next one the bone is sampled again, so
+    /// write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] follow what the last frame wrote.
+    /// Nothing is submitted, and nothing allocated unless a frame writes more than any frame before.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, and as
+    /// [`Transform::checked`].
+    pub fn write(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        instance: InstanceId,
+        bone: usize,
+        local: Transform,
+    ) -> Result<(), InputError> {
+        let local = local.checked("local")?;
+        let InstanceId { index, generation, .. } = instance;
+        let object = self.objects.existing_mut(instance);
+        let object = object.ok_or_else(|| stale("instance", index, generation))?;
+        let Kind::Character(character) = &mut object.kind else { return Err(no_character()) };
+        let Some(stream) = &mut self.stream else {
+            return Err(InputError::new("recordings", RECORDINGS, format!("must be below {RECORDINGS}")));
+        };
+        character.note_written(index, bone, local)?;
+        let buffers = character.pose_buffers(index).ok_or_else(no_character)?;
+        let at = (buffers.index as usize * buffers.bones as usize + bone) * size_of::<Local>();
+        let written =
+            stream.write(encoder, buffers.locals.raw(), at as u64, bytemuck::bytes_of(&packed(&local)));
+        self.failure = self.failure.take().or(written.err());
+        Ok(())
+    }
+
+    /// Sends what was written.
+    pub(super) fn finish(self, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
+        match (self.failure, self.stream) {
+            (Some(failure), _) => Err(failure),
+            (None, Some(stream)) => stream.finish(encoder),
+            (None, None) => Ok(()),
+        }
     }
 }
 
+fn no_character() -> InputError {
+    InputError::new("instance", "no character", "must be an instance of a character")
+}
+
 impl Scene {
+    /// Forgets what the host wrote to bones in the last frame.
+    pub(super) fn forget_written(&mut self) {
+        for object in self.objects.iter_mut() {
+            if let Kind::Character(character) = &mut object.kind {
+                character.forget_written();
+            }
+        }
+    }
+
     /// Says which bones of an instance the caller drives, each by its name or its index, from the next frame on; none of them
     /// ends that. In every frame in which a view sees the instance, they are sampled at the time of the frame, whatever the
     /// gate says; then the caller may change them ([`Scene::record_with`]), and they and all bones below them count as updated.
@@ -53,8 +125,34 @@ impl Scene {
     }
 
     /// As [`Scene::record`], with passes of the caller between the sampling of bones and their model matrices: for inverse
-    /// kinematics and ragdolls. `pose` gets the encoder and the poses; what it records may write the local transforms of bones
-    /// that are driven ([`Scene::drive`]), whether by a kernel or by copies.
+    /// kinematics and ragdolls. `pose` gets the encoder and the poses, and may change the local transforms of bones that are
+    /// driven ([`Scene::drive`]): from the host ([`Poses::write`]), or by kernels and copies ([`Poses::of`]).
+    ///
+    /// # Examples
+    ///
+    /// A head that is turned by 0.3 radians about the vertical axis of the world, whatever its clip does.
+    ///
+    /// ```no_run
+    /// # use glam::DQuat;
+    /// # use relievo::scene::{InstanceId, Scene, View};
+    /// # fn frame(
+    /// #     (mut scene, mut eye, fox): (Scene, View, InstanceId),
+    /// #     mut encoder: wgpu::CommandEncoder,
+    /// # ) -> Result<(), relievo::Error> {
+    /// // Once.
+    /// let head = scene.bone(fox, "Head")?;
+    /// scene.drive(fox, &["Head"])?;
+    ///
+    /// // In each frame.
+    /// scene.advance(1.0 / 60.0)?;
+    /// let mut pose = scene.pose(fox)?;
+    /// pose.turn(head, DQuat::from_rotation_y(0.3))?;
+    /// scene.record_with(&mut encoder, &mut [&mut eye], |encoder, poses| {
+    ///     poses.write(encoder, fox, head, pose.local(head)?)
+    /// })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     ///
     /// # Errors
     /// As [`Scene::record`], and the error of `pose`. Then the frame is not whole: it cannot be drawn, and the next one starts
@@ -63,10 +161,10 @@ impl Scene {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         views: &mut [&mut View],
-        pose: impl FnOnce(&mut wgpu::CommandEncoder, Poses<'_>) -> Result<(), InputError>,
+        pose: impl FnOnce(&mut wgpu::CommandEncoder, &mut Poses<'_>) -> Result<(), InputError>,
     ) -> Result<(), Error> {
         let mut pose = Some(pose);
-        let mut call = |encoder: &mut wgpu::CommandEncoder, poses: Poses<'_>| match pose.take() {
+        let mut call = |encoder: &mut wgpu::CommandEncoder, poses: &mut Poses<'_>| match pose.take() {
             Some(pose) => pose(encoder, poses),
             None => Ok(()),
         };

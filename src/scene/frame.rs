@@ -16,7 +16,7 @@ use crate::{Error, InputError};
 
 /// What the caller records between sampling and model matrices.
 pub(super) type Between<'a> =
-    &'a mut dyn FnMut(&mut wgpu::CommandEncoder, Poses<'_>) -> Result<(), InputError>;
+    &'a mut dyn FnMut(&mut wgpu::CommandEncoder, &mut Poses<'_>) -> Result<(), InputError>;
 
 impl Scene {
     /// Gives up all recordings that the device has not executed, and lets everything start afresh, as [`Scene::refresh`] does.
@@ -28,6 +28,7 @@ impl Scene {
     pub fn invalidate(&mut self) -> Result<(), Error> {
         self.is_broken = false;
         self.staging.invalidate();
+        self.pose_staging.invalidate();
         self.staged = Staged::default();
         if let Some(counts) = &mut self.counts {
             counts.invalidate(&self.gpu)?;
@@ -151,7 +152,8 @@ impl Scene {
         encoder: &mut wgpu::CommandEncoder,
         views: &[&mut View],
         mut between: Option<Between<'_>>,
-    ) -> Result<(), InputError> {
+    ) -> Result<(), Error> {
+        self.forget_written();
         if let Some(timer) = &mut self.timer {
             timer.begin(encoder, self.frames);
         }
@@ -165,7 +167,9 @@ impl Scene {
             if run[0] == Stage::LocalToModel
                 && let Some(between) = between.take()
             {
-                between(encoder, Poses { objects: &self.objects })?;
+                let mut poses = Poses::new(&self.gpu, &mut self.objects, &mut self.pose_staging);
+                between(encoder, &mut poses)?;
+                poses.finish(encoder)?;
             }
             let timestamp_writes = if run.len() == 1 { timed(run[0]) } else { None };
             let label = Some(if run.len() == 1 { run[0].label() } else { "scene" });

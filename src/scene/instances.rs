@@ -185,7 +185,7 @@ fn flags(mask: u16, casts: bool) -> u32 {
 /// Sets the position, rotation and scale of an instance. The placement must be checked.
 pub(super) fn place(instance: &mut SceneInstance, placement: &Placement) {
     instance.cell = placement.cell;
-    instance.offset = placement.at.into();
+    instance.offset = placement.offset.into();
     instance.rotation = placement.turn.into();
     instance.scale = placement.scale.into();
 }

@@ -11,6 +11,7 @@
 //! `Scene::add_terrain` and `Scene::read_ground`, which wait, have the `_async` form alone.
 
 mod attach;
+mod bounds;
 mod camera;
 mod character;
 mod chunk;
@@ -19,6 +20,7 @@ mod drive;
 mod frame;
 mod ground;
 mod handles;
+mod instance_pose;
 mod instances;
 mod layers;
 pub(crate) mod layout;
@@ -53,11 +55,12 @@ mod uploads;
 mod view;
 mod watch;
 
+pub use bounds::Bounds;
 pub use camera::{Camera, Depth};
 pub use drive::Poses;
 pub use handles::{InstanceId, ObjectId};
+pub use instance_pose::InstancePose;
 pub use options::{CharacterOptions, LayerMask, RootOptions, TerrainStyle};
-pub use pick::Bounds;
 pub use placement::{ClipTime, Placement, Play};
 pub use poses::PoseBuffers;
 pub use quality::{Quality, Shares};
@@ -145,6 +148,8 @@ pub struct Scene {
     layouts: u64,
     staging: StagingRing,
     staged: Staged,
+    /// What the caller writes to driven bones goes through these buffers.
+    pose_staging: StagingRing,
     uploaded: usize,
     /// Bytes of what was added that a frame uploads; `None` for all.
     upload_budget: Option<usize>,
@@ -202,6 +207,7 @@ impl Scene {
             layouts: 0,
             staging: StagingRing::new(RECORDINGS),
             staged: Staged::default(),
+            pose_staging: StagingRing::new(RECORDINGS),
             uploaded: 0,
             upload_budget: None,
             passes,

@@ -44,7 +44,7 @@ pub(super) fn back_to_front<'a>(
     (view, camera): (&SelectView, &Camera),
 ) {
     order.clear();
-    let (eye, ahead) = (camera.eye().as_dvec3(), camera.ahead().as_dvec3());
+    let (eye, ahead) = (camera.eye_offset().as_dvec3(), camera.ahead().as_dvec3());
     let is_parallel = camera.clip_from_view.row(3).truncate() == glam::Vec3::ZERO;
     for (object, of) in objects.enumerate() {
         let Some(chunk) = of.chunks.first().filter(|chunk| !chunk.singles.is_empty()) else { continue };

@@ -1,4 +1,4 @@
-//! Queries of the host: boxes around instances, and the instance that a ray hits first.
+//! Picking on the host: the instance that a ray hits first.
 
 use glam::{DAffine3, DVec3};
 
@@ -12,54 +12,16 @@ use crate::shared::lod::instance::{INSTANCE_ALIVE, INSTANCE_MASK_SHIFT};
 
 /// By how much a box or a sphere is enlarged, relative to what it is computed from: rounding moves what is drawn, in `f32`,
 /// by less.
-const MARGIN: f64 = 1e-5;
-
-/// A box along the axes of the world.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
-    /// The cell to whose corner the box is relative.
-    pub cell: [i32; 3],
-    /// The smallest x, y and z in world units.
-    pub low: DVec3,
-    /// The largest x, y and z in world units.
-    pub high: DVec3,
-}
+pub(super) const MARGIN: f64 = 1e-5;
 
 impl Scene {
-    /// A box around an instance as it stands now, in the pose of the time of the scene. Its corners are relative to the cell
-    /// of the instance's placement.
-    ///
-    /// The box of a mesh is the smallest, and costs a transform of each of its vertices. That of a character is computed
-    /// from bones and the distances of vertices from them: it takes sampling the bones on the host (some microseconds
-    /// for a hundred bones) and may be larger than necessary. That of a patch of terrain holds a sphere around it. What is
-    /// drawn may be off by what [`Quality::pixels`](crate::scene::Quality) allows, and may thus reach beyond the box.
-    ///
-    /// # Errors
-    /// [`InputError`] for an instance that does not exist any more.
-    pub fn bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
-        let object = self.object_of(instance)?;
-        let entry = &object.instances.all()[instance.index as usize];
-        let placed = self.placed(instance, entry.cell)?;
-        let [low, high] = match &object.kind {
-            Kind::Terrain(_) => {
-                let [x, y, z, radius] = entry.bounding_sphere.map(f64::from);
-                let middle = placed.transform_point3(DVec3::new(x, y, z));
-                [middle - radius, middle + radius]
-            }
-            Kind::Mesh(mesh) => (mesh.surfaces().iter().map(|surface| surface.bounds(placed)))
-                .reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
-                .unwrap_or([placed.translation; 2]),
-            Kind::Character(character) => {
-                character.bounds(&character.pose(instance.index, self.now)?, placed)
-            }
-        };
-        let slack = MARGIN * (high - low).length().max(placed.translation.length());
-        Ok(Bounds { cell: entry.cell, low: low - slack, high: high + slack })
-    }
-
     /// The first instance that a ray hits, as it stands now, in the pose of the time of the scene and in full detail; `None` if
     /// it hits none. Objects that are hidden are not hit, and triangles are hit from the sides that are seen. A relief is
     /// hit on its mesh, and where its texture cuts a mesh out, the mesh is hit.
+    ///
+    /// Driven bones ([`Scene::drive`]) that the last frame wrote from the host ([`Poses::write`](crate::scene::Poses::write))
+    /// count as they were written, with the other bones in the pose of the time of the scene. What kernels wrote
+    /// ([`Poses::of`](crate::scene::Poses::of)) is unknown to the host: the ray meets those bones where the clip has them.
     ///
     /// The host tests the bounding sphere of each instance, and where the ray meets it, every triangle of a mesh, or the
     /// cells of terrain below the ray. The vertices of a character are posed and skinned for that: about a quarter
@@ -70,7 +32,7 @@ impl Scene {
     pub fn pick(&self, ray: &Ray) -> Result<Option<Hit>, InputError> {
         ray.validate()?;
         let direction = ray.direction.normalize();
-        let mut near = self.spheres_near(ray, direction);
+        let mut near = self.spheres_near(ray, direction)?;
         near.sort_by(|one, other| one.distance.total_cmp(&other.distance));
         let mut first: Option<(SurfaceHit, InstanceId)> = None;
         for candidate in near {
@@ -80,15 +42,20 @@ impl Scene {
             }
             let InstanceId { index, .. } = candidate.instance;
             let placed = self.placed(candidate.instance, ray.cell)?;
-            let found =
-                candidate.entry.hit(index, self.now, (placed, ray.cell), ([ray.at, direction], farthest))?;
+            let found = candidate.entry.hit(
+                index,
+                self.now,
+                (placed, ray.cell),
+                ([ray.offset, direction], farthest),
+            )?;
             first = found.map(|hit| (hit, candidate.instance)).or(first);
         }
         Ok(first.map(|(hit, instance)| Hit {
             instance,
             object: instance.object,
             distance: hit.distance,
-            position: ray.at + hit.distance * direction,
+            cell: ray.cell,
+            offset: ray.offset + hit.distance * direction,
             normal: hit.normal.normalize_or_zero(),
         }))
     }
@@ -103,7 +70,7 @@ impl Scene {
     }
 
     /// The instances whose bounding spheres a ray meets within its limit.
-    fn spheres_near(&self, ray: &Ray, direction: DVec3) -> Vec<Candidate<'_>> {
+    fn spheres_near(&self, ray: &Ray, direction: DVec3) -> Result<Vec<Candidate<'_>>, InputError> {
         let mut near = Vec::new();
         for (object, entry) in self.objects.each().filter(|(_, entry)| entry.is_drawn()) {
             for [index, generation] in entry.instances.each() {
@@ -113,11 +80,10 @@ impl Scene {
                 {
                     continue;
                 }
-                let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);
                 let placed = placed_model(instance, ray.cell);
-                let radius = radius * f64::from(instance.largest_scale());
+                let (center, radius) = entry.sphere_around(index, self.now, placed)?;
                 let slack = MARGIN * (radius + placed.translation.length());
-                let towards = placed.transform_point3(DVec3::new(x, y, z)) - ray.at;
+                let towards = center - ray.offset;
                 if let Some(distance) = distance_to_sphere(towards, direction, radius + slack)
                     && distance <= ray.limit
                 {
@@ -126,7 +92,7 @@ impl Scene {
                 }
             }
         }
-        near
+        Ok(near)
     }
 }
 
@@ -149,6 +115,21 @@ fn distance_to_sphere(center: DVec3, direction: DVec3, radius: f64) -> Option<f6
 }
 
 impl Object {
+    /// The center and the radius of a sphere around an instance, which `placed` leads from its model's space. Bones that were
+    /// written may leave the sphere of the clip, so their box decides then.
+    fn sphere_around(&self, index: u32, now: f64, placed: DAffine3) -> Result<(DVec3, f64), InputError> {
+        if let Kind::Character(character) = &self.kind
+            && character.is_written(index)
+        {
+            let [low, high] = character.bounds(&character.pose(index, now)?, placed);
+            return Ok(((low + high) / 2.0, low.distance(high) / 2.0));
+        }
+        let instance = &self.instances.all()[index as usize];
+        let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);
+        let center = placed.transform_point3(DVec3::new(x, y, z));
+        Ok((center, radius * f64::from(instance.largest_scale())))
+    }
+
     /// The nearest hit of an instance by a ray, with a unit direction, up to a distance.
     fn hit(
         &self,

@@ -21,7 +21,8 @@ use crate::shared::lod::instance::CELL_SIZE;
 ///
 /// // A million units east: half a unit counts still.
 /// let far = Placement::at_world([1e6 + 0.5, 0.0, 0.0]);
-/// assert_eq!((far.cell, far.at), ([3906, 0, 0], Vec3::new(64.5, 0.0, 0.0)));
+/// assert_eq!((far.cell, far.offset), ([3906, 0, 0], Vec3::new(64.5, 0.0, 0.0)));
+/// assert_eq!(far.world().x, 1e6 + 0.5);
 ///
 /// // What faces south (+Z) faces east (+X) after a quarter turn. Here the model is half as large, too.
 /// let place = Placement::at([3.0, 0.0, 4.0]).turned(std::f32::consts::FRAC_PI_2).scaled(0.5);
@@ -34,10 +35,10 @@ use crate::shared::lod::instance::CELL_SIZE;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
-    /// The cell to whose corner `at` is relative.
+    /// The cell to whose corner `offset` is relative.
     pub cell: [i32; 3],
     /// The position in world units, relative to the cell's corner. It may lie outside the cell.
-    pub at: Vec3,
+    pub offset: Vec3,
     /// The rotation from the model's axes to the world's. It need not have length 1.
     pub turn: Quat,
     /// World units per unit of the model along each of the model's own axes, applied before the rotation. Negative factors
@@ -48,7 +49,7 @@ pub struct Placement {
 impl Default for Placement {
     /// At the origin, neither turned nor scaled.
     fn default() -> Self {
-        Self { cell: [0; 3], at: Vec3::ZERO, turn: Quat::IDENTITY, scale: Vec3::ONE }
+        Self { cell: [0; 3], offset: Vec3::ZERO, turn: Quat::IDENTITY, scale: Vec3::ONE }
     }
 }
 
@@ -56,20 +57,24 @@ impl Placement {
     /// The edge of a cell in world units.
     pub const CELL: f32 = CELL_SIZE;
 
-    /// At a position in world units, relative to the corner of cell (0, 0, 0), neither turned nor scaled.
-    pub fn at(at: impl Into<Vec3>) -> Self {
-        Self { at: at.into(), ..Self::default() }
+    /// At a position in world coordinates, as precise as `f32`, neither turned nor scaled.
+    pub fn at(position: impl Into<Vec3>) -> Self {
+        Self { offset: position.into(), ..Self::default() }
     }
 
-    /// At a position in world units from the origin of the world, neither turned nor scaled. Positions beyond 2³¹ cells are
-    /// refused when the placement is used.
+    /// At a position in world coordinates, neither turned nor scaled. Positions beyond 2³¹ cells are refused when the
+    /// placement is used.
     pub fn at_world(position: impl Into<DVec3>) -> Self {
         let position = position.into();
         let edge = f64::from(Self::CELL);
         // Conversion saturates.
         let cell = (position / edge).floor().to_array().map(|cell| cell as i32);
-        let corner = DVec3::from(cell.map(f64::from)) * edge;
-        Self { cell, at: (position - corner).as_vec3(), ..Self::default() }
+        Self { cell, offset: (position - Self::corner(cell)).as_vec3(), ..Self::default() }
+    }
+
+    /// The corner of a cell in world coordinates: its lowest x, y and z.
+    pub fn corner(cell: [i32; 3]) -> DVec3 {
+        DVec3::from(cell.map(f64::from)) * f64::from(Self::CELL)
     }
 
     /// The same placement with another rotation: about the vertical axis by an angle in radians, counter-clockwise seen from
@@ -85,9 +90,9 @@ impl Placement {
         Self { scale: Vec3::splat(scale), ..self }
     }
 
-    /// The position in world units from the origin of the world.
-    pub fn position(&self) -> DVec3 {
-        DVec3::from(self.cell.map(f64::from)) * f64::from(Self::CELL) + self.at.as_dvec3()
+    /// The position in world coordinates.
+    pub fn world(&self) -> DVec3 {
+        Self::corner(self.cell) + self.offset.as_dvec3()
     }
 
     /// The same placement with a position inside its cell and a rotation of length 1.
@@ -96,8 +101,8 @@ impl Placement {
     /// [`InputError`] for values that are not finite, a rotation without direction, a scale of 0 along all axes, and a
     /// position beyond the last cell.
     pub fn checked(self) -> Result<Self, InputError> {
-        if !self.at.is_finite() {
-            return Err(InputError::new("placement.at", self.at, "must be finite"));
+        if !self.offset.is_finite() {
+            return Err(InputError::new("placement.offset", self.offset, "must be finite"));
         }
         if !self.scale.is_finite() || self.scale == Vec3::ZERO {
             return Err(InputError::new(
@@ -114,15 +119,15 @@ impl Placement {
         let edge = f64::from(Self::CELL);
         let mut placed = Self { turn: self.turn / length, ..self };
         for axis in 0..3 {
-            let at = f64::from(self.at[axis]);
+            let at = f64::from(self.offset[axis]);
             let cells = (at / edge).floor();
             let cell = f64::from(self.cell[axis]) + cells;
             if !(f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&cell) {
                 let bound = "must lie within 2^31 cells of the origin";
-                return Err(InputError::new(format!("placement.at[{axis}]"), self.at[axis], bound));
+                return Err(InputError::new(format!("placement.offset[{axis}]"), self.offset[axis], bound));
             }
             placed.cell[axis] = cell as i32;
-            placed.at[axis] = (at - cells * edge) as f32;
+            placed.offset[axis] = (at - cells * edge) as f32;
         }
         Ok(placed)
     }
@@ -175,10 +180,11 @@ mod tests {
     #[test]
     fn positions_lie_in_their_cells() {
         let far = Placement::at_world([1e6 + 0.125, -0.5, 255.0]);
-        assert_eq!((far.cell, far.at), ([3906, -1, 0], Vec3::new(64.125, 255.5, 255.0)));
-        assert_eq!(far.position(), DVec3::new(1e6 + 0.125, -0.5, 255.0));
-        let moved = Placement { at: far.at + Vec3::new(512.0, 1.0, 0.0), ..far }.checked().expect("valid");
-        assert_eq!((moved.cell, moved.at), ([3908, 0, 0], Vec3::new(64.125, 0.5, 255.0)));
+        assert_eq!((far.cell, far.offset), ([3906, -1, 0], Vec3::new(64.125, 255.5, 255.0)));
+        assert_eq!(far.world(), DVec3::new(1e6 + 0.125, -0.5, 255.0));
+        let moved =
+            Placement { offset: far.offset + Vec3::new(512.0, 1.0, 0.0), ..far }.checked().expect("valid");
+        assert_eq!((moved.cell, moved.offset), ([3908, 0, 0], Vec3::new(64.125, 0.5, 255.0)));
         let turned = Placement { turn: Quat::from_xyzw(0.0, 3.0, 0.0, 4.0), ..far }.checked().expect("valid");
         assert_eq!(turned.turn, Quat::from_xyzw(0.0, 0.6, 0.0, 0.8));
     }
@@ -187,14 +193,14 @@ mod tests {
     fn placements_are_checked_field_by_field() {
         let good = Placement::default();
         let refused = |placement: Placement| placement.checked().expect_err("refused").path;
-        assert_eq!(refused(Placement { at: Vec3::NAN, ..good }), "placement.at");
+        assert_eq!(refused(Placement { offset: Vec3::NAN, ..good }), "placement.offset");
         assert_eq!(refused(Placement { scale: Vec3::ZERO, ..good }), "placement.scale");
         assert_eq!(
             refused(Placement { turn: Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..good }),
             "placement.turn"
         );
-        let beyond = Placement { cell: [0, i32::MAX, 0], at: Vec3::new(0.0, 300.0, 0.0), ..good };
-        assert_eq!(refused(beyond), "placement.at[1]");
+        let beyond = Placement { cell: [0, i32::MAX, 0], offset: Vec3::new(0.0, 300.0, 0.0), ..good };
+        assert_eq!(refused(beyond), "placement.offset[1]");
         assert!(Placement { scale: Vec3::new(0.0, -1.0, 2.0), ..good }.checked().is_ok());
         let refused = |play: Play<'_>| play.validate().expect_err("refused").path;
         assert_eq!(refused(Play { start: f64::NAN, ..Play::new("walk") }), "play.start");

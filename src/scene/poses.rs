@@ -3,7 +3,8 @@
 use crate::animation::crowd::Local;
 use crate::gpu::Buffer;
 
-/// The buffers that hold the pose of an instance, among those of others of its object. They are the same from frame to frame,
+/// The buffers that hold the pose of an instance, among those of others of its object, for kernels of the caller;
+/// [`Poses::write`](crate::scene::Poses::write) writes from the host. They are the same from frame to frame,
 /// until the object grows, what is seen of it exceeds a binding of the device, or [`Scene::refresh`](crate::scene::Scene::refresh) is
 /// called.
 #[derive(Debug, Clone, Copy)]

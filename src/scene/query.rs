@@ -32,7 +32,7 @@ impl Scene {
         let SceneInstance { cell, offset, rotation, scale, .. } =
             self.object_at(object)?.instances.all()[index as usize];
         let turn = glam::Quat::from_array(rotation);
-        Ok(Placement { cell, at: offset.into(), turn, scale: scale.into() })
+        Ok(Placement { cell, offset: offset.into(), turn, scale: scale.into() })
     }
 
     /// The clip that an instance plays, and the time in it at the time of the scene; `None` for what is no character.

@@ -8,15 +8,16 @@ use crate::InputError;
 use crate::mesh::ray::distance_to;
 use crate::scene::camera::{Camera, Depth};
 use crate::scene::handles::{InstanceId, ObjectId};
+use crate::scene::placement::Placement;
 use crate::skinning::merged::Merged;
 
 /// A ray in the world, for [`Scene::pick`](crate::scene::Scene::pick).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// The cell to whose corner `at` is relative; see [`Placement`](crate::scene::Placement).
+    /// The cell to whose corner `offset` is relative; see [`Placement`].
     pub cell: [i32; 3],
-    /// Where the ray begins, in world units relative to the cell's corner.
-    pub at: DVec3,
+    /// Where the ray begins, in world units relative to the cell's corner. With cell (0, 0, 0) these are world coordinates.
+    pub offset: DVec3,
     /// Its direction, of any length but 0.
     pub direction: DVec3,
     /// The largest distance of a hit, in world units.
@@ -34,17 +35,31 @@ pub struct Hit {
     pub object: ObjectId,
     /// The distance from the ray's beginning, in world units.
     pub distance: f64,
-    /// The position in world units, relative to the corner of the ray's cell.
-    pub position: DVec3,
+    /// The cell of the ray, to whose corner `offset` is relative.
+    pub cell: [i32; 3],
+    /// The position in world units, relative to the cell's corner.
+    pub offset: DVec3,
     /// The unit normal of the triangle, on its outer side.
     pub normal: DVec3,
 }
 
+impl Hit {
+    /// The position in world coordinates.
+    pub fn world(&self) -> DVec3 {
+        Placement::corner(self.cell) + self.offset
+    }
+}
+
 impl Ray {
-    /// A ray from a position, relative to cell (0, 0, 0), without a limit, that hits what any mask shows.
-    pub fn new(at: impl Into<DVec3>, direction: impl Into<DVec3>) -> Self {
-        let (at, direction) = (at.into(), direction.into());
-        Self { cell: [0; 3], at, direction, limit: f64::INFINITY, mask: u16::MAX }
+    /// A ray from a position in world coordinates, without a limit, that hits what any mask shows.
+    pub fn new(position: impl Into<DVec3>, direction: impl Into<DVec3>) -> Self {
+        let (offset, direction) = (position.into(), direction.into());
+        Self { cell: [0; 3], offset, direction, limit: f64::INFINITY, mask: u16::MAX }
+    }
+
+    /// Where the ray begins, in world coordinates.
+    pub fn world(&self) -> DVec3 {
+        Placement::corner(self.cell) + self.offset
     }
 
     /// The ray from a camera's near plane through a point of its picture, in pixels from the left and from the top: the middle
@@ -62,7 +77,7 @@ impl Ray {
         let [width, height] = camera.viewport.map(f64::from);
         let [right, up] = [2.0 * f64::from(x) / width - 1.0, 1.0 - 2.0 * f64::from(y) / height];
         let world_from_clip: DMat4 =
-            (camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4()).inverse();
+            (camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4()).inverse();
         let point = |depth: f64| world_from_clip.project_point3(DVec3::new(right, up, depth));
         let near = point(if camera.depth == Depth::Reversed { 1.0 } else { 0.0 });
         Ok(Self { cell: camera.cell, ..Self::new(near, point(0.5) - near) })
@@ -73,8 +88,8 @@ impl Ray {
     /// # Errors
     /// [`InputError`] for a position or a direction that is not finite, a direction of length 0, and a limit that is negative.
     pub fn validate(&self) -> Result<(), InputError> {
-        if !self.at.is_finite() {
-            return Err(InputError::new("ray.at", self.at, "must be finite"));
+        if !self.offset.is_finite() {
+            return Err(InputError::new("ray.offset", self.offset, "must be finite"));
         }
         if self.direction.try_normalize().is_none() {
             return Err(InputError::new("ray.direction", self.direction, "must be finite, and not 0"));
@@ -185,7 +200,7 @@ mod tests {
         let good = Ray::new([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]);
         let refused = |ray: Ray| ray.validate().expect_err("refused").path;
         assert!(good.validate().is_ok());
-        assert_eq!(refused(Ray { at: DVec3::NAN, ..good }), "ray.at");
+        assert_eq!(refused(Ray { offset: DVec3::NAN, ..good }), "ray.offset");
         assert_eq!(refused(Ray { direction: DVec3::ZERO, ..good }), "ray.direction");
         assert_eq!(refused(Ray { limit: f64::NAN, ..good }), "ray.limit");
     }
@@ -197,7 +212,7 @@ mod tests {
         let middle = Ray::through(&camera, [100.0, 50.0]).expect("a pixel");
         let ahead = (-eye).as_dvec3().normalize();
         assert!(middle.direction.normalize().distance(ahead) < 1e-5);
-        assert!((middle.at - eye.as_dvec3()).length() < 0.501);
+        assert!((middle.world() - eye.as_dvec3()).length() < 0.501);
         let corner = Ray::through(&camera, [0.0, 0.0]).expect("a pixel");
         let up = ahead.cross(DVec3::Y).normalize().cross(ahead);
         // Half the field of view up, and twice as far aside.

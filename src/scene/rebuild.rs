@@ -120,6 +120,7 @@ impl Scene {
         self.attachments.forget_device();
         (self.staging, self.staged) = (StagingRing::new(RECORDINGS), Staged::default());
         self.is_broken = false;
+        self.pose_staging = StagingRing::new(RECORDINGS);
         self.layout = None;
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! Bones whose matrices arrive on the host some frames later, without a wait.
 
+use glam::{DAffine3, DVec3};
+
 use crate::asset::Affine;
 use crate::gpu::{Gpu, GpuError, ReadbackRing};
 use crate::scene::Scene;
@@ -7,6 +9,7 @@ use crate::scene::handles::{InstanceId, Slots};
 use crate::scene::layout::Layout;
 use crate::scene::matrices::{affine_of, placed_model, rows_of};
 use crate::scene::object::{Kind, Object};
+use crate::scene::placement::Placement;
 use crate::shared::lod::instance::SceneInstance;
 use crate::{Error, InputError};
 
@@ -35,14 +38,19 @@ pub struct WatchedBone {
     pub is_current: bool,
     /// The cell of the instance's placement.
     pub cell: [i32; 3],
-    /// From the bone's space to the world, relative to the cell's corner: three rows.
-    pub matrix: Affine,
+    /// From the bone's space to the world's moved to the cell's corner: three rows.
+    pub cell_from_bone: Affine,
 }
 
 impl WatchedBone {
-    /// The position of the bone's origin, in world units relative to the corner of [`WatchedBone::cell`].
-    pub fn position(&self) -> glam::Vec3 {
-        self.matrix.map(|row| row[3]).into()
+    /// The position of the bone's origin in world coordinates.
+    pub fn world(&self) -> DVec3 {
+        self.world_from_bone().translation
+    }
+
+    /// The transform from the bone's space to the world.
+    pub fn world_from_bone(&self) -> DAffine3 {
+        DAffine3::from_translation(Placement::corner(self.cell)) * affine_of(&self.cell_from_bone)
     }
 }
 
@@ -156,9 +164,9 @@ impl Watch {
         let words = bytemuck::pod_collect_to_vec::<u8, [f32; 13]>(&bytes[..BYTES as usize * bones.len()]);
         let bone = |((instance, bone, placed), words): (&(InstanceId, usize, SceneInstance), &[f32; 13])| {
             let rows: Affine = std::array::from_fn(|row| std::array::from_fn(|at| words[4 * row + at]));
-            let matrix = rows_of(placed_model(placed, placed.cell) * affine_of(&rows));
+            let cell_from_bone = rows_of(placed_model(placed, placed.cell) * affine_of(&rows));
             let (instance, is_current) = (*instance, words[12] >= 0.0);
-            WatchedBone { instance, bone: *bone, is_current, cell: placed.cell, matrix }
+            WatchedBone { instance, bone: *bone, is_current, cell: placed.cell, cell_from_bone }
         };
         let bones = bones.iter().zip(&words).map(bone).collect();
         self.last = Some(WatchedBones { frame, time, bones });

@@ -49,7 +49,7 @@ impl CameraPath {
         let up = if forward.y.abs() > 0.9999 { DVec3::NEG_Z } else { DVec3::Y };
         Camera {
             cell,
-            view_from_world: glam::camera::rh::view::look_to_mat4(eye, forward.as_vec3(), up.as_vec3()),
+            view_from_cell: glam::camera::rh::view::look_to_mat4(eye, forward.as_vec3(), up.as_vec3()),
             clip_from_view: self.projection(field_of_view, viewport, depth),
             viewport,
             depth,
@@ -175,20 +175,20 @@ mod tests {
         ] {
             let camera = path(far).camera(0.0, [320, 200], depth);
             let found = [0.5, 100.0]
-                .map(|ahead| camera.clip_from_world().project_point3(Vec3::new(0.0, 2.0, -ahead)).z);
+                .map(|ahead| camera.clip_from_cell().project_point3(Vec3::new(0.0, 2.0, -ahead)).z);
             let off = found.iter().zip(expected).map(|(a, b): (&f32, f32)| (a - b).abs()).fold(0.0, f32::max);
             assert!(off < 1e-5, "{depth:?} {far:?}: {found:?}");
         }
         let camera = path(None).camera(0.0, [320, 200], Depth::Forward);
         let top = Vec3::new(0.0, 2.0 + 10.0 * libm::tanf(0.5), -10.0);
-        assert!((camera.clip_from_world().project_point3(top).y - 1.0).abs() < 1e-5);
+        assert!((camera.clip_from_cell().project_point3(top).y - 1.0).abs() < 1e-5);
         let far = CameraPath {
             keys: vec![CameraKey { at: DVec3::new(1e6 + 0.25, -1.0, 0.0), ..path(None).keys[0] }],
             ..path(None)
         };
         let camera = far.camera(0.0, [320, 200], Depth::Forward);
         assert_eq!(camera.cell, [3906, -1, 0]);
-        assert!(camera.eye().distance(Vec3::new(64.25, 255.0, 0.0)) < 1e-4, "{}", camera.eye());
+        assert!(camera.eye_offset().distance(Vec3::new(64.25, 255.0, 0.0)) < 1e-4, "{}", camera.eye_offset());
     }
 
     #[test]
@@ -197,7 +197,7 @@ mod tests {
         let right = columns(&camera, 100, 300);
         assert_eq!(right.viewport, [200, 200]);
         for point in [Vec3::new(1.0, 2.5, -4.0), Vec3::new(-2.0, 0.0, -9.0)] {
-            let [whole, part] = [camera, right].map(|camera| camera.clip_from_world().project_point3(point));
+            let [whole, part] = [camera, right].map(|camera| camera.clip_from_cell().project_point3(point));
             let pixel = |x: f32, width: f32| (0.5 + 0.5 * x) * width;
             assert!((pixel(part.x, 200.0) + 100.0 - pixel(whole.x, 300.0)).abs() < 1e-3);
             assert!((part.y - whole.y).abs() < 1e-6 && (part.z - whole.z).abs() < 1e-6);

@@ -77,6 +77,11 @@ impl Ground {
         self.patches.remove(&patch).is_some()
     }
 
+    /// The lowest and the highest height of a patch in world units; `None` where the ground has no such patch.
+    pub fn extremes(&self, patch: [i32; 2]) -> Option<[f64; 2]> {
+        self.patches.get(&patch).map(HeightField::extremes)
+    }
+
     /// The ground at world position (x east, z south), where position 0 is the first sample of patch (0, 0);
     /// `None` where no patch is.
     ///

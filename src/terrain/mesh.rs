@@ -43,6 +43,13 @@ impl HeightField {
         (x < self.size && y < self.size).then(|| f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE)
     }
 
+    /// The lowest and the highest height, in world units.
+    pub fn extremes(&self) -> [f64; 2] {
+        let all = || self.heights.iter().copied();
+        // A field has at least four heights.
+        [all().min(), all().max()].map(|height| f64::from(height.unwrap_or(0)) / HEIGHT_ONE)
+    }
+
     /// The height and the normal of the triangle at world position (x, z), relative to the first sample; `None`
     /// outside the field. Use it to place objects on the ground.
     ///

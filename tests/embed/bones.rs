@@ -60,7 +60,7 @@ fn meshes_follow_bones() {
         );
         world.scene.move_to(free, placement_of(bone * offset)).expect("there");
         let boxes = [carried, free].map(|instance| world.scene.bounds(instance).expect("there"));
-        let corners = boxes.map(|found| glam::DVec3::from(found.cell.map(f64::from)) * 256.0 + found.low);
+        let corners = boxes.map(|found| found.world()[0]);
         assert!(corners[0].distance(corners[1]) < 1e-2, "{corners:?}");
         let pictures = [&mut attached, &mut placed].map(|view| frame.shot(&mut world.scene, view, &renderer));
         let difference = Difference::of(&pictures[0], &pictures[1], 3);
@@ -92,7 +92,7 @@ fn without_its_character(
     world.scene.set_visibility(carried, u16::MAX, true).expect("there");
     let together = shot(world);
     assert!(together != alone && alone != both_hidden, "no mesh on its bone");
-    let aside = Placement { at: Vec3::new(2.0, 9.0, 0.0), ..Placement::default() };
+    let aside = Placement { offset: Vec3::new(2.0, 9.0, 0.0), ..Placement::default() };
     world.scene.move_to(carried, aside).expect("there");
     assert!(shot(world) == together, "what is attached stays at its bone");
     world.scene.despawn(carrier).expect("there");
@@ -181,7 +181,7 @@ impl Turn {
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        poses: Poses<'_>,
+        poses: &Poses<'_>,
         instance: InstanceId,
     ) -> Result<(), relievo::InputError> {
         let buffers = poses.of(instance)?;
@@ -208,7 +208,7 @@ fn record(
     gpu: &Gpu,
     world: &mut World,
     view: &mut View,
-    pose: impl FnOnce(&mut wgpu::CommandEncoder, Poses<'_>) -> Result<(), relievo::InputError>,
+    pose: impl FnOnce(&mut wgpu::CommandEncoder, &mut Poses<'_>) -> Result<(), relievo::InputError>,
 ) {
     let mut encoder = gpu.encoder("frame");
     world.scene.record_with(&mut encoder, &mut [view], pose).expect("recorded");
@@ -260,9 +260,7 @@ fn programs_pose_bones() {
         let still = turned(&world, instance, 0.0);
         let found = world.scene.watched_bones().expect("arrived");
         for (bone, watched) in found.bones.iter().zip(watched) {
-            let corner = glam::DVec3::from(bone.cell.map(f64::from)) * 256.0;
-            let mut matrix = host::affine(&bone.matrix);
-            matrix.translation += corner;
+            let matrix = bone.world_from_bone();
             let error = |right: &DAffine3| {
                 let off = (right.matrix3 - matrix.matrix3).to_cols_array();
                 let moved = (right.translation - matrix.translation).length();
@@ -298,8 +296,9 @@ fn shot_with(gpu: &Gpu, world: &mut World, view: &mut View, frame: &Frame, turn:
     let instance = world.crowd[1];
     let renderer = frame.renderer(gpu, &world.scene);
     let mut encoder = gpu.encoder("frame");
-    let pose =
-        |encoder: &mut wgpu::CommandEncoder, poses: Poses<'_>| turn.record(gpu, encoder, poses, instance);
+    let pose = |encoder: &mut wgpu::CommandEncoder, poses: &mut Poses<'_>| {
+        turn.record(gpu, encoder, poses, instance)
+    };
     world.scene.record_with(&mut encoder, &mut [view], pose).expect("recorded");
     frame.pass(&mut encoder, |pass| {
         renderer.draw(pass, &world.scene, view, relievo::render::Layer::Color).expect("drawn");

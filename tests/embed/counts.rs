@@ -194,13 +194,13 @@ fn bones_arrive_where_they_are() {
     let (near, far) = (world.crowd[1], world.crowd[2]);
     let mirrored =
         Placement { cell: [900_000, -3, 7], scale: Vec3::new(-3.0, 3.0, 2.0), ..world.placement(1) };
-    world.scene.move_to(near, Placement { at: mirrored.at, ..mirrored }).expect("there");
+    world.scene.move_to(near, Placement { offset: mirrored.offset, ..mirrored }).expect("there");
     world.scene.watch_bones(&[(near, name), (far, "152"), (near, "0")]).expect("bones");
     assert!(world.scene.watched_bones().is_none());
     let mut view = world.view(0.0);
     let eye = Camera {
         cell: mirrored.cell,
-        ..Camera::looking_at(Vec3::new(0.0, 9.0, 30.0), mirrored.at, 1.2, [0.5, 400.0], SIZE)
+        ..Camera::looking_at(Vec3::new(0.0, 9.0, 30.0), mirrored.offset, 1.2, [0.5, 400.0], SIZE)
     };
     view.set(eye).expect("a camera");
     submit(&mut world.scene, &mut [&mut view]);
@@ -217,12 +217,10 @@ fn bones_arrive_where_they_are() {
     for (at, bone) in [(0, 40), (2, 0)] {
         let watched = &found.bones[at];
         assert_eq!((watched.instance, watched.bone, watched.cell), (near, bone, mirrored.cell));
-        let corner = glam::DVec3::from(watched.cell.map(f64::from)) * 256.0;
-        let mut right = expected[bone];
-        right.translation -= corner;
-        let error = (right.inverse() * host::affine(&watched.matrix)).matrix3 - glam::DMat3::IDENTITY;
+        let right = expected[bone];
+        let error = (right.inverse() * watched.world_from_bone()).matrix3 - glam::DMat3::IDENTITY;
         assert!(error.to_cols_array().iter().all(|entry| entry.abs() < 1e-4), "{error}");
-        assert!((right.translation - watched.position().as_dvec3()).length() < 2e-4);
+        assert!((right.translation - watched.world()).length() < 2e-4);
     }
     // An instance that is gone is left out; a bone that is not there is refused.
     world.scene.despawn(far).expect("there");

@@ -9,7 +9,7 @@ use relievo::scene::{InstanceId, Placement, Scene};
 pub fn placed(placement: &Placement) -> DAffine3 {
     let [x, y, z, w] = placement.turn.to_array().map(f64::from);
     let scale = placement.scale.as_dvec3();
-    DAffine3::from_scale_rotation_translation(scale, DQuat::from_xyzw(x, y, z, w), placement.position())
+    DAffine3::from_scale_rotation_translation(scale, DQuat::from_xyzw(x, y, z, w), placement.world())
 }
 
 /// The transform of three rows.

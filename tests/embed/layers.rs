@@ -79,15 +79,16 @@ fn layers_are_blended() {
         }
         let right = local_to_model(&model.skeleton, &locals);
         for bone in &scene.watched_bones().expect("arrived").bones {
-            let (matrix, expected) = (host::affine(&bone.matrix), host::affine(&right[bone.bone]));
+            let (matrix, expected) = (host::affine(&bone.cell_from_bone), host::affine(&right[bone.bone]));
             let off = (matrix.matrix3 - expected.matrix3).to_cols_array();
             let moved = matrix.translation.distance(expected.translation);
             let most = off.iter().fold(moved, |most, entry| most.max(entry.abs()));
             assert!(most < 2e-4, "bone {} at {now}: {most}", bone.bone);
         }
-        found.push(scene.watched_bones().expect("arrived").bones[0].matrix);
+        found.push(scene.watched_bones().expect("arrived").bones[0].cell_from_bone);
         let bounds = scene.bounds(instance).expect("there");
-        assert!(bounds.low.is_finite() && bounds.low.cmplt(bounds.high).all());
+        let [low, high] = bounds.world();
+        assert!(low.is_finite() && low.cmplt(high).all());
     }
     assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "nothing moves");
     let refused = |result: Result<(), relievo::InputError>| result.expect_err("refused").path;
@@ -165,14 +166,13 @@ fn roots_keep_their_place() {
         at = scene.time();
         let before = scene.placement(moved).expect("there");
         let (ahead, turn) = (Vec3::from(motion.translation), Quat::from_array(motion.rotation));
-        let place = before.position() + (before.turn * (before.scale * ahead)).as_dvec3();
+        let place = before.world() + (before.turn * (before.scale * ahead)).as_dvec3();
         let turn = before.turn * turn;
         scene
             .move_to(moved, Placement { turn, scale: before.scale, ..Placement::at_world(place) })
             .expect("there");
         let boxes = [moved, fixed].map(|instance| scene.bounds(instance).expect("there"));
-        let middle = boxes
-            .map(|found| (found.low + found.high) / 2.0 + DVec3::from(found.cell.map(f64::from)) * 256.0);
+        let middle = boxes.map(|found| found.world().into_iter().sum::<DVec3>() / 2.0);
         assert!(middle[0].distance(middle[1]) < 0.1, "{middle:?}");
         // Bones, more precisely.
         scene.watch_bones(&[(moved, "40"), (fixed, "40")]).expect("bones");
@@ -187,9 +187,7 @@ fn roots_keep_their_place() {
         view.set(eye).expect("a camera");
         submit(&mut scene, &mut view);
         let found = scene.watched_bones().expect("arrived");
-        let places = [0, 1].map(|at| {
-            found.bones[at].position().as_dvec3() + DVec3::from(found.bones[at].cell.map(f64::from)) * 256.0
-        });
+        let places = [0, 1].map(|at| found.bones[at].world());
         assert!(places[0].distance(places[1]) < 5e-3, "{places:?}");
     }
     // In place, the walker has not moved by itself.

@@ -144,7 +144,7 @@ fn a_long_life_leaves_no_trace() {
         change(&mut world, &mut shown, &mut draw, at);
         let eye = camera(SIZE);
         let turned = glam::Mat4::from_rotation_y(0.02 * at as f32);
-        views[1].set(Camera { view_from_world: eye.view_from_world * turned, ..eye }).expect("a camera");
+        views[1].set(Camera { view_from_cell: eye.view_from_cell * turned, ..eye }).expect("a camera");
         let mut encoder = gpu.encoder("frame");
         let [a, b] = &mut views;
         world.scene.record(&mut encoder, &mut [a, b]).expect("recorded");

@@ -30,6 +30,7 @@ mod promise;
 mod query;
 mod raw;
 mod rays;
+mod reach;
 mod rebuild;
 mod reliefs;
 mod shading;

@@ -180,7 +180,7 @@ fn what_is_no_place_and_no_camera_is_refused() {
         Camera::looking_at(eye, glam::Vec3::ONE, field_of_view, [0.1, 100.0], SIZE)
     };
     assert_eq!(wrong(view.set(camera(glam::Vec3::ZERO, 4.0)))[0], "camera.clip_from_view");
-    assert_eq!(wrong(view.set(camera(glam::Vec3::ONE, 0.8)))[0], "camera.view_from_world");
+    assert_eq!(wrong(view.set(camera(glam::Vec3::ONE, 0.8)))[0], "camera.view_from_cell");
     view.set(camera(glam::Vec3::ZERO, 0.8)).expect("a camera");
 }
 

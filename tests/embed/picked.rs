@@ -80,7 +80,7 @@ fn shoot(scene: &Scene, instances: &[InstanceId], places: &[DVec3], triangles: &
                 // are farther along a ray that grazes.
                 let bound = 2e-6 / outwards.dot(towards).abs();
                 let is_right = found.instance == instances[tag]
-                    && found.position.distance(expected.position) <= bound
+                    && found.world().distance(expected.position) <= bound
                     && found.normal.dot(outwards) > 1.0 - 1e-6;
                 *(if is_right { rays.right.entry(tag).or_default() } else { &mut rays.wrong }) += 1;
             }
@@ -113,7 +113,7 @@ fn rays_hit_meshes_and_reliefs() {
     .map(|(object, corners, placement)| (object, corners.to_vec(), placement));
     let instances: Vec<_> =
         all.iter().map(|(object, _, placement)| scene.spawn(*object, *placement).expect("room")).collect();
-    let places: Vec<_> = all.iter().map(|(.., placement)| placement.position()).collect();
+    let places: Vec<_> = all.iter().map(|(.., placement)| placement.world()).collect();
     let triangles = |moved: f64| -> Vec<Triangle> {
         let of_all = all.iter().enumerate().flat_map(|(tag, (object, corners, placement))| {
             placed(corners, placement, *object == double, move |_| tag)

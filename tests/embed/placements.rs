@@ -17,7 +17,7 @@ fn shot(gpu: &relievo::gpu::Gpu, cell: [i32; 3], mirror: bool) -> RgbaImage {
         let scale = Vec3::new(if mirror { -1.0 } else { 1.0 }, 1.0, 1.0);
         let placement = Placement {
             cell,
-            at: Vec3::new(if mirror { -x } else { x }, 0.0, 0.0),
+            offset: Vec3::new(if mirror { -x } else { x }, 0.0, 0.0),
             scale,
             ..Default::default()
         };
@@ -29,7 +29,7 @@ fn shot(gpu: &relievo::gpu::Gpu, cell: [i32; 3], mirror: bool) -> RgbaImage {
         Camera::looking_at(Vec3::new(0.0, 2.5, 9.0), Vec3::new(0.0, 1.5, 0.0), 0.6, [0.5, 60.0], SIZE);
     camera.cell = cell;
     if mirror {
-        camera.view_from_world *= Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+        camera.view_from_cell *= Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
     }
     let mut light = relievo::asset::Light::default();
     if mirror {

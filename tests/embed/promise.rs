@@ -85,7 +85,7 @@ fn spawn(scene: &mut Scene, object: ObjectId, model: &Model, at: usize) {
     let turn = Quat::from_euler(glam::EulerRot::YXZ, 0.9 * at as f32, 0.2, -0.1 * at as f32);
     let place = Vec3::new([-3.0, 3.0, 1.2, -1.5][at % 4], 1.0, 6.0 - 8.0 * at as f32);
     let placement =
-        Placement { at: place - turn * (scale * sphere.center), turn, scale, ..Default::default() };
+        Placement { offset: place - turn * (scale * sphere.center), turn, scale, ..Default::default() };
     let instance = scene.spawn(object, placement).expect("room");
     let clip = if at % 3 == 2 { model.clips.len() - 1 } else { 0 }.to_string();
     let play = Play { start: -0.31 * at as f64, rate: 1.0 - 0.1 * at as f32, ..Play::new(&clip) };

@@ -15,12 +15,12 @@ fn expected(
 ) -> Option<(f64, Option<InstanceId>)> {
     let direction = ray.direction.normalize();
     let hits = triangles.iter().filter_map(|(instance, triangles)| {
-        let (distance, _) = host::nearest(triangles, ray.at, direction)?;
+        let (distance, _) = host::nearest(triangles, ray.world(), direction)?;
         Some((distance, Some(*instance)))
     });
     let crowd = hits.reduce(|one, other| if other.0 < one.0 { other } else { one });
     let above = |distance: f64| {
-        let at = ray.at + distance * direction;
+        let at = ray.world() + distance * direction;
         let ground = world.scene.ground(world.land, at.x, at.z).expect("terrain")?;
         Some(at.y - ground.height)
     };
@@ -88,7 +88,7 @@ fn rays_hit_what_is_drawn() {
 
 fn check(hit: &Hit, ray: &Ray) {
     let along = ray.direction.normalize();
-    assert!(hit.position.distance(ray.at + hit.distance * along) < 1e-9);
+    assert!(hit.world().distance(ray.world() + hit.distance * along) < 1e-9);
     assert!((hit.normal.length() - 1.0).abs() < 1e-9 && hit.normal.dot(along) < 0.0);
 }
 
@@ -100,7 +100,7 @@ fn rays_have_limits_and_masks() {
     let creature = scene.add_character(&model(), 1).expect("added");
     let statue = scene.add_mesh(&model(), 1).expect("added");
     let cell = [3_906_250, 0, -3_906_250];
-    let at = |z: f32| Placement { cell, at: Vec3::new(128.0, 0.0, z), ..Placement::default() };
+    let at = |z: f32| Placement { cell, offset: Vec3::new(128.0, 0.0, z), ..Placement::default() };
     let front = scene.spawn(creature, at(100.0)).expect("room");
     let back = scene.spawn(statue, at(40.0)).expect("room");
     let ray = Ray { cell, ..Ray::new([128.0, 1.0, 200.0], [0.0, 0.0, -2.0]) };
@@ -109,12 +109,13 @@ fn rays_have_limits_and_masks() {
     assert_eq!((hit.instance, hit.object), (front, creature));
     assert!((99.0..101.0).contains(&(200.0 - hit.distance)), "{}", hit.distance);
     let bounds = scene.bounds(front).expect("there");
-    assert!(bounds.cell == cell && (bounds.low.cmple(hit.position) & hit.position.cmple(bounds.high)).all());
-    let neighbour = Ray { cell: [cell[0] - 1, 0, cell[2]], at: ray.at + DVec3::X * 256.0, ..ray };
+    let [low, high] = bounds.world();
+    assert!(bounds.cell == cell && (low.cmple(hit.world()) & hit.world().cmple(high)).all());
+    let neighbour = Ray { cell: [cell[0] - 1, 0, cell[2]], offset: ray.offset + DVec3::X * 256.0, ..ray };
     let same = first(&scene, &neighbour).expect("the creature");
     assert!((same.distance - hit.distance).abs() < 1e-9);
     assert_eq!(first(&scene, &Ray { limit: hit.distance - 0.01, ..ray }), None);
-    assert_eq!(first(&scene, &Ray { at: ray.at + DVec3::Y * 90.0, ..ray }), None);
+    assert_eq!(first(&scene, &Ray { offset: ray.offset + DVec3::Y * 90.0, ..ray }), None);
     scene.set_visibility(front, 0b10, true).expect("there");
     assert_eq!(first(&scene, &Ray { mask: 0b01, ..ray }).map(|hit| hit.instance), Some(back));
     assert_eq!(first(&scene, &Ray { mask: 0b11, ..ray }).map(|hit| hit.instance), Some(front));
@@ -123,7 +124,7 @@ fn rays_have_limits_and_masks() {
     scene.despawn(back).expect("there");
     assert_eq!(first(&scene, &ray), None);
     assert_eq!(scene.bounds(back).expect_err("refused").path, "instance");
-    assert_eq!(scene.pick(&Ray { at: DVec3::NAN, ..ray }).expect_err("refused").path, "ray.at");
+    assert_eq!(scene.pick(&Ray { offset: DVec3::NAN, ..ray }).expect_err("refused").path, "ray.offset");
     // Towards the statue from a camera that looks at it.
     let looking =
         Camera::looking_at(Vec3::new(0.0, 1.0, 9.0), Vec3::new(0.0, 1.0, 0.0), 0.5, [0.1, 90.0], SIZE);
@@ -148,15 +149,20 @@ fn boxes_hold_what_is_posed() {
         world.scene.advance(seconds).expect("finite");
         for instance in &world.crowd {
             let bounds = world.scene.bounds(*instance).expect("there");
-            let corner = DVec3::from(bounds.cell.map(f64::from)) * 256.0;
+            let [lower, higher] = bounds.world();
             let corners = host::triangles(&world.scene, &model(), *instance);
-            let corners = || corners.iter().flatten().map(|place| *place - corner);
+            let corners = || corners.iter().flatten().copied();
             let [low, high] =
                 [corners().reduce(DVec3::min), corners().reduce(DVec3::max)].map(|of| of.expect("some"));
-            assert!(bounds.low.cmple(low).all() && high.cmple(bounds.high).all(), "{bounds:?} {low} {high}");
-            let size = (bounds.high - bounds.low).length() / (high - low).length();
+            assert!(lower.cmple(low).all() && high.cmple(higher).all(), "{bounds:?} {low} {high}");
+            let size = (higher - lower).length() / (high - low).length();
             assert!(size < 1.7, "{size} times as large as necessary");
-            low_of.push(bounds.low);
+            assert!(size > 1.02, "the other box is tight");
+            let tight = world.scene.tight_bounds(*instance).expect("there").world();
+            // A part in a hundred thousand for rounding, of a box that is smaller than 40 units.
+            let off = [tight[0] - low, tight[1] - high].map(|off| off.abs().max_element());
+            assert!(off[0].max(off[1]) < 1e-3 && tight[0].cmple(low + 1e-4).all(), "{tight:?} {low} {high}");
+            low_of.push(lower);
         }
     }
     assert!(low_of[2] != low_of[7], "it moves");
@@ -164,9 +170,17 @@ fn boxes_hold_what_is_posed() {
     let instance = world.scene.spawn(statue, turned).expect("room");
     let bounds = world.scene.bounds(instance).expect("there");
     let corners = model().meshes.iter().map(|mesh| mesh.positions.len()).sum::<usize>();
-    let size = bounds.high - bounds.low;
+    let [low, high] = bounds.world();
+    let size = high - low;
     assert!(corners > 0 && size.min_element() > 1.0 && size.max_element() < 40.0, "{size}");
     let patch = world.scene.instances(world.land).expect("terrain")[4];
-    let bounds = world.scene.bounds(patch).expect("there");
-    assert!(bounds.low.x <= -256.0 * f64::from(bounds.cell[0]) && bounds.high.x > bounds.low.x);
+    let around = world.scene.bounds(patch).expect("there").world();
+    let [low, high] = world.scene.tight_bounds(patch).expect("there").world();
+    assert!(around[0].cmplt(low).all() && high.cmplt(around[1]).all(), "{around:?} {low} {high}");
+    let points = (0..=32).flat_map(|row| (0..=32).map(move |column| [column, row].map(f64::from)));
+    let heights =
+        points.map(|[x, z]| world.scene.ground(world.land, x, z).expect("terrain").expect("there").height);
+    let [lowest, highest] = heights.fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at), high.max(at)]);
+    let off = [low - DVec3::new(0.0, lowest, 0.0), high - DVec3::new(32.0, highest, 32.0)];
+    assert!(off.iter().all(|off| off.abs().max_element() < 1e-3), "{off:?}");
 }

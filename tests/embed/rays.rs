@@ -25,7 +25,7 @@ pub struct Hit {
 
 /// The ray through a place of the picture in pixels: where it begins, on the near plane, and its direction.
 pub fn ray(camera: &Camera, pixel: [f64; 2]) -> [DVec3; 2] {
-    let clip_from_world = camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4();
+    let clip_from_world = camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4();
     let inverse = clip_from_world.inverse();
     let [x, y] = [0, 1].map(|axis| 2.0 * pixel[axis] / f64::from(camera.viewport[axis]) - 1.0);
     let place = |depth: f64| {
@@ -80,7 +80,7 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
 /// The matrix of a placement, relative to cell (0, 0, 0).
 pub fn matrix(placement: &Placement) -> DMat4 {
     let turn = placement.turn.as_dquat().normalize();
-    DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, placement.position())
+    DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, placement.world())
 }
 
 /// A model of given triangles, three corners each, at one bone that rests at the origin, with a normal for each triangle

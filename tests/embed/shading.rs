@@ -129,7 +129,7 @@ fn shading_knows_surfaces_and_views() {
     let eyes = of("view.eye + vec4<f32>(vec3<f32>(view.cell), 0.0)");
     let clips = of("view.clip_from_world * vec4<f32>(surface.position, 1.0)");
     let light = relievo::asset::Light::default();
-    let (eye, toward) = (close().eye(), light.direction.normalize() * light.ambient);
+    let (eye, toward) = (close().eye_offset(), light.direction.normalize() * light.ambient);
     let near = |found: [f32; 4], wanted: [f32; 4], bound: f32| {
         found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() <= bound)
     };

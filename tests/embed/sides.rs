@@ -114,7 +114,7 @@ fn changes_after_recording_belong_to_the_next_frame() {
     }
     let usual = crate::world::camera(SIZE);
     let mirror = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
-    view.set(Camera { view_from_world: usual.view_from_world * mirror, ..usual }).expect("a camera");
+    view.set(Camera { view_from_cell: usual.view_from_cell * mirror, ..usual }).expect("a camera");
     frame.pass(&mut encoder, |pass| {
         renderer.draw(pass, &world.scene, &view, relievo::render::Layer::Color).expect("drawn");
     });

@@ -42,7 +42,7 @@ impl Stage {
     pub fn below(&self, x: f64, z: f64) -> Option<f64> {
         let ray = Ray {
             cell: [0; 3],
-            at: DVec3::new(x, 500.0, z),
+            offset: DVec3::new(x, 500.0, z),
             direction: DVec3::NEG_Y,
             limit: f64::INFINITY,
             mask: u16::MAX,

@@ -240,7 +240,7 @@ fn terrain_and_characters_have_places_and_numbers() {
         } else if id[0] == world.creature.number() {
             crowd.insert(id[1]);
             let near = world.crowd.iter().find(|instance| instance.number() == id[1]).expect("one of them");
-            let place = world.scene.placement(*near).expect("there").position();
+            let place = world.scene.placement(*near).expect("there").world();
             assert!((place - DVec3::new(x, y, z)).length() < 12.0, "{place} {position:?}");
         }
     }

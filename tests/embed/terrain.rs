@@ -99,7 +99,7 @@ fn heights_that_change_show_at_once_and_are_known_when_read() {
     lift(&gpu, &fields, 300);
     stage.scene.read_ground(stage.land).expect("read");
     let raised = bounds(&stage);
-    assert!(found.iter().zip(&raised).all(|(a, b)| (b.high.y - a.high.y - 300.0).abs() < 0.1));
+    assert!(found.iter().zip(&raised).all(|(a, b)| (b.world()[1].y - a.world()[1].y - 300.0).abs() < 0.1));
     assert!(stage.shot() == stage_of(&gpu, &fields, &HERE).shot());
 }
 

@@ -79,7 +79,7 @@ impl Eye {
 
 /// Where a camera shows a place, as a fraction of the picture, from its upper left.
 fn shown(camera: &Camera, place: DVec3) -> [f64; 2] {
-    let clip_from_world = camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4();
+    let clip_from_world = camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4();
     let clip = clip_from_world * place.extend(1.0);
     [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w]
 }
@@ -159,7 +159,7 @@ fn placements_and_cameras_move() {
         // A camera of another cell is at the same place.
         let elsewhere = |camera: Camera| Camera {
             cell: [border, 0, 0],
-            view_from_world: camera.view_from_world
+            view_from_cell: camera.view_from_cell
                 * glam::Mat4::from_translation(Vec3::new(border as f32 * Placement::CELL, 0.0, 0.0)),
             ..camera
         };

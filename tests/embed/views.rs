@@ -113,7 +113,7 @@ fn dropped_encoders_are_harmless() {
     let mut before = frame.shot(&mut world.scene, &mut view, &renderer);
     for is_finished in [false, true] {
         let placement = world.scene.placement(world.crowd[0]).expect("there");
-        let away = Placement { at: placement.at + Vec3::new(2.0, 1.0, 0.0), ..placement };
+        let away = Placement { offset: placement.offset + Vec3::new(2.0, 1.0, 0.0), ..placement };
         world.scene.move_to(world.crowd[0], away).expect("there");
         let mut encoder = gpu.encoder("dropped");
         world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
@@ -210,7 +210,7 @@ fn light() -> Camera {
     let look =
         glam::camera::rh::view::look_at_mat4(Vec3::new(20.0, 60.0, 20.0), Vec3::new(0.0, 0.0, -6.0), Vec3::Y);
     let project = glam::camera::rh::proj::directx::orthographic(-14.0, 14.0, -14.0, 14.0, 1.0, 200.0);
-    Camera { view_from_world: look, clip_from_view: project, ..camera([256; 2]) }
+    Camera { view_from_cell: look, clip_from_view: project, ..camera([256; 2]) }
 }
 
 /// The levels of detail of the light's view are those that the eye decides, and neither its own nor always the same.

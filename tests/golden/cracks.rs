@@ -30,7 +30,7 @@ fn sky_pixels(lift: i32) -> usize {
     scene.add_terrain(&TerrainSource::from_fields(config, fields.clone(), &patches)).expect("added");
     let target = Offscreen::new(&gpu, [640, 480], true, 1, false).expect("allocated");
     // Positions are relative to a cell near the first patch, which lies elsewhere.
-    let Placement { cell, at: corner, .. } = Placement::at_world(DVec3::new(first[0], 0.0, first[1]));
+    let Placement { cell, offset: corner, .. } = Placement::at_world(DVec3::new(first[0], 0.0, first[1]));
     let mut sky = 0;
     for step in 0..12 {
         let angle = step as f32 * 0.55;

@@ -134,8 +134,8 @@ fn from_below() -> Camera {
     );
     let clip_from_view =
         Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(1.4, 1.8, -0.5)) * slant;
-    let view_from_world = Mat4::IDENTITY;
-    Camera { cell: [0; 3], view_from_world, clip_from_view, viewport: [176, 112], depth: Depth::Forward }
+    let view_from_cell = Mat4::IDENTITY;
+    Camera { cell: [0; 3], view_from_cell, clip_from_view, viewport: [176, 112], depth: Depth::Forward }
 }
 
 /// Two squares in one plane: with the polygon's depth one hides the other; with the relief's, the higher stones of

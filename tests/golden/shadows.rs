@@ -35,13 +35,15 @@ fn picture(sun: Vec3) -> RgbaImage {
     scene.spawn(rocks, place).expect("room");
     // Beside the picture: only its shadow shows.
     let beside = ground(&scene, 5.5, 25.0);
-    scene.spawn(rocks, Placement { at: beside.at + Vec3::Y * 3.0, ..beside.scaled(1.5) }).expect("room");
+    scene
+        .spawn(rocks, Placement { offset: beside.offset + Vec3::Y * 3.0, ..beside.scaled(1.5) })
+        .expect("room");
     let bricks = BuiltInMap::Bricks;
     let (heights, colors) = (bricks.height_map(128).expect("a map"), bricks.albedo(128).expect("colours"));
     let walls = scene.add_relief(&Relief::wall(2.0, heights, colors), 1).expect("added");
     let place = ground(&scene, 17.0, 13.0);
     scene
-        .spawn(walls, Placement { at: place.at + Vec3::Y * 2.0, ..place.turned(0.2).scaled(7.0) })
+        .spawn(walls, Placement { offset: place.offset + Vec3::Y * 2.0, ..place.turned(0.2).scaled(7.0) })
         .expect("room");
 
     let size = SIZE.map(|edge| 2 * edge);
@@ -50,7 +52,7 @@ fn picture(sun: Vec3) -> RgbaImage {
     let mut renderer = Renderer::new(&gpu, target.format()).expect("a format");
     renderer.prepare(&scene).expect("compiled");
     let mut eye = scene.view(Default::default()).expect("a view");
-    let focus = ground(&scene, 15.5, 17.0).position().as_vec3() + Vec3::Y;
+    let focus = ground(&scene, 15.5, 17.0).world().as_vec3() + Vec3::Y;
     let camera = Camera::looking_at(focus + Vec3::new(-1.0, 7.0, 14.0), focus, 0.75, [0.1, 200.0], size);
     eye.set(camera).expect("a camera");
     shadow.fit(&scene, &mut [&mut eye], 30.0).expect("fitted");

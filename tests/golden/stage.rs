@@ -14,7 +14,7 @@ pub const SKY: [f32; 3] = [0.02, 0.025, 0.03];
 /// A camera that draws at twice the size.
 pub fn camera(view_from_world: Mat4, clip_from_view: Mat4, size: [u32; 2]) -> Camera {
     let viewport = size.map(|edge| 2 * edge);
-    Camera { cell: [0; 3], view_from_world, clip_from_view, viewport, depth: Depth::Forward }
+    Camera { cell: [0; 3], view_from_cell: view_from_world, clip_from_view, viewport, depth: Depth::Forward }
 }
 
 /// Records a frame of a scene and draws it.

@@ -21,11 +21,11 @@ pub(super) struct Eye {
 
 impl Eye {
     pub fn new(camera: &Camera) -> Result<Self, InputError> {
-        let Camera { view_from_world, clip_from_view, viewport, depth, .. } = *camera;
-        let own = LodCamera::new(view_from_world, clip_from_view, viewport, depth == Depth::Reversed, 0.0)?;
+        let Camera { view_from_cell, clip_from_view, viewport, depth, .. } = *camera;
+        let own = LodCamera::new(view_from_cell, clip_from_view, viewport, depth == Depth::Reversed, 0.0)?;
         Ok(Self {
-            right: clip_from_view.as_dmat4() * view_from_world.as_dmat4(),
-            drawn: camera.clip_from_world().as_dmat4(),
+            right: clip_from_view.as_dmat4() * view_from_cell.as_dmat4(),
+            drawn: camera.clip_from_cell().as_dmat4(),
             viewport: DVec2::from(viewport.map(f64::from)),
             eye: own.eye.as_dvec3(),
             ahead: own.ahead.as_dvec3(),

@@ -325,7 +325,7 @@ fn placed(placement: &Placement, cell: [i32; 3]) -> DMat4 {
     let corner = DVec3::from([0, 1, 2].map(cells)) * f64::from(Placement::CELL);
     let [x, y, z, w] = placement.turn.to_array().map(f64::from);
     let turn = DQuat::from_xyzw(x, y, z, w).normalize();
-    let at = corner + placement.at.as_dvec3();
+    let at = corner + placement.offset.as_dvec3();
     DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, at)
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn camera(view: &SquareView) -> Camera {
         Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(width, height, -0.25));
     Camera {
         cell: [0; 3],
-        view_from_world: Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose(),
+        view_from_cell: Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose(),
         clip_from_view,
         viewport: view.size,
         depth: Depth::Forward,

@@ -61,8 +61,8 @@ impl Frustum {
             [from, from + along * ((end - begin) / plane.dot(along))]
         });
         let corners = [near.map(|[near, _]| near), near.map(|[_, far]| far)];
-        let cell = DVec3::from(camera.cell.map(f64::from)) * f64::from(Placement::CELL);
-        let world_from_view = DMat4::from_translation(cell) * camera.view_from_world.as_dmat4().inverse();
+        let cell = Placement::corner(camera.cell);
+        let world_from_view = DMat4::from_translation(cell) * camera.view_from_cell.as_dmat4().inverse();
         Ok(Self { corners, world_from_view })
     }
 }
@@ -104,7 +104,7 @@ fn camera(axes: DMat3, middle: DVec3, radius: f64, size: u32) -> Camera {
     Camera {
         // Conversion saturates.
         cell: cell.to_array().map(|axis| axis as i32),
-        view_from_world: view.as_mat4(),
+        view_from_cell: view.as_mat4(),
         clip_from_view,
         viewport: [size; 2],
         depth: Depth::Forward,
@@ -166,8 +166,8 @@ mod tests {
 
     /// Where a place in the world lies in the map, in texels.
     fn texels(fit: &Fit, place: DVec3) -> DVec3 {
-        let cell = DVec3::from(fit.camera.cell.map(f64::from)) * f64::from(Placement::CELL);
-        let clip = fit.camera.clip_from_view.as_dmat4() * fit.camera.view_from_world.as_dmat4();
+        let cell = Placement::corner(fit.camera.cell);
+        let clip = fit.camera.clip_from_view.as_dmat4() * fit.camera.view_from_cell.as_dmat4();
         clip.transform_point3(place - cell) * DVec3::new(256.0, 256.0, 1.0)
     }
 
@@ -186,7 +186,7 @@ mod tests {
                 {
                     let [right, up] = [0, 1].map(|at| 1.0 / f64::from(camera.clip_from_view.col(at)[at]));
                     let seen = DVec3::new(x * right * ahead, y * up * ahead, -ahead);
-                    let place = camera.view_from_world.as_dmat4().inverse().transform_point3(seen);
+                    let place = camera.view_from_cell.as_dmat4().inverse().transform_point3(seen);
                     let at = texels(&fit, place);
                     let most = 256.0 * 0.95;
                     let is_far = ahead > 30.0 && shown.len() == 1 && camera.viewport == [100, 300];

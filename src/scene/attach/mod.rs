@@ -63,6 +63,11 @@ impl Scene {
     /// bone as each frame poses it, with `offset` from the mesh's space to the bone's. Nothing of that passes through the host.
     /// A mesh that is attached already changes to the new bone.
     ///
+    /// The offset is in the bone's space, so the scales of the character and of its bones act on it: on a character in
+    /// centimetres that is placed with a scale of 0.01, a translation of 1 is a centimetre, and a mesh in metres is a hundredth
+    /// as large. [`InstancePose::offset_of_world_units`](crate::scene::InstancePose::offset_of_world_units) turns an offset in
+    /// world units into one of the bone's space: `scene.pose(character)?.offset_of_world_units(bone, offset)?`.
+    ///
     /// In views, the mesh is selected together with its character, by a sphere that holds both wherever the clip takes the bone,
     /// and takes a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. The bones of a character
     /// that carries a mesh are sampled in every frame in which it is seen, so that the mesh is at its place but for

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::Character;
-use crate::Error;
 use crate::animation::compact::CompactPass;
 use crate::animation::drive::{DrivePass, driven_words};
 use crate::animation::order::Order;
+use crate::asset::Transform;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::scene::poses::PoseBuffers;
+use crate::{Error, InputError};
 
 /// What the caller drives.
 #[derive(Debug, Default)]
@@ -19,6 +20,8 @@ pub(super) struct Driven {
     version: u64,
     /// Instances whose pose is no longer what the gate knows of it.
     strange: Vec<u32>,
+    /// The local transforms of bones that the host wrote in the last frame, by instance and bone.
+    pub(super) written: BTreeMap<u32, BTreeMap<usize, Transform>>,
 }
 
 impl Character {
@@ -31,7 +34,36 @@ impl Character {
         };
         // What was driven before is sampled afresh.
         self.driven.strange.extend(before.map(|_| index));
+        self.driven.written.remove(&index);
         self.driven.version += 1;
+    }
+
+    /// Takes down the local transform that the host writes to a bone in this frame.
+    ///
+    /// # Errors
+    /// [`InputError`] for a bone that is not driven.
+    pub fn note_written(&mut self, index: u32, bone: usize, local: Transform) -> Result<(), InputError> {
+        let is_driven = |bones: &Vec<u32>| bones.iter().any(|driven| *driven as usize == bone);
+        if !self.driven.bones.get(&index).is_some_and(is_driven) {
+            return Err(InputError::new("bone", bone, "must be driven (Scene::drive)"));
+        }
+        self.driven.written.entry(index).or_default().insert(bone, local);
+        Ok(())
+    }
+
+    /// Forgets what the host wrote in the last frame.
+    pub fn forget_written(&mut self) {
+        self.driven.written.clear();
+    }
+
+    /// Whether the host wrote bones of an instance in the last frame.
+    pub fn is_written(&self, index: u32) -> bool {
+        self.driven.written.contains_key(&index)
+    }
+
+    /// Number of bones that the caller drives, of all instances.
+    pub fn driven_bones(&self) -> usize {
+        self.driven.bones.values().map(Vec::len).sum()
     }
 
     /// Ends what the caller drives of an instance that goes.
@@ -43,7 +75,7 @@ impl Character {
 
     /// Prepares what is driven, unless it is prepared.
     pub fn fit_driven(&mut self, gpu: &Gpu, staged: &mut Staged) -> Result<(), Error> {
-        let Driven { bones, version, strange } = &mut self.driven;
+        let Driven { bones, version, strange, .. } = &mut self.driven;
         for index in strange.drain(..).map(|index| index as usize) {
             if let Some(runtime) = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index)) {
                 staged.elements(&runtime.frame.state.history, index - runtime.slots.start, &[[0; 4]])?;

@@ -5,6 +5,7 @@ use glam::{DAffine3, DVec3};
 use super::Character;
 use super::layers::layered_pose;
 use crate::InputError;
+use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::{Instance, ModelMatrices, Pose};
 use crate::asset::{Model, Transform};
 use crate::gpu::Buffer;
@@ -94,8 +95,18 @@ impl Character {
         Ok(ClipTime { clip: play.clip as usize, seconds })
     }
 
-    /// The pose of an instance at a time of the scene.
+    /// The pose of an instance at a time of the scene, with the bones that were written in the last frame.
     pub fn pose(&self, index: u32, now: f64) -> Result<Pose, InputError> {
+        let mut pose = self.sampled(index, now)?;
+        if let Some(written) = self.driven.written.get(&index) {
+            written.iter().for_each(|(bone, local)| pose.locals[*bone] = *local);
+            pose.model_matrices = local_to_model(&self.merged.model.skeleton, &pose.locals);
+        }
+        Ok(pose)
+    }
+
+    /// The pose of an instance at a time of the scene as its clip and its layers have it.
+    pub fn sampled(&self, index: u32, now: f64) -> Result<Pose, InputError> {
         let ClipTime { clip, seconds } = self.clip_time(index, now)?;
         let above = self.layers.iter().map(|layer| {
             let (play, weight) = (&layer.plays[index as usize], layer.weights[index as usize].at(now));

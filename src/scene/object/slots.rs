@@ -11,6 +11,14 @@ impl Slots<Object> {
         object.instances.contains([instance.index, instance.generation]).then_some(object)
     }
 
+    /// As [`Slots::existing`], to be changed.
+    pub fn existing_mut(&mut self, instance: InstanceId) -> Option<&mut Object> {
+        let InstanceId { object: ObjectId { scene, index, generation }, .. } = instance;
+        let is_of = scene == self.scene();
+        let object = self.get_mut([index, generation]).filter(|_| is_of)?;
+        object.instances.contains([instance.index, instance.generation]).then_some(object)
+    }
+
     /// All objects with their handles, slot by slot.
     pub fn each(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
         let scene = self.scene();

@@ -55,12 +55,19 @@ impl Terrain {
         limit: f64,
     ) -> Option<SurfaceHit> {
         let patch = *self.source.patches.get(index as usize)?;
-        let corner = DVec3::from(cell.map(f64::from)) * f64::from(Placement::CELL);
         let [x, z] = patch.map(|index| f64::from(index) * self.edge);
-        let at = at + (corner - DVec3::new(x, 0.0, z));
+        let at = at + (Placement::corner(cell) - DVec3::new(x, 0.0, z));
         let hit = self.ground.hit(patch, [at, direction], limit)?;
         // The ground is seen from both sides.
         Some(SurfaceHit { distance: hit.distance, normal: hit.normal })
+    }
+
+    /// The corners of the smallest box around a patch whose middle on the plane lies at `middle`; `None` where its heights are
+    /// unknown.
+    pub fn bounds(&self, index: u32, middle: DVec3) -> Option<[DVec3; 2]> {
+        let [lowest, highest] = self.ground.extremes(*self.source.patches.get(index as usize)?)?;
+        let half = DVec3::new(self.edge / 2.0, 0.0, self.edge / 2.0);
+        Some([middle - half + DVec3::Y * lowest, middle + half + DVec3::Y * highest])
     }
 
     /// The ground at a position of the world, east and south of its origin.

@@ -61,7 +61,7 @@ use uniforms::{lod_camera, terrain_view};
 /// eye.set(camera)?;
 /// sun.set(Camera {
 ///     cell: camera.cell,
-///     view_from_world: glam::camera::rh::view::look_at_mat4(Vec3::new(-4.0, 8.0, 6.0), Vec3::ZERO, Vec3::Y),
+///     view_from_cell: glam::camera::rh::view::look_at_mat4(Vec3::new(-4.0, 8.0, 6.0), Vec3::ZERO, Vec3::Y),
 ///     // 40 units to either side, and 100 ahead.
 ///     clip_from_view: glam::camera::rh::proj::directx::orthographic(-40.0, 40.0, -40.0, 40.0, 0.0, 100.0),
 ///     viewport: [2048, 2048],
@@ -306,7 +306,7 @@ impl View {
         let own = [camera];
         let cameras = if self.lod_cameras.is_empty() { &own[..] } else { &self.lod_cameras };
         let mut view = SelectView {
-            planes: planes(camera.clip_from_world()),
+            planes: planes(camera.clip_from_cell()),
             cell: IVec3::from(camera.cell),
             mask: self.mask.into(),
             camera_count: cameras.len() as u32,

@@ -20,11 +20,11 @@ impl SceneView {
         (light, shadow): (&Light, Option<&ViewShadow>),
     ) -> Self {
         let eye = match own.perspective > 0.0 {
-            true => camera.eye().extend(1.0),
+            true => camera.eye_offset().extend(1.0),
             false => (-camera.ahead()).extend(0.0),
         };
         Self {
-            clip_from_world: camera.clip_from_world(),
+            clip_from_world: camera.clip_from_cell(),
             last_clip_from_world: last_clip_from_world(last, camera.cell),
             eye,
             light: light.direction.normalize().extend(light.ambient),
@@ -56,7 +56,7 @@ impl SceneView {
 /// The matrix from positions relative to the corner of a cell to the last frame's clip space.
 fn last_clip_from_world(last: &Camera, cell: [i32; 3]) -> Mat4 {
     match last.cell == cell {
-        true => last.clip_from_world(),
+        true => last.clip_from_cell(),
         false => clip_from_cell(last, cell).as_mat4(),
     }
 }
@@ -65,14 +65,13 @@ fn last_clip_from_world(last: &Camera, cell: [i32; 3]) -> Mat4 {
 pub(super) fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> DMat4 {
     let cells = [0, 1, 2].map(|axis| f64::from(cell[axis]) - f64::from(camera.cell[axis]));
     let moved = DMat4::from_translation(DVec3::from(cells) * f64::from(Placement::CELL));
-    camera.clip_from_view.as_dmat4() * camera.view_from_world.as_dmat4() * moved
+    camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4() * moved
 }
 
 /// Where the samples of a terrain lie in a view: counted from the one nearest to the eye.
 pub(super) fn terrain_view(camera: &Camera, terrain: &SeenTerrain) -> TerrainView {
     let SeenTerrain { spacing, object } = *terrain;
-    let corner = DVec3::from(camera.cell.map(f64::from)) * f64::from(Placement::CELL);
-    let eye = corner + camera.eye().as_dvec3();
+    let (corner, eye) = (Placement::corner(camera.cell), camera.world());
     // Conversion saturates; samples so far away are not drawn precisely.
     let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
     let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
@@ -118,13 +117,8 @@ impl SelectView {
 /// A camera that decides levels of detail, relative to the corner of a cell.
 pub(super) fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result<LodCamera, InputError> {
     let is_reversed = camera.depth == Depth::Reversed;
-    let own =
-        LodCamera::new(camera.view_from_world, camera.clip_from_view, camera.viewport, is_reversed, pixels);
-    // The caller's field has another name.
-    let mut own = own.map_err(|error| match error.path.as_str() {
-        "camera.view_from_cell" => InputError { path: "camera.view_from_world".to_owned(), ..error },
-        _ => error,
-    })?;
+    let Camera { view_from_cell, clip_from_view, viewport, .. } = *camera;
+    let mut own = LodCamera::new(view_from_cell, clip_from_view, viewport, is_reversed, pixels)?;
     let cells = |axis: usize| f64::from(camera.cell[axis]) - f64::from(cell[axis]);
     let offset = glam::DVec3::from([0, 1, 2].map(cells)) * f64::from(Placement::CELL);
     own.eye = (own.eye.as_dvec3() + offset).as_vec3();
@@ -140,8 +134,8 @@ mod tests {
         let good = Camera::looking_at(Vec3::ZERO, Vec3::NEG_Z, 0.8, [0.1, 100.0], [64, 64]);
         assert!(lod_camera(&good, [0; 3], 1.0).is_ok());
         let refused = |camera: Camera| lod_camera(&camera, [0; 3], 1.0).expect_err("refused").path;
-        let projected = Camera { view_from_world: good.clip_from_view, ..good };
-        assert_eq!(refused(projected), "camera.view_from_world");
+        let projected = Camera { view_from_cell: good.clip_from_view, ..good };
+        assert_eq!(refused(projected), "camera.view_from_cell");
         let reversed = Camera { depth: Depth::Reversed, ..good };
         assert_eq!(refused(reversed), "camera.clip_from_view");
     }

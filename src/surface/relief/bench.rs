@@ -151,8 +151,8 @@ fn camera() -> Camera {
     let slant = Mat4 { z_axis: Vec4::new(-x / z, y / z, 1.0, 0.0), ..Mat4::IDENTITY };
     let clip_from_view =
         Mat4::from_translation(Vec3::Z * 0.5) * Mat4::from_scale(Vec3::new(2.0, 2.0, -0.25)) * slant;
-    let view_from_world = Mat4::IDENTITY;
-    Camera { cell: [0; 3], view_from_world, clip_from_view, viewport: [EDGE; 2], depth: Depth::Forward }
+    let view_from_cell = Mat4::IDENTITY;
+    Camera { cell: [0; 3], view_from_cell, clip_from_view, viewport: [EDGE; 2], depth: Depth::Forward }
 }
 
 /// The unit vector towards the eye, tangent space.

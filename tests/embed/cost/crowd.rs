@@ -106,7 +106,7 @@ impl Staged {
         let mut scene = Scene::new(gpu).expect("compiled");
         let object = scene.add_character(&crowd.model, COUNT).expect("added");
         for (at, place) in crowd.places.iter().enumerate() {
-            let placement = Placement { at: *place, ..Default::default() };
+            let placement = Placement { offset: *place, ..Default::default() };
             let instance = scene.spawn(object, placement).expect("room");
             let play = Play { start: -f64::from(crowd.start(at)), ..Play::new("0") };
             scene.play(instance, &play).expect("the clip");
@@ -150,7 +150,7 @@ impl Staged {
         let plate = self.scene.add_mesh(&plate, 1).expect("added");
         let (low, high) = (crowd.places[0], crowd.places[COUNT - 1]);
         let width = 2.0 * (high - low).abs().max_element();
-        let middle = Placement { at: (low + high) / 2.0 - Vec3::Y * width, ..Placement::default() };
+        let middle = Placement { offset: (low + high) / 2.0 - Vec3::Y * width, ..Placement::default() };
         self.scene.spawn(plate, middle.scaled(width)).expect("room");
         self.shadow = size.map(|size| SunShadow::new(&mut self.scene, size).expect("a shadow"));
         self

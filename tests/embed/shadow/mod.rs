@@ -224,7 +224,7 @@ fn shadows_stay_where_they_are_while_the_camera_moves() {
         // In larger steps, texels have another size.
         if other.clip_from_view == sun.clip_from_view {
             compared += 1;
-            moved += usize::from(other.view_from_world != sun.view_from_world);
+            moved += usize::from(other.view_from_cell != sun.view_from_cell);
             let off = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| {
                 a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
             };

@@ -97,10 +97,10 @@ impl Land {
         let high = DVec3::new(self.edge(), 0.2 * self.edge(), self.edge());
         let framed = Camera::framing(DVec3::ZERO, high, SIZE);
         let shift = glam::IVec3::from(framed.cell).as_vec3() * -Placement::CELL;
-        let clip_from_world = framed.clip_from_world() * Mat4::from_translation(shift);
+        let clip_from_world = framed.clip_from_cell() * Mat4::from_translation(shift);
         let shading = Shading::default();
         let light = Vec3::from(shading.light).extend(shading.ambient);
-        SceneView { light, ..through(clip_from_world, (framed.eye() - shift).extend(1.0)) }
+        SceneView { light, ..through(clip_from_world, (framed.eye_offset() - shift).extend(1.0)) }
     }
 
     pub fn stage(&self, gpu: &Gpu, layouts: &SceneLayouts, indices: u32) -> Stage {

@@ -49,11 +49,11 @@ impl World {
             scene.play(walker, &Play { start: -0.3 * f64::from(at), ..Play::new("walk") })?;
         }
         let place = ground(&scene, 16.0, 12.0);
-        scene.spawn(walls, Placement { at: place.at + Vec3::Y * 3.0, ..place.scaled(8.0) })?;
+        scene.spawn(walls, Placement { offset: place.offset + Vec3::Y * 3.0, ..place.scaled(8.0) })?;
         if evening {
             scene.set_light(Light { direction: Vec3::new(-0.8, 0.3, 0.1), ..Light::default() })?;
         }
-        let focus = ground(&scene, 15.0, 17.0).position().as_vec3() + Vec3::Y * 2.0;
+        let focus = ground(&scene, 15.0, 17.0).world().as_vec3() + Vec3::Y * 2.0;
         let position = focus + Vec3::new(-4.0, 4.0, 13.0);
         Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
     }
