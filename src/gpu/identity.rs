@@ -20,7 +20,7 @@ mod browser {
             Self(device.clone())
         }
 
-        pub fn takes(&self, _: &mut wgpu::CommandEncoder) -> bool {
+        pub fn is_taken(&self, _: impl FnOnce(&wgpu::Buffer)) -> bool {
             true
         }
     }
@@ -63,13 +63,13 @@ mod native {
             }))
         }
 
-        /// Whether an encoder can record resources of this device. It records a command without effect.
+        /// Whether an encoder or a pass, to which `record` gives a buffer, can record resources of this device.
         ///
         /// wgpu panics for an identifier that the encoder's instance does not know. The panic is caught here, before anything
         /// else is recorded; the program's panic hook sees it.
-        pub fn takes(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
+        pub fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
             let probe = self.0.probe.get_or_init(|| probe(&self.0.device));
-            catch_unwind(AssertUnwindSafe(|| encoder.clear_buffer(probe, 0, Some(0)))).is_ok()
+            catch_unwind(AssertUnwindSafe(|| record(probe))).is_ok()
         }
     }
 
@@ -89,7 +89,7 @@ mod native {
         let descriptor = wgpu::BufferDescriptor {
             label: Some("probe of encoders"),
             size: 4,
-            usage: wgpu::BufferUsages::COPY_DST,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::INDEX,
             mapped_at_creation: false,
         };
         (0..STEP * number).for_each(|_| drop(device.create_buffer(&descriptor)));
@@ -151,7 +151,7 @@ mod native {
             let [one, two] = [gpu(), gpu()];
             for (taker, maker) in [(&one, &one), (&one, &two), (&two, &one), (&two, &two)] {
                 let mut encoder = maker.encoder("probed");
-                assert_eq!(taker.takes(&mut encoder), taker.is_same_device(maker));
+                assert_eq!(taker.check_encoder(&mut encoder).is_ok(), taker.is_same_device(maker));
                 // The encoder records on as if nothing had happened.
                 maker.scoped(|| maker.queue().submit([encoder.finish()])).expect("a valid encoder");
             }

@@ -32,6 +32,7 @@ mod wait;
 
 use std::sync::Arc;
 
+use crate::InputError;
 pub use crate::error::GpuError;
 #[cfg(not(target_arch = "wasm32"))]
 pub use adapter::adapters;
@@ -127,10 +128,22 @@ impl Gpu {
         self.identity == other.identity
     }
 
-    /// Whether an encoder can record this device's resources: `false` for one of another [`wgpu::Instance`]. wgpu itself refuses
-    /// encoders of another device of the same instance.
-    pub(crate) fn takes(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
-        self.identity.takes(encoder)
+    /// Whether `record`, which gives a buffer of 4 bytes to an encoder or a pass, can record this device's resources there:
+    /// `false` for those of another [`wgpu::Instance`]. wgpu itself refuses those of another device of the same instance. The
+    /// buffer may be an index buffer, or be cleared.
+    pub(crate) fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
+        self.identity.is_taken(record)
+    }
+
+    /// Refuses an encoder of another [`wgpu::Instance`].
+    ///
+    /// # Errors
+    /// [`InputError`] that names the encoder.
+    pub(crate) fn check_encoder(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), InputError> {
+        match self.is_taken(|probe| encoder.clear_buffer(probe, 0, Some(0))) {
+            true => Ok(()),
+            false => Err(foreign("encoder")),
+        }
     }
 
     /// The wgpu device.
@@ -170,6 +183,12 @@ impl Gpu {
     pub fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
+}
+
+/// The error for an encoder or a pass of another instance.
+pub(crate) fn foreign(path: &str) -> InputError {
+    let bound = "must be of the device on which the scene was made, or rebuilt";
+    InputError::new(path, "of another wgpu::Instance", bound)
 }
 
 /// WebGPU's default limits, with the adapter's own limits for the size and number of storage bindings: some

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use super::format::TargetFormat;
 use super::layer::Layer;
 use super::shading::Shading;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, foreign};
 use crate::lod::{OBJECT_LISTS, SceneDraw};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView, MeshDrawable};
 use crate::scene::layouts::SceneLayouts;
@@ -156,7 +156,7 @@ impl Renderer {
     /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
     /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: bind group 3,
     /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and the samples of the
-    /// renderer's format, and be of its device, which wgpu checks.
+    /// renderer's format, and be of its device: wgpu checks it.
     ///
     /// Each object takes an indirect draw for each of its parts and levels, and as many again if some of its instances are
     /// mirrored and others are not. A render bundle shows later recordings of the view too, and nothing checks whether the last
@@ -165,7 +165,7 @@ impl Renderer {
     /// not.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; a view of another scene; one that the last [`Scene::record`] left out; one
+    /// [`InputError`] for a scene on another device; a pass of another [`wgpu::Instance`]; a view of another scene; one that the last [`Scene::record`] left out; one
     /// that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
     /// of depth; a layer that the format has no attachment for; objects that were added since [`Renderer::prepare`]; and for
     /// [`Layer::Velocity`] a scene that does not keep its last frame.
@@ -178,6 +178,9 @@ impl Renderer {
     ) -> Result<(), InputError> {
         self.check_device(scene)?;
         let Some((drawn, objects)) = scene.drawn(view)? else { return Ok(()) };
+        if !self.gpu.is_taken(|probe| pass.set_index_buffer(probe.slice(..))) {
+            return Err(foreign("pass"));
+        }
         if layer == Layer::Transparent {
             self.check(&drawn, objects.iter().copied(), layer)?;
             if let Some(singles) = scene.drawn_singles(view) {

@@ -105,10 +105,7 @@ impl Scene {
     ) -> Result<(), Error> {
         self.gpu.check_loss()?;
         self.check(views)?;
-        if !self.gpu.takes(encoder) {
-            let bound = "must be of the device on which the scene was made, or rebuilt";
-            return Err(InputError::new("encoder", "of another wgpu::Instance", bound).into());
-        }
+        self.gpu.check_encoder(encoder)?;
         if self.is_empty() {
             self.uploaded = 0;
             return Ok(());

@@ -3,7 +3,7 @@
 use relievo::InputError;
 use relievo::asset::{Light, Model};
 use relievo::gpu::{Gpu, GpuError};
-use relievo::render::{DepthFormat, Layer, Renderer, TargetFormat};
+use relievo::render::{DepthFormat, Layer, Renderer, SunShadow, TargetFormat};
 use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Quality, Relief, Scene, TerrainSource};
 use relievo::terrain::config::Config;
@@ -142,7 +142,20 @@ fn another_instance_is_refused() {
     let mut encoder = other.encoder("of another instance");
     let recorded = world.scene.record(&mut encoder, &mut [&mut view]);
     assert_eq!(wrong(recorded), ["encoder", "of another wgpu::Instance"]);
+    let theirs = Frame::plain(&other, SIZE);
+    let mut shadow = SunShadow::new(&mut world.scene, 64).expect("a shadow");
+    shadow.fit(&world.scene, &mut [&mut view], 60.0).expect("fitted");
+    let renderer = frame.renderer(&own, &world.scene);
+    let mut own_encoder = own.encoder("frame");
+    world.scene.record(&mut own_encoder, &mut [&mut view, shadow.view()]).expect("recorded");
+    assert_eq!(wrong(shadow.draw(&mut encoder, &world.scene)), ["encoder", "of another wgpu::Instance"]);
+    theirs.pass(&mut encoder, |pass| {
+        let drawn = renderer.draw(pass, &world.scene, &view, Layer::Color);
+        assert_eq!(wrong(drawn), ["pass", "of another wgpu::Instance"]);
+    });
     other.queue().submit([encoder.finish()]);
+    shadow.draw(&mut own_encoder, &world.scene).expect("drawn");
+    own.queue().submit([own_encoder.finish()]);
     let renderer = frame.renderer(&own, &world.scene);
     let mut encoder = own.encoder("frame");
     world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");

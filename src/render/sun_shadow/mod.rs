@@ -172,8 +172,10 @@ impl SunShadow {
     /// Draws the map, in a pass of its own. Call it after [`Scene::record`], and before the passes that draw the views.
     ///
     /// # Errors
-    /// As [`Renderer::draw`] for the view of the light.
+    /// As [`Renderer::draw`] for the view of the light; [`InputError`] for an encoder of another [`wgpu::Instance`].
     pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) -> Result<(), InputError> {
+        self.view.check(scene, "shadow")?;
+        scene.gpu().check_encoder(encoder)?;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("sun shadow"),
             color_attachments: &[],
