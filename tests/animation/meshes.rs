@@ -179,6 +179,42 @@ fn vertices_without_weight_follow_their_first_joint() {
     skinned.refused("meshes[0].primitives[0].attributes.WEIGHTS_0[2]", "below 2, the skin's joints");
 }
 
+/// glTF has any number of influences.
+#[test]
+fn a_vertex_follows_the_strongest_of_many_joints() {
+    let mut skinned = Skinned::new();
+    for joint in 2..12 {
+        skinned.0.push("nodes", json!({"name": format!("joint_{joint}")}));
+    }
+    skinned.0.json["skins"][0]["joints"] = json!([0, 1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+    for set in 0..3_u32 {
+        let joints =
+            skinned.0.integers("VEC4", 1, &[4 * set, 4 * set + 1, 4 * set + 2, 4 * set + 3].repeat(4));
+        let weights: Vec<f32> =
+            (0..4).map(|slot| if 4 * set + slot < 10 { (4 * set + slot + 1) as f32 } else { 0.0 }).collect();
+        let weights = skinned.0.floats("VEC4", &weights.repeat(4));
+        skinned.attribute(&format!("JOINTS_{set}"), joints);
+        skinned.attribute(&format!("WEIGHTS_{set}"), weights);
+    }
+    let found = weights(&skinned.read().expect("valid"), 3);
+    // Of the weights 1 to 10 the eight largest, whose sum is 52.
+    let wanted: Vec<(u32, f32)> =
+        (2..10).rev().map(|joint| (joint, (f64::from(joint + 1) / 52.0) as f32)).collect();
+    assert_eq!(found, wanted);
+}
+
+/// Bounds of positions are not read.
+#[test]
+fn positions_need_no_bounds() {
+    let mut skinned = Skinned::new();
+    let plain = skinned.read().expect("valid");
+    let accessor = skinned.primitive()["attributes"]["POSITION"].as_u64().expect("an index") as usize;
+    for bound in ["min", "max"] {
+        skinned.0.json["accessors"][accessor].as_object_mut().expect("an object").remove(bound);
+        assert_eq!(skinned.read().expect("valid"), plain);
+    }
+}
+
 /// glTF lets readers skip primitives without positions; extensions may give them.
 #[test]
 fn primitives_without_positions_are_left_out() {

@@ -326,7 +326,7 @@ fn what_is_no_material_is_refused() {
         });
     };
     let png = encoded(&picture(), ImageFormat::Png);
-    bytes("images[0]", "[4 bytes]: must be PNG or JPEG", b"GIF8");
+    bytes("images[0]", "[4 bytes]: must be PNG, JPEG or WebP", b"GIF8");
     bytes("images[0]", "must be a whole Png", &png[..png.len() / 2]);
     let mut damaged = png.clone();
     damaged[png.len() / 2] ^= 0x55;
@@ -379,4 +379,40 @@ fn glossy_materials_have_their_diffuse_colour() {
     let path = format!("materials[0].extensions.{name}");
     skinned.0.json["materials"][0]["extensions"][name]["diffuseFactor"] = json!([0, 2, 0, 1]);
     skinned.refused(&format!("{path}.diffuseFactor[1]"), "in 0..=1");
+}
+
+/// A texture's WebP, and the PNG beside it, which is read in its place.
+#[test]
+fn textures_may_be_webp() {
+    let mut skinned = textured();
+    let plain = model(&skinned);
+    let view = skinned.0.view(&encoded(&picture(), ImageFormat::WebP));
+    skinned.0.json["images"]
+        .as_array_mut()
+        .expect("a list")
+        .push(json!({"bufferView": view, "mimeType": "image/webp"}));
+    skinned.0.json["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    let texture =
+        |source: usize| json!({"sampler": 0, "extensions": {"EXT_texture_webp": {"source": source}}});
+    skinned.0.json["textures"] = json!([texture(1)]);
+    // It is lossless.
+    assert_eq!(model(&skinned), plain);
+    skinned.0.json["textures"] = json!([texture(2)]);
+    skinned.refused("textures[0].extensions.EXT_texture_webp.source", "must be below 2");
+    skinned.0.json["textures"][0]["source"] = json!(0);
+    assert_eq!(model(&skinned), plain);
+    // 2048² texels of one colour, as libwebp packs them in 220 bytes.
+    let wide = [
+        &b"RIFF\xd4\x00\x00\x00WEBPVP8L\xc8\x00\x00\x00/\xff\xc7\xff\x01\x07\xd0\x84&4\xa1\xff\x01!A\xe2\xff\xeff\x22\xfa\x9f\xf1\x9f\xff\xfc"[..],
+        &b"\xe7?\xff\xf9\xcf\x7f\xfe\xf3\x9f\xff\xfc".repeat(15),
+        b"\xe7?\xff\xf9\xcf\x7f\xfe\xef\x01",
+    ];
+    let view = skinned.0.view(&wide.concat());
+    skinned.0.json["images"][0] = json!({"bufferView": view, "mimeType": "image/webp"});
+    let image = &model(&skinned).images[0];
+    assert!(image.dimensions() == (2048, 2048) && image.pixels().all(|texel| texel.0 == [9, 9, 9, 255]));
+    // KTX2, whatever the document says.
+    let view = skinned.0.view(b"\xabKTX 20\xbb\r\n\x1a\n");
+    skinned.0.json["images"][0]["bufferView"] = json!(view);
+    skinned.refused("images[0]", "gltf-transform ktxdecompress");
 }

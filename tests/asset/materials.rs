@@ -113,7 +113,7 @@ fn mistakes_are_refused_with_the_librarys_line() {
         ("newmtl wood\nmap_Kd gone.png\n", "wood.mtl line 2", "cannot be read"),
         ("newmtl wood\nmap_Kd ../c.png\n", "wood.mtl line 2", "in the folder"),
         ("newmtl wood\n\nmap_Kd broken.png\n", "wood.mtl line 3", "must be a whole"),
-        ("newmtl wood\nmap_d text.png\n", "wood.mtl line 2", "PNG or JPEG"),
+        ("newmtl wood\nmap_d text.png\n", "wood.mtl line 2", "PNG, JPEG or WebP"),
     ] {
         let folder = folder(library).with("broken.png", &image(COLORS)[..40]).with("text.png", "text");
         let error = folder.read(TRIANGLE).map(|_| ()).expect_err(library);

@@ -205,9 +205,13 @@ fn positions_exist(root: &Root) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Reports the first error that gltf-json finds. Three kinds are not errors here: accessors without a buffer
-/// view, which glTF defines as zeros; primitives without positions, which are left out; and extensions, which are
-/// checked before.
+/// The ends of paths at which gltf-json misses positions and their bounds.
+const OF_POSITIONS: [&str; 3] =
+    [".attributes[\"POSITION\"]", ".attributes[\"POSITION\"].min", ".attributes[\"POSITION\"].max"];
+
+/// Reports the first error that gltf-json finds. Some are not errors here: accessors without a buffer view, which
+/// glTF defines as zeros; primitives without positions, which are left out; positions without their bounds, which are
+/// not read; and extensions, which are checked before.
 fn validate(root: &Root) -> Result<(), InputError> {
     let mut first = None;
     root.validate(root, gltf_json::Path::new, &mut |path, fault| {
@@ -216,7 +220,7 @@ fn validate(root: &Root) -> Result<(), InputError> {
         }
         let path = path().to_string();
         let is_allowed = path.starts_with("accessors[") && path.ends_with("].bufferView")
-            || path.starts_with("meshes[") && path.ends_with(".attributes[\"POSITION\"]");
+            || path.starts_with("meshes[") && OF_POSITIONS.iter().any(|end| path.ends_with(end));
         if fault != Fault::Missing || !is_allowed {
             first = Some((path, fault));
         }

@@ -10,15 +10,20 @@ use super::draco::Draco;
 use super::meshopt::Meshopt;
 use crate::InputError;
 
-/// The extensions that a document may require.
-const READ: [&str; 6] = [
+/// The extensions that a document may require. Lights are left out; Blender requires them wherever there are any.
+const READ: [&str; 7] = [
     DRACO,
     "EXT_meshopt_compression",
     "KHR_meshopt_compression",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
-    "KHR_materials_pbrSpecularGlossiness",
+    WEBP,
+    "KHR_lights_punctual",
 ];
+
+/// The prefix of extensions for materials, which a document may require as well: beside colours and normal maps everything
+/// in materials is left out.
+const OF_MATERIALS: &str = "KHR_materials_";
 
 /// Draco compression of primitives.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
@@ -29,19 +34,19 @@ const MESHOPT: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"
 /// Many copies of a node's mesh.
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
-/// Extensions with images of other formats, and what to do about them. A document may require them if materials and images
-/// are not read.
-const OF_IMAGES: [(&str, &str); 4] = [
-    ("KHR_texture_basisu", "decompress its textures with `gltf-transform ktxdecompress IN OUT`"),
-    ("EXT_texture_webp", PNG),
-    ("EXT_texture_avif", PNG),
-    ("MSFT_texture_dds", PNG),
+/// Textures with WebP images.
+const WEBP: &str = "EXT_texture_webp";
+
+/// Extensions with images of formats that are not read, and what to do about them. A document may require them if materials
+/// and images are not read.
+const OF_IMAGES: [(&str, &str); 3] = [
+    ("KHR_texture_basisu", DECOMPRESS),
+    ("EXT_texture_avif", "convert its textures to PNG, as `gltf-transform png IN OUT` does"),
+    ("MSFT_texture_dds", "convert its textures to PNG"),
 ];
 
-const PNG: &str = "convert its textures to PNG or JPEG, as `gltf-transform png IN OUT` does";
-
-/// The prefix of extensions for other materials.
-const OF_MATERIALS: &str = "KHR_materials_";
+/// What to do about KTX2.
+pub const DECOMPRESS: &str = "decompress its textures, as `gltf-transform ktxdecompress IN OUT` does";
 
 /// Data of extensions that gltf-json does not read.
 pub struct Extensions {
@@ -51,7 +56,9 @@ pub struct Extensions {
     pub meshopt: Vec<Option<Meshopt>>,
     /// Compressed primitives, by their mesh and their place in it.
     draco: HashMap<(usize, usize), Draco>,
-    /// For each texture without an image that can be read, an extension that has one, and what to do about it.
+    /// For each texture, the image of `EXT_texture_webp`.
+    pub webp: Vec<Option<usize>>,
+    /// For each texture, an extension with an image that is not read, and what to do about it.
     pub unread_images: Vec<Option<(&'static str, &'static str)>>,
     /// Nodes with many copies of their mesh.
     instanced: Vec<usize>,
@@ -85,7 +92,12 @@ impl Extensions {
             let texture = material.get("normalTexture").unwrap_or(&Value::Null);
             extension(texture, "KHR_texture_transform", || format!("materials[{at}].normalTexture"))
         });
+        let webp = list(document, "textures").enumerate().map(|(at, texture)| {
+            let found: Option<Webp> = extension(texture, WEBP, || format!("textures[{at}]"))?;
+            Ok(found.map(|found| found.source))
+        });
         Ok(Self {
+            webp: webp.collect::<Result<_, InputError>>()?,
             normal_transforms: transforms.collect::<Result<_, _>>()?,
             meshopt: meshopt.collect::<Result<_, _>>()?,
             draco,
@@ -118,6 +130,11 @@ impl Extensions {
     }
 }
 
+#[derive(Deserialize)]
+struct Webp {
+    source: usize,
+}
+
 /// The elements of a list of an object; none if it has no such list.
 fn list<'a>(value: &'a Value, name: &str) -> impl Iterator<Item = &'a Value> {
     value.get(name).and_then(Value::as_array).into_iter().flatten()
@@ -139,7 +156,7 @@ fn extension<'a, T: Deserialize<'a>>(
 fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
     let of_images = |name: &str| OF_IMAGES.iter().find(|(known, _)| *known == name);
     let is_read = |name: &str| {
-        READ.contains(&name) || is_bare && (of_images(name).is_some() || name.starts_with(OF_MATERIALS))
+        READ.contains(&name) || name.starts_with(OF_MATERIALS) || is_bare && of_images(name).is_some()
     };
     let mut names =
         list(document, "extensionsRequired").enumerate().filter_map(|(at, name)| Some((at, name.as_str()?)));
@@ -147,18 +164,18 @@ fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
         None => Ok(()),
         Some((at, name)) => {
             let remedy = of_images(name).map(|(_, remedy)| format!("; {remedy}"));
-            let bound =
-                format!("is not read: must be one of {}{}", READ.join(", "), remedy.unwrap_or_default());
+            let bound = format!(
+                "is not read: must be one of {}, {OF_MATERIALS}*{}",
+                READ.join(", "),
+                remedy.unwrap_or_default()
+            );
             Err(InputError::new(format!("extensionsRequired[{at}]"), name, bound))
         }
     }
 }
 
-/// An extension of a texture that has an image in another format, if the texture has no other image.
+/// An extension of a texture with an image that is not read.
 fn unread_image(texture: &Value) -> Option<(&'static str, &'static str)> {
-    if texture.get("source").is_some() {
-        return None;
-    }
     let given = texture.get("extensions")?;
     OF_IMAGES.into_iter().find(|(name, _)| given.get(name).is_some())
 }

@@ -1,17 +1,18 @@
-//! Reads the materials that meshes use: base colour, its texture, normal map, and alpha; decodes PNG and JPEG images.
+//! Reads the materials that meshes use: base colour, its texture, normal map, and alpha; decodes PNG, JPEG and WebP images.
 
 use std::collections::HashMap;
 use std::io::Cursor;
 
+use gltf_json::Index;
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::{AlphaMode, Material as GltfMaterial};
 use gltf_json::texture::{Info, MagFilter, MinFilter, Sampler, Texture as GltfTexture, WrappingMode};
 use gltf_json::validation::Checked;
-use gltf_json::{Image, Index};
 use image::{ImageFormat, ImageReader, RgbaImage};
 
 use super::budget::Budget;
 use super::document::Document;
+use super::extensions::DECOMPRESS;
 use crate::InputError;
 use crate::asset::material::{Alpha, Filter, MAX_TEXELS, Material, Sampling, Texture, Wrapping};
 
@@ -94,7 +95,9 @@ impl Materials {
             }
             None => Sampling::default(),
         };
-        if texture.source.value() >= document.root.images.len() {
+        let images = document.root.images.len();
+        let webp = document.extensions.webp.get(at).copied().flatten();
+        let Some(source) = Some(texture.source.value()).filter(|source| *source < images).or(webp) else {
             return Err(match document.extensions.unread_images.get(at).copied().flatten() {
                 Some((name, remedy)) => {
                     let path = format!("textures[{at}].extensions.{name}");
@@ -102,12 +105,19 @@ impl Materials {
                 }
                 None => InputError::new(format!("textures[{at}].source"), "missing", "must be given"),
             });
+        };
+        if source >= images {
+            let path = format!("textures[{at}].extensions.EXT_texture_webp.source");
+            return Err(InputError::new(
+                path,
+                source,
+                format!("must be below {images}, the number of images"),
+            ));
         }
-        Ok(Texture { image: self.image(document, texture.source)?, sampling })
+        Ok(Texture { image: self.image(document, source)?, sampling })
     }
 
-    fn image(&mut self, document: &Document<'_>, index: Index<Image>) -> Result<usize, InputError> {
-        let at = index.value();
+    fn image(&mut self, document: &Document<'_>, at: usize) -> Result<usize, InputError> {
         if let Some(known) = self.of_images.get(&at) {
             return Ok(*known);
         }
@@ -156,13 +166,22 @@ impl<'a> Base<'a> {
     }
 }
 
-/// Decodes a PNG or JPEG. The content of the bytes decides the format, whatever `mimeType` says. Texels are charged to the
+/// The first bytes of KTX2.
+const KTX2: &[u8] = b"\xabKTX 20\xbb";
+
+/// The formats of images that are read.
+const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
+
+/// Decodes a PNG, JPEG or WebP. The content of the bytes decides the format, whatever `mimeType` says. Texels are charged to the
 /// budget; `path` names the image in errors.
 pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
     let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
+    if bytes.starts_with(KTX2) {
+        return Err(refused(format!("is KTX2, which is not read: {DECOMPRESS}")));
+    }
     let format = image::guess_format(bytes).ok();
-    let Some(format) = format.filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) else {
-        return Err(refused("must be PNG or JPEG".to_owned()));
+    let Some(format) = format.filter(|format| FORMATS.contains(format)) else {
+        return Err(refused("must be PNG, JPEG or WebP".to_owned()));
     };
     let reader = || ImageReader::with_format(Cursor::new(bytes), format);
     let unreadable = |error| refused(format!("must be a whole {format:?}: {error}"));
@@ -171,7 +190,9 @@ pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, In
         let bound = format!("must be at most {MAX_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
     }
-    budget.spend_texels(path, [width, height], bytes.len())?;
+    // A few bytes of WebP can hold a large image of one colour.
+    let packed = if format == ImageFormat::WebP { usize::MAX } else { bytes.len() };
+    budget.spend_texels(path, [width, height], packed)?;
     Ok(reader().decode().map_err(unreadable)?.into_rgba8())
 }
 

@@ -25,12 +25,13 @@
 //!   smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace, from the
 //!   texture coordinates of the normal texture if there is one, before any `KHR_texture_transform`. A vertex
 //!   whose corners have different tangents is repeated at the end of its primitive, one copy per tangent.
-//!   A vertex whose weights are all 0 follows the joint in its first slot, as in three.js.
+//!   A vertex whose weights are all 0 follows the joint in its first slot, as in three.js; of more than
+//!   [`MAX_INFLUENCES`](crate::asset::influences::MAX_INFLUENCES) joints it follows the strongest.
 //! - The winding of triangles that are mirrored at rest is reversed: for a whole mesh, or triangle by triangle
 //!   in a mesh where some bones mirror and others do not; see [`Mesh::indices`](crate::asset::Mesh::indices). A
 //!   clip whose scale has another sign than at rest shows such triangles from inside.
-//! - Of materials, the import reads base colour with its texture and the normal map with its scale (PNG or
-//!   JPEG, in the GLB, in `data:` URIs or in files beside the document; any set of texture coordinates, with
+//! - Of materials, the import reads base colour with its texture and the normal map with its scale (PNG,
+//!   JPEG or WebP, in the GLB, in `data:` URIs or in files beside the document; any set of texture coordinates, with
 //!   `KHR_texture_transform` applied to them), samplers, alpha, and `doubleSided`. A normal map is left out if
 //!   it is not read at the same coordinates as the base colour's texture. The opacity of `BLEND` becomes a
 //!   [screen-door pattern](crate::asset::material::Alpha::Dithered), which
@@ -41,8 +42,8 @@
 //!
 //! # Extensions
 //!
-//! A document that requires any other extension than those in the first table is refused by the extension's name. Of those
-//! that a document merely uses:
+//! A document may require those of the first table but `KHR_animation_pointer`, `KHR_lights_punctual`, and every
+//! `KHR_materials_*`. If it requires another one, it is refused by the extension's name. Of those that it has:
 //!
 //! | read | |
 //! |---|---|
@@ -50,13 +51,14 @@
 //! | `EXT_meshopt_compression`, `KHR_meshopt_compression` | decompressed, also if there is an uncompressed form |
 //! | `KHR_mesh_quantization` | |
 //! | `KHR_texture_transform` | of the base colour and the normal map |
+//! | `EXT_texture_webp` | if there is no PNG or JPEG beside it |
 //! | `KHR_materials_pbrSpecularGlossiness` | the diffuse colour is the base colour |
-//! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes; not if it is required |
+//! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes |
 //!
 //! | refused where it matters | |
 //! |---|---|
 //! | `EXT_mesh_gpu_instancing` | on a node of the scene |
-//! | `KHR_texture_basisu` (KTX2), `EXT_texture_webp`, `EXT_texture_avif`, `MSFT_texture_dds` | in a texture that is read and has no PNG or JPEG beside it; the error says how to convert it |
+//! | `KHR_texture_basisu` (KTX2), `EXT_texture_avif`, `MSFT_texture_dds` | in a texture that is read and has no PNG, JPEG or WebP beside it; the error says how to convert it |
 //!
 //! | left out | |
 //! |---|---|

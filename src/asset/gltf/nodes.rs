@@ -152,7 +152,7 @@ fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Vec<usi
     while let Some(node) = waiting.pop() {
         order.push(node);
         let children = nodes[node].children.iter().flatten().map(|child| child.value());
-        waiting.extend(children.filter(|child| needed[*child]).rev());
+        waiting.extend(children.filter(|child| needed[*child] && parents[*child] == Some(node)).rev());
     }
     order
 }

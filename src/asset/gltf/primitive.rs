@@ -12,7 +12,7 @@ use super::draco::Decompressed;
 use super::materials::Coordinates;
 use super::tangents::{Surface, Tangents};
 use crate::InputError;
-use crate::asset::influences::{Influence, Influences};
+use crate::asset::influences::{Influence, Influences, MAX_INFLUENCES};
 use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals};
 use crate::asset::morph::{MorphDelta, MorphTarget};
 use crate::asset::skeleton::Skin;
@@ -240,6 +240,7 @@ impl<'d> Reader<'_, 'd> {
                 all.extend(joints.iter().zip(weights).map(|(&bone, &weight)| Influence { bone, weight }));
             }
         }
+        all.iter_mut().for_each(strongest);
         Influences::new(&self.named("WEIGHTS_0"), bones, all)
     }
 
@@ -313,6 +314,15 @@ impl<'d> Reader<'_, 'd> {
         add("NORMAL", target.normals, |delta, value| delta.normal = value)?;
         add("TANGENT", target.tangents, |delta, value| delta.tangent = value)?;
         Ok(MorphTarget::new(&deltas))
+    }
+}
+
+/// Leaves the strongest influences of a vertex that has more than [`MAX_INFLUENCES`].
+fn strongest(all: &mut Vec<Influence>) {
+    if all.iter().filter(|influence| influence.weight != 0.0).count() > MAX_INFLUENCES {
+        // Weights that are not numbers come first, so that they are refused.
+        all.sort_by(|a, b| b.weight.abs().total_cmp(&a.weight.abs()));
+        all.truncate(MAX_INFLUENCES);
     }
 }
 

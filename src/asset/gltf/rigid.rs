@@ -71,7 +71,7 @@ impl Followed {
                 _ => (node, DMat4::IDENTITY),
             });
             let children = root.nodes[node].children.iter().flatten().map(|child| child.value());
-            waiting.extend(children.filter(|child| wanted[*child]));
+            waiting.extend(children.filter(|child| wanted[*child] && scene.parents[*child] == Some(node)));
         }
         Ok(followed)
     }

@@ -7,7 +7,7 @@ use crate::InputError;
 
 /// The nodes of the default scene.
 pub struct Scene {
-    /// The parent of each node of the document.
+    /// The parent of each node of the document; none of a node that the scene lists as a root.
     pub parents: Vec<Option<usize>>,
     /// For each node of the document, whether it lies in the scene.
     pub contains: Vec<bool>,
@@ -17,9 +17,9 @@ impl Scene {
     /// The scene that the document names, or else its first; all nodes if it has none.
     ///
     /// # Errors
-    /// [`InputError`] for nodes that do not form trees, and for a scene whose root node has a parent.
+    /// [`InputError`] for nodes that do not form trees, and for a scene whose root node has a parent in the scene.
     pub fn new(root: &Root) -> Result<Self, InputError> {
-        let parents = parents(&root.nodes)?;
+        let mut parents = parents(&root.nodes)?;
         let roots: Vec<usize> = (0..parents.len()).filter(|node| parents[*node].is_none()).collect();
         let reached = below(&root.nodes, &roots);
         // A node that is its own ancestor is not below any root.
@@ -30,11 +30,14 @@ impl Scene {
         let default = root.scene.map_or(0, |scene| scene.value());
         let Some(scene) = root.scenes.get(default) else { return Ok(Self { parents, contains: reached }) };
         let roots: Vec<usize> = scene.nodes.iter().map(|node| node.value()).collect();
-        if let Some(at) = roots.iter().position(|node| parents[*node].is_some()) {
-            let bound = "must be a root, and no node's child";
-            return Err(InputError::new(format!("scenes[{default}].nodes[{at}]"), roots[at], bound));
-        }
         let contains = below(&root.nodes, &roots);
+        for (at, node) in roots.iter().enumerate() {
+            // Some exporters list the child of a node that no scene has, as if that did not exist; so does three.js.
+            if parents[*node].take().is_some_and(|parent| contains[parent]) {
+                let bound = "must be a root, and no node's child";
+                return Err(InputError::new(format!("scenes[{default}].nodes[{at}]"), node, bound));
+            }
+        }
         Ok(Self { parents, contains })
     }
 }
