@@ -105,7 +105,7 @@ impl Mesh {
     }
 
     /// The largest absolute value that the weight of a target has in any clip; at least 1.
-    fn largest_weight(&self, target: usize) -> f32 {
+    pub(crate) fn largest_weight(&self, target: usize) -> f32 {
         let keyed = self.weight_keys.iter().map(|(_, keys)| keys.largest(target));
         keyed.fold(self.weights[target].abs().max(1.0), f32::max)
     }

@@ -58,7 +58,11 @@ mod topology;
 mod tracked_samples;
 mod turned;
 
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
 use crate::InputError;
+pub(crate) use points::NO_BODY;
 use points::Points;
 
 /// The mesh to simplify.
@@ -308,6 +312,24 @@ pub fn simplify_within(
     options: &Options,
     distances: &[f32],
 ) -> Result<Simplified, InputError> {
+    let mut watch = |_| ControlFlow::<Infallible>::Continue(());
+    let ControlFlow::Continue(found) = simplify_watched(surface, options, distances, &[], &mut watch)?;
+    Ok(found)
+}
+
+/// As [`simplify_within`], for a mesh of which parts are rigid, with progress: `bodies` has the rigid body of each vertex or
+/// [`NO_BODY`], and vertices of one body have the same distances from each other in every pose; it may be empty. `watch` gets
+/// the fraction of the triangles that is removed, again and again, and may break.
+///
+/// # Errors
+/// As [`simplify_within`].
+pub(crate) fn simplify_watched<B>(
+    surface: &Surface<'_>,
+    options: &Options,
+    distances: &[f32],
+    bodies: &[u32],
+    watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
+) -> Result<ControlFlow<B, Simplified>, InputError> {
     validate(surface)?;
     let mut least = 0.0;
     for (at, distance) in distances.iter().enumerate() {
@@ -320,7 +342,7 @@ pub fn simplify_within(
     if options.error.is_nan() || options.error < 0.0 {
         return Err(InputError::new("error", options.error, "must be at least 0"));
     }
-    Ok(reducer::reduce(surface, options, distances))
+    Ok(reducer::reduce(surface, options, distances, bodies, watch))
 }
 
 /// The point of each vertex, numbered in the order of the points' first vertices; see [`Simplified::point`].

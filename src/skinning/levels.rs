@@ -2,7 +2,9 @@
 //! level is measured (A sections 9.3 and 9.4: all poses of the animation count). Meshes of a model that share borders are
 //! simplified as one, so that no gap opens between them (B section 5.2).
 
+use std::convert::Infallible;
 use std::iter::successors;
+use std::ops::ControlFlow;
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -13,14 +15,18 @@ use crate::InputError;
 use crate::asset::Model;
 use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
 use crate::mesh::progressive::{Became, partners};
-use crate::mesh::simplify::{Options, Simplified, Surface, simplify_within};
+use crate::mesh::simplify::{Options, Simplified, Surface, simplify_watched};
+use bodies::Bodies;
 pub use coarsen::{Coarsened, coarsen};
+use errors::{Suspects, errors};
 use keys::{Keys, key_moments};
 use near::{Near, Sides};
 use welded::Welded;
 use whole::{Shared, Whole, shared};
 
+mod bodies;
 mod coarsen;
+mod errors;
 mod keys;
 mod near;
 mod welded;
@@ -73,8 +79,11 @@ impl MeshLevels {
     /// [`InputError`] as [`Extent::new`](super::Extent::new).
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         let moments = moments(model, mesh, clips, poses)?;
-        let mut all = levels_of(&Whole::new(model, &[mesh], &Shared::new()), &moments)?;
-        Ok(all.remove(0))
+        let task =
+            Task { model, moments: &moments, bodies: &Bodies::new(model, &[mesh], &looked_at(&moments)) };
+        let mut watch = |_| ControlFlow::<Infallible>::Continue(());
+        let ControlFlow::Continue(mut all) = task.run(&[vec![mesh]], &Shared::new(), &mut watch)?;
+        Ok(all.remove(0).1)
     }
 
     /// The point on level `level + 1` of the mesh that is nearest to `wanted`, the correct position of a vertex
@@ -88,47 +97,123 @@ impl MeshLevels {
     }
 }
 
-/// The levels of meshes that are simplified as one: one entry for each, which have equally many levels with the same errors.
-fn levels_of(whole: &Whole<'_>, moments: &[Moment]) -> Result<Vec<MeshLevels>, InputError> {
-    let keys = Keys::new(whole, moments);
-    let welded = Welded::new(whole, &keys.poses);
-    let simplified = simplified(whole, &welded, &keys)?;
-    let levels = found(whole, &welded, &simplified);
-    let unit = keys.unit;
-    let poses: Vec<Vec<Vec3>> =
-        keys.poses.into_iter().map(|pose| pose.into_iter().map(Vec3::from).collect()).collect();
-    let sides: Vec<Sides> =
-        levels.par_iter().map(|level| Sides::new(whole, &simplified, level, &poses)).collect();
-    let errors = moments
-        .par_iter()
-        .map(|moment| {
-            let points = whole.points(*moment, unit);
-            sides.iter().map(|sides| sides.error(&points)).collect::<Vec<f32>>()
-        })
-        .reduce(|| vec![0.0; sides.len()], |a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect());
-    let mut most = 0.0_f32;
-    let error = |error: f32| {
-        most = most.max(unit * (ERROR_MARGIN * error));
-        most
-    };
-    let errors: Vec<f32> = errors.into_iter().map(error).collect();
-    let became: Vec<Became<'_>> =
-        levels.iter().map(|level| Became { indices: &level.indices, remap: &level.into }).collect();
-    let place = |vertex: u32| (whole.member[vertex as usize], simplified.point(vertex));
-    let partners = partners(&whole.indices, &became, place, whole.vertices());
-    let of_mesh = |member: usize| {
-        let level = |(level, error): (&Found, &f32)| MeshLevel {
-            indices: whole.own(&level.indices, member),
-            error: *error,
-        };
-        let local = |vertex: u32| whole.local(vertex);
-        MeshLevels {
-            levels: levels.iter().zip(&errors).map(level).collect(),
-            partners: partners[whole.range(member)].iter().map(|vertex| local(*vertex)).collect(),
-            near: sides.iter().map(|sides| sides.near.part(whole.range(member), local)).collect(),
+/// The part of progress that simplification takes; the rest is taken by looking at moments.
+const SIMPLIFICATION: f64 = 0.7;
+
+/// Levels that are to be found.
+struct Task<'a> {
+    model: &'a Model,
+    moments: &'a [Moment],
+    bodies: &'a Bodies,
+}
+
+impl Task<'_> {
+    /// The levels of all meshes of these groups, each with its mesh; those of a group are simplified as one, and have equally
+    /// many levels with the same errors. `watch` gets fractions from 0 to 1 that do not decrease, and may break.
+    fn run<B>(
+        &self,
+        groups: &[Vec<usize>],
+        borders: &Shared,
+        watch: &mut dyn FnMut(f32) -> ControlFlow<B>,
+    ) -> Result<ControlFlow<B, Vec<(usize, MeshLevels)>>, InputError> {
+        let wholes: Vec<Whole<'_>> =
+            groups.iter().map(|group| Whole::new(self.model, group, borders)).collect();
+        let all = wholes.iter().map(|whole| whole.indices.len()).sum::<usize>().max(1) as f64;
+        let mut begun = 0.0;
+        let mut groups = Vec::with_capacity(wholes.len());
+        for whole in &wholes {
+            let part = whole.indices.len() as f64 / all;
+            let mut removed = |fraction: f64| watch((SIMPLIFICATION * (begun + part * fraction)) as f32);
+            match Group::new(whole, self.moments, self.bodies, &mut removed)? {
+                ControlFlow::Continue(group) => groups.push(group),
+                ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
+            }
+            begun += part;
         }
-    };
-    Ok((0..whole.meshes.len()).map(of_mesh).collect())
+        let mut looked = |moments: usize| {
+            let fraction = moments as f64 / self.moments.len() as f64;
+            watch((SIMPLIFICATION + (1.0 - SIMPLIFICATION) * fraction) as f32)
+        };
+        let suspects: Vec<_> = groups.iter().map(|group| (group.whole, &group.suspects)).collect();
+        let errors = match errors(self.model, &suspects, self.moments, &mut looked) {
+            ControlFlow::Continue(errors) => errors,
+            ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
+        };
+        if let ControlFlow::Break(broken) = watch(1.0) {
+            return Ok(ControlFlow::Break(broken));
+        }
+        let found = groups.iter().zip(&errors).flat_map(|(group, errors)| group.levels(errors));
+        Ok(ControlFlow::Continue(found.collect()))
+    }
+}
+
+/// Meshes that are simplified as one.
+struct Group<'a> {
+    whole: &'a Whole<'a>,
+    unit: f32,
+    simplified: Simplified,
+    levels: Vec<Found>,
+    sides: Vec<Sides>,
+    suspects: Suspects,
+}
+
+impl<'a> Group<'a> {
+    fn new<B>(
+        whole: &'a Whole<'a>,
+        moments: &[Moment],
+        bodies: &Bodies,
+        watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
+    ) -> Result<ControlFlow<B, Self>, InputError> {
+        let keys = Keys::new(whole, moments);
+        let welded = Welded::new(whole, &keys.poses);
+        let of: Vec<u32> = whole.meshes.iter().flat_map(|mesh| bodies.of(*mesh)).copied().collect();
+        let simplified = match simplified(whole, &welded, &keys, &of, watch)? {
+            ControlFlow::Continue(simplified) => simplified,
+            ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
+        };
+        let levels = found(whole, &welded, &simplified);
+        let unit = keys.unit;
+        let poses: Vec<Vec<Vec3>> =
+            keys.poses.into_iter().map(|pose| pose.into_iter().map(Vec3::from).collect()).collect();
+        let sides: Vec<Sides> =
+            levels.par_iter().map(|level| Sides::new(whole, &simplified, level, &poses, &of)).collect();
+        let suspects = Suspects::new(whole, &sides, &poses[0], &of, [unit, bodies.rounding / unit]);
+        Ok(ControlFlow::Continue(Self { whole, unit, simplified, levels, sides, suspects }))
+    }
+
+    /// The levels of each mesh; `errors` has the largest distance of each level, in units.
+    fn levels(&self, errors: &[f32]) -> Vec<(usize, MeshLevels)> {
+        let whole = self.whole;
+        let mut most = 0.0_f32;
+        let error = |error: &f32| {
+            most = most.max(self.unit * (ERROR_MARGIN * error));
+            most
+        };
+        let errors: Vec<f32> = errors.iter().map(error).collect();
+        let became: Vec<Became<'_>> =
+            self.levels.iter().map(|level| Became { indices: &level.indices, remap: &level.into }).collect();
+        let place = |vertex: u32| (whole.member[vertex as usize], self.simplified.point(vertex));
+        let partners = partners(&whole.indices, &became, place, whole.vertices());
+        let of_mesh = |(member, mesh): (usize, &usize)| {
+            let level = |(level, error): (&Found, &f32)| MeshLevel {
+                indices: whole.own(&level.indices, member),
+                error: *error,
+            };
+            let local = |vertex: u32| whole.local(vertex);
+            let found = MeshLevels {
+                levels: self.levels.iter().zip(&errors).map(level).collect(),
+                partners: partners[whole.range(member)].iter().map(|vertex| local(*vertex)).collect(),
+                near: self.sides.iter().map(|sides| sides.near.part(whole.range(member), local)).collect(),
+            };
+            (*mesh, found)
+        };
+        whole.meshes.iter().enumerate().map(of_mesh).collect()
+    }
+}
+
+/// All moments that count in any way: these, and the rest pose.
+fn looked_at(moments: &[Moment]) -> Vec<Moment> {
+    std::iter::once(Moment::Rest).chain(moments.iter().copied()).collect()
 }
 
 /// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them. Meshes whose borders have
@@ -137,32 +222,87 @@ fn levels_of(whole: &Whole<'_>, moments: &[Moment]) -> Result<Vec<MeshLevels>, I
 /// of the clips that will be played, none for a mesh that stands still, and `poses` is the number of poses of each of them
 /// that are examined: the largest of [`poses_of`](super::poses_of) misses no motion, fewer are quicker.
 ///
-/// The time grows with vertices × clips × poses: seconds for a character of a few thousand vertices, but minutes for one of
-/// tens of thousands or a clip of half a minute. The result is plain data ([`Mesh::levels`](crate::asset::Mesh::levels)) that a program may store.
+/// The time grows with vertices × clips × poses, where vertices follow several bones; a vertex that follows one bone alone
+/// takes the same time for any number of poses. It is seconds for a character or a rock of tens of thousands of triangles.
+/// Programs that cannot wait so long at every start keep the result: a [`Model`] is stored with its levels by serde, in any
+/// format. [`add_levels_with_progress`] is for loading screens.
 ///
 /// # Errors
 /// [`InputError`] as [`MeshLevels::new`].
 pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Vec<MeshLevels>, InputError> {
+    let ControlFlow::Continue(found) =
+        watched(model, clips, poses, &mut |_| ControlFlow::<Infallible>::Continue(()))?;
+    Ok(found)
+}
+
+/// As [`add_levels`], and tells `watch` which fraction of the work is done: 0 first, 1 last, never less than before. It is
+/// called by the calling thread, many times a second for a model that takes long, so that it needs no lock. If it breaks, the
+/// model stays as it is, and the result is `None`.
+///
+/// ```
+/// # #[cfg(feature = "samples")] {
+/// use std::ops::ControlFlow;
+///
+/// let mut rock = relievo::samples::rock()?;
+/// let mut drawn = 0;
+/// let found = relievo::skinning::add_levels_with_progress(&mut rock, &[], 1, &mut |fraction| {
+///     drawn = (100.0 * fraction) as u32; // the width of a bar
+///     ControlFlow::Continue(())
+/// })?;
+/// assert_eq!((drawn, found.map(|levels| levels.len())), (100, Some(1)));
+/// # }
+/// # Ok::<(), relievo::InputError>(())
+/// ```
+///
+/// # Errors
+/// As [`add_levels`].
+pub fn add_levels_with_progress(
+    model: &mut Model,
+    clips: &[usize],
+    poses: usize,
+    watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
+) -> Result<Option<Vec<MeshLevels>>, InputError> {
+    Ok(watched(model, clips, poses, watch)?.continue_value())
+}
+
+fn watched<B>(
+    model: &mut Model,
+    clips: &[usize],
+    poses: usize,
+    watch: &mut dyn FnMut(f32) -> ControlFlow<B>,
+) -> Result<ControlFlow<B, Vec<MeshLevels>>, InputError> {
     let each = (0..model.meshes.len()).map(|mesh| moments(model, mesh, clips, poses));
+    if let ControlFlow::Break(broken) = watch(0.0) {
+        return Ok(ControlFlow::Break(broken));
+    }
     let Some(moments) = each.collect::<Result<Vec<_>, _>>()?.into_iter().next() else {
-        return Ok(Vec::new());
+        return Ok(watch(1.0).map_continue(|()| Vec::new()));
     };
     let (borders, groups) = shared(model, &key_moments(&moments));
-    let mut all: Vec<(usize, MeshLevels)> = Vec::with_capacity(model.meshes.len());
-    for group in &groups {
-        let found = levels_of(&Whole::new(model, group, &borders), &moments)?;
-        all.extend(group.iter().copied().zip(found));
-    }
+    let meshes: Vec<usize> = (0..model.meshes.len()).collect();
+    let bodies = Bodies::new(model, &meshes, &looked_at(&moments));
+    let task = Task { model, moments: &moments, bodies: &bodies };
+    let mut all = match task.run(&groups, &borders, watch)? {
+        ControlFlow::Continue(all) => all,
+        ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
+    };
     all.sort_by_key(|(mesh, _)| *mesh);
     let all: Vec<MeshLevels> = all.into_iter().map(|(_, found)| found).collect();
     for (mesh, found) in model.meshes.iter_mut().zip(&all) {
         mesh.levels.clone_from(&found.levels);
         mesh.partners.clone_from(&found.partners);
     }
-    Ok(all)
+    Ok(ControlFlow::Continue(all))
 }
 
-fn simplified(whole: &Whole<'_>, welded: &Welded, keys: &Keys) -> Result<Simplified, InputError> {
+/// `bodies` has the rigid body of each vertex, and `watch` gets the fraction of triangles that is removed.
+fn simplified<B>(
+    whole: &Whole<'_>,
+    welded: &Welded,
+    keys: &Keys,
+    bodies: &[u32],
+    watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
+) -> Result<ControlFlow<B, Simplified>, InputError> {
     let texture = keys.texture_factors(whole);
     let (normals, indices) = (welded.normals(&keys.normals), welded.indices(whole));
     let attributes: Vec<f32> = (normals.iter().zip(&whole.uv).zip(&whole.member))
@@ -174,7 +314,7 @@ fn simplified(whole: &Whole<'_>, welded: &Welded, keys: &Keys) -> Result<Simplif
     let surface = Surface { poses: &keys.poses, indices: &indices, attributes: &attributes, stride: 5 };
     let distances: Vec<f32> =
         successors(Some(FIRST * keys.size), |last| Some(STEP * last)).take(MAX_LEVELS - 1).collect();
-    simplify_within(&surface, &Options::default(), &distances)
+    simplify_watched(&surface, &Options::default(), &distances, bodies, watch)
 }
 
 /// A level under construction.
@@ -225,7 +365,9 @@ mod tests {
             let whole = Whole::new(&model, &[0], &Shared::new());
             let keys = Keys::new(&whole, &[Moment::In(0, 0.0)]);
             let welded = Welded::new(&whole, &keys.poses);
-            let simplified = simplified(&whole, &welded, &keys).expect("valid");
+            let mut watch = |_| ControlFlow::<Infallible>::Continue(());
+            let ControlFlow::Continue(simplified) =
+                simplified(&whole, &welded, &keys, &[], &mut watch).expect("valid");
             let mut distances: Vec<f32> = simplified.collapses().iter().map(|one| one.distance).collect();
             distances.dedup();
             let levels = super::found(&whole, &welded, &simplified);

@@ -42,7 +42,7 @@ pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
 pub use extent::Extent;
 pub use instance_lod::{FadeRange, InstanceLod};
-pub use levels::{Coarsened, MeshLevels, add_levels, coarsen};
+pub use levels::{Coarsened, MeshLevels, add_levels, add_levels_with_progress, coarsen};
 pub use merged::{Merged, merged};
 pub use pose::poses_of;
 pub use posed::{Portrait, PosedModel};

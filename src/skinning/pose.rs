@@ -82,20 +82,61 @@ pub(super) fn moments(
     Ok(clips.iter().flat_map(|clip| (0..poses).map(move |at| Moment::In(*clip, fraction(at)))).collect())
 }
 
+/// The model matrices of all bones at a moment.
+pub(super) fn bones_at(model: &Model, moment: Moment) -> Vec<Affine> {
+    let locals: Vec<Transform> = match moment {
+        Moment::Rest => model.skeleton.rest(),
+        Moment::In(clip, fraction) => {
+            let clip = &model.clips[clip];
+            sample(clip, fraction * clip.duration(), RotationPath::Slerp)
+        }
+    };
+    local_to_model(&model.skeleton, &locals)
+}
+
+/// The weights of a mesh's morph targets at a moment.
+fn weights_at(model: &Model, mesh: &Mesh, moment: Moment) -> Vec<f32> {
+    match moment {
+        Moment::Rest => mesh.weights.clone(),
+        Moment::In(clip, fraction) => mesh.weights_at(clip, fraction * model.clips[clip].duration()),
+    }
+}
+
+/// The positions of some of a mesh's vertices at a moment at which bones have these model matrices; they equal those of
+/// [`Pose::positions`].
+pub(super) fn positions_of(
+    model: &Model,
+    mesh: &Mesh,
+    moment: Moment,
+    bones: &[Affine],
+    vertices: &[u32],
+) -> Vec<Vec3> {
+    if mesh.targets.is_empty() {
+        let palette = palette(&model.skins[mesh.skin], bones);
+        let position = |vertex: &u32| {
+            let at = *vertex as usize;
+            blended(&palette, mesh.positions[at], mesh.influences.of(at))
+        };
+        return vertices.iter().map(position).collect();
+    }
+    let pose = Pose::at(model, mesh, bones, &weights_at(model, mesh, moment));
+    vertices.iter().map(|vertex| pose.position(mesh, *vertex as usize)).collect()
+}
+
+/// A position that follows several bones.
+fn blended(palette: &[Affine], position: [f32; 3], influences: &[Influence]) -> Vec3 {
+    influences.iter().map(|influence| influence.weight * moved(palette, position, influence)).sum()
+}
+
+/// A position that follows one bone.
+fn moved(palette: &[Affine], [x, y, z]: [f32; 3], influence: &Influence) -> Vec3 {
+    let along = |row: &[f32; 4]| row[0] * x + row[1] * y + row[2] * z + row[3];
+    Vec3::from(palette[influence.bone as usize].each_ref().map(along))
+}
+
 impl Pose {
     pub(super) fn new(model: &Model, mesh: &Mesh, moment: Moment) -> Self {
-        match moment {
-            Moment::Rest => Self::of(model, mesh, &model.skeleton.rest(), &mesh.weights),
-            Moment::In(clip, fraction) => {
-                let time = fraction * model.clips[clip].duration();
-                let locals = sample(&model.clips[clip], time, RotationPath::Slerp);
-                Self::of(model, mesh, &locals, &mesh.weights_at(clip, time))
-            }
-        }
-    }
-
-    fn of(model: &Model, mesh: &Mesh, locals: &[Transform], weights: &[f32]) -> Self {
-        Self::at(model, mesh, &local_to_model(&model.skeleton, locals), weights)
+        Self::at(model, mesh, &bones_at(model, moment), &weights_at(model, mesh, moment))
     }
 
     /// With bones at these positions in the model's space.
@@ -105,22 +146,17 @@ impl Pose {
 
     /// The position of a vertex under each of its bones alone.
     pub(super) fn points(&self, vertex: usize, influences: &[Influence]) -> Vec<Vec3> {
-        influences.iter().map(|influence| self.point(vertex, influence)).collect()
+        let position = self.vertices[vertex].position;
+        influences.iter().map(|influence| moved(&self.palette, position, influence)).collect()
     }
 
-    fn point(&self, vertex: usize, influence: &Influence) -> Vec3 {
-        let [x, y, z] = self.vertices[vertex].position;
-        let along = |row: &[f32; 4]| row[0] * x + row[1] * y + row[2] * z + row[3];
-        Vec3::from(self.palette[influence.bone as usize].each_ref().map(along))
+    fn position(&self, mesh: &Mesh, vertex: usize) -> Vec3 {
+        blended(&self.palette, self.vertices[vertex].position, mesh.influences.of(vertex))
     }
 
     /// The positions of all vertices.
     pub(super) fn positions(&self, mesh: &Mesh) -> Vec<Vec3> {
-        let position = |vertex: usize| {
-            let influences = mesh.influences.of(vertex).iter();
-            influences.map(|influence| influence.weight * self.point(vertex, influence)).sum()
-        };
-        (0..self.vertices.len()).map(position).collect()
+        (0..self.vertices.len()).map(|vertex| self.position(mesh, vertex)).collect()
     }
 
     /// All vertices, in the model's space.

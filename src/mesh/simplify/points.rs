@@ -15,7 +15,12 @@ pub(crate) struct Points {
     /// The largest edge of the box around any pose, times `scale`.
     extent: f64,
     are_vertices: bool,
+    /// The rigid body of each point, or [`NO_BODY`]; empty if there are none.
+    bodies: Vec<u32>,
 }
+
+/// The body of a vertex or point that belongs to none.
+pub(crate) const NO_BODY: u32 = u32::MAX;
 
 impl Points {
     pub(crate) fn new(poses: &[Vec<[f32; 3]>]) -> Self {
@@ -49,7 +54,44 @@ impl Points {
             scale,
             extent: extent * scale,
             are_vertices,
+            bodies: Vec::new(),
         }
+    }
+
+    /// The same points on rigid bodies: `bodies` has the body of each vertex, or [`NO_BODY`]. Vertices of one body have the
+    /// same distances from each other in every pose.
+    pub(crate) fn on_bodies(mut self, bodies: &[u32]) -> Self {
+        let of_point = |point: u32| {
+            let mut wedges = self.wedges(point).iter().map(|vertex| bodies[*vertex as usize]);
+            let first = wedges.next().unwrap_or(NO_BODY);
+            if wedges.all(|other| other == first) { first } else { NO_BODY }
+        };
+        self.bodies = (0..self.len() as u32).map(of_point).collect();
+        self
+    }
+
+    /// The rigid body of a point, or [`NO_BODY`].
+    #[inline]
+    pub(crate) fn body(&self, point: u32) -> u32 {
+        self.bodies.get(point as usize).copied().unwrap_or(NO_BODY)
+    }
+
+    /// The rigid body that some points share, or [`NO_BODY`].
+    #[inline]
+    pub(crate) fn common_body(&self, points: &[u32]) -> u32 {
+        match points {
+            [first, others @ ..] if !self.bodies.is_empty() => {
+                let body = self.body(*first);
+                if others.iter().all(|other| self.body(*other) == body) { body } else { NO_BODY }
+            }
+            _ => NO_BODY,
+        }
+    }
+
+    /// Number of poses, from the first on, that show all distances between things on two bodies: one on a single body.
+    #[inline]
+    pub(crate) fn poses_between(&self, body: u32, other: u32) -> usize {
+        if body == other && body != NO_BODY { 1 } else { self.poses }
     }
 
     /// Number of points.

@@ -3,7 +3,7 @@
 use super::Surface;
 use super::attributes::Attributes;
 use super::neighbors::{Neighbor, Neighbors, Wedge};
-use super::points::Points;
+use super::points::{NO_BODY, Points};
 use super::quadric::Quadric;
 use super::topology::{Kind, Topology};
 use super::turned::normal;
@@ -19,17 +19,24 @@ const SEAM: f64 = 1.0;
 pub(crate) struct Quadrics<'a> {
     /// Quadrics of positions, point by point, each in all poses.
     shape: Vec<Quadric>,
+    /// The rigid body on which all planes of a point lie, or [`NO_BODY`].
+    bodies: Vec<u32>,
     attributes: Option<Attributes<'a>>,
 }
 
 impl<'a> Quadrics<'a> {
     pub(crate) fn new(surface: &Surface<'a>, points: &Points, topology: &Topology) -> Self {
         let mut shape = vec![Quadric::default(); points.len() * points.poses()];
+        let mut bodies: Vec<u32> = (0..points.len() as u32).map(|point| points.body(point)).collect();
         for &triangle in surface.indices.as_chunks().0 {
             add_triangle(&mut shape, points, topology, triangle);
+            let corners = triangle.map(|vertex| points.of(vertex));
+            if points.common_body(&corners) == NO_BODY {
+                corners.iter().for_each(|corner| bodies[*corner as usize] = NO_BODY);
+            }
         }
         let attributes = (surface.stride > 0).then(|| Attributes::new(surface, points));
-        Self { shape, attributes }
+        Self { shape, bodies, attributes }
     }
 
     /// Whether attributes count.
@@ -42,7 +49,7 @@ impl<'a> Quadrics<'a> {
     #[inline]
     pub(crate) fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
         let mut worst = 0.0_f64;
-        for pose in 0..points.poses() {
+        for pose in 0..points.poses_between(self.bodies[point as usize], points.body(neighbor)) {
             let quadric = &self.shape[point as usize * points.poses() + pose];
             let d = points.position(neighbor, pose) - points.position(point, pose);
             if quadric.weight > 0.0 {
@@ -163,6 +170,9 @@ impl<'a> Quadrics<'a> {
             let [from, to] = [point, neighbor].map(|point| point as usize * points.poses() + pose);
             let quadric = self.shape[from].moved(d);
             self.shape[to].add(&quadric);
+        }
+        if self.bodies[point as usize] != self.bodies[neighbor as usize] {
+            self.bodies[neighbor as usize] = NO_BODY;
         }
         if let Some(attributes) = &mut self.attributes {
             let d = points.position(neighbor, 0) - points.position(point, 0);

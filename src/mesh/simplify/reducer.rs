@@ -4,6 +4,8 @@ mod search;
 #[cfg(test)]
 mod tests;
 
+use std::ops::ControlFlow;
+
 use super::marks::Marks;
 use super::neighbors::Neighbors;
 use super::parts::Parts;
@@ -34,24 +36,42 @@ struct Reducer<'a> {
     changed: Vec<u32>,
 }
 
-/// Collapses until a limit of `options` is reached, within one distance after the other.
-pub(crate) fn reduce(surface: &Surface<'_>, options: &Options, distances: &[f32]) -> Simplified {
+/// Number of collapses between two reports of progress.
+const REPORT: usize = 256;
+
+/// Collapses until a limit of `options` is reached, within one distance after the other. `bodies` has the rigid body of each
+/// vertex ([`Points::on_bodies`]); it is empty if there are none. `watch` gets the removed fraction of the triangles, and may
+/// break.
+pub(crate) fn reduce<B>(
+    surface: &Surface<'_>,
+    options: &Options,
+    distances: &[f32],
+    bodies: &[u32],
+    watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
+) -> ControlFlow<B, Simplified> {
     let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
-    let mut reducer = Reducer::new(surface, options.cost, is_limited);
+    let mut reducer = Reducer::new(surface, options.cost, is_limited, bodies);
     if options.prune && options.cost == Cost::Quadric && !is_limited {
         reducer.parts = Parts::new(&reducer.points, &reducer.topology);
     }
     let triangles = reducer.topology.triangles();
     let mut done = Done::default();
     let mut stopped = Stopped::Exhausted;
+    let mut removed = |left: usize| watch(1.0 - left as f64 / triangles.max(1) as f64);
     for distance in distances {
-        stopped = reducer.run(options, *distance, &mut done);
+        stopped = reducer.run(options, *distance, &mut done, &mut removed)?;
         if stopped != Stopped::Exhausted {
             break;
         }
     }
     let Done { collapses, moved, .. } = done;
-    Simplified { collapses, moved, points: reducer.points.into_of(), triangles, stopped }
+    ControlFlow::Continue(Simplified {
+        collapses,
+        moved,
+        points: reducer.points.into_of(),
+        triangles,
+        stopped,
+    })
 }
 
 /// The collapses so far.
@@ -63,8 +83,9 @@ struct Done {
 }
 
 impl<'a> Reducer<'a> {
-    fn new(surface: &Surface<'a>, cost: Cost, is_limited: bool) -> Self {
+    fn new(surface: &Surface<'a>, cost: Cost, is_limited: bool, bodies: &[u32]) -> Self {
         let points = Points::new(surface.poses);
+        let points = if bodies.is_empty() { points } else { points.on_bodies(bodies) };
         let topology = Topology::new(&points, surface.indices, is_limited);
         let quadrics = match cost {
             Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
@@ -79,15 +100,24 @@ impl<'a> Reducer<'a> {
     }
 
     /// Collapses until no legal collapse keeps every sample within `distance`, or until a limit of `options` is
-    /// reached.
-    fn run(&mut self, options: &Options, distance: f32, done: &mut Done) -> Stopped {
+    /// reached. `watch` gets the number of triangles that are left.
+    fn run<B>(
+        &mut self,
+        options: &Options,
+        distance: f32,
+        done: &mut Done,
+        watch: &mut dyn FnMut(usize) -> ControlFlow<B>,
+    ) -> ControlFlow<B, Stopped> {
         if let Some(tracked_samples) = &mut self.tracked_samples {
             tracked_samples.set_most((f64::from(distance) * self.points.scale()) as f32);
         }
         let mut queue = self.queue();
         loop {
             if self.topology.triangles() <= options.triangles {
-                return Stopped::Triangles;
+                return ControlFlow::Continue(Stopped::Triangles);
+            }
+            if done.collapses.len().is_multiple_of(REPORT) {
+                watch(self.topology.triangles())?;
             }
             let next = self.next(&mut queue);
             let most = next.map_or(f32::INFINITY, |(_, best)| best.cost);
@@ -95,11 +125,11 @@ impl<'a> Reducer<'a> {
             let squared = match (&part, next) {
                 (Some((_, squared)), _) => *squared,
                 (None, Some((_, best))) => best.cost,
-                (None, None) => return Stopped::Exhausted,
+                (None, None) => return ControlFlow::Continue(Stopped::Exhausted),
             };
             let cost = (f64::from(squared).sqrt() / self.points.scale()) as f32;
             if cost > options.error {
-                return Stopped::Error;
+                return ControlFlow::Continue(Stopped::Error);
             }
             done.error = done.error.max(cost);
             if let Some((part, _)) = part {

@@ -34,12 +34,14 @@ struct Middles {
     positions: Vec<Vec3>,
     /// For each midpoint, a triangle of the mesh on which it lies, by its points.
     triangles: Vec<[u32; 3]>,
+    /// For each midpoint, the rigid body of that triangle, or [`NO_BODY`](super::points::NO_BODY).
+    bodies: Vec<u32>,
 }
 
 impl TrackedSamples {
     pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
         let mut samples = vec![Vec::new(); triangles];
-        let mut middles = Middles { positions: Vec::new(), triangles: Vec::new() };
+        let mut middles = Middles { positions: Vec::new(), triangles: Vec::new(), bodies: Vec::new() };
         for point in 0..points.len() as u32 {
             for ring in topology.one_ring(point) {
                 let corners = [point, ring.next.point, ring.last.point];
@@ -51,6 +53,7 @@ impl TrackedSamples {
                     samples[ring.triangle as usize].push((points.len() + middles.triangles.len()) as u32);
                     middles.positions.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
                     middles.triangles.push(corners);
+                    middles.bodies.push(points.common_body(&corners));
                 }
             }
         }
@@ -87,7 +90,13 @@ impl TrackedSamples {
                 let middles = self.samples[ring.triangle as usize]
                     .iter()
                     .filter_map(|sample| (*sample as usize).checked_sub(points.len()));
-                self.below.extend(middles.map(|middle| self.middles.triangles[middle]));
+                for middle in middles {
+                    let below = self.middles.triangles[middle];
+                    // The midpoints of a triangle and of its edges mostly follow each other.
+                    if self.below.last() != Some(&below) {
+                        self.below.push(below);
+                    }
+                }
             }
         }
         let samples = topology.around(point).iter().flat_map(|triangle| &self.samples[*triangle as usize]);
@@ -111,7 +120,11 @@ impl TrackedSamples {
             let corners = triangle.map(|corner| points.position(corner, pose).as_vec3());
             nearest_on_triangle(wanted, corners).distance_squared(wanted) <= self.most
         };
-        self.below.iter().any(|triangle| (0..points.poses()).all(|pose| is_near(triangle, pose)))
+        let body = points.common_body(ends);
+        self.below.iter().any(|triangle| {
+            let poses = points.poses_between(body, points.common_body(triangle));
+            (0..poses).all(|pose| is_near(triangle, pose))
+        })
     }
 
     /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the
@@ -120,9 +133,13 @@ impl TrackedSamples {
         let position = |point: u32, pose: usize| -> Vec3 { points.position(point, pose).as_vec3() };
         let mut best = None;
         let mut least = self.most.next_up();
+        let body = match (sample as usize).checked_sub(points.len()) {
+            None => points.body(sample),
+            Some(at) => self.middles.bodies[at],
+        };
         for (triangle, corners) in &self.triangles {
             let mut most = 0.0_f32;
-            for pose in 0..points.poses() {
+            for pose in 0..points.poses_between(body, points.common_body(corners)) {
                 let wanted = match (sample as usize).checked_sub(points.len()) {
                     None => position(sample, pose),
                     Some(at) => self.middles.positions[at * points.poses() + pose],

@@ -37,7 +37,10 @@ const LEAST: f64 = 0.0625;
 /// may turn.
 pub(crate) fn deviation(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> Option<f64> {
     let mut worst = 0.0_f64;
-    for pose in 0..points.poses() {
+    let body = points.common_body(&[point, neighbor]);
+    let is_rigid = topology.ring(point).iter().all(|others| points.common_body(others) == body);
+    let poses = if is_rigid { points.poses_between(body, body) } else { points.poses() };
+    for pose in 0..poses {
         let (from, to) = (points.position(point, pose), points.position(neighbor, pose));
         let moved = from - to;
         for &[next, last] in topology.ring(point) {

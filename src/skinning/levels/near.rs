@@ -1,15 +1,15 @@
 //! The parts of a level and of its mesh that are close to each other. Collapses are local: the vertex into
 //! which a vertex has collapsed, and the triangles around it, are close to it in every pose.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::Vec3;
 
 use super::Found;
+use super::bodies::common;
 use super::whole::Whole;
 use crate::mesh::nearest::nearest_on_triangle;
-use crate::mesh::simplify::Simplified;
+use crate::mesh::simplify::{NO_BODY, Simplified};
 use crate::surface::tangent::Adjacency;
 
 /// The largest number of triangles that may be nearest in some pose; those of the first poses are kept.
@@ -33,18 +33,25 @@ impl Near {
         near
     }
 
+    fn len(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    fn triangles_of(&self, thing: usize) -> &[[u32; 3]] {
+        &self.triangles[self.starts[thing] as usize..self.starts[thing + 1] as usize]
+    }
+
     /// The triangles of the things in a range, with other numbers of their corners.
     pub(super) fn part(&self, range: Range<usize>, local: impl Fn(u32) -> u32) -> Self {
-        let triangles =
-            |thing: usize| &self.triangles[self.starts[thing] as usize..self.starts[thing + 1] as usize];
-        Self::of(range.map(|thing| triangles(thing).iter().map(|corners| corners.map(&local)).collect()))
+        Self::of(
+            range.map(|thing| self.triangles_of(thing).iter().map(|corners| corners.map(&local)).collect()),
+        )
     }
 
     /// The point nearest to `wanted` on the triangles of an item, if it has any.
     pub(super) fn nearest(&self, thing: usize, wanted: Vec3, point: &impl Fn(u32) -> Vec3) -> Option<Vec3> {
-        let range = self.starts[thing] as usize..self.starts[thing + 1] as usize;
         let on = |triangle: &[u32; 3]| nearest_on_triangle(wanted, triangle.map(point));
-        let points = self.triangles[range].iter().map(on);
+        let points = self.triangles_of(thing).iter().map(on);
         points.min_by(|a, b| a.distance_squared(wanted).total_cmp(&b.distance_squared(wanted)))
     }
 }
@@ -54,14 +61,24 @@ pub(super) struct Sides {
     /// For each vertex of the mesh that the level does not have.
     pub(super) near: Near,
     /// Samples on the level, as barycentric coordinates in its triangles.
-    samples: Vec<([u32; 3], [f32; 3])>,
+    samples: Vec<Sample>,
     /// For each sample, triangles of the mesh.
     behind: Near,
 }
 
+/// A point of a triangle: its corners, and its barycentric coordinates.
+pub(super) type Sample = ([u32; 3], [f32; 3]);
+
 impl Sides {
-    /// `keys` are the poses that decide what is close. What is close is of the same mesh.
-    pub(super) fn new(whole: &Whole<'_>, simplified: &Simplified, found: &Found, keys: &[Vec<Vec3>]) -> Self {
+    /// `keys` are the poses that decide what is close. What is close is of the same mesh. `bodies` has the rigid body of each
+    /// vertex.
+    pub(super) fn new(
+        whole: &Whole<'_>,
+        simplified: &Simplified,
+        found: &Found,
+        keys: &[Vec<Vec3>],
+        bodies: &[u32],
+    ) -> Self {
         let level = &found.indices;
         let point = |vertex: u32| simplified.point(vertex);
         let around = |indices: &[u32], target: &dyn Fn(u32) -> u32| {
@@ -69,39 +86,39 @@ impl Sides {
             Around::new(&corners, whole.vertices())
         };
         let ring = around(level, &|vertex| vertex);
-        let near = Near::of(before(whole, &ring, found, &point, keys).into_iter());
+        let near = Near::of(before(whole, &ring, found, &point, keys, bodies).into_iter());
 
         // Triangles of the meshes that have an area, by the points into which their corners have collapsed.
         let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
         let area: Vec<u32> = whole.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
         let became = around(&area, &|vertex| found.remap[vertex as usize]);
         let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
+        let mut search = Search::new(&area, keys, bodies);
+        let mut candidates: Vec<u32> = Vec::new();
         let behind = Near::of(level.chunks_exact(3).flat_map(|triangle| {
             let is_own = |at: &u32| whole.member_of(&corners_of(&area, *at)) == whole.member_of(triangle);
-            let mut candidates: Vec<u32> = (ring.beside(triangle, level, &point).into_iter())
-                .flat_map(|point| became.of(point))
-                .filter(is_own)
-                .collect();
+            candidates.clear();
+            for point in ring.beside(triangle, level, &point) {
+                candidates.extend(became.of(point).filter(is_own));
+            }
             candidates.sort_unstable();
             candidates.dedup();
             samples_of(triangle).map(|(corners, parts)| {
                 let point = |key: &Vec<Vec3>| blend(&corners, &parts, &|vertex| key[vertex as usize]);
-                nearest_in_each(keys, point, candidates.iter().map(|at| corners_of(&area, *at)))
+                search.nearest_in_each(point, common(bodies, &corners), &candidates)
             })
         }));
         Self { near, samples, behind }
     }
 
-    /// The largest distance, given the positions of all vertices of the mesh.
-    pub(super) fn error(&self, points: &[Vec3]) -> f32 {
-        let point = |vertex: u32| points[vertex as usize];
-        let off = |near: &Near, thing: usize, wanted: Vec3| {
-            near.nearest(thing, wanted, &point).map_or(0.0, |found| found.distance(wanted))
-        };
-        let forth = points.iter().enumerate().map(|(vertex, wanted)| off(&self.near, vertex, *wanted));
-        let back = (self.samples.iter().enumerate())
-            .map(|(at, (corners, parts))| off(&self.behind, at, blend(corners, parts, &point)));
-        forth.chain(back).fold(0.0, f32::max)
+    /// All samples of both sides, each with the triangles of the other side that are close to it; those of vertices come
+    /// first. A sample is close to at least one triangle.
+    pub(super) fn all(&self) -> impl Iterator<Item = (Sample, &[[u32; 3]])> {
+        let vertices = (0..self.near.len()).map(|vertex| ([vertex as u32; 3], [1.0, 0.0, 0.0]));
+        let forth = vertices.enumerate().map(|(at, sample)| (sample, self.near.triangles_of(at)));
+        let back =
+            self.samples.iter().enumerate().map(|(at, sample)| (*sample, self.behind.triangles_of(at)));
+        forth.chain(back).filter(|(_, triangles)| !triangles.is_empty())
     }
 }
 
@@ -112,36 +129,38 @@ fn before(
     Found { remap, indices: level, .. }: &Found,
     point: &impl Fn(u32) -> u32,
     keys: &[Vec<Vec3>],
+    bodies: &[u32],
 ) -> Vec<Vec<[u32; 3]>> {
     let (mut is_used, mut is_left) = (vec![false; whole.vertices()], vec![false; whole.vertices()]);
     whole.indices.iter().for_each(|vertex| is_used[*vertex as usize] = true);
     level.iter().for_each(|vertex| is_left[*vertex as usize] = true);
+    let mut search = Search::new(level, keys, bodies);
     let near = |vertex: u32| {
         if is_left[vertex as usize] {
             return Vec::new();
         }
-        let is_own = |triangle: &[u32; 3]| whole.member_of(triangle) == whole.member[vertex as usize];
+        let is_own = |at: &u32| whole.member_of(&corners_of(level, *at)) == whole.member[vertex as usize];
         // There may be none for a vertex without triangles. The replacement itself may be a wedge that no triangle of the
         // level uses.
         let mut candidates = ring.two_rings(remap[vertex as usize], level, point);
         candidates.retain(is_own);
         if candidates.is_empty() && is_used[vertex as usize] {
             // Of what became a point, or of a part of the mesh that has vanished.
-            candidates = level.as_chunks::<3>().0.iter().copied().filter(is_own).collect();
+            candidates = (0..level.len() as u32 / 3).filter(is_own).collect();
         }
-        nearest_in_each(keys, |key| key[vertex as usize], candidates.into_iter())
+        search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], &candidates)
     };
     (0..whole.vertices() as u32).map(near).collect()
 }
 
 /// The midpoints of a triangle and of its edges.
-fn samples_of(triangle: &[u32]) -> [([u32; 3], [f32; 3]); 4] {
+fn samples_of(triangle: &[u32]) -> [Sample; 4] {
     const THIRD: f32 = 1.0 / 3.0;
     let corners = [triangle[0], triangle[1], triangle[2]];
     [[THIRD; 3], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]].map(|parts| (corners, parts))
 }
 
-fn blend(corners: &[u32; 3], parts: &[f32; 3], point: &impl Fn(u32) -> Vec3) -> Vec3 {
+pub(super) fn blend(corners: &[u32; 3], parts: &[f32; 3], point: &impl Fn(u32) -> Vec3) -> Vec3 {
     corners.iter().zip(parts).map(|(corner, part)| *part * point(*corner)).sum()
 }
 
@@ -149,31 +168,96 @@ fn corners_of(indices: &[u32], triangle: u32) -> [u32; 3] {
     [0, 1, 2].map(|corner| indices[3 * triangle as usize + corner])
 }
 
-/// Of these triangles, those that are nearest in one of the poses.
-fn nearest_in_each(
-    keys: &[Vec<Vec3>],
-    wanted: impl Fn(&Vec<Vec3>) -> Vec3,
-    candidates: impl Iterator<Item = [u32; 3]>,
-) -> Vec<[u32; 3]> {
-    let off = |key: &Vec<Vec3>, wanted: Vec3, triangle: &[u32; 3]| {
-        let corners = triangle.map(|vertex| key[vertex as usize]);
+/// A search for the nearest of some triangles in each of several poses.
+struct Search<'a> {
+    /// Three indices per triangle.
+    indices: &'a [u32],
+    keys: &'a [Vec<Vec3>],
+    /// The rigid body of each vertex.
+    bodies: &'a [u32],
+    /// For each triangle, in the first pose: the middle of a sphere around it, and the radius.
+    spheres: Vec<(Vec3, f32)>,
+    /// Candidates with their squared distances in the first pose.
+    found: Vec<(f32, u32)>,
+}
+
+impl<'a> Search<'a> {
+    fn new(indices: &'a [u32], keys: &'a [Vec<Vec3>], bodies: &'a [u32]) -> Self {
+        let sphere = |triangle: &[u32; 3]| {
+            let corners = triangle.map(|vertex| keys[0][vertex as usize]);
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let radius =
+                corners.map(|corner| corner.distance_squared(middle)).into_iter().fold(0.0, f32::max);
+            // Rounding moves a bound by less than this.
+            (middle, 1.000_01 * radius.sqrt())
+        };
+        let spheres = indices.as_chunks::<3>().0.iter().map(sphere).collect();
+        Self { indices, keys, bodies, spheres, found: Vec::new() }
+    }
+
+    fn off(&self, key: usize, wanted: Vec3, triangle: u32) -> f32 {
+        let corners = corners_of(self.indices, triangle).map(|vertex| self.keys[key][vertex as usize]);
         nearest_on_triangle(wanted, corners).distance_squared(wanted)
-    };
-    let first = wanted(&keys[0]);
-    let mut candidates: Vec<_> =
-        candidates.map(|triangle| (off(&keys[0], first, &triangle).to_bits(), triangle)).collect();
-    if candidates.len() > MAX {
-        candidates.select_nth_unstable(MAX);
-        candidates.truncate(MAX);
     }
-    candidates.sort_unstable();
-    let mut nearest = BTreeSet::new();
-    for key in keys {
-        let wanted = wanted(key);
-        let distances = candidates.iter().map(|(_, triangle)| (off(key, wanted, triangle), triangle));
-        nearest.extend(distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, triangle)| *triangle));
+
+    /// Of these triangles, those that are nearest in one of the poses to a point that lies on a body.
+    fn nearest_in_each(
+        &mut self,
+        wanted: impl Fn(&Vec<Vec3>) -> Vec3,
+        body: u32,
+        candidates: &[u32],
+    ) -> Vec<[u32; 3]> {
+        let corners = |triangle: u32| corners_of(self.indices, triangle);
+        let is_rigid = |triangle: u32| body != NO_BODY && common(self.bodies, &corners(triangle)) == body;
+        // On one body, the triangle that is nearest in one pose is nearest in all.
+        if self.keys.len() == 1 || candidates.iter().all(|triangle| is_rigid(*triangle)) {
+            return self.nearest(wanted(&self.keys[0]), candidates).map(corners).into_iter().collect();
+        }
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
+        let first = wanted(&self.keys[0]);
+        found.extend(candidates.iter().map(|triangle| (self.off(0, first, *triangle), *triangle)));
+        let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        if found.len() > MAX {
+            found.select_nth_unstable_by(MAX, order);
+            found.truncate(MAX);
+        }
+        found.sort_unstable_by(order);
+        let mut nearest: Vec<[u32; 3]> = Vec::new();
+        for (key, points) in self.keys.iter().enumerate() {
+            let wanted = wanted(points);
+            let distances = found.iter().map(|(off, triangle)| {
+                let is_known = key == 0 || is_rigid(*triangle);
+                (if is_known { *off } else { self.off(key, wanted, *triangle) }, *triangle)
+            });
+            let best = distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, triangle)| corners(triangle));
+            nearest.extend(best.filter(|best| !nearest.contains(best)));
+        }
+        self.found = found;
+        nearest.sort_unstable();
+        nearest
     }
-    nearest.into_iter().collect()
+
+    /// The nearest of some triangles in the first pose, the first of several.
+    fn nearest(&self, wanted: Vec3, candidates: &[u32]) -> Option<u32> {
+        let to_middle = |triangle: u32| self.spheres[triangle as usize].0.distance_squared(wanted);
+        let likely = candidates.iter().copied().min_by(|a, b| to_middle(*a).total_cmp(&to_middle(*b)))?;
+        let (mut best, mut least) = (likely, self.off(0, wanted, likely));
+        let mut within = 1.000_01 * least.sqrt();
+        for &triangle in candidates {
+            let (middle, radius) = self.spheres[triangle as usize];
+            // All of it is further away.
+            if middle.distance_squared(wanted) > (within + radius) * (within + radius) {
+                continue;
+            }
+            let off = self.off(0, wanted, triangle);
+            if off < least || off == least && triangle < best {
+                (best, least) = (triangle, off);
+                within = 1.000_01 * least.sqrt();
+            }
+        }
+        Some(best)
+    }
 }
 
 /// The triangles around each point.
@@ -189,16 +273,23 @@ impl Around {
         self.0.at(point as usize).iter().map(|corner| corner / 3)
     }
 
-    /// The points of the triangles around the points of some vertices.
-    fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> BTreeSet<u32> {
+    /// The points of the triangles around the points of some vertices, each once.
+    fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<u32> {
         let around = vertices.iter().flat_map(|vertex| self.of(of(*vertex)));
-        around.flat_map(|triangle| corners_of(level, triangle)).map(of).collect()
+        sorted(around.flat_map(|triangle| corners_of(level, triangle)).map(of))
     }
 
     /// The triangles around a vertex's point, and those around the corners of these.
-    fn two_rings(&self, vertex: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<[u32; 3]> {
+    fn two_rings(&self, vertex: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<u32> {
         let points = self.beside(&[vertex], level, of);
-        let triangles: BTreeSet<u32> = points.iter().flat_map(|point| self.of(*point)).collect();
-        triangles.into_iter().map(|triangle| corners_of(level, triangle)).collect()
+        sorted(points.iter().flat_map(|point| self.of(*point)))
     }
+}
+
+/// Ascending, each once.
+fn sorted(all: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut all: Vec<u32> = all.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }

@@ -8,7 +8,8 @@ use glam::Vec3;
 
 use crate::asset::Model;
 use crate::asset::mesh::Mesh;
-use crate::skinning::pose::{Moment, Pose};
+use crate::asset::transform::Affine;
+use crate::skinning::pose::{Moment, Pose, positions_of};
 pub(super) use shared::{Shared, shared};
 
 /// Meshes of a model, one after the other.
@@ -96,7 +97,24 @@ impl<'a> Whole<'a> {
         self.all(points).into_iter().map(|point| point / unit).collect()
     }
 
-    /// The same, where meshes that share a border have the same positions there to the bit.
+    /// The positions of some vertices, listed for each mesh in the mesh's own numbers, at a moment at which bones have these
+    /// model matrices; in multiples of `unit`.
+    pub fn some_points(
+        &self,
+        moment: Moment,
+        bones: &[Affine],
+        vertices: &[Vec<u32>],
+        unit: f32,
+    ) -> Vec<Vec3> {
+        let mut points = Vec::with_capacity(vertices.iter().map(Vec::len).sum());
+        for (mesh, vertices) in self.meshes.iter().zip(vertices).filter(|(_, some)| !some.is_empty()) {
+            let own = positions_of(self.model, &self.model.meshes[*mesh], moment, bones, vertices);
+            points.extend(own.into_iter().map(|point| point / unit));
+        }
+        points
+    }
+
+    /// The positions of all vertices, where meshes that share a border have the same positions there to the bit.
     pub fn joined_points(&self, moment: Moment) -> Vec<[f32; 3]> {
         let points = self.points(moment, 1.0);
         self.shared.iter().map(|vertex| points[*vertex as usize].to_array()).collect()

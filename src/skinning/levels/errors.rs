@@ -1,0 +1,206 @@
+//! The errors of levels: the largest distance of any sample in any pose. Most samples are known to be nearer than another one
+//! before they are looked at, so that all poses can be.
+
+use std::ops::{ControlFlow, Range};
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::bodies::{STRETCH, common};
+use super::near::{Sample, Sides, blend};
+use super::whole::Whole;
+use crate::asset::Model;
+use crate::mesh::nearest::nearest_on_triangle;
+use crate::mesh::simplify::NO_BODY;
+use crate::skinning::pose::{Moment, bones_at};
+
+/// Number of moments that are looked at between two reports of progress.
+const BATCH: usize = 64;
+
+/// The samples of several levels that may be the farthest of their level at some moment.
+pub(super) struct Suspects {
+    /// What positions are divided by.
+    unit: f32,
+    /// How far rounding may move a position, in units.
+    rounding: f32,
+    /// For each mesh that is simplified together with others, the vertices whose positions are needed, one mesh after the
+    /// other.
+    vertices: Vec<Vec<u32>>,
+    all: Vec<Suspect>,
+    triangles: Vec<[u32; 3]>,
+    /// For each level, the least that its error can be.
+    least: Vec<f32>,
+}
+
+struct Suspect {
+    level: u32,
+    sample: Sample,
+    /// The point that was nearest in the first pose.
+    foot: Sample,
+    /// The triangles close to it, in [`Suspects::triangles`].
+    near: Range<u32>,
+}
+
+impl Suspects {
+    /// `first` is the first key pose, in multiples of `unit`; `rounding` is in these too. `bodies` has the rigid body of each
+    /// vertex.
+    pub(super) fn new(
+        whole: &Whole<'_>,
+        sides: &[Sides],
+        first: &[Vec3],
+        bodies: &[u32],
+        [unit, rounding]: [f32; 2],
+    ) -> Self {
+        let of_level =
+            |(level, sides): (usize, &Sides)| suspects_of(level as u32, sides, first, bodies, rounding);
+        let found: Vec<_> = sides.par_iter().enumerate().map(of_level).collect();
+        let (mut all, mut triangles, mut least) = (Vec::new(), Vec::new(), Vec::new());
+        for (suspects, own, lowest) in found {
+            let start = triangles.len() as u32;
+            let moved = |suspect: Suspect| {
+                let near = start + suspect.near.start..start + suspect.near.end;
+                Suspect { near, ..suspect }
+            };
+            all.extend(suspects.into_iter().map(moved));
+            triangles.extend(own);
+            least.push(lowest);
+        }
+        let mut suspects = Self { unit, rounding, vertices: Vec::new(), all, triangles, least };
+        suspects.number_anew(whole);
+        suspects
+    }
+
+    /// Lists the vertices that are needed, and names vertices by their places in this list.
+    fn number_anew(&mut self, whole: &Whole<'_>) {
+        let mut places = vec![0; whole.vertices()];
+        let used = self.all.iter().flat_map(|one| [&one.sample.0, &one.foot.0]).chain(&self.triangles);
+        used.flatten().for_each(|vertex| places[*vertex as usize] = 1);
+        let mut next = 0;
+        for member in 0..whole.meshes.len() {
+            let range = whole.range(member);
+            let needed = range.clone().filter(|vertex| places[*vertex] == 1);
+            self.vertices.push(needed.map(|vertex| (vertex - range.start) as u32).collect());
+        }
+        for place in places.iter_mut().filter(|place| **place == 1) {
+            (*place, next) = (next, next + 1);
+        }
+        let samples = self.all.iter_mut().flat_map(|one| [&mut one.sample.0, &mut one.foot.0]);
+        samples.chain(&mut self.triangles).flatten().for_each(|vertex| *vertex = places[*vertex as usize]);
+    }
+
+    /// Raises the errors of levels to what they are when vertices have these positions.
+    fn look(&self, points: &[Vec3], errors: &mut [f32]) {
+        let point = |vertex: u32| points[vertex as usize];
+        for suspect in &self.all {
+            let error = &mut errors[suspect.level as usize];
+            let wanted = blend(&suspect.sample.0, &suspect.sample.1, &point);
+            let foot = blend(&suspect.foot.0, &suspect.foot.1, &point);
+            if foot.distance(wanted) + self.rounding <= *error {
+                continue;
+            }
+            let near = &self.triangles[suspect.near.start as usize..suspect.near.end as usize];
+            let squared = near
+                .iter()
+                .map(|triangle| nearest_on_triangle(wanted, triangle.map(point)).distance_squared(wanted));
+            *error = error.max(squared.min_by(f32::total_cmp).unwrap_or(0.0).sqrt());
+        }
+    }
+}
+
+/// The samples of a level that may be farthest, their triangles, and the least that the level's error can be.
+fn suspects_of(
+    level: u32,
+    sides: &Sides,
+    first: &[Vec3],
+    bodies: &[u32],
+    rounding: f32,
+) -> (Vec<Suspect>, Vec<[u32; 3]>, f32) {
+    let point = |vertex: u32| first[vertex as usize];
+    let mut least = 0.0_f32;
+    let found: Vec<_> = sides
+        .all()
+        .map(|(sample, near)| {
+            let wanted = blend(&sample.0, &sample.1, &point);
+            let (foot, off) = foot_of(wanted, near, &point);
+            let body = common(bodies, &sample.0);
+            let is_rigid = body != NO_BODY && near.iter().all(|triangle| common(bodies, triangle) == body);
+            if is_rigid {
+                least = least.max((1.0 - 2.0 * STRETCH) * off - rounding);
+            }
+            let most = if is_rigid { (1.0 + 2.0 * STRETCH) * off + rounding } else { f32::INFINITY };
+            (sample, foot, near, most)
+        })
+        .collect();
+    let (mut all, mut triangles) = (Vec::new(), Vec::new());
+    for (sample, foot, near, most) in found {
+        // Not for NaN.
+        if most <= least {
+            continue;
+        }
+        let start = triangles.len() as u32;
+        triangles.extend_from_slice(near);
+        all.push(Suspect { level, sample, foot, near: start..triangles.len() as u32 });
+    }
+    (all, triangles, least)
+}
+
+/// The nearest point on some triangles, and its distance.
+fn foot_of(wanted: Vec3, near: &[[u32; 3]], point: &impl Fn(u32) -> Vec3) -> (Sample, f32) {
+    let on = |triangle: &[u32; 3]| {
+        let found = nearest_on_triangle(wanted, triangle.map(point));
+        (*triangle, found, found.distance_squared(wanted))
+    };
+    let nearest = near.iter().map(on).min_by(|a, b| a.2.total_cmp(&b.2));
+    nearest.map_or((([0; 3], [0.0; 3]), f32::INFINITY), |(triangle, found, squared)| {
+        ((triangle, parts_of(found, triangle.map(point))), squared.sqrt())
+    })
+}
+
+/// Barycentric coordinates of a point of a triangle; those of a corner where the triangle has no area.
+fn parts_of(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
+    let normal = (b - a).cross(c - a);
+    let area = normal.length_squared();
+    let part = |from: Vec3, to: Vec3| ((from - point).cross(to - point).dot(normal) / area).clamp(0.0, 1.0);
+    let [first, second] = [part(b, c), part(c, a)];
+    if !(first.is_finite() && second.is_finite()) {
+        return [1.0, 0.0, 0.0];
+    }
+    let second = second.min(1.0 - first);
+    [first, second, 1.0 - first - second]
+}
+
+/// The largest distance of each level of several groups of meshes at any of these moments, in units of each. `watch` gets the
+/// number of moments that were looked at, and may break.
+pub(super) fn errors<B>(
+    model: &Model,
+    groups: &[(&Whole<'_>, &Suspects)],
+    moments: &[Moment],
+    watch: &mut dyn FnMut(usize) -> ControlFlow<B>,
+) -> ControlFlow<B, Vec<Vec<f32>>> {
+    let mut errors: Vec<Vec<f32>> = groups.iter().map(|(_, suspects)| suspects.least.clone()).collect();
+    // Moments far from each other first: they soon tell how far samples are off, so that others need not be looked at.
+    let stride = moments.len().div_ceil(BATCH).max(1);
+    let order: Vec<Moment> =
+        (0..stride).flat_map(|first| moments.iter().skip(first).step_by(stride)).copied().collect();
+    for (batch, moments) in order.chunks(BATCH).enumerate() {
+        watch(batch * BATCH)?;
+        let look = |moment: &Moment| {
+            let bones = bones_at(model, *moment);
+            let mut own = errors.clone();
+            for ((whole, suspects), errors) in groups.iter().zip(&mut own) {
+                let points = whole.some_points(*moment, &bones, &suspects.vertices, suspects.unit);
+                suspects.look(&points, errors);
+            }
+            own
+        };
+        errors = moments.par_iter().map(look).reduce(|| errors.clone(), larger);
+    }
+    ControlFlow::Continue(errors)
+}
+
+fn larger(mut a: Vec<Vec<f32>>, b: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
+    for (a, b) in a.iter_mut().flatten().zip(b.iter().flatten()) {
+        *a = a.max(*b);
+    }
+    a
+}
