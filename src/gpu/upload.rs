@@ -337,7 +337,7 @@ mod tests {
                 stream.write(&mut encoder, source.raw(), 0, bytemuck::bytes_of(&word)).expect("fits");
                 encoder.copy_buffer_to_buffer(source.raw(), 0, seen.raw(), 4 * u64::from(at), 4);
             }
-            assert!(stream.write(&mut encoder, source.raw(), 4, &[0; 4]).is_err());
+            assert!(stream.write(&mut encoder, source.raw(), 2, &[0; 4]).is_err());
             stream.finish(&mut encoder).expect("sent");
             assert!(ring.stream(&gpu, 8).is_none(), "its buffer is free before it is executed");
             gpu.queue().submit([encoder.finish()]);

@@ -72,7 +72,8 @@ impl Scene {
 
     /// The motion that was taken out of the clip of an instance's base ([`CharacterOptions::root_motion`](crate::scene::CharacterOptions::root_motion)) between two times of
     /// the scene, in seconds: a rotation about +Y and a translation, in the space of the model at the first time. The caller
-    /// moves the instance by it, as far as it wants to: its placement times this is its new placement.
+    /// moves the instance by it, as far as it wants to: its placement times this is its new placement
+    /// ([`Placement::moved_by`](crate::scene::Placement::moved_by)).
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, is no character, or keeps its motion, and for times that are

@@ -5,6 +5,7 @@ use glam::{DVec3, Quat, Vec3};
 use crate::InputError;
 use crate::animation::Wrap;
 use crate::animation::instance::check_seconds;
+use crate::asset::Transform;
 use crate::shared::lod::instance::CELL_SIZE;
 
 /// Where an instance stands in the world, how it is turned, and how large it is. A point of the model is scaled, then turned,
@@ -88,6 +89,20 @@ impl Placement {
     #[must_use]
     pub fn scaled(self, scale: f32) -> Self {
         Self { scale: Vec3::splat(scale), ..self }
+    }
+
+    /// The placement after a motion in the model's space, as [`Scene::root_motion`](crate::scene::Scene::root_motion) gives it:
+    /// this placement times the motion, whose own scale is left out. It is exact for a scale of one size along all axes, mirrored or
+    /// not.
+    #[must_use]
+    pub fn moved_by(self, motion: &Transform) -> Self {
+        let ahead = self.turn * (self.scale * Vec3::from(motion.translation));
+        // A mirrored model turns the other way.
+        let sides = self.scale.signum();
+        let [x, y, z, w] = motion.rotation;
+        let axis = sides * Vec3::new(x, y, z) * sides.element_product();
+        let turn = self.turn * Quat::from_xyzw(axis.x, axis.y, axis.z, w);
+        Self { offset: self.offset + ahead, turn, ..self }
     }
 
     /// The position in world coordinates.
@@ -187,6 +202,26 @@ mod tests {
         assert_eq!((moved.cell, moved.offset), ([3908, 0, 0], Vec3::new(64.125, 0.5, 255.0)));
         let turned = Placement { turn: Quat::from_xyzw(0.0, 3.0, 0.0, 4.0), ..far }.checked().expect("valid");
         assert_eq!(turned.turn, Quat::from_xyzw(0.0, 0.6, 0.0, 0.8));
+    }
+
+    /// A point that moves in the model's space, then stands in the world, is where the moved placement has it.
+    #[test]
+    fn placements_move_by_motions_of_the_model() {
+        let rotation = Quat::from_rotation_y(0.6) * Quat::from_rotation_x(0.3);
+        let motion =
+            Transform { translation: [0.5, -1.0, 2.0], rotation: rotation.to_array(), ..Transform::IDENTITY };
+        let place = |placement: &Placement, point: Vec3| {
+            (placement.turn * (placement.scale * point)).as_dvec3() + placement.world()
+        };
+        for mirror in [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, -1.0)] {
+            let far = Placement { scale: 3.0 * mirror, ..Placement::at_world([1e6, 2.0, -9e5]).turned(1.1) };
+            let moved = far.moved_by(&motion);
+            for point in [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z] {
+                let right = place(&far, rotation * point + Vec3::from(motion.translation));
+                let found = place(&moved, point);
+                assert!(found.distance(right) < 1e-4, "{found} {right}, mirrored by {mirror}");
+            }
+        }
     }
 
     #[test]

@@ -165,12 +165,7 @@ fn roots_keep_their_place() {
         let motion = scene.root_motion(moved, at, scene.time()).expect("taken");
         at = scene.time();
         let before = scene.placement(moved).expect("there");
-        let (ahead, turn) = (Vec3::from(motion.translation), Quat::from_array(motion.rotation));
-        let place = before.world() + (before.turn * (before.scale * ahead)).as_dvec3();
-        let turn = before.turn * turn;
-        scene
-            .move_to(moved, Placement { turn, scale: before.scale, ..Placement::at_world(place) })
-            .expect("there");
+        scene.move_to(moved, before.moved_by(&motion)).expect("there");
         let boxes = [moved, fixed].map(|instance| scene.bounds(instance).expect("there"));
         let middle = boxes.map(|found| found.world().into_iter().sum::<DVec3>() / 2.0);
         assert!(middle[0].distance(middle[1]) < 0.1, "{middle:?}");
