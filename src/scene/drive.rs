@@ -13,6 +13,7 @@ use crate::{Error, InputError};
 /// The poses of all characters in a frame whose bones have been sampled, for [`Scene::record_with`].
 #[derive(Debug)]
 pub struct Poses<'a> {
+    gpu: &'a Gpu,
     objects: &'a mut Slots<Object>,
     /// `None` if all buffers are taken.
     stream: Option<StagingStream<'a>>,
@@ -26,7 +27,7 @@ impl<'a> Poses<'a> {
             _ => 0,
         });
         let room = driven.sum::<usize>() * size_of::<Local>();
-        Self { objects, stream: staging.stream(gpu, room), failure: None }
+        Self { gpu, objects, stream: staging.stream(gpu, room), failure: None }
     }
 
     /// The buffers in which the pose of an instance lies, for kernels of the caller.
@@ -53,8 +54,8 @@ impl<'a> Poses<'a> {
     /// Nothing is submitted, and nothing allocated unless a frame writes more than any frame before.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, and as
-    /// [`Transform::checked`].
+    /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, as
+    /// [`Transform::checked`], and for an encoder of another [`wgpu::Instance`].
     pub fn write(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -63,6 +64,7 @@ impl<'a> Poses<'a> {
         local: Transform,
     ) -> Result<(), InputError> {
         let local = local.checked("local")?;
+        self.gpu.check_encoder(encoder)?;
         let InstanceId { index, generation, .. } = instance;
         let object = self.objects.existing_mut(instance);
         let object = object.ok_or_else(|| stale("instance", index, generation))?;

@@ -142,6 +142,14 @@ fn another_instance_is_refused() {
     let mut encoder = other.encoder("of another instance");
     let recorded = world.scene.record(&mut encoder, &mut [&mut view]);
     assert_eq!(wrong(recorded), ["encoder", "of another wgpu::Instance"]);
+    let (driven, bone) = (world.crowd[0], 40);
+    world.scene.drive(driven, &["40"]).expect("a bone");
+    let mut dropped = own.encoder("dropped");
+    let recorded = world.scene.record_with(&mut dropped, &mut [&mut view], |_, poses| {
+        poses.write(&mut encoder, driven, bone, relievo::asset::Transform::IDENTITY)
+    });
+    assert_eq!(wrong(recorded), ["encoder", "of another wgpu::Instance"]);
+    drop(dropped);
     let theirs = Frame::plain(&other, SIZE);
     let mut shadow = SunShadow::new(&mut world.scene, 64).expect("a shadow");
     shadow.fit(&world.scene, &mut [&mut view], 60.0).expect("fitted");
