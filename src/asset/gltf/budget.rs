@@ -23,6 +23,9 @@ const ELEMENTS_A_BYTE: u64 = 4;
 /// As [`ELEMENTS_A_BYTE`], for documents with compressed meshes: Draco takes a byte for a triangle and half a vertex.
 const ELEMENTS_A_PACKED_BYTE: u64 = 16;
 
+/// Bytes of decompressed data that count as an element, as four floats do.
+pub const BYTES_AN_ELEMENT: usize = 16;
+
 /// Texels that the images of any document may have: 64 MiB, one image of 4096².
 const TEXELS: u64 = 1 << 24;
 

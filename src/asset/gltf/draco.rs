@@ -7,13 +7,11 @@ use gltf_json::accessor::ComponentType;
 use gltf_json::{Index, buffer};
 use serde::Deserialize;
 
+use super::budget::BYTES_AN_ELEMENT;
 use super::document::Document;
 use super::extensions::DRACO;
 use crate::InputError;
 use crate::asset::mesh::MAX_VERTICES;
-
-/// Bytes of an element of the budget: four floats.
-const BYTES_AN_ELEMENT: u64 = 16;
 
 /// Where the compressed bytes of a primitive lie, and which attributes they have.
 #[derive(Debug, Deserialize)]
@@ -45,7 +43,7 @@ impl Draco {
         let limits = DecodeLimits::default()
             .with_max_points(MAX_VERTICES as u64)
             .with_max_faces(elements / 3)
-            .with_max_decoded_bytes(elements.saturating_mul(BYTES_AN_ELEMENT));
+            .with_max_decoded_bytes(elements.saturating_mul(BYTES_AN_ELEMENT as u64));
         let mut mesh = Mesh::new();
         let read = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(limits), &mut mesh);
         read.map_err(|error| {
@@ -86,18 +84,20 @@ impl Decompressed<'_> {
             return refused(value, &format!("must have {components}, as the accessor"));
         }
         let values = attribute.read_f32s(self.mesh.num_points(), components);
-        Ok(Some(values.into_iter().flat_map(|value| bytes_of(value, component)).collect()))
+        let mut bytes = Vec::with_capacity(values.len() * component.size());
+        values.into_iter().for_each(|value| push(value, component, &mut bytes));
+        Ok(Some(bytes))
     }
 }
 
-/// A number as bytes of a component type; the nearest one that the type has.
-fn bytes_of(value: f32, component: ComponentType) -> Vec<u8> {
+/// Appends a number as a component type has it: the nearest one of that type.
+fn push(value: f32, component: ComponentType, bytes: &mut Vec<u8>) {
     match component {
-        ComponentType::I8 => (value as i8).to_le_bytes().to_vec(),
-        ComponentType::U8 => (value as u8).to_le_bytes().to_vec(),
-        ComponentType::I16 => (value as i16).to_le_bytes().to_vec(),
-        ComponentType::U16 => (value as u16).to_le_bytes().to_vec(),
-        ComponentType::U32 => (value as u32).to_le_bytes().to_vec(),
-        ComponentType::F32 => value.to_le_bytes().to_vec(),
+        ComponentType::I8 => bytes.extend((value as i8).to_le_bytes()),
+        ComponentType::U8 => bytes.push(value as u8),
+        ComponentType::I16 => bytes.extend((value as i16).to_le_bytes()),
+        ComponentType::U16 => bytes.extend((value as u16).to_le_bytes()),
+        ComponentType::U32 => bytes.extend((value as u32).to_le_bytes()),
+        ComponentType::F32 => bytes.extend(value.to_le_bytes()),
     }
 }

@@ -8,11 +8,9 @@ use meshoptimizer_rs::codec::{
 use meshoptimizer_rs::{Error, Workspace};
 use serde::Deserialize;
 
+use super::budget::BYTES_AN_ELEMENT;
 use super::document::Document;
 use crate::InputError;
-
-/// Bytes of decompressed data that count as an element of the budget, as four floats do.
-const BYTES_AN_ELEMENT: usize = 16;
 
 /// Where the compressed bytes of a view lie, and what they become.
 #[derive(Debug, Deserialize)]
