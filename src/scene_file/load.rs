@@ -333,3 +333,43 @@ fn base_color(model: &Model) -> RgbaImage {
         RgbaImage::from_pixel(1, 1, Rgba([red, green, blue, u8::MAX]))
     })
 }
+
+#[cfg(all(test, feature = "samples"))]
+mod tests {
+    use super::*;
+
+    /// A model that characters with different clips, and a mesh, show is simplified for all of them at once.
+    #[test]
+    fn a_model_that_is_named_again_is_simplified_once() {
+        let at = |x: u32| format!(r#""instances": [{{"at": [{x}, 0, 0]}}]"#);
+        let [a, b, c] = [0, 3, 6].map(at);
+        let file = SceneFile::from_json(&format!(
+            r#"{{
+                "meshes": [{{"file": "builtin:creature", {a}}}],
+                "characters": [
+                    {{"file": "builtin:creature", "clip": "walk", {b}}},
+                    {{"file": "builtin:creature", "clip": "wave", {c}}}
+                ],
+                "camera": {{"at": [0, 2, 9], "look": [0, 1, 0]}}
+            }}"#
+        ));
+        let file = file.expect("a scene");
+        let read = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
+        let mut files = Files::new(&read);
+        let loaded = files.objects(&file.objects).expect("loaded");
+        assert_eq!((loaded.len(), files.levelled.len()), (3, 1));
+        let models: Vec<&Arc<Model>> = loaded
+            .iter()
+            .map(|object| match object {
+                Loaded::Model(model) => model,
+                Loaded::Relief(_) => unreachable!("there is none"),
+            })
+            .collect();
+        let moving: Vec<_> = models.iter().filter(|model| !model.clips.is_empty()).collect();
+        assert!(moving.len() == 2 && Arc::ptr_eq(moving[0], moving[1]));
+        let still = models.iter().find(|model| model.clips.is_empty()).expect("the mesh");
+        assert!(still.meshes[0].levels == moving[0].meshes[0].levels);
+        assert!(!still.meshes[0].levels.is_empty());
+        assert_eq!(still.meshes[0].validate(&still.skins), Ok(()));
+    }
+}

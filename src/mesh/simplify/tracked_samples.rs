@@ -366,6 +366,36 @@ mod tests {
         assert!(5 * level(&plain, far).len() > 6 * near, "{} and {near}", level(&plain, far).len());
     }
 
+    /// What is called far is further than the limit, also from slivers and from afar.
+    #[test]
+    fn far_triangles_are_far() {
+        let (mut far, mut all) = (0, 0);
+        for at in 0..4000 {
+            let wave = |turn: f32| libm::sinf(turn * at as f32);
+            let size = [1.0, 0.1, 0.01][at % 3];
+            let place = |one: f32| Vec3::new(wave(one), wave(1.3 * one), wave(1.9 * one));
+            let first = place(1.1);
+            let sliver = if at % 2 == 0 { size } else { 1e-4 * size };
+            let corners =
+                [first, first + size * place(2.3), first + size * place(2.3) * 0.5 + sliver * place(3.1)];
+            let points = Points::new(&[corners.map(|corner| corner.to_array()).to_vec()]);
+            if points.len() < 3 {
+                continue;
+            }
+            let placed = [0, 1, 2].map(|point| points.position(point, 0).as_vec3());
+            let face = Face::new(&points, 0, [0, 1, 2]);
+            let position = placed[0] + 2.0 * size * place(4.7);
+            let off = nearest_on_triangle(position, placed).distance(position);
+            for limit in [0.2 * off, 0.9 * off, 0.999_999 * off, off, 1.1 * off] {
+                let is_far = face.is_far(position, limit);
+                assert!(!is_far || off > limit, "{corners:?} {position}: {off} {limit}");
+                far += usize::from(is_far);
+                all += 1;
+            }
+        }
+        assert!(3 * far > all, "{far} of {all}");
+    }
+
     #[test]
     fn distances_are_checked() {
         let (poses, indices) = sheet();
