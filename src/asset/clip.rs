@@ -27,6 +27,9 @@
 mod keys;
 mod layout;
 mod replaced;
+mod stored;
+
+use serde::{Deserialize, Serialize};
 
 use super::skeleton::Skeleton;
 use crate::InputError;
@@ -63,7 +66,7 @@ impl Part {
 }
 
 /// Where the keys of a track lie in the clip's arrays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Track {
     /// Index of its first key's time in `times`.
     pub first_time: u32,
@@ -76,7 +79,8 @@ pub struct Track {
 }
 
 /// A clip of one skeleton, in flat arrays.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "stored::StoredClip")]
 pub struct Clip {
     name: String,
     duration: f32,

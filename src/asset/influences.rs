@@ -6,13 +6,15 @@
 //!   receives the rest. It is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest
 //!   influences vanish first, and shaders do not fetch those that have vanished.
 
+use serde::{Deserialize, Serialize};
+
 use crate::InputError;
 
 /// The most bones that a vertex can follow.
 pub const MAX_INFLUENCES: usize = 8;
 
 /// A bone, and the weight with which a vertex follows it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Influence {
@@ -23,10 +25,25 @@ pub struct Influence {
 }
 
 /// The influences of every vertex of a mesh.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<Vec<Influence>>", into = "Vec<Vec<Influence>>")]
 pub struct Influences {
     offsets: Vec<u32>,
     all: Vec<Influence>,
+}
+
+impl From<Influences> for Vec<Vec<Influence>> {
+    fn from(influences: Influences) -> Self {
+        (0..influences.vertices()).map(|vertex| influences.of(vertex).to_vec()).collect()
+    }
+}
+
+impl TryFrom<Vec<Vec<Influence>>> for Influences {
+    type Error = InputError;
+
+    fn try_from(stored: Vec<Vec<Influence>>) -> Result<Self, InputError> {
+        Self::stored("influences", stored)
+    }
 }
 
 impl Default for Influences {

@@ -1,10 +1,12 @@
 //! Materials: the base colours of glTF, their textures, normal maps, and the use of alpha.
 
+use serde::{Deserialize, Serialize};
+
 /// The longest edge of an image in texels: WebGPU's default limit.
 pub const MAX_TEXELS: u32 = 8192;
 
 /// The base colour and the normal map of a surface.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// The material's name in the file.
     pub name: String,
@@ -32,7 +34,7 @@ impl Material {
 }
 
 /// An image, and how it is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Texture {
     /// Index of the image in the model.
     pub image: usize,
@@ -41,7 +43,7 @@ pub struct Texture {
 }
 
 /// How a texture is filtered between its texels and wrapped beyond its edges.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sampling {
     /// Wrapping along u and v.
     pub wrap: [Wrapping; 2],
@@ -62,7 +64,7 @@ impl Default for Sampling {
 }
 
 /// What lies beyond the edge of an image.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wrapping {
     /// The image again.
     Repeat,
@@ -73,7 +75,7 @@ pub enum Wrapping {
 }
 
 /// How values between texels, or between mip levels, are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Filter {
     /// The nearest value.
     Nearest,
@@ -82,7 +84,7 @@ pub enum Filter {
 }
 
 /// How alpha is used.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Alpha {
     /// Alpha is ignored: the whole surface is opaque.
     Opaque,

@@ -3,6 +3,8 @@
 
 mod validate;
 
+use serde::{Deserialize, Serialize};
+
 use super::morph::{MorphTarget, WeightKeys};
 use super::tangents::{self, tangents};
 use crate::InputError;
@@ -21,7 +23,7 @@ pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 pub const MAX_LEVELS: usize = crate::shared::skinning::instance_lod::MAX_LEVELS as usize;
 
 /// A coarser level of a mesh, which uses a subset of its vertices.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshLevel {
     /// Three indices per triangle, of the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
@@ -33,7 +35,7 @@ pub struct MeshLevel {
 }
 
 /// Triangles that follow the bones of one skin.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
     /// The node's name followed by the primitive's number.
     pub name: String,

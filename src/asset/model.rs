@@ -1,6 +1,10 @@
 //! A model: one skeleton, the skins that share it, its clips and its meshes. It may be a character, or anything
 //! else, moving or not.
 
+mod stored;
+
+use serde::{Deserialize, Serialize};
+
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
 use crate::InputError;
@@ -8,7 +12,13 @@ use crate::asset::material::Alpha;
 use crate::asset::{Material, Mesh};
 
 /// A skeleton with its skins, clips and meshes.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// A model is stored with serde, in any format, with all that it has: the levels of detail of its meshes and its images
+/// too. Formats that keep the bits of floats give back an equal model. What is read is checked as a whole. The stored form
+/// belongs to one version of this crate: a program that keeps it stores its own version beside it, and imports the model
+/// again if that differs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "stored::StoredModel")]
 pub struct Model {
     /// The bones.
     pub skeleton: Skeleton,
@@ -24,6 +34,7 @@ pub struct Model {
     /// The materials of the meshes.
     pub materials: Vec<Material>,
     /// The images of textures, the top row first: sRGB with linear alpha, and those of normal maps linear.
+    #[serde(with = "stored::images")]
     pub images: Vec<image::RgbaImage>,
 }
 

@@ -1,13 +1,15 @@
 //! Morph targets, which move vertices before they are skinned, and the keys of their weights (glTF 2.0,
 //! sections 3.7.2.2 and 3.11).
 
+use serde::{Deserialize, Serialize};
+
 use super::clip::{Interpolation, check_times};
 use super::keyframe::{KeyframeCursor, keyframe_cursor};
 use super::transform::finite;
 use crate::InputError;
 
 /// The displacement of some vertices at a weight of 1. All other vertices stay.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MorphTarget {
     /// Indices of the vertices, ascending.
     pub vertices: Vec<u32>,
@@ -16,7 +18,7 @@ pub struct MorphTarget {
 }
 
 /// The displacement of a vertex at a weight of 1.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MorphDelta {
     /// Added to its position.
     pub position: [f32; 3],
@@ -44,12 +46,37 @@ impl MorphTarget {
 }
 
 /// The keys of a mesh's morph weights in one clip.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "StoredKeys")]
 pub struct WeightKeys {
     times: Vec<f32>,
     values: Vec<f32>,
     interpolation: Interpolation,
     targets: usize,
+}
+
+/// Keys that were read and not checked.
+#[derive(Deserialize)]
+#[serde(rename = "WeightKeys")]
+struct StoredKeys {
+    times: Vec<f32>,
+    values: Vec<f32>,
+    interpolation: Interpolation,
+    targets: usize,
+}
+
+impl TryFrom<StoredKeys> for WeightKeys {
+    type Error = InputError;
+
+    fn try_from(stored: StoredKeys) -> Result<Self, InputError> {
+        let StoredKeys { times, values, interpolation, targets } = stored;
+        // Products with a larger number might not fit.
+        if targets > values.len() {
+            let bound = format!("must be at most {}, the number of values", values.len());
+            return Err(InputError::new("weight_keys.targets", targets, bound));
+        }
+        Self::new(["weight_keys.times", "weight_keys.values"], times, values, interpolation, targets)
+    }
 }
 
 impl WeightKeys {

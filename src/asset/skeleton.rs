@@ -1,5 +1,7 @@
 //! Skeletons: bones in topological order with their rest pose, and the skins that are bound to them.
 
+use serde::{Deserialize, Serialize};
+
 use super::transform::{Transform, finite};
 use crate::InputError;
 
@@ -7,7 +9,7 @@ use crate::InputError;
 pub const MAX_BONES: usize = 1 << 20;
 
 /// A node of the skeleton.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bone {
     /// The bone's name in the file; names need not be unique.
     pub name: String,
@@ -26,12 +28,48 @@ impl Bone {
 }
 
 /// Bones, each after its parent. Nodes that no skin uses are bones too if there are joints below them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "StoredSkeleton", into = "StoredSkeleton")]
 pub struct Skeleton {
     bones: Vec<Bone>,
     joints: Vec<u32>,
     depths: Vec<u32>,
     descendants: Vec<u32>,
+}
+
+/// How far the length of a stored rotation may be from 1.
+const OFF_UNIT: f32 = 1e-5;
+
+/// The bones and joints of a skeleton, from which the rest is computed.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Skeleton")]
+struct StoredSkeleton {
+    bones: Vec<Bone>,
+    joints: Vec<u32>,
+}
+
+impl From<Skeleton> for StoredSkeleton {
+    fn from(Skeleton { bones, joints, .. }: Skeleton) -> Self {
+        Self { bones, joints }
+    }
+}
+
+impl TryFrom<StoredSkeleton> for Skeleton {
+    type Error = InputError;
+
+    /// As [`Skeleton::new`]. Rotations keep their bits, and must be of length 1 but for rounding.
+    fn try_from(StoredSkeleton { bones, joints }: StoredSkeleton) -> Result<Self, InputError> {
+        let checked = Self::new(bones.clone(), joints)?;
+        for (at, bone) in bones.iter().enumerate() {
+            let length = glam::Quat::from_array(bone.rest.rotation).length();
+            if (length - 1.0).abs() > OFF_UNIT {
+                let bound = format!("must be a unit quaternion; its length is {length}");
+                let value = format!("{:?}", bone.rest.rotation);
+                return Err(InputError::new(format!("bones[{at}].rest.rotation"), value, bound));
+            }
+        }
+        Ok(Self { bones, ..checked })
+    }
 }
 
 impl Skeleton {
@@ -174,7 +212,7 @@ fn descendants(bones: &[Bone]) -> Vec<u32> {
 }
 
 /// A skin: bones that vertices follow, and the inverse bind matrix of each.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Skin {
     /// The skin's name in the file.
     pub name: String,

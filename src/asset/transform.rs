@@ -7,7 +7,7 @@ use crate::InputError;
 pub const SHORTEST: f32 = 1e-6;
 
 /// The transform `translation · rotation · scale`, which scales first.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Transform {
     /// Translation in the parent's space, in metres.
     pub translation: [f32; 3],

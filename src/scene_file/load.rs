@@ -1,6 +1,6 @@
 //! Reads the files that a scene names, and prepares what they hold: levels of detail, reliefs, textures.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use super::spec::SceneFile;
 use crate::Error;
 use crate::asset::{Mesh, Model};
 use crate::scene::Relief;
-use crate::skinning::{add_levels, at_rest, poses_of};
+use crate::skinning::{add_levels, add_levels_and_at_rest, at_rest, poses_of};
 use crate::surface::{Green, HeightMap, Material, ReliefOptions, SurfaceMesh, SurfaceVertex};
 use crate::terrain::config::ZoneTexture;
 use crate::terrain::texture::Texture;
@@ -67,13 +67,13 @@ impl LoadedScene {
 impl SceneFile {
     /// Reads the files that the scene names through `read`, which gets their paths relative to the scene file, and computes
     /// levels of detail of all meshes and of characters in the clips that they play, from 15 poses a second and at most 48 a
-    /// clip.
+    /// clip. A model that several objects show is read and simplified once, for all that they do with it.
     ///
     /// # Errors
     /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for one
     /// that does not suit its use, and for a clip that a model does not have.
     pub fn load(&self, read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> Result<LoadedScene, InputError> {
-        let mut files = Files { read, models: HashMap::new(), levelled: HashMap::new() };
+        let mut files = Files::new(read);
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones).enumerate();
         let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
             ZoneTexture::BuiltIn(kind) => Ok(Texture::built_in(kind)),
@@ -83,7 +83,7 @@ impl SceneFile {
             }
         };
         let textures = zones.map(texture).collect::<Result<_, InputError>>()?;
-        let objects = self.objects.iter().map(|entry| files.object(entry)).collect::<Result<_, _>>()?;
+        let objects = files.objects(&self.objects)?;
         Ok(LoadedScene { file: self.clone(), objects, textures })
     }
 }
@@ -92,33 +92,67 @@ impl SceneFile {
 struct Files<'a> {
     read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
     models: HashMap<Source, Arc<Model>>,
-    /// With levels of detail for these clips; at rest without any.
-    levelled: HashMap<(Source, Vec<usize>), Arc<Model>>,
+    needs: HashMap<Source, Needs>,
+    /// With levels of detail for all that is needed.
+    levelled: HashMap<Source, Arc<Model>>,
+    /// The same at rest.
+    resting: HashMap<Source, Arc<Model>>,
 }
 
-impl Files<'_> {
-    fn object(&mut self, entry: &ObjectEntry) -> Result<Loaded, InputError> {
+/// What objects do with a model that has levels of detail.
+#[derive(Default)]
+struct Needs {
+    /// The clips that characters play.
+    clips: BTreeSet<usize>,
+    /// Whether an object shows it at rest.
+    is_at_rest: bool,
+}
+
+impl<'a> Files<'a> {
+    fn new(read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> Self {
+        let (models, needs) = (HashMap::new(), HashMap::new());
+        Self { read, models, needs, levelled: HashMap::new(), resting: HashMap::new() }
+    }
+
+    fn objects(&mut self, entries: &[ObjectEntry]) -> Result<Vec<Loaded>, InputError> {
+        entries.iter().try_for_each(|entry| self.add_needs(entry))?;
+        entries.iter().map(|entry| self.object(entry)).collect()
+    }
+
+    /// Reads the model of an object, and notes what the object does with it.
+    fn add_needs(&mut self, entry: &ObjectEntry) -> Result<(), InputError> {
         let path = format!("{}.file", entry.path);
         let model = self.model(&path, &entry.source)?;
         if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
             let bound = "must have a mesh with triangles";
             return Err(InputError::new(path, &entry.source, bound));
         }
-        let within = |error: InputError| within(&path, &entry.source, &error);
         match &entry.kind {
-            EntryKind::Relief(relief) => {
-                let rest = at_rest(&model).map_err(within)?;
-                Ok(Loaded::Relief(Box::new(self.relief(entry, relief, &rest)?)))
-            }
-            EntryKind::Mesh => self.levelled(&entry.source, &[], &model).map(Loaded::Model).map_err(within),
+            EntryKind::Relief(_) => {}
+            EntryKind::Mesh => self.needs.entry(entry.source.clone()).or_default().is_at_rest = true,
             EntryKind::Character(play) => {
                 if model.clips.is_empty() {
                     let bound = "must have clips: list a model without among meshes";
                     return Err(InputError::new(path, &entry.source, bound));
                 }
                 let clips = played(entry, play, &model)?;
-                self.levelled(&entry.source, &clips, &model).map(Loaded::Model).map_err(within)
+                self.needs.entry(entry.source.clone()).or_default().clips.extend(clips);
             }
+        }
+        Ok(())
+    }
+
+    fn object(&mut self, entry: &ObjectEntry) -> Result<Loaded, InputError> {
+        let path = format!("{}.file", entry.path);
+        let within = |error: InputError| within(&path, &entry.source, &error);
+        match &entry.kind {
+            EntryKind::Relief(relief) => {
+                let model = self.model(&path, &entry.source)?;
+                let rest = at_rest(&model).map_err(within)?;
+                Ok(Loaded::Relief(Box::new(self.relief(entry, relief, &rest)?)))
+            }
+            EntryKind::Mesh => self.resting(&path, &entry.source).map(Loaded::Model).map_err(within),
+            EntryKind::Character(_) => self.levelled(&path, &entry.source).map(Loaded::Model).map_err(within),
         }
     }
 
@@ -144,23 +178,41 @@ impl Files<'_> {
             .map_err(|error| InputError::new(path, file.display(), format!("cannot be read: {error}")))
     }
 
-    /// A model with levels of detail for some of its clips; without any, at rest.
-    fn levelled(
-        &mut self,
-        source: &Source,
-        clips: &[usize],
-        model: &Model,
-    ) -> Result<Arc<Model>, InputError> {
-        let key = (source.clone(), clips.to_vec());
-        if let Some(known) = self.levelled.get(&key) {
+    /// A model with levels of detail for all that is needed.
+    fn levelled(&mut self, path: &str, source: &Source) -> Result<Arc<Model>, InputError> {
+        if let Some(known) = self.levelled.get(source) {
             return Ok(known.clone());
         }
-        let mut own = if clips.is_empty() { at_rest(model)? } else { model.clone() };
-        let poses = clips.iter().map(|clip| poses_of(&model.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
+        let mut own = Model::clone(&*self.model(path, source)?);
+        let none = Needs::default();
+        let needs = self.needs.get(source).unwrap_or(&none);
+        let clips: Vec<usize> = needs.clips.iter().copied().collect();
+        let poses = clips.iter().map(|clip| poses_of(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
         let poses = poses.into_iter().map(|poses| (poses / SPARSER).clamp(LEAST_POSES, MOST_POSES)).max();
-        add_levels(&mut own, clips, poses.unwrap_or(1))?;
+        let poses = poses.unwrap_or(1);
+        if needs.is_at_rest {
+            add_levels_and_at_rest(&mut own, &clips, poses)?;
+        } else {
+            add_levels(&mut own, &clips, poses)?;
+        }
         let own = Arc::new(own);
-        self.levelled.insert(key, own.clone());
+        self.levelled.insert(source.clone(), own.clone());
+        Ok(own)
+    }
+
+    /// A model at rest, whose vertices and triangles are those of [`Self::levelled`], with its levels.
+    fn resting(&mut self, path: &str, source: &Source) -> Result<Arc<Model>, InputError> {
+        if let Some(known) = self.resting.get(source) {
+            return Ok(known.clone());
+        }
+        let levelled = self.levelled(path, source)?;
+        let mut own = at_rest(&levelled)?;
+        for (mesh, from) in own.meshes.iter_mut().zip(&levelled.meshes) {
+            mesh.levels.clone_from(&from.levels);
+            mesh.partners.clone_from(&from.partners);
+        }
+        let own = Arc::new(own);
+        self.resting.insert(source.clone(), own.clone());
         Ok(own)
     }
 
@@ -280,4 +332,44 @@ fn base_color(model: &Model) -> RgbaImage {
         let [red, green, blue] = [0, 1, 2].map(|channel: usize| srgb::byte(color[channel]));
         RgbaImage::from_pixel(1, 1, Rgba([red, green, blue, u8::MAX]))
     })
+}
+
+#[cfg(all(test, feature = "samples"))]
+mod tests {
+    use super::*;
+
+    /// A model that characters with different clips, and a mesh, show is simplified for all of them at once.
+    #[test]
+    fn a_model_that_is_named_again_is_simplified_once() {
+        let at = |x: u32| format!(r#""instances": [{{"at": [{x}, 0, 0]}}]"#);
+        let [a, b, c] = [0, 3, 6].map(at);
+        let file = SceneFile::from_json(&format!(
+            r#"{{
+                "meshes": [{{"file": "builtin:creature", {a}}}],
+                "characters": [
+                    {{"file": "builtin:creature", "clip": "walk", {b}}},
+                    {{"file": "builtin:creature", "clip": "wave", {c}}}
+                ],
+                "camera": {{"at": [0, 2, 9], "look": [0, 1, 0]}}
+            }}"#
+        ));
+        let file = file.expect("a scene");
+        let read = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
+        let mut files = Files::new(&read);
+        let loaded = files.objects(&file.objects).expect("loaded");
+        assert_eq!((loaded.len(), files.levelled.len()), (3, 1));
+        let models: Vec<&Arc<Model>> = loaded
+            .iter()
+            .map(|object| match object {
+                Loaded::Model(model) => model,
+                Loaded::Relief(_) => unreachable!("there is none"),
+            })
+            .collect();
+        let moving: Vec<_> = models.iter().filter(|model| !model.clips.is_empty()).collect();
+        assert!(moving.len() == 2 && Arc::ptr_eq(moving[0], moving[1]));
+        let still = models.iter().find(|model| model.clips.is_empty()).expect("the mesh");
+        assert!(still.meshes[0].levels == moving[0].meshes[0].levels);
+        assert!(!still.meshes[0].levels.is_empty());
+        assert_eq!(still.meshes[0].validate(&still.skins), Ok(()));
+    }
 }

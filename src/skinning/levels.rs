@@ -230,8 +230,23 @@ fn looked_at(moments: &[Moment]) -> Vec<Moment> {
 /// # Errors
 /// [`InputError`] as [`MeshLevels::new`].
 pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Vec<MeshLevels>, InputError> {
-    let ControlFlow::Continue(found) =
-        watched(model, clips, poses, &mut |_| ControlFlow::<Infallible>::Continue(()))?;
+    let mut watch = |_| ControlFlow::<Infallible>::Continue(());
+    let ControlFlow::Continue(found) = watched(model, Looks { clips, poses, is_at_rest: false }, &mut watch)?;
+    Ok(found)
+}
+
+/// As [`add_levels`], where levels keep their errors at rest too.
+///
+/// # Errors
+/// As [`add_levels`].
+#[cfg(feature = "gpu")]
+pub(crate) fn add_levels_and_at_rest(
+    model: &mut Model,
+    clips: &[usize],
+    poses: usize,
+) -> Result<Vec<MeshLevels>, InputError> {
+    let mut watch = |_| ControlFlow::<Infallible>::Continue(());
+    let ControlFlow::Continue(found) = watched(model, Looks { clips, poses, is_at_rest: true }, &mut watch)?;
     Ok(found)
 }
 
@@ -262,22 +277,34 @@ pub fn add_levels_with_progress(
     poses: usize,
     watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<Option<Vec<MeshLevels>>, InputError> {
-    Ok(watched(model, clips, poses, watch)?.continue_value())
+    Ok(watched(model, Looks { clips, poses, is_at_rest: false }, watch)?.continue_value())
+}
+
+/// The moments at which a model is looked at.
+struct Looks<'a> {
+    clips: &'a [usize],
+    /// Of each clip.
+    poses: usize,
+    /// Whether the rest pose counts beside clips.
+    is_at_rest: bool,
 }
 
 fn watched<B>(
     model: &mut Model,
-    clips: &[usize],
-    poses: usize,
+    looks: Looks<'_>,
     watch: &mut dyn FnMut(f32) -> ControlFlow<B>,
 ) -> Result<ControlFlow<B, Vec<MeshLevels>>, InputError> {
+    let Looks { clips, poses, is_at_rest } = looks;
     let each = (0..model.meshes.len()).map(|mesh| moments(model, mesh, clips, poses));
     if let ControlFlow::Break(broken) = watch(0.0) {
         return Ok(ControlFlow::Break(broken));
     }
-    let Some(moments) = each.collect::<Result<Vec<_>, _>>()?.into_iter().next() else {
+    let Some(mut moments) = each.collect::<Result<Vec<_>, _>>()?.into_iter().next() else {
         return Ok(watch(1.0).map_continue(|()| Vec::new()));
     };
+    if is_at_rest && !clips.is_empty() {
+        moments.push(Moment::Rest);
+    }
     let (borders, groups) = shared(model, &key_moments(&moments));
     let meshes: Vec<usize> = (0..model.meshes.len()).collect();
     let bodies = Bodies::new(model, &meshes, &looked_at(&moments));

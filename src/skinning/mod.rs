@@ -42,6 +42,8 @@ pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
 pub use extent::Extent;
 pub use instance_lod::{FadeRange, InstanceLod};
+#[cfg(feature = "gpu")]
+pub(crate) use levels::add_levels_and_at_rest;
 pub use levels::{Coarsened, MeshLevels, add_levels, add_levels_with_progress, coarsen};
 pub use merged::{Merged, merged};
 pub use pose::poses_of;

@@ -3,6 +3,7 @@
 mod damaged;
 mod materials;
 mod obj;
+mod stored;
 mod written;
 
 use std::collections::HashMap;

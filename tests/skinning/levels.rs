@@ -1,16 +1,20 @@
 //! Levels of detail of a character with two meshes: each is as coarse as permitted, and the drawn surface keeps
 //! to the error in pixels.
 
+use std::ops::ControlFlow;
+
 use glam::{Vec3, Vec4, camera};
 use relievo::animation::Projection;
-use relievo::asset::Model;
+use relievo::asset::{Influence, Influences, Model};
 use relievo::skinning::lod::reference::lod;
 use relievo::skinning::lod::{LevelRanges, LodView, placed};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::palette;
 use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Extent, InstanceLod, MeshLevels, add_levels, level_errors, own_levels, poses_of};
+use relievo::skinning::{
+    Extent, InstanceLod, MeshLevels, add_levels, add_levels_with_progress, level_errors, own_levels, poses_of,
+};
 
 use crate::shapes::{model, models};
 
@@ -101,4 +105,60 @@ fn each_mesh_changes_where_its_own_error_allows() {
         }
     }
     assert!(largest > 0.5 * PIXELS, "far too careful: {largest} pixels");
+}
+
+/// The fractions ascend from 0 to 1, and a program that cancels keeps its model.
+#[test]
+fn progress_is_told_and_can_end_the_work() {
+    let plain = relievo::samples::creature().expect("valid");
+    let mut model = plain.clone();
+    let mut told = Vec::new();
+    let found = add_levels_with_progress(&mut model, &[0], 100, &mut |fraction| {
+        told.push(fraction);
+        ControlFlow::Continue(())
+    });
+    assert!(found.expect("valid").is_some());
+    assert!(told.len() > 9 && told[0] == 0.0 && told[told.len() - 1] == 1.0, "{told:?}");
+    assert!(told.windows(2).all(|pair| pair[0] <= pair[1] && pair[1] - pair[0] < 0.35), "{told:?}");
+    let mut silent = plain.clone();
+    add_levels(&mut silent, &[0], 100).expect("valid");
+    assert!(model == silent && !model.meshes[0].levels.is_empty());
+    for most in [0.0, 0.3, 0.8] {
+        let mut model = plain.clone();
+        let mut last = 0.0;
+        let found = add_levels_with_progress(&mut model, &[0], 100, &mut |fraction| {
+            last = fraction;
+            if fraction >= most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert!(found.expect("valid").is_none() && model == plain, "{most}");
+        assert!(last < most + 0.35, "{last} of {most}");
+    }
+}
+
+/// Where vertices follow one bone each, twenty times as many poses are hardly more work.
+#[cfg(unix)]
+#[test]
+fn poses_of_rigid_parts_cost_little() {
+    let mut model = relievo::samples::creature().expect("valid");
+    let mesh = &mut model.meshes[0];
+    let strongest = (0..mesh.vertices()).map(|vertex| {
+        let bone = mesh.influences.of(vertex)[0].bone;
+        vec![Influence { bone, weight: 1.0 }]
+    });
+    mesh.influences = Influences::new("w", model.skins[0].bones.len(), strongest).expect("valid");
+    let seconds = |poses: usize| {
+        let clock = || {
+            let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+            time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+        let mut model = model.clone();
+        pool.install(|| {
+            let before = clock();
+            add_levels(&mut model, &[0], poses).expect("valid");
+            clock() - before
+        })
+    };
+    let [few, many] = [48, 960].map(seconds);
+    assert!(many < 2.0 * few, "{few} s, {many} s");
 }

@@ -11,7 +11,7 @@ pub const LONGEST: f32 = 1_048_576.0;
 const LEAST_TIME: f32 = 7.888_609e-31;
 
 /// How values between keys are interpolated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[repr(u32)]
 pub enum Interpolation {
     /// The value of the previous key.

@@ -7,41 +7,112 @@ use super::points::Points;
 use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
+/// Number of samples of a point that are tested first.
+const WITNESSES: usize = 4;
+
+/// No sample, or no triangle.
+const NONE: u32 = u32::MAX;
+
 /// Samples of the mesh, each assigned to a remaining triangle that is within the limit of it in every pose.
 pub(crate) struct TrackedSamples {
     /// For each triangle, the samples assigned to it: numbers of removed points, and beyond those, numbers of
     /// midpoints.
     samples: Vec<Vec<u32>>,
+    /// For each sample, the triangle to which it is assigned.
+    homes: Vec<u32>,
+    /// For each point, the samples that forbade its collapses last: most are tested again and again, and one sample is
+    /// mostly enough.
+    witnesses: Vec<[u32; WITNESSES]>,
     middles: Middles,
     /// The square of the largest distance allowed, in the unit of points' positions.
     most: f32,
     /// The collapse that was tested last, if it keeps within the limit.
     looked_at: Option<[u32; 2]>,
-    /// For that collapse: samples, with their new triangles.
-    found: Vec<(u32, u32)>,
-    /// For that collapse: the triangles that would exist afterwards, the changed ones first, with their
-    /// corners.
-    triangles: Vec<(u32, [u32; 3])>,
+    /// For that collapse: the triangles that would exist afterwards, the changed ones first.
+    faces: Vec<Face>,
     /// For that collapse: the number of triangles that it changes.
     changed: usize,
-    /// For that collapse: the triangles of the mesh that the changed ones may lie on.
-    below: Vec<[u32; 3]>,
+    /// For that collapse: midpoints on the triangles of the mesh that the changed ones may lie on.
+    below: Vec<u32>,
 }
 
 /// The midpoints of the mesh's edges and triangles.
 struct Middles {
     /// Positions, one midpoint after the other, each in all poses.
     positions: Vec<Vec3>,
-    /// For each midpoint, a triangle of the mesh on which it lies, by its points.
-    triangles: Vec<[u32; 3]>,
-    /// For each midpoint, the rigid body of that triangle, or [`NO_BODY`](super::points::NO_BODY).
-    bodies: Vec<u32>,
+    /// For each midpoint, a triangle of the mesh on which it lies.
+    triangles: Vec<Face>,
+}
+
+/// A triangle, and what tells that it is far from a position.
+#[derive(Clone, Copy)]
+struct Face {
+    number: u32,
+    /// Its points.
+    corners: [u32; 3],
+    /// Its rigid body, or [`NO_BODY`](super::points::NO_BODY).
+    body: u32,
+    /// The middle of a sphere around it in the first pose, and the radius.
+    middle: Vec3,
+    radius: f32,
+    /// Its unit normal in the first pose; 0 if it is nearly a line.
+    normal: Vec3,
+    /// How far rounding may move the distances from plane and sphere.
+    rounding: f32,
+}
+
+impl Face {
+    fn new(points: &Points, number: u32, corners: [u32; 3]) -> Self {
+        /// The square of the sine of the angle below which a triangle's normal is not exact enough.
+        const LEAST: f32 = 1e-4;
+        let [a, b, c] = corners.map(|corner| points.position(corner, 0).as_vec3());
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(ac);
+        let edges = ab.length_squared() * ac.length_squared();
+        let is_exact = normal.length_squared() > LEAST * edges;
+        let middle = (a + b + c) / 3.0;
+        let radius =
+            [a, b, c].map(|corner| corner.distance_squared(middle)).into_iter().fold(0.0, f32::max).sqrt();
+        Self {
+            number,
+            corners,
+            body: points.common_body(&corners),
+            middle,
+            radius,
+            normal: if is_exact { normal.normalize_or_zero() } else { Vec3::ZERO },
+            // Positions are within ±2 mostly; the normal is off by 2⁻²⁴ over the sine, for each unit of length.
+            rounding: 1e-6 * (middle.abs().max_element() + 2.0) + 4e-5 * radius,
+        }
+    }
+
+    /// Whether all of it is surely further than `limit` from a position in the first pose.
+    #[inline]
+    fn is_far(&self, position: Vec3, limit: f32) -> bool {
+        let (from, limit) = (position - self.middle, limit + self.rounding);
+        let reach = self.radius + limit;
+        from.dot(self.normal).abs() > limit || from.length_squared() > reach * reach
+    }
+
+    /// The square of its largest distance from a sample in any pose; more than `most` if it is larger than that.
+    fn off(&self, points: &Points, body: u32, wanted: impl Fn(usize) -> Vec3, most: f32) -> f32 {
+        let mut largest = 0.0_f32;
+        for pose in 0..points.poses_between(body, self.body) {
+            let (wanted, corners) =
+                (wanted(pose), self.corners.map(|corner| points.position(corner, pose).as_vec3()));
+            largest = largest.max(nearest_on_triangle(wanted, corners).distance_squared(wanted));
+            if largest > most {
+                break;
+            }
+        }
+        largest
+    }
 }
 
 impl TrackedSamples {
     pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
         let mut samples = vec![Vec::new(); triangles];
-        let mut middles = Middles { positions: Vec::new(), triangles: Vec::new(), bodies: Vec::new() };
+        let mut homes = vec![NONE; points.len()];
+        let mut middles = Middles { positions: Vec::new(), triangles: Vec::new() };
         for point in 0..points.len() as u32 {
             for ring in topology.one_ring(point) {
                 let corners = [point, ring.next.point, ring.last.point];
@@ -50,15 +121,16 @@ impl TrackedSamples {
                 let is_first = corners.iter().all(|other| point <= *other);
                 let edge = (point < corners[1] || is_border()).then_some(&corners[..2]);
                 for ends in edge.into_iter().chain(is_first.then_some(&corners[..])) {
-                    samples[ring.triangle as usize].push((points.len() + middles.triangles.len()) as u32);
+                    samples[ring.triangle as usize].push(homes.len() as u32);
+                    homes.push(ring.triangle);
                     middles.positions.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
-                    middles.triangles.push(corners);
-                    middles.bodies.push(points.common_body(&corners));
+                    middles.triangles.push(Face::new(points, ring.triangle, corners));
                 }
             }
         }
-        let (found, triangles, below) = (Vec::new(), Vec::new(), Vec::new());
-        Self { samples, middles, most: 0.0, looked_at: None, found, triangles, changed: 0, below }
+        let (faces, below) = (Vec::new(), Vec::new());
+        let witnesses = vec![[NONE; WITNESSES]; points.len()];
+        Self { samples, homes, witnesses, middles, most: 0.0, looked_at: None, faces, changed: 0, below }
     }
 
     /// Sets the largest distance that is allowed from now on, in the unit of points' positions.
@@ -77,81 +149,113 @@ impl TrackedSamples {
         neighbor: u32,
     ) -> bool {
         self.looked_at = None;
-        self.triangles.clear();
-        self.found.clear();
-        self.below.clear();
-        for (around, other) in [(point, neighbor), (neighbor, point)] {
-            self.changed = self.triangles.len();
-            for ring in topology.one_ring(around) {
-                let ends = [ring.next.point, ring.last.point];
-                if !ends.contains(&other) {
-                    self.triangles.push((ring.triangle, [neighbor, ends[0], ends[1]]));
-                }
-                let middles = self.samples[ring.triangle as usize]
-                    .iter()
-                    .filter_map(|sample| (*sample as usize).checked_sub(points.len()));
-                for middle in middles {
-                    let below = self.middles.triangles[middle];
-                    // The midpoints of a triangle and of its edges mostly follow each other.
-                    if self.below.last() != Some(&below) {
-                        self.below.push(below);
-                    }
-                }
+        self.list_faces(topology, points, point, neighbor);
+        if !self.has_near(points, point) {
+            return false;
+        }
+        let around = topology.around(point);
+        for sample in self.witnesses[point as usize] {
+            let home = self.homes.get(sample as usize).copied().unwrap_or(NONE);
+            if around.contains(&home) && !self.has_near(points, sample) {
+                return false;
             }
         }
-        let samples = topology.around(point).iter().flat_map(|triangle| &self.samples[*triangle as usize]);
-        for sample in std::iter::once(&point).chain(samples) {
-            let Some(triangle) = self.nearest(points, *sample) else { return false };
-            self.found.push((*sample, triangle));
+        let samples = around.iter().flat_map(|triangle| &self.samples[*triangle as usize]);
+        if let Some(&far) = samples.into_iter().find(|sample| !self.has_near(points, **sample)) {
+            let witnesses = &mut self.witnesses[point as usize];
+            witnesses.rotate_right(1);
+            witnesses[0] = far;
+            return false;
         }
-        let is_near = self.triangles[..self.changed].iter().all(|(_, [to, next, last])| {
-            let sides: [&[u32]; 3] = [&[*to, *next], &[*last, *to], &[*to, *next, *last]];
+        self.list_below(topology, points, [point, neighbor]);
+        let is_near = self.faces[..self.changed].iter().all(|face| {
+            let [to, next, last] = face.corners;
+            let sides: [&[u32]; 3] = [&[to, next], &[last, to], &[to, next, last]];
             sides.iter().all(|side| self.is_near(points, side))
         });
         self.looked_at = is_near.then_some([point, neighbor]);
         is_near
     }
 
+    /// Lists the triangles that would exist after a collapse.
+    fn list_faces(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
+        self.faces.clear();
+        for (around, other) in [(point, neighbor), (neighbor, point)] {
+            self.changed = self.faces.len();
+            for ring in topology.one_ring(around) {
+                let ends = [ring.next.point, ring.last.point];
+                if !ends.contains(&other) {
+                    self.faces.push(Face::new(points, ring.triangle, [neighbor, ends[0], ends[1]]));
+                }
+            }
+        }
+    }
+
+    /// Lists the midpoints of the mesh that are assigned to triangles around two points.
+    fn list_below(&mut self, topology: &Topology, points: &Points, both: [u32; 2]) {
+        self.below.clear();
+        let mut last = NONE;
+        for triangle in both.iter().flat_map(|point| topology.around(*point)) {
+            for sample in &self.samples[*triangle as usize] {
+                let Some(middle) = (*sample as usize).checked_sub(points.len()) else { continue };
+                // The midpoints of a triangle and of its edges mostly follow each other.
+                let of = self.middles.triangles[middle].number;
+                if of != last {
+                    self.below.push(middle as u32);
+                }
+                last = of;
+            }
+        }
+    }
+
     /// Whether the midpoint of some points is within the limit of a triangle of the mesh, the same one in all
     /// poses.
     fn is_near(&self, points: &Points, ends: &[u32]) -> bool {
-        let is_near = |triangle: &[u32; 3], pose: usize| {
-            let wanted = middle(points, ends, pose);
-            let corners = triangle.map(|corner| points.position(corner, pose).as_vec3());
-            nearest_on_triangle(wanted, corners).distance_squared(wanted) <= self.most
-        };
-        let body = points.common_body(ends);
-        self.below.iter().any(|triangle| {
-            let poses = points.poses_between(body, points.common_body(triangle));
-            (0..poses).all(|pose| is_near(triangle, pose))
+        let (body, first, limit) = (points.common_body(ends), middle(points, ends, 0), self.most.sqrt());
+        self.below.iter().any(|at| {
+            let face = &self.middles.triangles[*at as usize];
+            !face.is_far(first, limit)
+                && face.off(points, body, |pose| middle(points, ends, pose), self.most) <= self.most
+        })
+    }
+
+    /// The position of a sample in a pose.
+    fn position(&self, points: &Points, sample: u32, pose: usize) -> Vec3 {
+        match (sample as usize).checked_sub(points.len()) {
+            None => points.position(sample, pose).as_vec3(),
+            Some(at) => self.middles.positions[at * points.poses() + pose],
+        }
+    }
+
+    /// The rigid body of a sample, or [`NO_BODY`](super::points::NO_BODY).
+    fn body(&self, points: &Points, sample: u32) -> u32 {
+        match (sample as usize).checked_sub(points.len()) {
+            None => points.body(sample),
+            Some(at) => self.middles.triangles[at].body,
+        }
+    }
+
+    /// Whether one of the triangles is within the limit of a sample in all poses.
+    fn has_near(&self, points: &Points, sample: u32) -> bool {
+        let (first, limit) = (self.position(points, sample, 0), self.most.sqrt());
+        let body = self.body(points, sample);
+        self.faces.iter().any(|face| {
+            !face.is_far(first, limit)
+                && face.off(points, body, |pose| self.position(points, sample, pose), self.most) <= self.most
         })
     }
 
     /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the
     /// limit.
     fn nearest(&self, points: &Points, sample: u32) -> Option<u32> {
-        let position = |point: u32, pose: usize| -> Vec3 { points.position(point, pose).as_vec3() };
+        let (first, limit) = (self.position(points, sample, 0), self.most.sqrt());
+        let body = self.body(points, sample);
         let mut best = None;
         let mut least = self.most.next_up();
-        let body = match (sample as usize).checked_sub(points.len()) {
-            None => points.body(sample),
-            Some(at) => self.middles.bodies[at],
-        };
-        for (triangle, corners) in &self.triangles {
-            let mut most = 0.0_f32;
-            for pose in 0..points.poses_between(body, points.common_body(corners)) {
-                let wanted = match (sample as usize).checked_sub(points.len()) {
-                    None => position(sample, pose),
-                    Some(at) => self.middles.positions[at * points.poses() + pose],
-                };
-                let found = nearest_on_triangle(wanted, corners.map(|corner| position(corner, pose)));
-                most = most.max(found.distance_squared(wanted));
-                if most >= least {
-                    break;
-                }
-            }
-            if most < least {
-                (best, least) = (Some(*triangle), most);
+        for face in self.faces.iter().filter(|face| !face.is_far(first, limit)) {
+            let off = face.off(points, body, |pose| self.position(points, sample, pose), least);
+            if off < least {
+                (best, least) = (Some(face.number), off);
             }
         }
         best
@@ -161,13 +265,17 @@ impl TrackedSamples {
     pub(crate) fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
         // Other collapses may have been tested in between.
         if self.looked_at.take() != Some([point, neighbor]) {
-            self.keeps_near(topology, points, point, neighbor);
+            self.list_faces(topology, points, point, neighbor);
         }
+        let mut moved = vec![point];
         for triangle in topology.around(point) {
-            self.samples[*triangle as usize].clear();
+            moved.append(&mut self.samples[*triangle as usize]);
         }
-        for (sample, triangle) in self.found.drain(..) {
-            self.samples[triangle as usize].push(sample);
+        for sample in moved {
+            if let Some(triangle) = self.nearest(points, sample) {
+                self.samples[triangle as usize].push(sample);
+                self.homes[sample as usize] = triangle;
+            }
         }
     }
 }
@@ -256,6 +364,36 @@ mod tests {
             (0..plain.collapses().len()).step_by(5).find(|count| !within(*count)).expect("far off at last");
         let near = level(&found, found.collapses_near(0.02)).len();
         assert!(5 * level(&plain, far).len() > 6 * near, "{} and {near}", level(&plain, far).len());
+    }
+
+    /// What is called far is further than the limit, also from slivers and from afar.
+    #[test]
+    fn far_triangles_are_far() {
+        let (mut far, mut all) = (0, 0);
+        for at in 0..4000 {
+            let wave = |turn: f32| libm::sinf(turn * at as f32);
+            let size = [1.0, 0.1, 0.01][at % 3];
+            let place = |one: f32| Vec3::new(wave(one), wave(1.3 * one), wave(1.9 * one));
+            let first = place(1.1);
+            let sliver = if at % 2 == 0 { size } else { 1e-4 * size };
+            let corners =
+                [first, first + size * place(2.3), first + size * place(2.3) * 0.5 + sliver * place(3.1)];
+            let points = Points::new(&[corners.map(|corner| corner.to_array()).to_vec()]);
+            if points.len() < 3 {
+                continue;
+            }
+            let placed = [0, 1, 2].map(|point| points.position(point, 0).as_vec3());
+            let face = Face::new(&points, 0, [0, 1, 2]);
+            let position = placed[0] + 2.0 * size * place(4.7);
+            let off = nearest_on_triangle(position, placed).distance(position);
+            for limit in [0.2 * off, 0.9 * off, 0.999_999 * off, off, 1.1 * off] {
+                let is_far = face.is_far(position, limit);
+                assert!(!is_far || off > limit, "{corners:?} {position}: {off} {limit}");
+                far += usize::from(is_far);
+                all += 1;
+            }
+        }
+        assert!(3 * far > all, "{far} of {all}");
     }
 
     #[test]

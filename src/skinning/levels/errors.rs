@@ -204,3 +204,52 @@ fn larger(mut a: Vec<Vec<f32>>, b: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
     }
     a
 }
+
+#[cfg(all(test, feature = "samples"))]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::super::Group;
+    use super::super::bodies::Bodies;
+    use super::super::whole::Shared;
+    use super::*;
+    use crate::asset::{Influence, Influences};
+
+    /// The errors equal those of all samples at all moments, to the bit.
+    #[test]
+    fn no_sample_that_is_farthest_is_left_out() {
+        let soft = crate::samples::creature().expect("valid");
+        let mut rigid = soft.clone();
+        let mesh = &mut rigid.meshes[0];
+        let strongest = (0..mesh.vertices())
+            .map(|vertex| vec![Influence { bone: mesh.influences.of(vertex)[0].bone, weight: 1.0 }]);
+        mesh.influences = Influences::new("w", rigid.skins[0].bones.len(), strongest).expect("valid");
+        for (model, is_rigid) in [(soft, false), (rigid, true)] {
+            let moments: Vec<Moment> = (0..90).map(|at| Moment::In(at % 2, at as f32 / 89.0)).collect();
+            let whole = Whole::new(&model, &[0], &Shared::new());
+            let bodies = Bodies::new(&model, &[0], &super::super::looked_at(&moments));
+            let mut watch = |_| ControlFlow::<Infallible>::Continue(());
+            let ControlFlow::Continue(group) =
+                Group::new(&whole, &moments, &bodies, &mut watch).expect("valid");
+            let mut watch = |_| ControlFlow::<Infallible>::Continue(());
+            let ControlFlow::Continue(found) =
+                errors(&model, &[(&whole, &group.suspects)], &moments, &mut watch);
+            let mut all = vec![0.0_f32; group.sides.len()];
+            let mut samples = 0;
+            for moment in &moments {
+                let points = whole.points(*moment, group.unit);
+                let point = |vertex: u32| points[vertex as usize];
+                for (error, sides) in all.iter_mut().zip(&group.sides) {
+                    for (sample, near) in sides.all() {
+                        let wanted = blend(&sample.0, &sample.1, &point);
+                        *error = error.max(foot_of(wanted, near, &point).1);
+                        samples += 1;
+                    }
+                }
+            }
+            assert!(all.len() > 5 && found[0] == all, "{:?} {all:?}", found[0]);
+            let few = 90 * group.suspects.all.len() < samples / 2;
+            assert_eq!(few, is_rigid, "{} of {samples}", group.suspects.all.len());
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Clips that were read with serde, and what is checked of them.
+
+use serde::Deserialize;
+
+use super::{Clip, Interpolation, LONGEST, Part, Track, check_times};
+use crate::InputError;
+use crate::asset::transform::{finite, unit};
+
+/// A clip that was not checked.
+#[derive(Deserialize)]
+#[serde(rename = "Clip")]
+pub(super) struct StoredClip {
+    name: String,
+    duration: f32,
+    tracks: Vec<Track>,
+    times: Vec<f32>,
+    values: Vec<[f32; 4]>,
+}
+
+impl TryFrom<StoredClip> for Clip {
+    type Error = InputError;
+
+    /// Refuses tracks that are not three a bone or reach beyond the arrays, times that descend or are out of range, values
+    /// that are not finite, and rotations without a direction.
+    fn try_from(stored: StoredClip) -> Result<Self, InputError> {
+        let StoredClip { name, duration, tracks, times, values } = stored;
+        if !tracks.len().is_multiple_of(Part::ALL.len()) {
+            return Err(InputError::new("clip.tracks.len", tracks.len(), "must be three a bone"));
+        }
+        // Shaders count the bytes of values in u32.
+        if values.len() > (1 << 28) - 1 {
+            return Err(InputError::new("clip.values.len", values.len(), "must be below 2^28"));
+        }
+        for (at, value) in values.iter().enumerate() {
+            finite(&format!("clip.values[{at}]"), value)?;
+        }
+        let mut last = 0.0_f32;
+        for (at, track) in tracks.iter().enumerate() {
+            last = last.max(check_track(at, track, &times, &values)?);
+        }
+        if !(last..=LONGEST).contains(&duration) {
+            let bound = format!("must be in {last}..={LONGEST} seconds, from the last key on");
+            return Err(InputError::new("clip.duration", duration, bound));
+        }
+        Ok(Self { name, duration, tracks, times, values })
+    }
+}
+
+/// The time of a track's last key; 0 at rest.
+fn check_track(at: usize, track: &Track, times: &[f32], values: &[[f32; 4]]) -> Result<f32, InputError> {
+    let of_track = |first: u32, count: usize, all: usize, field: &str| {
+        let (first, end) = (first as usize, first as usize + count);
+        if end > all {
+            let bound = format!("must leave {count} before {all}, the end of {field}");
+            return Err(InputError::new(format!("clip.tracks[{at}].{field}"), first, bound));
+        }
+        Ok(first..end)
+    };
+    let keys = track.keys as usize;
+    let each = if track.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    let own_times = of_track(track.first_time, keys, times.len(), "times")?;
+    let own_values = of_track(track.first_value, each * keys.max(1), values.len(), "values")?;
+    if at % Part::ALL.len() == Part::Rotation as usize {
+        for (key, value) in values[own_values].iter().enumerate().filter(|(key, _)| each == 1 || key % 3 == 1)
+        {
+            unit(&format!("clip.tracks[{at}].values[{key}]"), *value)?;
+        }
+    }
+    if keys == 0 {
+        return Ok(0.0);
+    }
+    check_times(&format!("clip.tracks[{at}].times"), &times[own_times.clone()])?;
+    Ok(times[own_times.end - 1])
+}

@@ -1,0 +1,108 @@
+//! Models that were read with serde, and what is checked of them.
+
+use image::RgbaImage;
+use serde::Deserialize;
+
+use super::Model;
+use crate::InputError;
+use crate::asset::{Clip, Material, Mesh, Skeleton, Skin};
+
+/// A model whose parts are not known to match.
+#[derive(Deserialize)]
+#[serde(rename = "Model")]
+pub(super) struct StoredModel {
+    skeleton: Skeleton,
+    skins: Vec<Skin>,
+    clips: Vec<Clip>,
+    meshes: Vec<Mesh>,
+    skinned: usize,
+    materials: Vec<Material>,
+    #[serde(with = "images")]
+    images: Vec<RgbaImage>,
+}
+
+impl TryFrom<StoredModel> for Model {
+    type Error = InputError;
+
+    /// Refuses skins, clips and meshes that do not match each other or the skeleton, and materials that are not there.
+    fn try_from(stored: StoredModel) -> Result<Self, InputError> {
+        let StoredModel { skeleton, skins, clips, meshes, skinned, materials, images } = stored;
+        let model = Self { skeleton, skins, clips, meshes, skinned, materials, images };
+        for (at, skin) in model.skins.iter().enumerate() {
+            skin.validate(&model.skeleton).map_err(|error| within(&format!("skins[{at}]"), error))?;
+        }
+        for (at, clip) in model.clips.iter().enumerate() {
+            if clip.bones() != model.skeleton.len() {
+                let bound = format!("must be {}, one a bone", model.skeleton.len());
+                return Err(InputError::new(format!("clips[{at}].bones.len"), clip.bones(), bound));
+            }
+        }
+        for (at, mesh) in model.meshes.iter().enumerate() {
+            let path = format!("meshes[{at}]");
+            mesh.validate(&model.skins).map_err(|error| within(&path, error))?;
+            model.material(mesh).map_err(|error| within(&path, error))?;
+            if let Some((clip, _)) = mesh.weight_keys.iter().find(|(clip, _)| *clip >= model.clips.len()) {
+                let bound = format!("must be below {}", model.clips.len());
+                return Err(InputError::new(format!("{path}.weight_keys.clip"), clip, bound));
+            }
+        }
+        if model.skinned > model.meshes.len() {
+            let bound = format!("must be at most {}, the number of meshes", model.meshes.len());
+            return Err(InputError::new("skinned", model.skinned, bound));
+        }
+        Ok(model)
+    }
+}
+
+fn within(path: &str, error: InputError) -> InputError {
+    InputError { path: format!("{path}: {}", error.path), ..error }
+}
+
+/// Images as their sizes and texels.
+pub(super) mod images {
+    use image::RgbaImage;
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize)]
+    #[serde(rename = "Image")]
+    struct Borrowed<'a> {
+        width: u32,
+        height: u32,
+        texels: &'a [u8],
+    }
+
+    #[derive(Deserialize)]
+    #[serde(rename = "Image")]
+    struct Stored {
+        width: u32,
+        height: u32,
+        texels: Vec<u8>,
+    }
+
+    pub fn serialize<S: Serializer>(images: &[RgbaImage], serializer: S) -> Result<S::Ok, S::Error> {
+        let all = images.iter().map(|image| {
+            let (width, height) = image.dimensions();
+            Borrowed { width, height, texels: image.as_raw() }
+        });
+        serializer.collect_seq(all)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<RgbaImage>, D::Error> {
+        let image = |(at, stored): (usize, Stored)| {
+            let Stored { width, height, texels } = stored;
+            let wanted = 4 * u64::from(width) * u64::from(height);
+            // Texels beyond the last row would be kept.
+            if texels.len() as u64 != wanted {
+                let value = texels.len();
+                return Err(D::Error::custom(format!(
+                    "images[{at}].texels.len = {value}: must be {wanted}, four a texel of {width} × {height}"
+                )));
+            }
+            RgbaImage::from_raw(width, height, texels).ok_or_else(|| {
+                D::Error::custom(format!("images[{at}]: {width} × {height} texels are too many"))
+            })
+        };
+        Vec::<Stored>::deserialize(deserializer)?.into_iter().enumerate().map(image).collect()
+    }
+}

@@ -1,0 +1,89 @@
+//! Models stored with serde, and read again.
+
+use image::{Rgba, RgbaImage};
+use relievo::asset::material::{Alpha, Sampling, Texture};
+use relievo::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
+use relievo::asset::{Interpolation, Material, Model};
+use relievo::skinning::{Blend, InstanceLod, Portrait, PosedModel, add_levels};
+use serde_json::{Value, json};
+
+/// The creature with levels of detail, a morph target, and a material with an image.
+fn model() -> Model {
+    let mut model = relievo::samples::creature().expect("valid");
+    let texture = Texture { image: 0, sampling: Sampling::default() };
+    let skin =
+        Material { texture: Some(texture), alpha: Alpha::Mask(0.3), ..Material::opaque("skin", [0.9; 4]) };
+    model.materials = vec![skin];
+    model.images = vec![RgbaImage::from_fn(5, 3, |x, y| Rgba([50 * x as u8, 80 * y as u8, 7, 255]))];
+    let mesh = &mut model.meshes[0];
+    mesh.material = Some(0);
+    let deltas = [0.01, -0.0, 1e-30].map(|x| MorphDelta { position: [x, 0.1, 0.0], ..MorphDelta::default() });
+    mesh.targets = vec![MorphTarget { vertices: vec![3, 5, 8], deltas: deltas.to_vec() }];
+    mesh.weights = vec![0.25];
+    let keys = WeightKeys::new(["t", "v"], vec![0.0, 0.5], vec![0.1, 0.7], Interpolation::Linear, 1);
+    mesh.weight_keys = vec![(1, keys.expect("valid"))];
+    add_levels(&mut model, &[0], 3).expect("valid");
+    assert!(model.meshes[0].levels.len() > 5 && !model.meshes[0].partners.is_empty());
+    model
+}
+
+fn picture(model: &Model) -> RgbaImage {
+    let posed =
+        PosedModel { model, clip: 1, time: 0.3, instance_lod: InstanceLod::FULL, blend: Blend::Linear };
+    let portrait = Portrait { edge: 48, finer: 2, background: [0.1; 3], clay: [0.5; 3] };
+    posed.on_host(&portrait).expect("drawn").1
+}
+
+#[test]
+fn models_are_read_back_to_the_bit_with_levels_and_images() {
+    let model = model();
+    let bytes = postcard::to_allocvec(&model).expect("stored");
+    let again: Model = postcard::from_bytes(&bytes).expect("read");
+    assert!(again == model);
+    // Equality does not tell −0 from 0; bytes do.
+    assert!(postcard::to_allocvec(&again).expect("stored") == bytes);
+    assert_eq!(picture(&again), picture(&model));
+    let text = serde_json::to_string(&model).expect("stored");
+    let again: Model = serde_json::from_str(&text).expect("read");
+    assert!(postcard::to_allocvec(&again).expect("stored") == bytes);
+}
+
+/// A stored model with another value at a path of names and numbers.
+fn refused(stored: &Value, path: &str, value: Value) -> String {
+    let mut changed = stored.clone();
+    *changed.pointer_mut(path).expect(path) = value;
+    serde_json::from_value::<Model>(changed).expect_err(path).to_string()
+}
+
+#[test]
+fn what_does_not_match_is_refused_by_name() {
+    let stored = serde_json::to_value(model()).expect("stored");
+    assert!(serde_json::from_value::<Model>(stored.clone()).is_ok());
+    let nine = || json!(999_999);
+    for (path, value, named) in [
+        ("/skins/0/bones/0", nine(), "skin.bones[0]"),
+        ("/skeleton/bones/1/parent", json!(7), "bones[1].parent"),
+        ("/skeleton/bones/1/rest/rotation", json!([0.0, 0.0, 0.0, 2.0]), "bones[1].rest.rotation"),
+        ("/clips/0/tracks/1/first_value", nine(), "clip.tracks[1].values"),
+        ("/clips/0/tracks/1/first_time", json!(u32::MAX), "clip.tracks[1].times"),
+        ("/clips/0/duration", json!(0.0), "clip.duration"),
+        ("/clips/1/tracks", json!([]), "clips[1].bones.len"),
+        ("/meshes/0/skin", json!(1), "mesh.skin"),
+        ("/meshes/0/material", json!(1), "mesh.material"),
+        ("/meshes/0/indices/4", nine(), "mesh.indices[4]"),
+        ("/meshes/0/levels/2/indices/4", nine(), "mesh.levels[2].indices[4]"),
+        ("/meshes/0/levels/2/error", json!(-1.0), "mesh.levels[2].error"),
+        ("/meshes/0/partners/0", nine(), "mesh.partners[0]"),
+        ("/meshes/0/influences/6/0/weight", json!(0.3), "influences[6]"),
+        ("/meshes/0/influences/6/0/bone", nine(), "influences[6]"),
+        ("/meshes/0/weight_keys/0/0", nine(), "weight_keys.clip"),
+        ("/meshes/0/weight_keys/0/1/targets", json!(u32::MAX), "weight_keys.targets"),
+        ("/meshes/0/weight_keys/0/1/times/1", json!(-1.0), "weight_keys.times[1]"),
+        ("/images/0/width", json!(6), "images[0].texels.len"),
+        ("/materials/0/texture/image", json!(1), "texture.image"),
+        ("/skinned", json!(2), "skinned"),
+    ] {
+        let error = refused(&stored, path, value);
+        assert!(error.contains(named), "{path}: {error}");
+    }
+}
