@@ -2,6 +2,10 @@
 
 use crate::shared::lod::object::OBJECT_MORPHS;
 
+/// How far the surface between two levels may be off, as a multiple of the coarser one's error: an allowance from
+/// measurements, not a bound (`docs/pixel-bounds.md`).
+const ON_THE_WAY: f32 = 1.2;
+
 /// How the levels of detail of an object's instances change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Transition {
@@ -12,12 +16,10 @@ pub enum Transition {
     /// ([`Mesh::partners`](crate::asset::Mesh::partners)), the further the more is allowed, in each view by itself. Once they
     /// are there, the picture is the coarser level's, and stays so where levels change.
     ///
-    /// Both levels keep to what is allowed. The surface in between may be a little further off than either: half-way between
-    /// two levels of the built-in rock, 1.07 times what is allowed. `measure::DisplacementMeter` measures it.
-    ///
-    /// A level begins to move once the error of the coarser one is allowed, and has arrived when that of the one after it
-    /// is. So the level that is drawn is finer by one than with [`Transition::Hard`]: it costs about 1.4 times the triangles,
-    /// and of each vertex two are loaded. The motion of vertices is part of their velocities ([`Layer::Velocity`](crate::render::Layer::Velocity)):
+    /// A level begins to move where 1.2 times the error of the coarser one is allowed, and has arrived where 1.2 times the error
+    /// of the one after it is. The factor is for the surface between two levels, which may be further off than either:
+    /// `docs/pixel-bounds.md` has how far. So the level that is drawn is finer by one to two than with [`Transition::Hard`]: it
+    /// costs about 1.7 times the triangles, and of each vertex two are loaded. The motion of vertices is part of their velocities ([`Layer::Velocity`](crate::render::Layer::Velocity)):
     /// where the level of the last frame was another one, a vertex was at its own place if that level was finer, and at that of
     /// the vertex which stood for it if it was coarser. An instance that the view did not show in the last frame counts as if
     /// its level had been as it is, and so do all in the first frame after objects were added, removed or grew. One that takes the place of another, which was
@@ -35,11 +37,14 @@ impl Transition {
     }
 
     /// From the errors of an object's levels, ascending from 0: the displacement from which on each level is drawn. With a
-    /// geomorph it begins to move there, and level 0, which is drawn before, too. The last level then begins at twice its
-    /// error.
+    /// geomorph it begins to move there, [`ON_THE_WAY`] times the error of the next one, and level 0, which is drawn before,
+    /// too. The last level then begins at twice as much.
     pub(super) fn begins(self, errors: &[f32]) -> Vec<f32> {
         match (self, errors.last()) {
-            (Self::Geomorph, Some(last)) => errors.iter().skip(1).copied().chain([2.0 * last]).collect(),
+            (Self::Geomorph, Some(last)) => {
+                let next = errors.iter().skip(1).copied().chain([2.0 * last]);
+                next.map(|error| ON_THE_WAY * error).collect()
+            }
             _ => errors.to_vec(),
         }
     }
@@ -53,7 +58,7 @@ mod tests {
     fn a_level_moves_once_the_next_one_is_allowed() {
         let errors = [0.0, 0.1, 0.2, 0.4];
         assert_eq!(Transition::Hard.begins(&errors), errors);
-        assert_eq!(Transition::Geomorph.begins(&errors), [0.1, 0.2, 0.4, 0.8]);
+        assert_eq!(Transition::Geomorph.begins(&errors), [0.1, 0.2, 0.4, 0.8].map(|error| 1.2 * error));
         assert_eq!([Transition::Hard, Transition::Geomorph].map(Transition::flag), [0, 2]);
     }
 }

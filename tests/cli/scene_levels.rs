@@ -42,7 +42,7 @@ fn levels_move_into_each_other_where_that_is_asked_for() {
     picture(scene("geomorph", None), &["--compare"]);
     let displacement = &folder.report()["frames"][0]["compared"]["displacement"];
     let largest = displacement["largest"].as_f64().expect("a number");
-    assert!((0.1..=5.0).contains(&largest), "{displacement}");
+    assert!((0.1..=4.0).contains(&largest), "{displacement}");
     let refused = folder.run(&scene("hard", None), &["--transition", "soft"]);
     assert_refused(&refused, &["--transition"], &["geomorph"]);
     // One triangle has no coarser level.

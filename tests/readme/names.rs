@@ -29,6 +29,7 @@ fn items() {
     use relievo::surface::SurfaceTextures as _; // surface::SurfaceTextures
     use relievo::surface::tangent as _; // surface::tangent
     use relievo::terrain::ground::Ground as _; // terrain::ground::Ground
+    use relievo::measure::DisplacementMeter as _; // measure::DisplacementMeter
     use relievo::measure::reduction::reduction as _; // measure::reduction::reduction
     use relievo::animation::priority as _; // animation::priority
     use relievo::animation::frame::GatedFrame as _; // GatedFrame

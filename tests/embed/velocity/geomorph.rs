@@ -78,7 +78,7 @@ impl Stage {
 
     /// The displacement from which on a level moves.
     fn begin(&self, level: usize) -> f32 {
-        self.errors.get(level).copied().unwrap_or_else(|| 2.0 * self.errors[self.errors.len() - 1])
+        1.2 * self.errors.get(level).copied().unwrap_or_else(|| 2.0 * self.errors[self.errors.len() - 1])
     }
 
     /// The velocities of a frame in a state.
