@@ -5,9 +5,9 @@
 //! Natively the answers come from a call that a working device refuses: whose error scope catches the error?
 
 #[cfg(target_arch = "wasm32")]
-pub(super) use browser::Identity;
+pub(super) use browser::{Identity, caught};
 #[cfg(not(target_arch = "wasm32"))]
-pub(super) use native::{Identity, is_lost};
+pub(super) use native::{Identity, caught, is_lost};
 
 /// In a browser identifiers are unique, and errors are told instead of panics.
 #[cfg(target_arch = "wasm32")]
@@ -23,6 +23,10 @@ mod browser {
         pub fn is_taken(&self, _: impl FnOnce(&wgpu::Buffer)) -> bool {
             true
         }
+    }
+
+    pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
+        Some(work())
     }
 }
 
@@ -69,8 +73,13 @@ mod native {
         /// else is recorded; the program's panic hook sees it.
         pub fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
             let probe = self.0.probe.get_or_init(|| probe(&self.0.device));
-            catch_unwind(AssertUnwindSafe(|| record(probe))).is_ok()
+            caught(|| record(probe)).is_some()
         }
+    }
+
+    /// What `work` returns; `None` if wgpu panics in it, since it was given something of another instance.
+    pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
+        catch_unwind(AssertUnwindSafe(work)).ok()
     }
 
     /// Counts the probes of the process.
@@ -87,7 +96,7 @@ mod native {
     fn probe(device: &wgpu::Device) -> wgpu::Buffer {
         let number = 1 + PROBES.fetch_add(1, Ordering::Relaxed) % PROBES_APART;
         let descriptor = wgpu::BufferDescriptor {
-            label: Some("probe of encoders"),
+            label: Some("probe: what is recorded into is of another device than the scene"),
             size: 4,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::INDEX,
             mapped_at_creation: false,

@@ -135,6 +135,14 @@ impl Gpu {
         self.identity.is_taken(record)
     }
 
+    /// As [`Gpu::scoped`], for work with something of the caller's; `None` if it is of another [`wgpu::Instance`].
+    ///
+    /// # Errors
+    /// As [`Gpu::scoped`].
+    pub(crate) fn scoped_with<T>(&self, work: impl FnOnce() -> T) -> Result<Option<T>, GpuError> {
+        identity::caught(|| self.scoped(work)).transpose()
+    }
+
     /// Refuses an encoder of another [`wgpu::Instance`].
     ///
     /// # Errors

@@ -54,6 +54,11 @@ impl Shading {
         Ok(Self { source: source.to_owned(), layout: layout.cloned() })
     }
 
+    /// The same text with another layout of bind group 3.
+    pub fn with_layout(self, layout: &wgpu::BindGroupLayout) -> Self {
+        Self { layout: Some(layout.clone()), ..self }
+    }
+
     /// Checks the layout of bind group 3 against what the text binds, and that the device's limits allow it beside the crate's
     /// own groups: compiles the text alone. In a browser the device tells the errors later.
     ///
@@ -71,13 +76,18 @@ impl Shading {
         };
         for groups in [layouts.of_mesh(), layouts.of_relief(), layouts.of_terrain()] {
             let groups: Vec<_> = groups.into_iter().chain([own]).map(Some).collect();
-            gpu.scoped(|| self.compile(gpu, format, &groups)).map_err(|error| match error {
+            let compiled = gpu.scoped_with(|| self.compile(gpu, format, &groups));
+            let compiled = compiled.map_err(|error| match error {
                 GpuError::Validation { reason } => {
                     let bound = format!("must fit the text and the device's limits: {reason}");
                     InputError::new("shading.layout", "bind group 3", bound).into()
                 }
                 error => Error::from(error),
             })?;
+            if compiled.is_none() {
+                let bound = "must be of the renderer's device";
+                return Err(InputError::new("shading.layout", "of another wgpu::Instance", bound).into());
+            }
         }
         Ok(())
     }
@@ -158,8 +168,8 @@ impl Own<'_> {
         let before = &self.text[..range.start];
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |text| text.chars().count()) + 1;
-        let value: String =
-            self.text[range.start..range.end.min(self.source.len())].chars().take(60).collect();
+        let quoted = self.text[range.start..range.end.min(self.source.len())].lines().next();
+        let value: String = quoted.unwrap_or_default().chars().take(60).collect();
         InputError::new(format!("shading:{line}:{column}"), value, bound)
     }
 
@@ -237,6 +247,9 @@ fn is_ours(name: Option<&str>) -> bool {
 
 /// Why a variable of module scope is refused.
 fn refused_variable(variable: &GlobalVariable, has_layout: bool) -> Option<&'static str> {
+    if variable.space == naga::AddressSpace::WorkGroup {
+        return Some("must not lie in workgroup memory, which fragment stages do not have");
+    }
     let binding = variable.binding.as_ref()?;
     match (binding.group == OWN_GROUP, has_layout) {
         (true, true) => None,

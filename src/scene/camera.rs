@@ -164,7 +164,7 @@ impl Camera {
             let value = format!("{:?}", self.viewport);
             return Err(InputError::new("camera.viewport", value, "must be at least 1 by 1"));
         }
-        let looking = "an eye that is not at its target";
+        let looking = "an eye within 2^31 cells of the origin, and a target elsewhere";
         let projection = "a field of view above 0 and below π, near above 0, and far above near";
         for (path, matrix, needed) in [
             ("camera.view_from_cell", self.view_from_cell, looking),

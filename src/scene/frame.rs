@@ -82,11 +82,12 @@ impl Scene {
     /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
     /// takes one of [`RECORDINGS`] places, which is free again when the device has executed it, and wgpu has noticed
     /// that: in a submission, or in [`wgpu::Device::poll`]. An encoder may be dropped instead: the next recording starts afresh
-    /// ([`Scene::invalidate`]). Of an empty scene nothing is recorded, and nothing drawn.
+    /// ([`Scene::invalidate`]). Submit recordings in the order in which they were made: each counts on the changes in those before
+    /// it. Of an empty scene nothing is recorded, and nothing drawn.
     ///
     /// # Errors
-    /// [`InputError`] for no view, a view of another scene or without a camera, an encoder of another [`wgpu::Instance`], and if
-    /// [`RECORDINGS`] frames have been recorded that the device has not executed; [`crate::gpu::GpuError`], also for the loss of
+    /// [`InputError`] for no view, a view of another scene or without a camera, an encoder of another [`wgpu::Instance`] (wgpu
+    /// panics there, which is caught, but the program's panic hook sees it), and if [`RECORDINGS`] frames have been recorded that the device has not executed; [`crate::gpu::GpuError`], also for the loss of
     /// the device.
     pub fn record(
         &mut self,

@@ -142,10 +142,11 @@ pub(super) fn drawable(
     placed.extend(words);
     let parts = (own.iter().zip(&tables))
         .map(|(part, table)| {
-            let PartKey { cut_out, blended, double_sided, sampling, normal_sampling } = part.key;
-            let surface = SurfaceKind { cut_out, blended, double_sided, morphed: false };
+            let PartKey { blended, double_sided, sampling, normal_sampling, .. } = part.key;
             let samplings = [sampling, normal_sampling].map(Option::unwrap_or_default);
             let materials = PartMaterials::new(gpu, layouts, looks, table, samplings)?;
+            // Materials may have changed since the model was added.
+            let surface = SurfaceKind { cut_out: materials.cut_out, blended, double_sided, morphed: false };
             Ok(MeshPart { surface, materials: MeshMaterials::Plain(materials) })
         })
         .collect::<Result<_, Error>>()?;

@@ -17,8 +17,8 @@ impl Scene {
     /// [`Scene::ground`] answers, and waits for that.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, for more
-    /// patches than one binding holds, and for fields without a margin, of another size, or fewer than patches;
+    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, and
+    /// for fields without a margin, of another size, or fewer than patches;
     /// [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {

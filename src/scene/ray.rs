@@ -92,7 +92,11 @@ impl Ray {
             return Err(InputError::new("ray.offset", self.offset, "must be finite"));
         }
         if self.direction.try_normalize().is_none() {
-            return Err(InputError::new("ray.direction", self.direction, "must be finite, and not 0"));
+            return Err(InputError::new(
+                "ray.direction",
+                self.direction,
+                "must be finite, with a length that f64 can hold, and not 0",
+            ));
         }
         // The comparison is false for NaN.
         if self.limit >= 0.0 {

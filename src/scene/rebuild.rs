@@ -20,7 +20,11 @@ pub trait Rebuild {
 
 impl Scene {
     /// Rebuilds the scene on another device ([`Scene::rebuild`]), and after it, in their order, its views, shadows and renderers.
-    /// What was forgotten is refused where it is used next, with the name of the function that rebuilds it.
+    /// What was forgotten is refused where it is used next, with the name of the function that rebuilds it. A renderer with the
+    /// caller's bind group layout needs a layout of the new device: call [`Renderer::rebuild_with_layout`] for it, and leave it out
+    /// here.
+    ///
+    /// [`Renderer::rebuild_with_layout`]: crate::render::Renderer::rebuild_with_layout
     ///
     /// # Errors
     /// As [`Scene::rebuild`]; nothing has changed then. The first error of a part, whose paths begin with `parts[0]`, …: the

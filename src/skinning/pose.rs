@@ -23,6 +23,9 @@ const POSES_A_SECOND: f32 = 60.0;
 /// The longest clip, in seconds, that may be sampled that often: an hour, with 216,001 poses.
 pub const LONGEST_LOOK: f32 = 3600.0;
 
+/// The most poses of a clip that are looked at: those of the longest.
+const MOST_POSES: usize = 216_001;
+
 /// The number of poses with which [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) sample a clip
 /// 60 times a second, start and end included; at least 2.
 ///
@@ -55,7 +58,7 @@ pub(super) enum Moment {
 /// `poses` moments of each clip, evenly spaced from start to end; the rest pose if there are no clips.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or clips that the model does not have, for 0 poses, and for a mesh that does not
+/// [`InputError`] for a mesh or clips that the model does not have, for 0 poses or more than those of the longest clip, and for a mesh that does not
 /// match its skin.
 pub(super) fn moments(
     model: &Model,
@@ -69,8 +72,14 @@ pub(super) fn moments(
     if poses == 0 {
         return Err(InputError::new("poses", 0, "must be at least 1, to see what vertices do"));
     }
+    if poses > MOST_POSES && !clips.is_empty() {
+        return Err(InputError::new("poses", poses, format!("must be at most {MOST_POSES}")));
+    }
     if let Some(at) = clips.iter().position(|clip| *clip >= model.clips.len()) {
-        let bound = format!("must be below {}", model.clips.len());
+        let bound = match model.clips.len() {
+            0 => "must not be given: the model has no clips".to_owned(),
+            count => format!("must be below {count}"),
+        };
         return Err(InputError::new(format!("clips[{at}]"), clips[at], bound));
     }
     mesh.validate(&model.skins)?;

@@ -150,6 +150,16 @@ fn another_instance_is_refused() {
     });
     assert_eq!(wrong(recorded), ["encoder", "of another wgpu::Instance"]);
     drop(dropped);
+    let layout = (0..2000).map(|_| {
+        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &[] };
+        other.device().create_bind_group_layout(&descriptor)
+    });
+    // One that has no namesake in the renderer's instance.
+    let layouts: Vec<_> = layout.collect();
+    let text = "fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(1.0); }";
+    let shaded = Renderer::new(&own, &frame.format).expect("a format").with_shading(text, layouts.last());
+    assert_eq!(wrong(shaded), ["shading.layout", "of another wgpu::Instance"]);
+    drop(layouts);
     let theirs = Frame::plain(&other, SIZE);
     let mut shadow = SunShadow::new(&mut world.scene, 64).expect("a shadow");
     shadow.fit(&world.scene, &mut [&mut view], 60.0).expect("fitted");

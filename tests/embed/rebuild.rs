@@ -3,6 +3,7 @@
 use image::RgbaImage;
 use relievo::Error;
 use relievo::asset::Transform;
+use relievo::asset::material::{Alpha, Material};
 use relievo::gpu::{Gpu, GpuError};
 use relievo::render::{Layer, Renderer, SunShadow};
 use relievo::samples::maps::BuiltInMap;
@@ -166,6 +167,32 @@ fn one_call_brings_all_back() {
     let refused = whole.world.scene.rebuild_all(&second, &mut [&mut whole.view, &mut shaded]);
     let refused = refused.expect_err("a layout of the lost device").to_string();
     assert!(refused.starts_with("parts[1].shading.layout = "), "{refused}");
+    shaded.rebuild_with_layout(&second, &layout).expect("rebuilt");
+    shaded.prepare(&whole.world.scene).expect("of the new device");
+}
+
+/// Materials that were changed are as they were on another device: what cuts out still does.
+#[test]
+fn changed_materials_outlive_a_device() {
+    let [first, second] = devices();
+    first.device().on_uncaptured_error(std::sync::Arc::new(|_| ()));
+    let mut world = World::new(&first, 1);
+    let rock = relievo::samples::rock().expect("valid");
+    let object = world.scene.add_mesh(&rock, 1).expect("added");
+    world.scene.spawn(object, Placement::at([0.0, 5.0, 0.0]).scaled(4.0)).expect("room");
+    let mut view = world.view(1.0);
+    let frame = Frame::plain(&first, SIZE);
+    let mut renderer = frame.renderer(&first, &world.scene);
+    let opaque = frame.shot(&mut world.scene, &mut view, &renderer);
+    let material = world.scene.material(object, "0").expect("a material").clone();
+    let half = Material { color: [0.5, 0.5, 0.5, 0.3], alpha: Alpha::Dithered, ..material };
+    world.scene.set_material(object, "0", &half).expect("changed");
+    renderer.prepare(&world.scene).expect("compiled");
+    let before = frame.shot(&mut world.scene, &mut view, &renderer);
+    assert!(before != opaque, "the rock is opaque");
+    world.scene.rebuild_all(&second, &mut [&mut view, &mut renderer]).expect("rebuilt");
+    let frame = Frame::plain(&second, SIZE);
+    assert!(frame.shot(&mut world.scene, &mut view, &renderer) == before, "another picture");
 }
 
 /// A shading that binds nothing.

@@ -393,7 +393,8 @@ mod tests {
                 all += 1;
             }
         }
-        assert!(3 * far > all, "{far} of {all}");
+        // Three limits of five are below the distance, and one of these by less than rounding.
+        assert!(6 * far > all, "{far} of {all}");
     }
 
     #[test]

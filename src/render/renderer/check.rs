@@ -9,7 +9,7 @@ use crate::scene::drawable::{DrawnObject, DrawnView};
 impl Renderer {
     /// Whether a scene is on the renderer's device.
     pub(super) fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
-        let bound = "must be of the renderer's device: rebuild what is of a lost device (Scene::rebuild_all)";
+        let bound = "must be of the renderer's device: Renderer::rebuild, if the scene was rebuilt";
         match scene.gpu().is_same_device(&self.gpu) {
             true => Ok(()),
             false => Err(InputError::new("scene", "of another device", bound)),

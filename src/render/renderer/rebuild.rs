@@ -1,6 +1,6 @@
 //! A renderer on another device, after its own was lost.
 
-use super::Renderer;
+use super::{Renderer, Shading};
 use crate::gpu::Gpu;
 use crate::scene::{Rebuild, Scene};
 use crate::{Error, InputError};
@@ -16,15 +16,34 @@ impl Renderer {
     /// ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
-    /// [`InputError`] for the caller's shading with a bind group layout, which the lost device takes with it: make a new renderer
-    /// with the layout of the new device. What the driver's compiler reports. In either case the renderer is as it was.
+    /// [`InputError`] for the caller's shading with a bind group layout, which the lost device takes with it
+    /// ([`Renderer::rebuild_with_layout`]). What the driver's compiler reports. In either case the renderer is as it was.
     pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
         if self.shading.as_ref().is_some_and(|shading| shading.layout.is_some()) {
-            let bound = "must be given again, to a new renderer, with a layout of the new device";
+            let bound = "must be given again, of the new device: Renderer::rebuild_with_layout";
             return Err(InputError::new("shading.layout", "of the lost device", bound).into());
         }
+        self.remake(gpu, self.shading.clone())
+    }
+
+    /// As [`Renderer::rebuild`], with a layout of the new device for bind group 3 of the caller's shading
+    /// ([`Renderer::with_shading`]).
+    ///
+    /// # Errors
+    /// As [`Renderer::with_shading`] for the layout; [`InputError`] for a renderer without the caller's shading. The renderer is as it was.
+    pub fn rebuild_with_layout(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Result<(), Error> {
+        let Some(shading) = &self.shading else {
+            return Err(InputError::new("shading", "none", "must be there where a layout is given").into());
+        };
+        self.remake(gpu, Some(shading.clone().with_layout(layout)))
+    }
+
+    fn remake(&mut self, gpu: &Gpu, shading: Option<Shading>) -> Result<(), Error> {
         let mut fresh = Self::new(gpu, &self.format)?;
-        fresh.shading.clone_from(&self.shading);
+        if let Some(shading) = &shading {
+            shading.check_layout(gpu, &fresh.format, &fresh.layouts)?;
+        }
+        fresh.shading = shading;
         fresh.casts = self.casts;
         self.pipelines.keys().try_for_each(|key| fresh.compile(*key))?;
         *self = fresh;

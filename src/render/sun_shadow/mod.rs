@@ -189,7 +189,12 @@ impl SunShadow {
             }),
             ..Default::default()
         });
-        self.renderer.draw(&mut pass, scene, &self.view, Layer::Depth)
+        let drawn = self.renderer.draw(&mut pass, scene, &self.view, Layer::Depth);
+        // The caller knows the view by this name.
+        drawn.map_err(|error| match error.path.as_str() {
+            "view" => InputError { path: "shadow.view()".to_owned(), ..error },
+            _ => error,
+        })
     }
 
     /// Creates everything anew after the device was lost and the scene was rebuilt on another one

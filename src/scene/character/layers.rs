@@ -139,7 +139,11 @@ impl Character {
         let count = self.layers.len();
         let at = layer.checked_sub(1).and_then(|at| self.layers.get_mut(at));
         at.ok_or_else(|| {
-            InputError::new("layer", layer, format!("must be in 1..={count}, as options.layers"))
+            let bound = match count {
+                0 => "must not be given: the character was added without layers (options.layers)".to_owned(),
+                _ => format!("must be in 1..={count}, as options.layers"),
+            };
+            InputError::new("layer", layer, bound)
         })
     }
 

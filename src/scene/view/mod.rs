@@ -177,9 +177,13 @@ impl View {
             let bound = format!("must be at most {VIEW_CAMERAS}");
             return Err(InputError::new("cameras.len", cameras.len(), bound));
         }
-        for camera in cameras {
-            camera.validate()?;
-            lod_camera(camera, camera.cell, self.quality.pixels)?;
+        for (at, camera) in cameras.iter().enumerate() {
+            let checked =
+                camera.validate().and_then(|()| lod_camera(camera, camera.cell, self.quality.pixels));
+            checked.map_err(|error| InputError {
+                path: error.path.replacen("camera", &format!("cameras[{at}]"), 1),
+                ..error
+            })?;
         }
         self.lod_cameras = cameras.to_vec();
         Ok(())

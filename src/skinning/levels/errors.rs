@@ -248,8 +248,9 @@ mod tests {
                 }
             }
             assert!(all.len() > 5 && found[0] == all, "{:?} {all:?}", found[0]);
-            let few = 90 * group.suspects.all.len() < samples / 2;
-            assert_eq!(few, is_rigid, "{} of {samples}", group.suspects.all.len());
+            // Samples near a joint have triangles of two bodies.
+            let are_fewer = 4 * 90 * group.suspects.all.len() < 3 * samples;
+            assert_eq!(are_fewer, is_rigid, "{} of {samples}", group.suspects.all.len());
         }
     }
 }

@@ -122,7 +122,7 @@ fn part_of_allowed(gpu: &Gpu, model: &Model, steps: u32) -> f64 {
     let object = scene.add_character(model, 1).expect("added");
     let middle = Vec3::new(0.0, 0.5 * size, 0.0);
     let placement =
-        Placement { at: middle - scale * sphere.center, scale: Vec3::splat(scale), ..Default::default() };
+        Placement { offset: middle - scale * sphere.center, scale: Vec3::splat(scale), ..Default::default() };
     let instance = scene.spawn(object, placement).expect("room");
     scene.set_transition(object, Transition::Geomorph).expect("with partners");
     let mut moments = vec![0.0];
