@@ -112,7 +112,7 @@ const DROPPED: u8 = 2;
 struct Recording(Arc<AtomicU8>);
 
 impl Recording {
-    fn is_done(self) {
+    fn finish(self) {
         self.0.store(FREE, Ordering::Release);
     }
 }
@@ -214,7 +214,7 @@ impl Slot {
     fn occupy(&self, encoder: &mut wgpu::CommandEncoder) {
         self.state.store(BUSY, Ordering::Release);
         let recording = Recording(self.state.clone());
-        encoder.on_submitted_work_done(move || recording.is_done());
+        encoder.on_submitted_work_done(move || recording.finish());
     }
 }
 

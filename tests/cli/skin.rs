@@ -31,9 +31,11 @@ impl Bench {
         push_raised_and_morphed(&mut scene, 5.0);
         let bench = Self(tempfile::tempdir().expect("a temporary folder"));
         std::fs::write(bench.path("model.gltf"), scene.gltf()).expect("writable");
-        let none = scene.floats("VEC4", &[0.0; 12]);
-        scene.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(none);
-        std::fs::write(bench.path("loose.gltf"), scene.gltf()).expect("writable");
+        for (weight, name) in [(0.0, "unweighted.gltf"), (-1.0, "loose.gltf")] {
+            let weights = scene.floats("VEC4", &[weight, 0.0, 0.0, 0.0].repeat(3));
+            scene.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(weights);
+            std::fs::write(bench.path(name), scene.gltf()).expect("writable");
+        }
         scene.json["nodes"][2].as_object_mut().expect("an object").remove("mesh");
         std::fs::write(bench.path("bare.gltf"), scene.gltf()).expect("writable");
         bench
@@ -193,8 +195,12 @@ fn what_cannot_be_skinned_is_refused() {
     bench.refused(
         &path("loose.gltf"),
         &["--clip", "0"],
-        "meshes[0].primitives[0].attributes.WEIGHTS_0[0] = 0",
+        "meshes[0].primitives[0].attributes.WEIGHTS_0[0] = -1",
     );
+    // Vertices without weights follow their first joint.
+    let [of_weights, of_none] = ["model.gltf", "unweighted.gltf"]
+        .map(|name| bench.skin(&path(name), &["--clip", "0", "--time", "2.5"]));
+    assert_eq!(of_none, of_weights);
     bench.refused(&path("bare.gltf"), &["--clip", "0"], "meshes.len = 0");
     bench.refused(&path("model.gltf"), &["--clip", "5"], "clip = 5");
     bench.refused("builtin", &["--clip", "run"], "walk");

@@ -224,7 +224,8 @@ mod tests {
         let strongest = (0..mesh.vertices())
             .map(|vertex| vec![Influence { bone: mesh.influences.of(vertex)[0].bone, weight: 1.0 }]);
         mesh.influences = Influences::new("w", rigid.skins[0].bones.len(), strongest).expect("valid");
-        for (model, is_rigid) in [(soft, false), (rigid, true)] {
+        let mut shares = Vec::new();
+        for model in [soft, rigid] {
             let moments: Vec<Moment> = (0..90).map(|at| Moment::In(at % 2, at as f32 / 89.0)).collect();
             let whole = Whole::new(&model, &[0], &Shared::new());
             let bodies = Bodies::new(&model, &[0], &super::super::looked_at(&moments));
@@ -235,7 +236,7 @@ mod tests {
             let ControlFlow::Continue(found) =
                 errors(&model, &[(&whole, &group.suspects)], &moments, &mut watch);
             let mut all = vec![0.0_f32; group.sides.len()];
-            let mut samples = 0;
+            let mut samples = 0_u32;
             for moment in &moments {
                 let points = whole.points(*moment, group.unit);
                 let point = |vertex: u32| points[vertex as usize];
@@ -248,9 +249,9 @@ mod tests {
                 }
             }
             assert!(all.len() > 5 && found[0] == all, "{:?} {all:?}", found[0]);
-            // Samples near a joint have triangles of two bodies.
-            let are_fewer = 4 * 90 * group.suspects.all.len() < 3 * samples;
-            assert_eq!(are_fewer, is_rigid, "{} of {samples}", group.suspects.all.len());
+            shares.push(90.0 * group.suspects.all.len() as f64 / f64::from(samples));
         }
+        // Samples near a joint have triangles of two bodies.
+        assert!(shares[0] < 0.9 && shares[1] < shares[0], "{shares:?}");
     }
 }
