@@ -261,7 +261,7 @@ fn margins_are_cut_off_and_other_numbers_of_heights_are_refused() {
     }
     assert_eq!(margin.point_at(9.0, 1.0), None);
     let error = Ground::new(&Config { terrain_scale: 0.0, ..config.clone() }).expect_err("refused");
-    assert_eq!(error.path, "terrainScale");
+    assert_eq!(error.path, "terrain_scale");
     // Patches that do not blend have different heights on their common edge; the eastern patch decides.
     let config = Config { border: Border::Wrap, ..config };
     let (both, east) = (ground(&config, &[[-1, 0], [0, 0]]), ground(&config, &[[0, 0]]));
