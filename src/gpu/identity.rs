@@ -20,7 +20,7 @@ mod browser {
             Self(device.clone())
         }
 
-        pub fn is_taken(&self, _: impl FnOnce(&wgpu::Buffer)) -> bool {
+        pub fn is_taken<'a>(&'a self, _: impl FnOnce(&'a wgpu::Buffer)) -> bool {
             true
         }
     }
