@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
-use crate::InputError;
 use crate::asset::material::Alpha;
 use crate::asset::{Material, Mesh};
+use crate::{InputError, error};
 
 /// A skeleton with its skins, clips and meshes.
 ///
@@ -82,16 +82,12 @@ impl Model {
     /// The clip with this name or this index, counted from 0. A name that is a number takes precedence.
     ///
     /// # Errors
-    /// [`InputError`] that lists the clips.
+    /// [`InputError`] that lists up to 20 clips.
     pub fn clip(&self, name_or_index: &str) -> Result<&Clip, InputError> {
         let by_name = self.clips.iter().find(|clip| clip.name() == name_or_index);
         let by_index = || name_or_index.parse().ok().and_then(|index: usize| self.clips.get(index));
         by_name.or_else(by_index).ok_or_else(|| {
-            let names = self.clips.iter().map(|clip| format!("{:?}", clip.name())).collect::<Vec<_>>();
-            let bound = match names.len() {
-                0 => "the model has no clips".to_owned(),
-                count => format!("must be below {count} or one of {}", names.join(", ")),
-            };
+            let bound = error::name_or_index("clips", self.clips.iter().map(Clip::name));
             InputError::new("clip", name_or_index, bound)
         })
     }

@@ -1,6 +1,7 @@
 //! Errors of JSON as path, value and bound.
 
 use serde_json::Value;
+use serde_path_to_error::Segment;
 
 use super::InputError;
 
@@ -31,6 +32,37 @@ pub(crate) fn unreadable(path: &str, error: &serde_json::Error) -> InputError {
     InputError::new(path, place(error), message(error))
 }
 
-fn place(error: &serde_json::Error) -> String {
+/// Where in the text an error is.
+pub(crate) fn place(error: &serde_json::Error) -> String {
     format!("line {} column {}", error.line(), error.column())
+}
+
+/// What is wrong with a value of a document that is not what its field may be, or with a field that is unknown or given twice, if
+/// that is what is wrong.
+pub(crate) fn refused_value(
+    document: &Value,
+    error: &serde_path_to_error::Error<serde_json::Error>,
+) -> Option<InputError> {
+    let message = message(error.inner());
+    let bound = match message.split_once("expected ") {
+        _ if message.contains(" field `") => message,
+        Some((_, "f32" | "f64" | "a JSON number")) => "must be a number".to_owned(),
+        Some((_, "i32")) => "must be a whole number that fits i32".to_owned(),
+        Some((_, "u32" | "u64" | "usize")) => "must be a whole number, and not negative".to_owned(),
+        Some((_, "a string")) => "must be a string".to_owned(),
+        Some((_, "a map")) => "must be an object".to_owned(),
+        Some((_, "a sequence")) => "must be a list".to_owned(),
+        Some((_, expected)) if expected.starts_with("struct ") => "must be an object".to_owned(),
+        Some((_, expected)) => match expected.strip_prefix("any of: ") {
+            Some(list) => format!("must be one of {}", list.trim_matches(['[', ']'])),
+            None => format!("must be {expected}"),
+        },
+        None => return None,
+    };
+    let value = error.path().iter().try_fold(document, |value, segment| match segment {
+        Segment::Map { key } => value.get(key),
+        Segment::Seq { index } => value.get(*index),
+        Segment::Enum { .. } | Segment::Unknown => None,
+    })?;
+    Some(InputError::new(error.path().to_string(), shown(value), bound))
 }

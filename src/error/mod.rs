@@ -3,12 +3,14 @@
 #[cfg(feature = "gpu")]
 mod gpu;
 pub(crate) mod json;
+mod names;
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 #[cfg(feature = "gpu")]
 pub use gpu::GpuError;
+pub(crate) use names::name_or_index;
 
 /// A value that is out of its bounds. The fields may be matched: `error.path == "zones[2].max"`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

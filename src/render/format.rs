@@ -188,8 +188,10 @@ impl TargetFormat {
             let has = self.check_attachment(&format!("format.color[{at}].format"), color.format, device)?;
             // What is drawn blends into the first colour alone.
             let blends = at == 0 && color.blend.is_some();
-            if blends && !has.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
-                let bound = format!("must be none for {:?}", color.format);
+            let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
+            if blends && !has.contains(blendable) {
+                let feature = enabling(color.format, device, |has| has.flags.contains(blendable));
+                let bound = format!("must be none for {:?}, unless {feature} allows it", color.format);
                 return Err(InputError::new("format.color[0].blend", "some", bound));
             }
             let (size, alignment) =
@@ -215,8 +217,11 @@ impl TargetFormat {
         device: &wgpu::Device,
     ) -> Result<wgpu::TextureFormatFeatureFlags, InputError> {
         let features = device.features();
-        if !features.contains(format.required_features()) {
-            let bound = "must need no feature that the device was opened without";
+        let missing = format.required_features() - features;
+        if !missing.is_empty() {
+            let names: Vec<_> =
+                missing.iter_names().map(|(name, _)| format!("wgpu::Features::{name}")).collect();
+            let bound = format!("needs {}: open the device with it", names.join(" and "));
             return Err(InputError::new(path, format!("{format:?}"), bound));
         }
         if features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
@@ -224,12 +229,15 @@ impl TargetFormat {
             return Ok(wgpu::TextureFormatFeatureFlags::all());
         }
         let has = format.guaranteed_format_features(features);
-        if !has.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
-            let bound = "must be a format that the device can render to";
+        let target = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        if !has.allowed_usages.contains(target) {
+            let feature = enabling(format, device, |has| has.allowed_usages.contains(target));
+            let bound = format!("must be a format that the device can render to, unless {feature} allows it");
             return Err(InputError::new(path, format!("{format:?}"), bound));
         }
         if !has.flags.sample_count_supported(self.samples) {
-            let bound = format!("must be a number of samples that {format:?} can have");
+            let feature = enabling(format, device, |has| has.flags.sample_count_supported(self.samples));
+            let bound = format!("must be a number of samples of {format:?}, unless {feature} allows it");
             return Err(InputError::new("format.samples", self.samples, bound));
         }
         Ok(has.flags)
@@ -289,6 +297,19 @@ impl TargetFormat {
             bias: wgpu::DepthBiasState::default(),
         })
     }
+}
+
+/// The feature with which a device may allow of a format what it does not guarantee.
+fn enabling(
+    format: wgpu::TextureFormat,
+    device: &wgpu::Device,
+    allows: impl Fn(&wgpu::TextureFormatFeatures) -> bool,
+) -> String {
+    let known = wgpu::Features::RG11B10UFLOAT_RENDERABLE | wgpu::Features::FLOAT32_BLENDABLE;
+    let with = |feature| format.guaranteed_format_features(device.features() | feature);
+    let mut enough = known.iter_names().filter(|(_, feature)| allows(&with(*feature)));
+    let name = enough.next().map_or("TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES", |(name, _)| name);
+    format!("wgpu::Features::{name}")
 }
 
 /// The most colour attachments: WebGPU's default limit.

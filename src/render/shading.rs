@@ -43,6 +43,7 @@ impl Shading {
         let own = Own { source, text: &text };
         let module = parse_str(&text)
             .map_err(|error| own.refused(error.labels().map(|(span, _)| span), error.message().to_owned()))?;
+        own.check_names()?;
         own.check(&module, layout.is_some())?;
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
         validator.validate(&module).map_err(|error| {
@@ -189,31 +190,23 @@ impl Own<'_> {
                 return at(module.global_variables.get_span(handle), bound);
             }
         }
-        for (handle, function) in module.functions.iter() {
+        for (_, function) in module.functions.iter() {
             if let Some(span) = discard_in(&function.body) {
                 return at(span, "must not discard: cut-out materials leave out pixels");
             }
-            if is_ours(function.name.as_deref()) {
-                return at(module.functions.get_span(handle), OURS);
-            }
         }
-        self.check_names(module)?;
         self.check_function(module)
     }
 
-    /// Names with the crate's prefix are the crate's.
-    fn check_names(&self, module: &Module) -> Result<(), InputError> {
-        let constants = module.constants.iter();
-        let constants =
-            constants.map(|(handle, constant)| (&constant.name, module.constants.get_span(handle)));
-        let variables = module.global_variables.iter();
-        let variables =
-            variables.map(|(handle, variable)| (&variable.name, module.global_variables.get_span(handle)));
-        let types = module.types.iter().map(|(handle, ty)| (&ty.name, module.types.get_span(handle)));
-        match constants.chain(variables).chain(types).find(|(name, _)| is_ours(name.as_deref())) {
-            Some((_, span)) => Err(self.refused([span].into_iter(), OURS.to_owned())),
-            None => Ok(()),
-        }
+    /// Names with the crate's prefix are the crate's. naga drops constants and aliases that nothing uses, so this reads the text.
+    fn check_names(&self) -> Result<(), InputError> {
+        let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
+        let code = without_comments(self.source);
+        let begins = |(at, _): &(usize, &str)| !code[..*at].ends_with(is_part);
+        let Some((at, _)) = code.match_indices(PREFIX).find(begins) else { return Ok(()) };
+        let length = code[at..].find(|letter| !is_part(letter)).unwrap_or(code.len() - at);
+        let span = Span::new(at as u32, (at + length) as u32);
+        Err(self.refused([span].into_iter(), OURS.to_owned()))
     }
 
     /// `shade` must be there, and have the right arguments and result.
@@ -241,8 +234,33 @@ const SIGNATURE: &str = "must be `fn shade(surface: Surface, view: View) -> vec4
 
 const OURS: &str = "must not begin with `relievo_`, as the crate's own names do";
 
-fn is_ours(name: Option<&str>) -> bool {
-    name.is_some_and(|name| name.starts_with(PREFIX))
+/// A valid text with spaces in the place of its comments: each byte stays where it is.
+fn without_comments(source: &str) -> String {
+    let (mut code, mut rest) = (String::with_capacity(source.len()), source);
+    while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
+        let (before, comment) = rest.split_at(at);
+        let length = match comment.starts_with("//") {
+            true => comment.find('\n').unwrap_or(comment.len()),
+            false => block_comment(comment),
+        };
+        code.push_str(before);
+        code.extend(std::iter::repeat_n(' ', length));
+        rest = &comment[length..];
+    }
+    code + rest
+}
+
+/// The length of the block comment with which a text begins. Such comments nest.
+fn block_comment(text: &str) -> usize {
+    let (mut depth, mut at) = (0, 0);
+    while let Some(mark) = text[at..].find("/*").into_iter().chain(text[at..].find("*/")).min() {
+        depth += if text[at + mark..].starts_with("/*") { 1 } else { -1 };
+        at += mark + 2;
+        if depth == 0 {
+            return at;
+        }
+    }
+    text.len()
 }
 
 /// Why a variable of module scope is refused.

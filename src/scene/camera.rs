@@ -6,7 +6,7 @@ use glam::camera::rh::proj::directx;
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
 use crate::InputError;
-use crate::scene::placement::Placement;
+use crate::scene::placement::{Placement, check_world};
 use crate::skinning::picture::is_mirrored;
 
 /// The direction of depth in clip space.
@@ -72,8 +72,8 @@ impl Camera {
     /// plane in world units, where depth is 0 and 1, and the far one may be infinite; `viewport` is width and height in pixels.
     /// Straight up and down, the top of the picture is north.
     ///
-    /// For arguments out of these ranges, and an `eye` at its `target`, the matrices hold NaN, which
-    /// [`View::set`](crate::scene::View::set) refuses.
+    /// For arguments out of these ranges, and an `eye` at its `target`, the matrices hold NaN: [`View::set`](crate::scene::View::set)
+    /// refuses the camera, and names the argument.
     pub fn looking_at(
         eye: Vec3,
         target: Vec3,
@@ -81,20 +81,24 @@ impl Camera {
         near_far: [f32; 2],
         viewport: [u32; 2],
     ) -> Self {
-        let forward = (target - eye).try_normalize().unwrap_or(Vec3::NAN);
         // Straight up and down, north replaces the undefined up vector.
-        let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
+        let up = |forward: Vec3| if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
+        let look = |forward| glam::camera::rh::view::look_at_mat4(eye, eye + forward, up(forward));
+        let view_from_cell = (target - eye).try_normalize().map(look);
         let aspect = viewport[0] as f32 / viewport[1].max(1) as f32;
         let [near, far] = near_far;
         let is_frustum = field_of_view > 0.0 && field_of_view < PI && near > 0.0 && far > near;
         let clip_from_view = match (is_frustum, far == f32::INFINITY) {
-            (false, _) => Mat4::NAN,
+            (false, _) => unusable(LOOKING, [Vec3::new(field_of_view, near, far), Vec3::NAN]),
             (true, true) => directx::perspective_infinite(field_of_view, aspect, near),
             (true, false) => directx::perspective(field_of_view, aspect, near, far),
         };
         Self {
             cell: [0; 3],
-            view_from_cell: glam::camera::rh::view::look_at_mat4(eye, eye + forward, up),
+            view_from_cell: match view_from_cell.filter(Mat4::is_finite) {
+                Some(matrix) => matrix,
+                None => unusable(LOOKING, [eye, target]),
+            },
             clip_from_view,
             viewport,
             depth: Depth::Forward,
@@ -116,7 +120,8 @@ impl Camera {
 
     /// A perspective camera that sees a box along the axes of the world from the south at a low angle, as large as the picture
     /// allows. `low` and `high` are opposite corners in world coordinates
-    /// ([`Bounds::world`](crate::scene::Bounds::world)); `viewport` is width and height in pixels.
+    /// ([`Bounds::world`](crate::scene::Bounds::world)); `viewport` is width and height in pixels. As for [`Camera::looking_at`],
+    /// [`View::set`](crate::scene::View::set) refuses corners that are not finite.
     pub fn framing(low: DVec3, high: DVec3, viewport: [u32; 2]) -> Self {
         let (center, extent) = ((low + high) / 2.0, (high - low).max(DVec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;
@@ -132,9 +137,15 @@ impl Camera {
             (target - (Placement::corner(cell) + eye.as_dvec3())).normalize_or(DVec3::NEG_Z).as_vec3();
         let aspect = viewport[0] as f32 / viewport[1].max(1) as f32;
         let [near, far] = [distance / 1000.0, 2.0 * distance + 2.0 * radius].map(|plane| plane as f32);
+        let view_from_cell = match eye.is_finite() {
+            true => glam::camera::rh::view::look_to_mat4(eye, forward, Vec3::Y),
+            false => {
+                unusable(FRAMING, [low, high].map(|corner| (corner - Placement::corner(cell)).as_vec3()))
+            }
+        };
         Self {
             cell,
-            view_from_cell: glam::camera::rh::view::look_to_mat4(eye, forward, Vec3::Y),
+            view_from_cell,
             clip_from_view: directx::perspective(field_of_view, aspect, near, far),
             viewport,
             depth: Depth::Forward,
@@ -157,28 +168,50 @@ impl Camera {
     /// Checks the matrices and the viewport.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, a matrix without inverse, a `view_from_cell` that is no affine one,
-    /// and an empty viewport.
+    /// [`InputError`] for values that are not finite, a matrix without inverse, a `view_from_cell` that is no affine one, an eye
+    /// beyond the last cell ([`Placement::checked`]), and an empty viewport.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.viewport.contains(&0) {
             let value = format!("{:?}", self.viewport);
             return Err(InputError::new("camera.viewport", value, "must be at least 1 by 1"));
         }
-        let looking = "an eye within 2^31 cells of the origin, and a target elsewhere";
-        let projection = "a field of view above 0 and below π, near above 0, and far above near";
-        for (path, matrix, needed) in [
-            ("camera.view_from_cell", self.view_from_cell, looking),
-            ("camera.clip_from_view", self.clip_from_view, projection),
-        ] {
+        self.check_arguments()?;
+        for (path, matrix) in
+            [("camera.view_from_cell", self.view_from_cell), ("camera.clip_from_view", self.clip_from_view)]
+        {
             let determinant = matrix.as_dmat4().determinant();
             if !matrix.is_finite() || determinant == 0.0 {
-                let bound = format!("must be finite and have an inverse; Camera::looking_at needs {needed}");
-                return Err(InputError::new(path, matrix, bound));
+                return Err(InputError::new(path, matrix, "must be finite and have an inverse"));
             }
         }
         if self.view_from_cell.row(3) != Vec4::W {
             let bound = "must have the last row (0, 0, 0, 1): the projection belongs into clip_from_view";
             return Err(InputError::new("camera.view_from_cell", self.view_from_cell, bound));
+        }
+        check_world("camera.eye", self.cell, self.eye_offset())
+    }
+
+    /// Refuses arguments of which no matrix could be made.
+    fn check_arguments(&self) -> Result<(), InputError> {
+        if let Some((kind, [first, second])) = arguments(&self.view_from_cell) {
+            let paths =
+                if kind == FRAMING { ["camera.low", "camera.high"] } else { ["camera.eye", "camera.target"] };
+            check_world(paths[0], self.cell, first)?;
+            check_world(paths[1], self.cell, second)?;
+            let bound = match first == second {
+                true => "must be elsewhere than the eye",
+                false => "must be nearer to the corner of the eye's cell: use Camera::looking_at_world",
+            };
+            let target = Placement::corner(self.cell) + second.as_dvec3();
+            return Err(InputError::new(paths[1], target, bound));
+        }
+        if let Some((_, [Vec3 { x: field_of_view, y: near, z: far }, _])) = arguments(&self.clip_from_view) {
+            if !(field_of_view > 0.0 && field_of_view < PI) {
+                let bound = "must be above 0 and below π: it is in radians";
+                return Err(InputError::new("camera.field_of_view", field_of_view, bound));
+            }
+            let bound = "must be two distances, the first above 0, the second above the first";
+            return Err(InputError::new("camera.near_far", format!("[{near}, {far}]"), bound));
         }
         Ok(())
     }
@@ -217,6 +250,26 @@ impl Camera {
     pub fn eye_offset(&self) -> Vec3 {
         self.view_from_cell.inverse().w_axis.truncate()
     }
+}
+
+/// The arguments of [`Camera::looking_at`], and those of [`Camera::framing`].
+const LOOKING: f32 = 0.0;
+const FRAMING: f32 = 1.0;
+
+/// In the place of a matrix that cannot be made: its arguments, and NaN elsewhere. They survive [`Camera::reversed`], which changes
+/// the third row.
+fn unusable(kind: f32, [first, second]: [Vec3; 2]) -> Mat4 {
+    let column = |Vec3 { x, y, z }| Vec4::new(x, y, f32::NAN, z);
+    Mat4::from_cols(Vec4::NAN.with_x(kind), column(first), column(second), Vec4::NAN)
+}
+
+/// What [`unusable`] was made of.
+fn arguments(matrix: &Mat4) -> Option<(f32, [Vec3; 2])> {
+    let kind = matrix.x_axis.x;
+    let rest = [matrix.x_axis.with_x(f32::NAN), matrix.w_axis];
+    let is_unusable = rest.iter().all(|column| column.is_nan_mask().all());
+    let of = |column: Vec4| Vec3::new(column.x, column.y, column.w);
+    (is_unusable && !kind.is_nan()).then(|| (kind, [of(matrix.y_axis), of(matrix.z_axis)]))
 }
 
 #[cfg(test)]
@@ -276,24 +329,45 @@ mod tests {
         assert_eq!(camera([3, 2]).validate(), Ok(()));
     }
 
+    /// What makes no camera is refused by the name that the caller gave it, with its value.
     #[test]
-    fn looking_at_nothing_is_refused() {
+    fn arguments_that_make_no_camera_are_named() {
         let refused = |target, field_of_view, near_far| {
             let camera = Camera::looking_at(Vec3::ONE, target, field_of_view, near_far, [3, 2]);
-            camera.validate().expect_err("refused").path
+            let found = [camera, camera.reversed()].map(|camera| camera.validate().expect_err("refused"));
+            assert_eq!(found[0], found[1]);
+            (found[0].path.clone(), found[0].value.clone())
         };
-        for target in [Vec3::ONE, Vec3::NAN, Vec3::INFINITY] {
-            assert_eq!(refused(target, 0.7, [0.1, 9.0]), "camera.view_from_cell", "{target}");
-        }
+        let planes = [0.1, 9.0];
+        assert_eq!(refused(Vec3::ONE, 0.7, planes), ("camera.target".into(), "[1, 1, 1]".into()));
+        assert_eq!(refused(Vec3::NAN, 0.7, planes), ("camera.target[0]".into(), "NaN".into()));
+        assert_eq!(refused(Vec3::INFINITY, 0.7, planes).0, "camera.target[0]");
         for field_of_view in [4.0, std::f32::consts::PI, 0.0, -0.7, f32::NAN, f32::INFINITY] {
-            assert_eq!(
-                refused(Vec3::ZERO, field_of_view, [0.1, 9.0]),
-                "camera.clip_from_view",
-                "{field_of_view}"
-            );
+            let expected = ("camera.field_of_view".into(), field_of_view.to_string());
+            assert_eq!(refused(Vec3::ZERO, field_of_view, planes), expected);
         }
-        for planes in [[0.0, 9.0], [-0.1, 9.0], [9.0, 0.1], [1.0, 1.0], [f32::NAN, 9.0], [0.1, f32::NAN]] {
-            assert_eq!(refused(Vec3::ZERO, 0.7, planes), "camera.clip_from_view", "{planes:?}");
+        for [near, far] in [[0.0, 9.0], [-0.1, 9.0], [9.0, 0.1], [1.0, 1.0], [f32::NAN, 9.0], [0.1, f32::NAN]]
+        {
+            let expected = ("camera.near_far".into(), format!("[{near}, {far}]"));
+            assert_eq!(refused(Vec3::ZERO, 0.7, [near, far]), expected);
         }
+        let refused = |camera: Camera| camera.validate().expect_err("refused").to_string();
+        let bound = "must be a number in -549755813888..549755813888, the world's coordinates";
+        let eye = Camera::looking_at(Vec3::new(0.0, f32::NAN, 0.0), Vec3::ONE, 0.7, planes, [3, 2]);
+        assert_eq!(refused(eye), format!("camera.eye[1] = NaN: {bound}"));
+        let far = Camera::looking_at(Vec3::X * 1e10, Vec3::X * 1.1e10, 0.7, planes, [3, 2]);
+        assert!(
+            refused(far).starts_with("camera.target = [1100000")
+                && refused(far).ends_with("looking_at_world")
+        );
+        let eye = |x: f64| Camera::looking_at_world([x, 0.0, 0.0], [0.0, 1.0, 0.0], 0.7, planes, [3, 2]);
+        assert_eq!(refused(eye(1e300)), format!("camera.eye[0] = beyond ±3.4e38, the range of f32: {bound}"));
+        assert_eq!(refused(eye(6e11)), format!("camera.eye[0] = 600000000000: {bound}"));
+        assert_eq!(eye(5e11).validate(), Ok(()));
+        let framed = |low: f64, high: f64| Camera::framing(DVec3::splat(low), DVec3::splat(high), [3, 2]);
+        assert_eq!(refused(framed(f64::NAN, 1.0)), format!("camera.low[0] = NaN: {bound}"));
+        assert_eq!(refused(framed(0.0, f64::NAN)), format!("camera.high[0] = NaN: {bound}"));
+        assert!(refused(framed(0.0, 1e300)).starts_with("camera.high[0] = beyond"));
+        assert!(refused(framed(0.0, 1e20)).starts_with("camera.eye[0] = "));
     }
 }

@@ -226,6 +226,8 @@ pub(crate) fn patch_indices(size: u32) -> Vec<u32> {
 /// An object as a view draws it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawnObject<'a> {
+    /// The object's number ([`ObjectId::number`](crate::scene::ObjectId::number)).
+    pub number: u32,
     /// How it is drawn.
     pub drawable: &'a Drawable,
     /// Where its lists and draws lie, and its number of levels.

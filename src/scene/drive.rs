@@ -3,7 +3,7 @@
 use crate::animation::crowd::{Local, packed};
 use crate::asset::Transform;
 use crate::gpu::{Gpu, GpuError, StagingRing, StagingStream};
-use crate::scene::handles::{InstanceId, Slots, stale};
+use crate::scene::handles::{InstanceId, Slots, missing, no_character};
 use crate::scene::object::{Kind, Object};
 use crate::scene::poses::PoseBuffers;
 use crate::scene::view::View;
@@ -35,10 +35,10 @@ impl<'a> Poses<'a> {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, or is no character.
     pub fn of(&self, instance: InstanceId) -> Result<PoseBuffers<'_>, InputError> {
-        let InstanceId { index, generation, .. } = instance;
-        let object = self.objects.existing(instance).ok_or_else(|| stale("instance", index, generation))?;
+        let scene = self.objects.scene();
+        let object = self.objects.existing(instance).ok_or_else(|| missing(scene, instance))?;
         let found = match &object.kind {
-            Kind::Character(character) => character.pose_buffers(index),
+            Kind::Character(character) => character.pose_buffers(instance.index),
             _ => None,
         };
         found.ok_or_else(no_character)
@@ -65,9 +65,8 @@ impl<'a> Poses<'a> {
     ) -> Result<(), InputError> {
         let local = local.checked("local")?;
         self.gpu.check_encoder(encoder)?;
-        let InstanceId { index, generation, .. } = instance;
-        let object = self.objects.existing_mut(instance);
-        let object = object.ok_or_else(|| stale("instance", index, generation))?;
+        let (scene, index) = (self.objects.scene(), instance.index);
+        let object = self.objects.existing_mut(instance).ok_or_else(|| missing(scene, instance))?;
         let Kind::Character(character) = &mut object.kind else { return Err(no_character()) };
         let Some(stream) = &mut self.stream else {
             return Err(InputError::new("recordings", RECORDINGS, format!("must be below {RECORDINGS}")));
@@ -91,10 +90,6 @@ impl<'a> Poses<'a> {
     }
 }
 
-fn no_character() -> InputError {
-    InputError::new("instance", "no character", "must be an instance of a character")
-}
-
 impl Scene {
     /// Forgets what the host wrote to bones in the last frame.
     pub(super) fn forget_written(&mut self) {
@@ -105,7 +100,7 @@ impl Scene {
         }
     }
 
-    /// Says which bones of an instance the caller drives, each by its name or its index, from the next frame on; none of them
+    /// Says which bones of an instance the caller drives, each by its name or its index in digits, from the next frame on; none of them
     /// ends that. In every frame in which a view sees the instance, they are sampled at the time of the frame, whatever the
     /// gate says; then the caller may change them ([`Scene::record_with`]), and they and all bones below them count as updated.
     /// What it makes of them is its own: [`Quality::pixels`](crate::scene::Quality) is promised as if they were sampled. The
@@ -120,7 +115,7 @@ impl Scene {
         let bones = bones.collect::<Result<Vec<_>, InputError>>()?;
         let object = self.instance_mut(instance)?;
         let Kind::Character(character) = &mut object.kind else {
-            return Err(InputError::new("instance", "a mesh", "must be an instance of a character"));
+            return Err(no_character());
         };
         character.drive(instance.index, bones);
         Ok(())

@@ -250,8 +250,9 @@ impl Scene {
             terrains += usize::from(object.seen_terrain().is_some());
             if object.is_drawn() {
                 let drawn = object.chunks.iter().flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods));
-                let sides = *sides;
-                objects.extend(drawn.map(|(drawable, lod)| DrawnObject { drawable, lod, sides, ground }));
+                let (number, sides) = (object.handle, *sides);
+                let drawn_object = |(drawable, lod)| DrawnObject { number, drawable, lod, sides, ground };
+                objects.extend(drawn.map(drawn_object));
             }
         }
         Ok(Some((drawn, objects)))

@@ -125,7 +125,20 @@ impl<T> Slots<T> {
 /// The error of a handle whose object or instance was removed.
 pub(super) fn stale(path: &str, index: u32, generation: u32) -> InputError {
     let value = format!("{index} (generation {generation}), which was removed");
-    InputError::new(path, value, "must be there")
+    InputError::new(path, value, "must still exist")
+}
+
+/// The error of an instance's handle in a scene that does not have the instance.
+pub(super) fn missing(scene: SceneNumber, instance: InstanceId) -> InputError {
+    match instance.object.scene == scene {
+        true => stale("instance", instance.index, instance.generation),
+        false => foreign("instance"),
+    }
+}
+
+/// The error of an instance that is no character.
+pub(super) fn no_character() -> InputError {
+    InputError::new("instance", "no character", "must be an instance of a character")
 }
 
 /// The error of a handle that another scene gave.

@@ -7,10 +7,9 @@ use crate::animation::Pose;
 use crate::animation::local_to_model::reference::{affine, product};
 use crate::asset::{Affine, Skeleton, Transform};
 use crate::scene::Scene;
-use crate::scene::handles::InstanceId;
+use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::matrices::affine_of;
 use crate::scene::object::Kind;
-use crate::scene::placement::Placement;
 
 /// The pose of an instance of a character on the host ([`Scene::pose`]): the transforms of all of its bones, which the caller
 /// may change, for [`Poses::write`](crate::scene::Poses::write) or for itself. Bones are given by index ([`Scene::bone`]).
@@ -173,10 +172,9 @@ impl Scene {
     /// [`InputError`] for an instance that does not exist any more or is no character.
     pub fn pose(&self, instance: InstanceId) -> Result<InstancePose, InputError> {
         let Kind::Character(character) = &self.object_of(instance)?.kind else {
-            return Err(InputError::new("instance", "no character", "must be an instance of a character"));
+            return Err(no_character());
         };
-        let cell = self.placement(instance)?.cell;
-        let world = DAffine3::from_translation(Placement::corner(cell)) * self.placed(instance, cell)?;
+        let world = self.world_from_model(instance)?;
         let pose = character.sampled(instance.index, self.now)?;
         Ok(InstancePose::new(&character.model().skeleton, pose, world))
     }

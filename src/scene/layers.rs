@@ -4,7 +4,7 @@ use crate::InputError;
 use crate::asset::Transform;
 use crate::scene::Scene;
 use crate::scene::character::Character;
-use crate::scene::handles::InstanceId;
+use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::object::Kind;
 use crate::scene::placement::Play;
 
@@ -81,14 +81,14 @@ impl Scene {
     pub fn root_motion(&self, instance: InstanceId, from: f64, to: f64) -> Result<Transform, InputError> {
         match &self.object_of(instance)?.kind {
             Kind::Character(character) => character.root_motion(instance.index, from, to),
-            _ => Err(InputError::new("instance", "a mesh", "must be an instance of a character")),
+            _ => Err(no_character()),
         }
     }
 
     fn character_mut(&mut self, instance: InstanceId) -> Result<&mut Character, InputError> {
         match &mut self.instance_mut(instance)?.kind {
             Kind::Character(character) => Ok(character),
-            _ => Err(InputError::new("instance", "a mesh", "must be an instance of a character")),
+            _ => Err(no_character()),
         }
     }
 

@@ -41,7 +41,7 @@ impl Scene {
                 let looks = looks(entry)?;
                 (looks.find(material)?, looks)
             };
-            looks.check(new)?;
+            looks.check("material", new)?;
             let (is_blended, was_blended) =
                 (new.alpha == Alpha::Blended, looks.materials[index].alpha == Alpha::Blended);
             if is_blended != was_blended {
@@ -64,13 +64,13 @@ impl Scene {
     /// uploaded at once with those that lie in the same array: that allocates, and a render bundle must be made anew.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels, and for
-    /// an index beyond; [`crate::gpu::GpuError`].
+    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels or
+    /// larger than the device's textures, and for an index beyond; [`crate::gpu::GpuError`].
     pub fn set_image(&mut self, object: ObjectId, index: usize, image: RgbaImage) -> Result<(), Error> {
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let mut staged = std::mem::take(&mut self.staged);
         let set = self.object_mut(object).map_err(Error::from).and_then(|entry| {
-            looks(entry)?.set_image(index, image)?;
+            looks(entry)?.set_image(&gpu, index, image)?;
             entry.change_materials((&gpu, &layouts), &mut staged, &Change::Image(index))
         });
         self.staged = staged;

@@ -24,7 +24,7 @@ pub(super) type Drawn = (Vec<Drawable>, Vec<SceneDraw>);
 /// A model's meshes at rest, merged, with a sphere around them.
 pub(crate) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
     check(model)?;
-    let mut rest = at_rest(model)?;
+    let mut rest = at_rest(model).map_err(|error| error.below("model"))?;
     if model.clips.is_empty() {
         // The levels were made for this pose. Vertices and their order are the same.
         for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
@@ -90,7 +90,24 @@ pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) 
     Err(InputError::new(path, count, bound))
 }
 
+/// Checks that a model has triangles, and each of its meshes with its skin and its material.
+///
+/// # Errors
+/// [`InputError`] with the number of the mesh or the skin (`model.meshes[2].indices[1]`).
 fn check(model: &Model) -> Result<(), InputError> {
+    let numbered = |list: String, error: InputError| {
+        let field = error.path.split_once('.').map_or(&*error.path, |(_, field)| field);
+        InputError { path: format!("model.{list}.{field}"), ..error }
+    };
+    for (at, mesh) in model.meshes.iter().enumerate() {
+        mesh.validate(&model.skins).map_err(|error| numbered(format!("meshes[{at}]"), error))?;
+        let skin = model.skins[mesh.skin].validate(&model.skeleton);
+        skin.map_err(|error| numbered(format!("skins[{}]", mesh.skin), error))?;
+        model.material(mesh).map_err(|error| match error.path.starts_with("mesh.") {
+            true => numbered(format!("meshes[{at}]"), error),
+            false => error.below("model"),
+        })?;
+    }
     if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
         return Err(InputError::new("model.meshes", "none", "must have a triangle"));
     }

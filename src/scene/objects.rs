@@ -44,8 +44,8 @@ impl Scene {
     /// is.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with images
+    /// that are larger than the device's textures; [`crate::gpu::GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.mesh(model, capacity)?;
         Ok(self.add(object))
@@ -68,8 +68,8 @@ impl Scene {
     /// Without [`add_levels`](crate::skinning::add_levels) before, there is no level of detail but the model itself.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, and for a model without meshes or with invalid ones;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with images
+    /// that are larger than the device's textures; [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         self.add_character_with(model, capacity, &CharacterOptions::default())
     }
@@ -131,8 +131,8 @@ impl Scene {
     /// what happens to more.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, and for maps, options or a mesh that do not fit each other;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, for maps, options or a mesh that do not fit each other, for a mesh with numbers
+    /// that are not finite, and for images without texels or larger than the device's textures; [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.relief(relief, capacity)?;
         Ok(self.add(object))

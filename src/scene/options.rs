@@ -1,9 +1,9 @@
 //! What a character can do beyond playing one clip, and how terrain looks.
 
-use crate::InputError;
 use crate::animation::RootMotion;
 use crate::animation::root_motion::Taken;
 use crate::asset::Model;
+use crate::{InputError, error};
 
 /// What a character can do beyond playing one clip, for
 /// [`Scene::add_character_with`](crate::scene::Scene::add_character_with).
@@ -22,14 +22,14 @@ pub struct CharacterOptions<'a> {
 pub enum LayerMask<'a> {
     /// All bones.
     All,
-    /// A bone, by its name or its index, and all bones below it.
+    /// A bone, by its name or its index in digits, and all bones below it.
     Below(&'a str),
 }
 
 /// The motion that is taken out of clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RootOptions<'a> {
-    /// The bone whose motion it is, by its name or its index.
+    /// The bone whose motion it is, by its name or its index in digits.
     pub bone: &'a str,
     /// Which parts of its motion.
     pub taken: Taken,
@@ -38,14 +38,14 @@ pub struct RootOptions<'a> {
 /// The index of a bone of a model, by its name or its index. A name that is a number takes precedence.
 ///
 /// # Errors
-/// [`InputError`] for a bone that the model does not have.
+/// [`InputError`] that lists up to 20 bones.
 pub(super) fn bone_of(model: &Model, name_or_index: &str) -> Result<usize, InputError> {
     let bones = model.skeleton.bones();
     let by_name = bones.iter().position(|bone| bone.name == name_or_index);
     let by_index = || name_or_index.parse().ok().filter(|index| *index < bones.len());
     by_name.or_else(by_index).ok_or_else(|| {
-        let bound = format!("must be below {} or the name of a bone of the model", bones.len());
-        InputError::new("bone", name_or_index, bound)
+        let names = bones.iter().map(|bone| bone.name.as_str());
+        InputError::new("bone", name_or_index, error::name_or_index("bones", names))
     })
 }
 

@@ -63,8 +63,8 @@ impl Placement {
         Self { offset: position.into(), ..Self::default() }
     }
 
-    /// At a position in world coordinates, neither turned nor scaled. Positions beyond 2³¹ cells are refused when the
-    /// placement is used.
+    /// At a position in world coordinates, neither turned nor scaled. Positions beyond ±549,755,813,888 (2³¹ cells) are refused
+    /// when the placement is used.
     pub fn at_world(position: impl Into<DVec3>) -> Self {
         let position = position.into();
         let edge = f64::from(Self::CELL);
@@ -114,9 +114,9 @@ impl Placement {
     ///
     /// # Errors
     /// [`InputError`] for values that are not finite, a rotation without direction, a scale of 0 along all axes, and a
-    /// position beyond the last cell.
+    /// position beyond ±549,755,813,888 (2³¹ cells) along an axis of the world.
     pub fn checked(self) -> Result<Self, InputError> {
-        if !self.offset.is_finite() {
+        if self.offset.is_nan() {
             return Err(InputError::new("placement.offset", self.offset, "must be finite"));
         }
         if !self.scale.is_finite() || self.scale == Vec3::ZERO {
@@ -131,20 +131,39 @@ impl Placement {
         if !(length > 1e-6 && length.is_finite()) {
             return Err(InputError::new("placement.turn", self.turn, "must be finite, and not 0"));
         }
+        check_world("placement.world", self.cell, self.offset)?;
         let edge = f64::from(Self::CELL);
         let mut placed = Self { turn: self.turn / length, ..self };
         for axis in 0..3 {
             let at = f64::from(self.offset[axis]);
             let cells = (at / edge).floor();
-            let cell = f64::from(self.cell[axis]) + cells;
-            if !(f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&cell) {
-                let bound = "must lie within 2^31 cells of the origin";
-                return Err(InputError::new(format!("placement.offset[{axis}]"), self.offset[axis], bound));
-            }
-            placed.cell[axis] = cell as i32;
+            placed.cell[axis] = (f64::from(self.cell[axis]) + cells) as i32;
             placed.offset[axis] = (at - cells * edge) as f32;
         }
         Ok(placed)
+    }
+}
+
+/// Checks that a position lies in a cell. `path` names its world coordinates in errors.
+///
+/// # Errors
+/// [`InputError`] for a coordinate that is NaN or beyond the last cell.
+pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<(), InputError> {
+    let world = Placement::corner(cell) + offset.as_dvec3();
+    // Of the cells.
+    let [first, end] = [i32::MIN, i32::MAX].map(|cell| Placement::corner([cell; 3]).x);
+    let end = end + f64::from(Placement::CELL);
+    match world.to_array().iter().position(|value| !(first..end).contains(value)) {
+        None => Ok(()),
+        Some(axis) => {
+            let value = match world[axis].is_infinite() {
+                true => "beyond ±3.4e38, the range of f32".to_owned(),
+                // The offset was rounded to f32, whose digits are those that the caller wrote.
+                false => (world[axis] as f32).to_string(),
+            };
+            let bound = format!("must be a number in {first}..{end}, the world's coordinates");
+            Err(InputError::new(format!("{path}[{axis}]"), value, bound))
+        }
     }
 }
 
@@ -235,7 +254,18 @@ mod tests {
             "placement.turn"
         );
         let beyond = Placement { cell: [0, i32::MAX, 0], offset: Vec3::new(0.0, 300.0, 0.0), ..good };
-        assert_eq!(refused(beyond), "placement.offset[1]");
+        assert_eq!(refused(beyond), "placement.world[1]");
+        let refused_at =
+            |x: f64| Placement::at_world([x, 0.0, 0.0]).checked().expect_err("refused").to_string();
+        let bound = "must be a number in -549755813888..549755813888, the world's coordinates";
+        assert_eq!(refused_at(6e11), format!("placement.world[0] = 600000000000: {bound}"));
+        for endless in [1e300, f64::INFINITY, f64::NEG_INFINITY] {
+            let value = "beyond ±3.4e38, the range of f32";
+            assert_eq!(refused_at(endless), format!("placement.world[0] = {value}: {bound}"));
+        }
+        let last =
+            Placement::at_world([549_755_813_887.0, -549_755_813_888.0, 0.0]).checked().expect("inside");
+        assert_eq!(last.cell, [i32::MAX, i32::MIN, 0]);
         assert!(Placement { scale: Vec3::new(0.0, -1.0, 2.0), ..good }.checked().is_ok());
         let refused = |play: Play<'_>| play.validate().expect_err("refused").path;
         assert_eq!(refused(Play { start: f64::NAN, ..Play::new("walk") }), "play.start");

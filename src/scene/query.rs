@@ -1,6 +1,8 @@
 //! What a scene knows of its instances, and, for measurements, what a view draws of them.
 
-use super::handles::stale;
+use glam::DAffine3;
+
+use super::handles::missing;
 use super::object::{Kind, Object};
 use super::{ClipTime, InstanceId, ObjectId, Placement, Scene};
 use crate::InputError;
@@ -20,19 +22,47 @@ impl Scene {
         Ok(all.map(|[index, generation]| InstanceId { object, index, generation }).collect())
     }
 
-    /// Where an instance stands; of one that is attached to a bone, where it stands when it is detached.
+    /// Where an instance stands; of one that is attached to a bone, where it stands when it is detached:
+    /// [`Scene::world_from_model`] tells where it stands now.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn placement(&self, instance: InstanceId) -> Result<Placement, InputError> {
-        let InstanceId { object, index, .. } = self.existing(instance)?;
+        let object = self.object_of(instance)?;
         if let Some(placement) = self.detached_placement(instance) {
             return Ok(placement);
         }
         let SceneInstance { cell, offset, rotation, scale, .. } =
-            self.object_at(object)?.instances.all()[index as usize];
+            object.instances.all()[instance.index as usize];
         let turn = glam::Quat::from_array(rotation);
         Ok(Placement { cell, offset: offset.into(), turn, scale: scale.into() })
+    }
+
+    /// The transform from an instance's model space to world coordinates, in world units. A mesh that is attached to a bone
+    /// ([`Scene::attach`]) stands where the bone carries it in the pose of the time of the scene: the host samples the
+    /// character for that. Bones that were written in the last frame count as in [`Scene::pick`]. Every other instance stands
+    /// where its [`Scene::placement`] says.
+    ///
+    /// It is no [`Placement`], since bones may shear a mesh. A [`Placement`] for a mesh without shear is
+    /// `to_scale_rotation_translation()` of it.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more.
+    ///
+    /// # Examples
+    ///
+    /// The tip of a sword, 0.9 units along the model's +Y, in world coordinates.
+    ///
+    /// ```no_run
+    /// # use glam::DVec3;
+    /// # use relievo::scene::{InstanceId, Scene};
+    /// # fn tip(scene: &Scene, sword: InstanceId) -> Result<DVec3, relievo::InputError> {
+    /// Ok(scene.world_from_model(sword)?.transform_point3(DVec3::new(0.0, 0.9, 0.0)))
+    /// # }
+    /// ```
+    pub fn world_from_model(&self, instance: InstanceId) -> Result<DAffine3, InputError> {
+        let cell = self.object_of(instance)?.instances.all()[instance.index as usize].cell;
+        Ok(DAffine3::from_translation(Placement::corner(cell)) * self.placed(instance, cell)?)
     }
 
     /// The clip that an instance plays, and the time in it at the time of the scene; `None` for what is no character.
@@ -40,26 +70,15 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn clip_time(&self, instance: InstanceId) -> Result<Option<ClipTime>, InputError> {
-        let InstanceId { object, index, .. } = self.existing(instance)?;
-        match &self.object_at(object)?.kind {
-            Kind::Character(character) => character.clip_time(index, self.now).map(Some),
+        match &self.object_of(instance)?.kind {
+            Kind::Character(character) => character.clip_time(instance.index, self.now).map(Some),
             Kind::Mesh(_) | Kind::Terrain(_) => Ok(None),
         }
     }
 
     /// The object of an instance that exists.
     pub(super) fn object_of(&self, instance: InstanceId) -> Result<&Object, InputError> {
-        let InstanceId { object, .. } = self.existing(instance)?;
-        self.object_at(object)
-    }
-
-    /// The instance, if it exists.
-    fn existing(&self, instance: InstanceId) -> Result<InstanceId, InputError> {
-        let InstanceId { object, index, generation } = instance;
-        match self.object_at(object)?.instances.contains([index, generation]) {
-            true => Ok(instance),
-            false => Err(stale("instance", index, generation)),
-        }
+        self.objects.existing(instance).ok_or_else(|| missing(self.objects.scene(), instance))
     }
 }
 

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::{ReliefLook, ReliefMaterial};
+use crate::scene::material::{ReliefLook, ReliefMaterial, check_image};
 use crate::scene::mesh::{Drawn, NOTHING, within_binding};
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
@@ -13,7 +13,7 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::vertex::Vertex;
 use crate::surface::color::ColorTexture;
 use crate::surface::map::HeightMap;
-use crate::surface::mesh::SurfaceMesh;
+use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::mips::Mips;
 use crate::surface::relief::March;
 use crate::surface::relief::textures::SurfaceTextures;
@@ -137,10 +137,7 @@ pub(super) fn drawn(
     layouts: &SceneLayouts,
     relief: &Relief,
 ) -> Result<(BoundingSphere, Drawn), Error> {
-    relief.mesh.validate()?;
-    if relief.mesh.indices.is_empty() {
-        return Err(InputError::new("relief.mesh.indices.len", 0, "must be at least 3").into());
-    }
+    check(gpu, relief).map_err(|error| error.below("relief"))?;
     let [vertices, indices] = [relief.mesh.vertices.len(), relief.mesh.indices.len()];
     within_binding(gpu, "relief.mesh.vertices.len", vertices, size_of::<Vertex>())?;
     within_binding(gpu, "relief.mesh.indices.len", indices, size_of::<u32>())?;
@@ -165,7 +162,11 @@ pub(super) fn drawn(
     };
     let surface =
         SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided, morphed: false };
-    let materials = MeshMaterials::Relief(material(gpu, layouts, relief)?);
+    let material = material(gpu, layouts, relief).map_err(|error| match error {
+        Error::Input(error) => error.below("relief").into(),
+        error => error,
+    })?;
+    let materials = MeshMaterials::Relief(material);
     let parts = vec![MeshPart { surface, materials }];
     let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);
     let draw = SceneDraw { indices: relief.mesh.indices.len() as u32, ..NOTHING };
@@ -173,6 +174,30 @@ pub(super) fn drawn(
     draws[..2].fill(draw);
     let sphere = BoundingSphere::around(vertices.iter().map(|vertex| vertex.position.into()));
     Ok((sphere, (vec![drawable], draws)))
+}
+
+/// Checks the mesh and the images.
+fn check(gpu: &Gpu, Relief { mesh, maps, .. }: &Relief) -> Result<(), InputError> {
+    mesh.validate().map_err(|error| error.below("mesh"))?;
+    if mesh.indices.is_empty() {
+        return Err(InputError::new("mesh.indices.len", 0, "must be at least 3"));
+    }
+    for (at, SurfaceVertex { position, normal, tangent, uv }) in mesh.vertices.iter().enumerate() {
+        let fields: [(&str, &[f32]); 4] =
+            [("position", position), ("normal", normal), ("tangent", tangent), ("uv", uv)];
+        let is_wrong = |(_, values): &(&str, &[f32])| values.iter().any(|value| !value.is_finite());
+        if let Some((field, values)) = fields.into_iter().find(is_wrong) {
+            let path = format!("mesh.vertices[{at}].{field}");
+            return Err(InputError::new(path, format!("{values:?}"), "must be finite"));
+        }
+    }
+    if let ReliefSource::Images { albedo, normals, .. } = maps {
+        let all = [("maps.albedo", Some(albedo)), ("maps.normals", normals.as_ref())];
+        for (path, image) in all.into_iter().filter_map(|(path, image)| Some((path, image?))) {
+            check_image(gpu, path, image)?;
+        }
+    }
+    Ok(())
 }
 
 fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<ReliefMaterial, Error> {
@@ -216,5 +241,5 @@ fn length_of_uv(mesh: &SurfaceMesh) -> Result<f32, InputError> {
     if in_uv > 0.0 && in_space > 0.0 {
         return Ok((in_space / in_uv).sqrt() as f32);
     }
-    Err(InputError::new("relief.mesh", "no area", "must have an area, in space and in texture coordinates"))
+    Err(InputError::new("mesh", "no area", "must have an area, in space and in texture coordinates"))
 }

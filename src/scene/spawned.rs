@@ -1,7 +1,7 @@
 //! What spawns, moves and changes instances of the objects of a scene.
 
 use crate::scene::Scene;
-use crate::scene::handles::{InstanceId, ObjectId, stale};
+use crate::scene::handles::{InstanceId, ObjectId, missing, no_character};
 use crate::scene::instances;
 use crate::scene::object::{Kind, Object};
 use crate::scene::placement::{Placement, Play};
@@ -84,7 +84,7 @@ impl Scene {
     pub fn play(&mut self, instance: InstanceId, play: &Play<'_>) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
         let Kind::Character(character) = &mut object.kind else {
-            return Err(InputError::new("instance", "no character", "must be an instance of a character"));
+            return Err(no_character());
         };
         let sphere = character.play(instance.index, play)?;
         object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
@@ -141,11 +141,7 @@ impl Scene {
     }
 
     pub(super) fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
-        let InstanceId { index, generation, .. } = instance;
-        let object = self.object_mut(instance.object)?;
-        match object.instances.contains([index, generation]) {
-            true => Ok(object),
-            false => Err(stale("instance", index, generation)),
-        }
+        let scene = self.objects.scene();
+        self.objects.existing_mut(instance).ok_or_else(|| missing(scene, instance))
     }
 }

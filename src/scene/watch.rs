@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use crate::asset::Affine;
 use crate::gpu::{Gpu, GpuError, ReadbackRing};
 use crate::scene::Scene;
-use crate::scene::handles::{InstanceId, Slots};
+use crate::scene::handles::{InstanceId, Slots, no_character};
 use crate::scene::layout::Layout;
 use crate::scene::matrices::{affine_of, placed_model, rows_of};
 use crate::scene::object::{Kind, Object};
@@ -74,7 +74,7 @@ pub(super) struct Watch {
 const BYTES: u64 = (size_of::<Affine>() + size_of::<f32>()) as u64;
 
 impl Scene {
-    /// Watches bones of characters, each by its name or by its index: from the next frame on, [`Scene::watched_bones`] gives
+    /// Watches bones of characters, each by its name or its index in digits: from the next frame on, [`Scene::watched_bones`] gives
     /// their matrices. They replace those that were watched before. A bone costs two small copies a frame.
     ///
     /// # Errors
@@ -98,7 +98,7 @@ impl Scene {
         watch.last.as_ref()
     }
 
-    /// The index of a bone of a character, by its name or its index. A name that is a number takes precedence.
+    /// The index of a bone of a character, by its name or its index in digits. A name that is a number takes precedence.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does not
@@ -106,7 +106,7 @@ impl Scene {
     pub fn bone(&self, instance: InstanceId, name_or_index: &str) -> Result<usize, InputError> {
         match &self.object_of(instance)?.kind {
             Kind::Character(character) => character.bone(name_or_index),
-            _ => Err(InputError::new("instance", "a mesh", "must be an instance of a character")),
+            _ => Err(no_character()),
         }
     }
 }

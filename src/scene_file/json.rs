@@ -183,7 +183,7 @@ impl<'a> At<'a> {
     pub fn text(&self) -> Result<&'a str, InputError> {
         match self.value {
             Value::String(text) if (1..=1024).contains(&text.len()) => Ok(text),
-            _ => Err(self.error("must be a text of 1 to 1024 bytes")),
+            _ => Err(self.error("must be a string of 1 to 1024 bytes")),
         }
     }
 

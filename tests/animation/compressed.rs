@@ -85,8 +85,8 @@ fn damaged_draco_is_refused_by_name() {
     );
     refused(
         &|json| json.pointer_mut(&pointer).expect("there")["attributes"]["POSITION"] = json!("a"),
-        &path,
-        "unreadable",
+        &format!("{path}.attributes.POSITION"),
+        "= a: must be a whole number",
     );
     refused(
         &|json| json.pointer_mut(&pointer).expect("there")["bufferView"] = json!(9999),
@@ -128,8 +128,8 @@ fn damaged_meshopt_is_refused_by_name() {
         assert!(error.path == path && error.to_string().contains(words), "{error}");
     };
     refused("mode", json!("TRIANGLES"), &path, "must decompress to");
-    refused("mode", json!("FOO"), &path, "FOO");
-    refused("filter", json!("FOO"), &path, "FOO");
+    refused("mode", json!("FOO"), &format!("{path}.mode"), "= FOO: must be one of `ATTRIBUTES`");
+    refused("filter", json!("FOO"), &format!("{path}.filter"), "= FOO: must be one of `NONE`");
     refused("byteStride", json!(3), &path, "of 3 bytes");
     refused("byteLength", json!(7), &path, "[7 bytes]");
     refused("byteLength", json!(1 << 30), &format!("{path}.byteLength"), "must lie in buffers[0]");

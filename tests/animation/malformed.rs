@@ -68,7 +68,7 @@ fn nodes_and_skins() {
     refused("/nodes/0/children", json!([7]), "nodes[0].children[0]", &["list"]);
     refused("/nodes/0/rotation", json!([0, 0, 0, 0]), "nodes[0].rotation", &["unit"]);
     refused("/nodes/0/translation", json!([0, 1e300, 0]), "nodes[0].translation[1]", &["inf", "finite"]);
-    refused("/nodes/0/translation", json!([0, 1]), "nodes[0].translation", &[]);
+    refused("/nodes/0/translation", json!([0, 1]), "nodes[0].translation", &["[0,1]", "array of length 3"]);
     refused(
         "/nodes/0/matrix",
         json!([1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]),
@@ -77,10 +77,10 @@ fn nodes_and_skins() {
     );
     refused("/skins/0/joints", json!([]), "skins[0].joints", &["at least one"]);
     refused("/skins/0/joints", json!([0, 0]), "skins[0].joints[1]", &["twice"]);
-    refused("/skins/0/joints", json!([0, 9]), "skins[0].joints[1]", &[]);
+    refused("/skins/0/joints", json!([0, 9]), "skins[0].joints[1]", &["= 9:", "list nodes, below 3"]);
     refused("/skins/0/joints", json!([0, 1, 2]), "skins[0].inverseBindMatrices", &["2 matrices", "3"]);
     refused("/skins/0/inverseBindMatrices", json!(1), "accessors[1].type", &["Scalar", "Mat4"]);
-    refused("/skins", json!([]), "nodes[2].skin", &[]);
+    refused("/skins", json!([]), "nodes[2].skin", &["= 0:", "list skins, below 0"]);
     let mut bare = Scene::new();
     bare.push("nodes", json!({"name": "lamp"}));
     assert_eq!(Model::from_gltf(&bare.gltf(), None).expect_err("refused").path, "nodes");
@@ -92,10 +92,33 @@ fn accessors_and_views() {
     refused("/accessors/1/count", json!(-1), "accessors[1].count", &["-1"]);
     refused("/accessors/1/count", json!(1e18 as u64), "accessors[1].count", &["1000000000000000000"]);
     refused("/accessors/1/byteOffset", json!(u64::MAX), "accessors[1].byteOffset", &[]);
-    refused("/accessors/1/bufferView", json!(99), "accessors[1].bufferView", &[]);
+    refused(
+        "/accessors/1/bufferView",
+        json!(99),
+        "accessors[1].bufferView",
+        &["= 99", "list bufferViews, below"],
+    );
     refused("/accessors/1/componentType", json!(5125), "accessors[1].componentType", &["5126"]);
-    refused("/accessors/1/componentType", json!(1), "accessors[1].componentType", &[]);
-    refused("/accessors/2/type", json!("VEC5"), "accessors[2].type", &[]);
+    refused(
+        "/accessors/1/componentType",
+        json!(1),
+        "accessors[1].componentType",
+        &["= 1:", "one of 5120, 5121"],
+    );
+    refused(
+        "/accessors/1/componentType",
+        json!("f32"),
+        "accessors[1].componentType",
+        &["= f32", "one of 5120"],
+    );
+    refused("/accessors/1/count", json!("two"), "accessors[1].count", &["= two", "whole number"]);
+    refused(
+        "/accessors/1",
+        json!({"componentType": 5126, "type": "SCALAR"}),
+        "accessors[1].count",
+        &["missing"],
+    );
+    refused("/accessors/2/type", json!("VEC5"), "accessors[2].type", &["= VEC5", "\"SCALAR\", \"VEC2\""]);
     refused("/accessors/3/sparse/count", json!(3), "accessors[3].sparse.count", &["3"]);
     refused(
         "/accessors/3/sparse/indices/componentType",
@@ -158,7 +181,7 @@ fn animations() {
         "/animations/0/samplers/1/interpolation",
         json!("QUINTIC"),
         "animations[0].samplers[1].interpolation",
-        &[],
+        &["= QUINTIC", "\"LINEAR\", \"STEP\", \"CUBICSPLINE\""],
     );
     refused("/animations/0/channels/0/sampler", json!(9), "animations[0].channels[0].sampler", &[]);
     refused(
@@ -171,7 +194,7 @@ fn animations() {
         "/animations/0/channels/0/target/path",
         json!("colour"),
         "animations[0].channels[0].target.path",
-        &[],
+        &["= colour", "\"translation\", \"rotation\""],
     );
     let twice = json!({"node": 1, "path": "translation"});
     refused("/animations/0/channels/2/target", twice, "animations[0].channels[2].target", &["two"]);
@@ -216,6 +239,38 @@ fn containers() {
     for text in ["", "glTF", "{", "[]", "null", "{}", "\u{feff}{}", r#"{"asset": {"version": "2.0"}}"#] {
         assert!(Model::from_gltf(text.as_bytes(), None).is_err(), "{text}");
     }
+}
+
+/// What is no glTF 2.0 is refused in words of glTF, with what stands in the file.
+#[test]
+fn other_files_and_versions() {
+    let told = |text: &str| Model::from_gltf(text.as_bytes(), None).expect_err(text).to_string();
+    let begins = "must be glTF 2.0: JSON, which begins with {, or a GLB, which begins with glTF";
+    assert_eq!(told("Kaydara FBX Binary  "), format!("JSON = \"Kaydara FBX Bina\": {begins}"));
+    assert_eq!(told(""), format!("JSON = \"\": {begins}"));
+    assert_eq!(told("[]"), format!("JSON = \"[]\": {begins}"));
+    let broken = told("{\"asset\":\n {\"version\" \"2.0\"}}");
+    assert_eq!(broken, "JSON = line 2 column 13: must be glTF 2.0, and valid JSON: expected `:`");
+    let object = "must be an object: glTF 2.0 begins with {\"asset\": {\"version\": \"2.0\"}";
+    assert_eq!(told("{}"), format!("asset = missing: {object}"));
+    assert_eq!(told(r#"{"asset": 2}"#), format!("asset = 2: {object}"));
+    let version = "must be \"2.0\", the version of glTF that is read: convert the file to it";
+    assert_eq!(told(r#"{"asset": {}}"#), format!("asset.version = missing: {version}"));
+    // In glTF 1.0 meshes are an object.
+    let old =
+        r#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "extensionsRequired": ["KHR_binary_glTF"]}"#;
+    assert_eq!(told(old), format!("asset.version = 1.0: {version}"));
+    let newer = r#"{"asset": {"version": "2.0", "minVersion": "3.0"}}"#;
+    assert_eq!(told(newer), format!("asset.minVersion = 3.0: {version}"));
+    assert!(told(r#"{"asset": {"version": "2.1"}}"#).starts_with("nodes"), "minor versions are read");
+    let meshes = told(r#"{"asset": {"version": "2.0"}, "meshes": {"a": {}}}"#);
+    assert_eq!(meshes, r#"meshes = {"a":{}}: must be a list"#);
+    let primitive = r#"{"attributes": {"POSITION": 0, "BONES": 0}}"#;
+    let named = r#"{"asset": {"version": "2.0"}, "accessors": [{"componentType": 5126, "count": 1, "type": "VEC3"}],"#;
+    let attributes = told(&format!("{named} \"meshes\": [{{\"primitives\": [{primitive}]}}]}}"));
+    let bound =
+        "must be POSITION, NORMAL, TANGENT, TEXCOORD_n, COLOR_n, JOINTS_n or WEIGHTS_n, or begin with _";
+    assert_eq!(attributes, format!("meshes[0].primitives[0].attributes = BONES: {bound}"));
 }
 
 /// Documents that are truncated anywhere or have random bytes changed give a model or an error, and a model can

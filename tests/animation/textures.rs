@@ -288,7 +288,8 @@ fn what_is_no_normal_map_is_refused() {
     wrong("samplers[1].wrapS", "must be one of", &|skinned| {
         skinned.0.json["samplers"][1] = json!({"wrapS": 1});
     });
-    wrong("materials[0].normalTexture.extensions.KHR_texture_transform", "invalid type", &|skinned| {
+    let scale = "materials[0].normalTexture.extensions.KHR_texture_transform.scale";
+    wrong(scale, "= 2: must be an array of length 2", &|skinned| {
         skinned.0.json["materials"][0]["normalTexture"]["extensions"] =
             json!({"KHR_texture_transform": {"scale": 2}});
     });
@@ -357,7 +358,7 @@ fn what_is_no_material_is_refused() {
     wrong("materials[0].alphaCutoff", "not negative", &|skinned| {
         skinned.0.json["materials"][0]["alphaCutoff"] = json!(-0.5);
     });
-    wrong("materials[0].alphaMode", "one of the values", &|skinned| {
+    wrong("materials[0].alphaMode", "= GLASS: must be one of \"OPAQUE\", \"MASK\"", &|skinned| {
         skinned.0.json["materials"][0]["alphaMode"] = json!("GLASS");
     });
 }

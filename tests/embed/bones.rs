@@ -59,6 +59,14 @@ fn meshes_follow_bones() {
             Vec3::from(offset().translation).as_dvec3(),
         );
         world.scene.move_to(free, placement_of(bone * offset)).expect("there");
+        let stands = world.scene.world_from_model(carried).expect("there");
+        let of_pose =
+            world.scene.pose(carrier).expect("a pose").world_from_bone(BONE).expect("a bone") * offset;
+        // The offset is rounded to f32.
+        assert!(stands.abs_diff_eq(of_pose, 1e-5), "{stands} {of_pose}");
+        assert!(stands.abs_diff_eq(bone * offset, 2e-4), "{stands} {}", bone * offset);
+        let stands = world.scene.world_from_model(free).expect("there");
+        assert!(stands.translation.distance(world.scene.placement(free).expect("there").world()) < 1e-9);
         let boxes = [carried, free].map(|instance| world.scene.bounds(instance).expect("there"));
         let corners = boxes.map(|found| found.world()[0]);
         assert!(corners[0].distance(corners[1]) < 1e-2, "{corners:?}");
@@ -69,6 +77,23 @@ fn meshes_follow_bones() {
         last = Some(pictures[0].clone());
     }
     without_its_character(&mut world, (carried, free), &mut attached, &frame);
+}
+
+/// A bone goes by its name, its index in digits, and the index that the scene gives for either.
+#[test]
+fn bones_have_a_name_and_an_index() {
+    let gpu = device();
+    let mut world = World::new(&gpu, 1);
+    let (model, carrier) = (model(), world.crowd[0]);
+    let statue = world.scene.add_mesh(&model, 1).expect("added");
+    let carried = world.scene.spawn(statue, Placement::default()).expect("room");
+    let name = model.skeleton.bones()[BONE].name.clone();
+    for text in [name, BONE.to_string()] {
+        assert_eq!(world.scene.bone(carrier, &text).expect("a bone"), BONE);
+        world.scene.attach(carried, carrier, &text, offset()).expect("a bone");
+        assert_eq!(world.scene.attached_to(carried).expect("there"), Some((carrier, BONE)));
+        world.scene.detach(carried).expect("attached");
+    }
 }
 
 /// A hidden character hides what it carries; what it carried stands where its placement says when the character is gone.
@@ -95,9 +120,12 @@ fn without_its_character(
     let aside = Placement { offset: Vec3::new(2.0, 9.0, 0.0), ..Placement::default() };
     world.scene.move_to(carried, aside).expect("there");
     assert!(shot(world) == together, "what is attached stays at its bone");
+    let at_bone = world.scene.world_from_model(carried).expect("there").translation;
+    assert!(at_bone.distance(aside.world()) > 1.0, "{at_bone}");
     world.scene.despawn(carrier).expect("there");
     assert_eq!(world.scene.attached_to(carried).expect("there"), None);
     assert_eq!(world.scene.placement(carried).expect("there"), aside);
+    assert_eq!(world.scene.world_from_model(carried).expect("there").translation, aside.world());
     let freed = shot(world);
     assert!(freed != both_hidden && freed != together, "no mesh at its place");
     let refused = |result: Result<(), relievo::InputError>| result.expect_err("refused").path;
@@ -105,7 +133,9 @@ fn without_its_character(
     assert_eq!(refused(world.scene.attach(carried, carrier, "1", offset())), "character");
     let other = world.crowd[0];
     assert_eq!(refused(world.scene.attach(other, other, "1", offset())), "mesh");
-    assert_eq!(refused(world.scene.attach(carried, other, "nose", offset())), "bone");
+    let nose = world.scene.attach(carried, other, "Nose", offset()).expect_err("refused").to_string();
+    assert!(nose.starts_with("bone = Nose: must be one of \""), "{nose}");
+    assert!(nose.ends_with("\" … and 133 more, or an index below 153"), "{nose}");
     let flat = Transform { scale: [0.0; 3], ..offset() };
     assert_eq!(refused(world.scene.attach(carried, other, "1", flat)), "offset.scale");
 }

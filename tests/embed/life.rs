@@ -33,7 +33,7 @@ fn stale_handles_are_errors() {
     assert_eq!(scene.play(new, &Play::new("hop")).expect_err("refused").path, "play.clip");
     assert_eq!(scene.set_tint(new, [0.0, 2.0, 0.0, 1.0]).expect_err("refused").path, "tint[1]");
     scene.remove(world.creature).expect("there");
-    assert_eq!(path(scene.despawn(new)), "object");
+    assert_eq!(path(scene.despawn(new)), "instance");
     assert_eq!(path(scene.remove(world.creature)), "object");
     assert!(
         scene.spawn(world.land, Placement::default()).expect_err("refused").to_string().contains("terrain")

@@ -195,7 +195,11 @@ fn changes_come_with_the_next_frame_and_with_their_pipelines() {
         drawn = stage.renderer.draw(pass, &stage.scene, &stage.view, Layer::Color);
     });
     let refused = drawn.expect_err("refused").to_string();
-    assert!(refused.contains("not compiled") && refused.contains("prepared"), "{refused}");
+    let has_advice = refused.contains("Renderer::prepare") && refused.contains("Scene::set_material");
+    assert!(
+        refused.starts_with("scene = object 1 (ObjectId::number), not compiled") && has_advice,
+        "{refused}"
+    );
 }
 
 /// Mistakes are told by field, and change nothing.
@@ -224,6 +228,66 @@ fn mistakes_change_nothing() {
     let gone = world.creature;
     world.scene.remove(gone).expect("there");
     assert!(world.scene.set_material(gone, "0", &other).expect_err("refused").to_string().contains("object"));
+}
+
+/// What [`Scene::set_material`] and [`Scene::set_image`] refuse, the scene refuses when a model is added, with its number.
+#[test]
+fn models_are_checked_when_they_are_added() {
+    let gpu = device();
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let mut refused = |change: &dyn Fn(&mut Model)| {
+        let found = [false, true].map(|moves| {
+            let mut model = model(moves);
+            change(&mut model);
+            scene.add_character(&model, 1).expect_err("refused").to_string()
+        });
+        assert_eq!(found[0], found[1], "a mesh and a character");
+        let [found, _] = found;
+        found
+    };
+    let most = "must be 1 to 8192 texels wide and high, the device's limit for textures";
+    for (found, expected) in [
+        (
+            refused(&|model| model.materials[1].color[2] = 7.0),
+            "model.materials[1].color[2] = 7: must be in 0..=1",
+        ),
+        (
+            refused(&|model| model.materials[0].color[3] = f32::NAN),
+            "model.materials[0].color[3] = NaN: must be in 0..=1",
+        ),
+        (
+            refused(&|model| model.materials[0].alpha = Alpha::Mask(f32::INFINITY)),
+            "model.materials[0].alpha = inf: must be finite",
+        ),
+        (
+            refused(&|model| model.materials[0].normal_scale = f32::NAN),
+            "model.materials[0].normal_scale = NaN: must be finite",
+        ),
+        (
+            refused(&|model| model.materials[1].texture = texture(7)),
+            "model.materials[1].texture.image = 7: must be below 3",
+        ),
+        (
+            refused(&|model| model.meshes[1].indices[4] = 9),
+            "model.meshes[1].indices[4] = 9: must be below 4, the number of vertices",
+        ),
+        (
+            refused(&|model| model.meshes[1].material = Some(9)),
+            "model.meshes[1].material = 9: must be below 2",
+        ),
+        (refused(&|model| model.skins[0].bones[3] = 999), "model.skins[0].bones[3] = 999: must be below 153"),
+        (
+            refused(&|model| model.images[0] = RgbaImage::new(9000, 2)),
+            &format!("model.images[0] = 9000 × 2: {most}"),
+        ),
+    ] {
+        assert_eq!(found, expected);
+    }
+    let mut stage = Stage::new(&gpu, &model(false));
+    let before = stage.shot();
+    let image = stage.scene.set_image(stage.object, 0, RgbaImage::new(2, 9000)).expect_err("refused");
+    assert_eq!(image.to_string(), format!("image = 2 × 9000: {most}"));
+    assert!(stage.shot() == before, "a mistake has changed the picture");
 }
 
 /// A normal map is filtered as it says, whatever the texture of the base colour says.

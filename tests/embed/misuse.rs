@@ -1,7 +1,7 @@
 //! What a program may get wrong: each fault is refused by name, before wgpu sees it.
 
 use relievo::InputError;
-use relievo::asset::{Light, Model};
+use relievo::asset::{Light, Model, Transform};
 use relievo::gpu::{Gpu, GpuError};
 use relievo::render::{DepthFormat, Layer, Renderer, SunShadow, TargetFormat};
 use relievo::samples::maps::BuiltInMap;
@@ -27,21 +27,26 @@ fn handles_of_another_scene_are_refused() {
     let gpu = device();
     let (one, mut other) = (World::new(&gpu, 2), World::new(&gpu, 2));
     let (object, instance, scene) = (one.creature, one.crowd[1], &mut other.scene);
-    let of_object = [
-        wrong(scene.spawn(object, Placement::default())),
-        wrong(scene.remove(object)),
-        wrong(scene.show(object, false)),
-        wrong(scene.instances(object)),
-        wrong(scene.coarsening(object)),
-        wrong(scene.ground(one.land, 0.0, 0.0)),
-        wrong(scene.despawn(instance)),
-        wrong(scene.move_to(instance, Placement::default())),
-        wrong(scene.set_tint(instance, [1.0; 4])),
-        wrong(scene.placement(instance)),
-        wrong(scene.clip_time(instance)),
+    let own = other.crowd[1];
+    let refused = [
+        ("object", wrong(scene.spawn(object, Placement::default()))),
+        ("object", wrong(scene.remove(object))),
+        ("object", wrong(scene.show(object, false))),
+        ("object", wrong(scene.instances(object))),
+        ("object", wrong(scene.coarsening(object))),
+        ("object", wrong(scene.ground(one.land, 0.0, 0.0))),
+        ("instance", wrong(scene.despawn(instance))),
+        ("instance", wrong(scene.move_to(instance, Placement::default()))),
+        ("instance", wrong(scene.set_tint(instance, [1.0; 4]))),
+        ("instance", wrong(scene.placement(instance))),
+        ("instance", wrong(scene.clip_time(instance))),
+        ("instance", wrong(scene.drive(instance, &["40"]))),
+        ("mesh", wrong(scene.attach(instance, own, "40", Transform::IDENTITY))),
+        ("character", wrong(scene.attach(own, instance, "40", Transform::IDENTITY))),
+        ("mesh", wrong(scene.detach(instance))),
     ];
-    for (at, found) in of_object.iter().enumerate() {
-        assert_eq!(*found, ["object", "of another scene"], "{at}");
+    for (at, (path, found)) in refused.iter().enumerate() {
+        assert_eq!(*found, [*path, "of another scene"], "{at}");
     }
     assert_eq!(scene.instances(other.creature).expect("of this scene").len(), 2);
 }
@@ -210,8 +215,11 @@ fn what_is_no_place_and_no_camera_is_refused() {
     let camera = |eye: glam::Vec3, field_of_view| {
         Camera::looking_at(eye, glam::Vec3::ONE, field_of_view, [0.1, 100.0], SIZE)
     };
-    assert_eq!(wrong(view.set(camera(glam::Vec3::ZERO, 4.0)))[0], "camera.clip_from_view");
-    assert_eq!(wrong(view.set(camera(glam::Vec3::ONE, 0.8)))[0], "camera.view_from_cell");
+    assert_eq!(wrong(view.set(camera(glam::Vec3::ZERO, 4.0))), ["camera.field_of_view", "4"]);
+    assert_eq!(wrong(view.set(camera(glam::Vec3::ONE, 0.8))), ["camera.target", "[1, 1, 1]"]);
+    assert_eq!(wrong(view.set(camera(glam::Vec3::NAN, 0.8))), ["camera.eye[0]", "NaN"]);
+    let nowhere = glam::DVec3::NAN;
+    assert_eq!(wrong(view.set(Camera::framing(nowhere, nowhere, SIZE))), ["camera.low[0]", "NaN"]);
     view.set(camera(glam::Vec3::ZERO, 0.8)).expect("a camera");
 }
 
@@ -225,15 +233,36 @@ fn formats_that_the_device_lacks_are_refused() {
         blend: Some(wgpu::BlendState::ALPHA_BLENDING),
         ..Format::Rgba32Float.into()
     };
-    for (format, path) in [
-        (TargetFormat::new(Format::Bc1RgbaUnorm), "format.color[0].format"),
-        (TargetFormat::new(Format::Rgb9e5Ufloat), "format.color[0].format"),
-        (TargetFormat::new(Format::Rgba32Float).with_samples(4), "format.samples"),
-        (TargetFormat::new(Format::Rgba32Float).with_color(large()).with_color(large()), "format.color"),
-        (TargetFormat { color: vec![Some(blend)], ..TargetFormat::new(COLOR) }, "format.color[0].blend"),
-        (TargetFormat::new(COLOR).with_depth(depth(Format::Depth32FloatStencil8)), "format.depth.format"),
+    let first = "format.color[0].format";
+    let any = "wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES";
+    for (format, path, feature) in [
+        (TargetFormat::new(Format::Bc1RgbaUnorm), first, "wgpu::Features::TEXTURE_COMPRESSION_BC"),
+        (TargetFormat::new(Format::Rgba16Unorm), first, "wgpu::Features::TEXTURE_FORMAT_16BIT_NORM"),
+        (TargetFormat::new(Format::Rg11b10Ufloat), first, "wgpu::Features::RG11B10UFLOAT_RENDERABLE"),
+        (TargetFormat::new(Format::Rgb9e5Ufloat), first, any),
+        (TargetFormat::new(Format::Rgba32Float).with_samples(4), "format.samples", any),
+        (
+            TargetFormat::new(Format::Rgba32Float).with_color(large()).with_color(large()),
+            "format.color",
+            "limit",
+        ),
+        (
+            TargetFormat { color: vec![Some(blend)], ..TargetFormat::new(COLOR) },
+            "format.color[0].blend",
+            "wgpu::Features::FLOAT32_BLENDABLE",
+        ),
+        (
+            TargetFormat::new(COLOR).with_depth(depth(Format::Depth32FloatStencil8)),
+            "format.depth.format",
+            "wgpu::Features::DEPTH32FLOAT_STENCIL8",
+        ),
     ] {
-        assert_eq!(wrong(Renderer::new(&gpu, &format))[0], path, "{format:?}");
+        match Renderer::new(&gpu, &format) {
+            Err(relievo::Error::Input(error)) => {
+                assert!(error.path == path && error.bound.contains(feature), "{format:?}: {error}");
+            }
+            other => panic!("{format:?}: {other:?}"),
+        }
     }
     let world = World::new(&gpu, 1);
     for format in [

@@ -7,8 +7,8 @@ use relievo::render::Offscreen;
 use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Relief, ReliefSource, Scene};
 use relievo::surface::{
-    Address, ColorTexture, Green, HeightMap, March, Method, Mips, ReliefMaps, ReliefOptions, Shadow,
-    SurfaceMesh, SurfaceTextures,
+    Address, ColorTexture, Green, HeightMap, March, Material, Method, Mips, ReliefMaps, ReliefOptions,
+    Shadow, SurfaceMesh, SurfaceTextures,
 };
 use relievo::{Error, InputError};
 
@@ -117,14 +117,39 @@ fn mistakes_about_maps_are_told() {
     assert_eq!((good.options.method, good.march.address), (Method::Cone, Address::Wrap));
     let refused = |relief: Relief| path(scene_of(&gpu, &relief).expect_err("refused"));
     let options = ReliefOptions { method: Method::Quadtree, ..good.options };
-    assert_eq!(refused(Relief { options, ..good.clone() }), "method");
+    assert_eq!(refused(Relief { options, ..good.clone() }), "relief.options.method");
     let march = March { address: Address::Clamp, ..good.march };
-    assert_eq!(refused(Relief { march, ..good.clone() }), "march.address");
+    assert_eq!(refused(Relief { march, ..good.clone() }), "relief.march.address");
     let options = ReliefOptions { normal_map: Some(Green::Up), ..good.options };
-    assert_eq!(refused(Relief { options, ..good.clone() }), "maps.normals");
+    assert_eq!(refused(Relief { options, ..good.clone() }), "relief.maps.normals");
+    let material = Material { scale: f32::NAN, ..good.material };
+    assert_eq!(refused(Relief { material, ..good.clone() }), "relief.material.scale");
     let still = good.clone().with_normals(bumps, Green::Up);
     assert!(matches!(still.maps, ReliefSource::Textures { normals: None, .. }));
     assert_eq!(still.options.normal_map, None);
     let mut scene = scene_of(&gpu, &good).expect("added");
     assert_eq!(path(scene.rebuild(&gpu).expect_err("refused")), "relief.maps");
+}
+
+/// Images without texels, images beyond the device's textures and meshes without numbers are refused by field and size.
+#[test]
+fn images_and_meshes_of_reliefs_are_checked() {
+    let gpu = device();
+    let (heights, colors, bumps) = images();
+    let relief = |albedo| Relief::wall(1.0, heights.clone(), albedo);
+    let refused = |relief: &Relief| scene_of(&gpu, relief).expect_err("refused").to_string();
+    let most = "must be 1 to 8192 texels wide and high, the device's limit for textures";
+    let empty = refused(&relief(RgbaImage::new(0, 0)));
+    assert_eq!(empty, format!("relief.maps.albedo = 0 × 0: {most}"));
+    let wide = refused(&relief(RgbaImage::new(9000, 2)));
+    assert_eq!(wide, format!("relief.maps.albedo = 9000 × 2: {most}"));
+    let normals = relief(colors.clone()).with_normals(RgbaImage::new(3, 0), Green::Up);
+    assert_eq!(refused(&normals), format!("relief.maps.normals = 3 × 0: {most}"));
+    let tiles = Relief::wall(f32::NAN, heights.clone(), colors.clone());
+    assert_eq!(refused(&tiles), "relief.mesh.vertices[0].uv = [NaN, NaN]: must be finite");
+    let mut torn = relief(colors.clone());
+    torn.mesh.indices[4] = 9;
+    let torn = refused(&torn);
+    assert_eq!(torn, "relief.mesh.indices[4] = 9: must be below 4, the number of vertices");
+    scene_of(&gpu, &relief(colors).with_normals(bumps, Green::Up)).expect("added");
 }

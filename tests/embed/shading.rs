@@ -284,8 +284,14 @@ fn mistakes() -> Vec<(String, usize, usize, &'static str)> {
         (format!("{good}\n@fragment fn main() {{}}"), 2, 14, "entry points"),
         (format!("@group(0) @binding(9) var<uniform> a: vec4<f32>;\n{good}"), 1, 23, "group 3"),
         (format!("{good}\nstruct Surface {{ a: f32 }}"), 2, 8, "Surface"),
-        (format!("fn relievo_f() {{}}\n{good}"), 1, 1, "relievo_"),
-        (format!("{good}\nvar<private> relievo_a: f32 = 1.0;"), 2, 1, "relievo_"),
+        (format!("fn relievo_f() {{}}\n{good}"), 1, 4, "relievo_"),
+        (format!("{good}\nvar<private> relievo_a: f32 = 1.0;"), 2, 14, "relievo_"),
+        (format!("/* relievo_a\n/* */ */ const relievo_b = 1.0;\n{good}"), 2, 16, "relievo_"),
+        (format!("{good}\nconst relievo_typed: f32 = 1.0;"), 2, 7, "relievo_"),
+        (format!("override relievo_c: f32 = 1.0;\n{good}"), 1, 10, "relievo_"),
+        (format!("alias relievo_T = f32;\n{good}"), 1, 7, "relievo_"),
+        (format!("struct relievo_S {{ a: f32 }}\n{good}"), 1, 8, "relievo_"),
+        (good.replace("{ return", "{ let relievo_d = 1.0; return"), 1, 59, "relievo_"),
         (format!("{good}\n/* open"), 2, 1, "comment"),
         (format!("{good}\nfn f() -> f32 {{ return relievo_lambert(1.0); }}"), 2, 24, "relievo_lambert"),
     ]
@@ -355,7 +361,10 @@ fn mistakes_are_told_with_their_lines() {
     let bound = format!("@group(3) @binding(0) var<uniform> a: vec4<f32>;\n{GOOD}");
     let error = input(renderer().with_shading(&bound, None));
     assert!(error.bound.contains("no layout"), "{error}");
-    assert!(renderer().with_shading(GOOD, None).is_ok());
+    for text in [GOOD.to_owned(), format!("// relievo_a\nconst my_relievo_a = 1.0; /* relievo_b */\n{GOOD}")]
+    {
+        renderer().with_shading(&text, None).expect(&text);
+    }
     let error = input(renderer().with_shading(&GOOD.replace("shade", "paint"), None));
     assert_eq!(error.value, "no function `shade`");
 }

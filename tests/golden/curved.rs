@@ -118,7 +118,7 @@ fn options_alone_decide_what_is_drawn() {
 fn a_pipeline_for_normal_maps_refuses_maps_without_one() {
     let options = ReliefOptions { normal_map: Some(Green::Up), ..ReliefOptions::default() };
     match scene_of(&harness::gpu(), &[barrel()], options) {
-        Err(Error::Input(error)) => assert_eq!(error.path, "maps.normals"),
+        Err(Error::Input(error)) => assert_eq!(error.path, "relief.maps.normals"),
         other => panic!("{other:?}"),
     }
 }

@@ -9,12 +9,13 @@ use base64::Engine as _;
 use gltf_json::mesh::Semantic;
 use gltf_json::validation::{Checked, Error as Fault, Validate};
 use gltf_json::{Index, Root, buffer};
+use serde_json::Value;
 
 use super::Beside;
 use super::budget::Budget;
 use super::container::Container;
 use super::extensions::Extensions;
-use super::json;
+use super::{faults, json};
 use crate::InputError;
 
 /// A document whose indices are all in range.
@@ -53,14 +54,14 @@ impl<'a> Document<'a> {
     pub fn new(bytes: &'a [u8], beside: Option<Beside<'a>>, is_bare: bool) -> Result<Self, InputError> {
         let Container { json, binary } = Container::new(bytes)?;
         let value = json::parse(json)?;
+        faults::check_version(&value)?;
         let extensions = Extensions::new(&value, is_bare)?;
-        let root: Root = serde_path_to_error::deserialize(value).map_err(|error| {
-            let path = error.path().to_string();
-            let field = if path == "." { "glTF".to_owned() } else { path };
-            InputError::new(field, "unreadable", error.inner().to_string())
-        })?;
+        // The tree is taken apart here, and read again for the value of an error.
+        let again = || json::parse(json).unwrap_or_default();
+        let root: Root =
+            serde_path_to_error::deserialize(value).map_err(|error| faults::of_type(&again(), &error))?;
         positions_exist(&root)?;
-        validate(&root)?;
+        validate(&root, again)?;
         let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();
         let decompressed = root.buffer_views.iter().map(|_| OnceCell::new()).collect();
         let budget = if extensions.is_compressed() { Budget::of_compressed() } else { Budget::default() };
@@ -212,7 +213,7 @@ const OF_POSITIONS: [&str; 3] =
 /// Reports the first error that gltf-json finds. Some are not errors here: accessors without a buffer view, which
 /// glTF defines as zeros; primitives without positions, which are left out; positions without their bounds, which are
 /// not read; and extensions, which are checked before.
-fn validate(root: &Root) -> Result<(), InputError> {
+fn validate(root: &Root, document: impl FnOnce() -> Value) -> Result<(), InputError> {
     let mut first = None;
     root.validate(root, gltf_json::Path::new, &mut |path, fault| {
         if fault == Fault::Unsupported || first.is_some() {
@@ -225,12 +226,15 @@ fn validate(root: &Root) -> Result<(), InputError> {
             first = Some((path, fault));
         }
     });
-    let Some((path, fault)) = first else { return Ok(()) };
-    let (value, bound) = match fault {
-        Fault::IndexOutOfBounds => ("an index", "must lie in the list it points into"),
-        Fault::Missing => ("missing", "must be given"),
-        Fault::Oversize => ("too large", "must fit the machine's memory"),
-        Fault::Invalid | Fault::Unsupported => ("invalid", "must be one of the values that glTF allows"),
-    };
-    Err(InputError::new(path, value, bound))
+    // gltf-json does not look at these.
+    for (animation, all) in root.animations.iter().enumerate() {
+        let mut channels = all.channels.iter();
+        let unknown = channels.position(|channel| channel.target.path == Checked::Invalid);
+        let path = |at| format!("animations[{animation}].channels[{at}].target.path");
+        first = first.or(unknown.map(|at| (path(at), Fault::Invalid)));
+    }
+    match first {
+        Some((path, fault)) => Err(faults::of_value(&document(), &path, fault)),
+        None => Ok(()),
+    }
 }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::draco::Draco;
+use super::faults;
 use super::meshopt::Meshopt;
 use crate::InputError;
 
@@ -147,8 +148,11 @@ fn extension<'a, T: Deserialize<'a>>(
     path: impl Fn() -> String,
 ) -> Result<Option<T>, InputError> {
     let Some(given) = object.get("extensions").and_then(|all| all.get(name)) else { return Ok(None) };
-    T::deserialize(given).map(Some).map_err(|error| {
-        InputError::new(format!("{}.extensions.{name}", path()), "unreadable", error.to_string())
+    serde_path_to_error::deserialize(given).map(Some).map_err(|error| {
+        let path = format!("{}.extensions.{name}", path());
+        let InputError { path: field, value, bound } = faults::of_type(given, &error);
+        let path = if field == "glTF" { path } else { format!("{path}.{field}") };
+        InputError { path, value, bound }
     })
 }
 

@@ -3,6 +3,7 @@
 use serde_json::{Number, Value};
 
 use crate::InputError;
+use crate::error::json::{message, place};
 
 /// The largest whole number up to which a double holds every whole number: 2⁵³.
 const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
@@ -10,13 +11,18 @@ const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
 /// Parses the JSON of a document.
 ///
 /// # Errors
-/// [`InputError`] with line and column.
+/// [`InputError`] with line and column, or with the first characters of what is no JSON object.
 pub fn parse(json: &[u8]) -> Result<Value, InputError> {
     // glTF lets readers skip a byte order mark.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    if json.trim_ascii_start().first() != Some(&b'{') {
+        let begin: String = String::from_utf8_lossy(&json[..json.len().min(80)]).chars().take(16).collect();
+        let bound = "must be glTF 2.0: JSON, which begins with {, or a GLB, which begins with glTF";
+        return Err(InputError::new("JSON", format!("{begin:?}"), bound));
+    }
     let mut value: Value = serde_json::from_slice(json).map_err(|error| {
-        let place = format!("line {} column {}", error.line(), error.column());
-        InputError::new("JSON", place, format!("must be glTF 2.0, as GLB or JSON ({error})"))
+        let bound = format!("must be glTF 2.0, and valid JSON: {}", message(&error));
+        InputError::new("JSON", place(&error), bound)
     })?;
     rewrite(&mut value);
     for animation in list(&mut value, "animations") {

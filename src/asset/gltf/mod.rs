@@ -86,6 +86,7 @@ mod container;
 mod document;
 mod draco;
 mod extensions;
+mod faults;
 mod json;
 pub(super) mod materials;
 mod meshes;

@@ -6,6 +6,10 @@ use crate::render::layer::Layer;
 use crate::scene::Scene;
 use crate::scene::drawable::{DrawnObject, DrawnView};
 
+/// What to do about an object for which pipelines are missing.
+const PREPARE: &str = "must be compiled for this renderer: call Renderer::prepare after an object or a SunShadow was added, and \
+                       after Scene::set_material or Scene::set_transition changed the object";
+
 impl Renderer {
     /// Whether a scene is on the renderer's device.
     pub(super) fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
@@ -37,12 +41,11 @@ impl Renderer {
             let bound = "must keep the last frame: Scene::keep_last_frame";
             return Err(InputError::new("scene", "does not keep the last frame", bound));
         }
-        for (at, object) in objects.enumerate() {
+        for object in objects {
             let is_ready = |kind| self.pipeline(layer, kind, false, view).is_some();
             if !kinds_of(object.drawable).filter(|kind| kind.is_in(layer)).all(is_ready) {
-                let bound =
-                    "must be prepared for this renderer after the object, or a sun's shadow, was added";
-                return Err(InputError::new(format!("scene.objects[{at}]"), "not compiled", bound));
+                let value = format!("object {} (ObjectId::number), not compiled", object.number);
+                return Err(InputError::new("scene", value, PREPARE));
             }
         }
         Ok(())

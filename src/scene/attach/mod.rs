@@ -59,7 +59,7 @@ struct Attached {
 }
 
 impl Scene {
-    /// Attaches a mesh to a bone of a character, given by its name or its index: from the next frame on, the mesh follows the
+    /// Attaches a mesh to a bone of a character, given by its name or its index in digits: from the next frame on, the mesh follows the
     /// bone as each frame poses it, with `offset` from the mesh's space to the bone's. Nothing of that passes through the host.
     /// A mesh that is attached already changes to the new bone.
     ///
@@ -71,8 +71,8 @@ impl Scene {
     /// In views, the mesh is selected together with its character, by a sphere that holds both wherever the clip takes the bone,
     /// and takes a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. The bones of a character
     /// that carries a mesh are sampled in every frame in which it is seen, so that the mesh is at its place but for
-    /// rounding. Where no view of a frame sees the character (it is hidden, or masks leave it out), the mesh is not drawn
-    /// either. Despawning the character detaches the mesh.
+    /// rounding. [`Scene::world_from_model`] tells where it stands. Where no view of a frame sees the character (it is hidden, or
+    /// masks leave it out), the mesh is not drawn either. Despawning the character detaches the mesh.
     ///
     /// [`Layer::Velocity`](crate::render::Layer::Velocity) shows it moving with its bone, and in the frame in which it is
     /// attached from where it stood. When it changes to another bone, when its character was not seen in the last frame, or
@@ -121,7 +121,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, or that is not attached.
     pub fn detach(&mut self, mesh: InstanceId) -> Result<(), InputError> {
-        self.object_of(mesh)?;
+        self.object_of(mesh).map_err(|error| renamed(error, "mesh"))?;
         let Some(Attached { character, own, .. }) = self.release(mesh) else {
             return Err(InputError::new("mesh", "not attached", "must be attached"));
         };
@@ -140,7 +140,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn attached_to(&self, mesh: InstanceId) -> Result<Option<(InstanceId, usize)>, InputError> {
-        self.object_of(mesh)?;
+        self.object_of(mesh).map_err(|error| renamed(error, "mesh"))?;
         Ok(self.attachments.all.get(&mesh).map(|attached| (attached.character, attached.bone)))
     }
 

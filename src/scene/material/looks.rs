@@ -2,9 +2,11 @@
 
 use image::RgbaImage;
 
-use crate::InputError;
+use super::textures::check_image;
 use crate::asset::Model;
 use crate::asset::material::{Alpha, Material};
+use crate::gpu::Gpu;
+use crate::{InputError, error};
 
 /// The materials of an object with their images.
 #[derive(Debug)]
@@ -22,45 +24,51 @@ impl Looks {
     /// The index of the material with this name or this index. A name that is a number takes precedence.
     ///
     /// # Errors
-    /// [`InputError`] that lists the materials.
+    /// [`InputError`] that lists up to 20 materials.
     pub fn find(&self, name_or_index: &str) -> Result<usize, InputError> {
         let by_name = self.materials.iter().position(|material| material.name == name_or_index);
         let count = self.materials.len();
         let by_index = || name_or_index.parse().ok().filter(|index: &usize| *index < count);
         by_name.or_else(by_index).ok_or_else(|| {
-            let names = self.materials.iter().map(|material| format!("{:?}", material.name));
-            let bound = match count {
-                0 => "the model has no materials".to_owned(),
-                _ => format!("must be below {count} or one of {}", names.collect::<Vec<_>>().join(", ")),
-            };
-            InputError::new("material", name_or_index, bound)
+            let names = self.materials.iter().map(|material| material.name.as_str());
+            InputError::new("material", name_or_index, error::name_or_index("materials", names))
         })
     }
 
-    /// Checks a material that is to be drawn with these images.
+    /// Checks all materials, as those of the argument `model`.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
-    pub fn check(&self, material: &Material) -> Result<(), InputError> {
+    pub fn check_all(&self) -> Result<(), InputError> {
+        let mut all = self.materials.iter().enumerate();
+        all.try_for_each(|(at, material)| self.check(&format!("model.materials[{at}]"), material))
+    }
+
+    /// Checks a material that is to be drawn with these images. `path` names it in errors.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn check(&self, path: &str, material: &Material) -> Result<(), InputError> {
         for (at, channel) in material.color.into_iter().enumerate() {
             if !(0.0..=1.0).contains(&channel) {
-                return Err(InputError::new(format!("material.color[{at}]"), channel, "must be in 0..=1"));
+                return Err(InputError::new(format!("{path}.color[{at}]"), channel, "must be in 0..=1"));
             }
         }
         if !material.normal_scale.is_finite() {
-            return Err(InputError::new("material.normal_scale", material.normal_scale, "must be finite"));
+            let field = format!("{path}.normal_scale");
+            return Err(InputError::new(field, material.normal_scale, "must be finite"));
         }
         if let Alpha::Mask(cutoff) = material.alpha
             && !cutoff.is_finite()
         {
-            return Err(InputError::new("material.alpha", cutoff, "must be finite"));
+            return Err(InputError::new(format!("{path}.alpha"), cutoff, "must be finite"));
         }
         for (field, texture) in [("texture", material.texture), ("normal", material.normal)] {
             if let Some(texture) = texture
                 && texture.image >= self.images.len()
             {
                 let bound = format!("must be below {}, the number of images", self.images.len());
-                return Err(InputError::new(format!("material.{field}.image"), texture.image, bound));
+                return Err(InputError::new(format!("{path}.{field}.image"), texture.image, bound));
             }
         }
         Ok(())
@@ -69,12 +77,9 @@ impl Looks {
     /// Replaces an image, or adds one behind the last.
     ///
     /// # Errors
-    /// [`InputError`] for an image without texels, and for an index beyond that.
-    pub fn set_image(&mut self, index: usize, image: RgbaImage) -> Result<(), InputError> {
-        if image.is_empty() {
-            let value = format!("{} × {}", image.width(), image.height());
-            return Err(InputError::new("image", value, "must have texels"));
-        }
+    /// [`InputError`] for an image without texels or beyond the device's limit, and for an index beyond that.
+    pub fn set_image(&mut self, gpu: &Gpu, index: usize, image: RgbaImage) -> Result<(), InputError> {
+        check_image(gpu, "image", &image)?;
         if index > self.images.len() {
             let bound = format!("must be at most {}, which adds an image", self.images.len());
             return Err(InputError::new("index", index, bound));

@@ -15,6 +15,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::shared::render::scene_mesh::{CUTOFF_DITHERED, CUTOFF_OPAQUE, NO_LAYER, SceneMaterial};
 use crate::surface::color::sampler_of;
 use crate::{Error, InputError};
+pub(crate) use textures::check_image;
 use textures::{Texels, texture_array};
 
 /// The materials of the triangles that share a pipeline and samplers.

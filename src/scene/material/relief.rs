@@ -46,7 +46,10 @@ impl ReliefMaterial {
         look: &ReliefLook,
     ) -> Result<Self, Error> {
         look.validate()?;
-        maps.textures.check(options.method, &look.march)?;
+        maps.textures.check(options.method, &look.march).map_err(|error| match &*error.path {
+            "method" => error.below("options"),
+            _ => error,
+        })?;
         if options.normal_map.is_some() && maps.normals.is_none() {
             let bound = "must be a normal map, which the options ask for";
             return Err(InputError::new("maps.normals", "nothing", bound).into());
@@ -69,10 +72,11 @@ impl ReliefMaterial {
 
 impl ReliefLook {
     fn validate(&self) -> Result<(), InputError> {
-        self.material.validate()?;
-        self.march.validate()?;
+        self.material.validate().map_err(|error| error.below("material"))?;
+        self.march.validate().map_err(|error| error.below("march"))?;
         if !(self.world > 0.0 && self.world.is_finite()) {
-            return Err(InputError::new("world", self.world, "must be finite and above 0"));
+            let bound = "must be finite and above 0: the length of a unit of uv";
+            return Err(InputError::new("mesh", self.world, bound));
         }
         Ok(())
     }

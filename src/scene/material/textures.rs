@@ -6,8 +6,8 @@ use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
 use crate::gpu::{Gpu, GpuError};
-use crate::srgb;
 use crate::surface::mips::Mips;
+use crate::{Error, InputError, srgb};
 
 /// The most texels of an array's finest level, 256 MiB: the images of larger ones are halved.
 const MAX_TEXELS: u64 = 1 << 26;
@@ -25,14 +25,17 @@ pub(super) enum Texels {
 /// white or flat.
 ///
 /// # Errors
-/// [`GpuError`], also for more images than an array may have layers.
+/// [`InputError`] for an image that [`check_image`] refuses; [`GpuError`], also for more images than an array may have layers.
 pub(super) fn texture_array(
     gpu: &Gpu,
     all: &[RgbaImage],
     images: &[usize],
     texels: Texels,
     has_mips: bool,
-) -> Result<wgpu::TextureView, GpuError> {
+) -> Result<wgpu::TextureView, Error> {
+    for at in images {
+        check_image(gpu, &format!("model.images[{at}]"), &all[*at])?;
+    }
     let flat = RgbaImage::from_pixel(1, 1, image::Rgba(texels.flat()));
     let images: Vec<&RgbaImage> = match images {
         [] => vec![&flat],
@@ -46,9 +49,10 @@ pub(super) fn texture_array(
             needed: images.len() as u64,
             available: limits.max_texture_array_layers.into(),
             remedy: "use fewer images, or join some of them to an atlas",
-        });
+        }
+        .into());
     }
-    let size = common_size(&images, limits.max_texture_dimension_2d);
+    let size = common_size(&images);
     let layers: Vec<Mips> =
         images.iter().map(|image| texels.mips(resized(image, size, texels), has_mips)).collect();
     let texture = gpu.scoped(|| upload(gpu, &layers, texels))?;
@@ -77,13 +81,26 @@ impl Texels {
     }
 }
 
-/// The size that all layers get: the largest width and the largest height, halved until they fit the device and
-/// [`MAX_TEXELS`].
-fn common_size(images: &[&RgbaImage], longest: u32) -> [u32; 2] {
+/// Checks that an image has texels, and no more along an edge than a texture of the device. `path` names it in errors.
+///
+/// # Errors
+/// [`InputError`] with its width and height.
+pub(crate) fn check_image(gpu: &Gpu, path: &str, image: &RgbaImage) -> Result<(), InputError> {
+    let most = gpu.device().limits().max_texture_dimension_2d;
+    let (width, height) = image.dimensions();
+    if [width, height].iter().all(|edge| (1..=most).contains(edge)) {
+        return Ok(());
+    }
+    let bound = format!("must be 1 to {most} texels wide and high, the device's limit for textures");
+    Err(InputError::new(path, format!("{width} × {height}"), bound))
+}
+
+/// The size that all layers get: the largest width and the largest height, halved until they fit [`MAX_TEXELS`].
+fn common_size(images: &[&RgbaImage]) -> [u32; 2] {
     let largest = |edge: fn(&RgbaImage) -> u32| images.iter().map(|image| edge(image)).max().unwrap_or(1);
     let mut size = [largest(RgbaImage::width), largest(RgbaImage::height)];
     let texels = |[width, height]: [u32; 2]| images.len() as u64 * u64::from(width) * u64::from(height);
-    while size.iter().any(|edge| *edge > longest) || texels(size) > MAX_TEXELS {
+    while texels(size) > MAX_TEXELS {
         size = size.map(|edge| (edge / 2).max(1));
     }
     size
@@ -144,15 +161,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn layers_get_the_largest_edges_and_fit_the_device() {
+    fn layers_get_the_largest_edges_that_fit() {
         let image = |width, height| RgbaImage::new(width, height);
         let (wide, high, tiny) = (image(64, 2), image(4, 32), image(1, 1));
-        assert_eq!(common_size(&[&wide, &high, &tiny], 8192), [64, 32]);
-        assert_eq!(common_size(&[&wide, &high], 16), [16, 8]);
-        assert_eq!(common_size(&[&tiny], 8192), [1, 1]);
+        assert_eq!(common_size(&[&wide, &high, &tiny]), [64, 32]);
+        assert_eq!(common_size(&[&tiny]), [1, 1]);
         // Nine layers of 64 Mi texels in all have room for 2^22 each, of which 4096 × 4096 are four times too many.
         let large = image(4096, 4096);
-        assert_eq!(common_size(&[&large; 9], 8192), [2048, 2048]);
+        assert_eq!(common_size(&[&large; 9]), [2048, 2048]);
     }
 
     #[test]

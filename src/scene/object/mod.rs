@@ -148,6 +148,7 @@ impl Object {
         let instances = room(capacity)?;
         let (mut merged, sphere) = mesh::at_rest_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
+        looks.check_all()?;
         let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
         let errors = mesh::errors(&merged);
         let kind = Kind::Mesh(MeshOnHost::Model(Box::new(merged)));
@@ -180,6 +181,7 @@ impl Object {
         let instances = room(capacity)?;
         let mut merged = mesh::moving_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
+        looks.check_all()?;
         let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
         let first = character.drawables(gpu, layouts, &looks)?;
         let drawn = (character.chunks(gpu, layouts, &first)?, character.draws());

@@ -8,9 +8,10 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{DeserializeOwned, IntoDeserializer, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
-use serde_path_to_error::Segment;
 
-use crate::error::json::{message, shown, unreadable};
+#[cfg(feature = "gpu")]
+use crate::error::json::{message, shown};
+use crate::error::json::{refused_value, unreadable};
 use crate::terrain::config::Zone;
 use crate::terrain::config::{Border, Config, Interpolation, Offset};
 use crate::{Error, InputError};
@@ -178,29 +179,6 @@ fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) -> Result<T, 
         }
     })?;
     Ok(object.0)
-}
-
-/// What is wrong with a value of a document that is not what its field may be, or with a field that is unknown or given twice, if
-/// that is what is wrong.
-fn refused_value(
-    document: &Value,
-    error: &serde_path_to_error::Error<serde_json::Error>,
-) -> Option<InputError> {
-    let message = message(error.inner());
-    let bound = match message.split_once("expected ") {
-        _ if message.contains(" field `") => message,
-        Some((_, "f64" | "a JSON number")) => "must be a number".to_owned(),
-        Some((_, "i32")) => "must be a whole number that fits i32".to_owned(),
-        Some((_, "a sequence")) => "must be a list".to_owned(),
-        Some((_, expected)) => format!("must be {expected}"),
-        None => return None,
-    };
-    let value = error.path().iter().try_fold(document, |value, segment| match segment {
-        Segment::Map { key } => value.get(key),
-        Segment::Seq { index } => value.get(*index),
-        Segment::Enum { .. } | Segment::Unknown => None,
-    })?;
-    Some(InputError::new(error.path().to_string(), shown(value), bound))
 }
 
 /// A name of one of the values of `T`.

@@ -330,6 +330,6 @@ fn what_is_wrong_about_a_shadow_is_refused_by_name() {
     frame.pass(&mut encoder, |pass| {
         let error = early.draw(pass, &world.scene, &view, relievo::render::Layer::Color);
         let error = error.expect_err("refused").to_string();
-        assert!(error.contains("prepared") && error.contains("shadow"), "{error}");
+        assert!(error.contains("Renderer::prepare") && error.contains("SunShadow"), "{error}");
     });
 }

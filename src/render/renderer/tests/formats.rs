@@ -167,7 +167,7 @@ fn what_cannot_be_drawn_is_told_by_its_path() {
     assert_eq!(refused(&with(TargetFormat::depth_only(Format::Depth32Float)), Layer::Color), "layer");
     assert_eq!(refused(&with(good.clone().with_depth(None)), Layer::Depth), "layer");
     assert_eq!(refused(&with(good.clone().reversed()), Layer::Color), "view.camera.depth");
-    assert_eq!(refused(&Renderer::new(&gpu, &good).expect("a format"), Layer::Color), "scene.objects[0]");
+    assert_eq!(refused(&Renderer::new(&gpu, &good).expect("a format"), Layer::Color), "scene");
     let wrong = Renderer::new(&gpu, &good.with_samples(3)).expect_err("refused");
     assert!(matches!(wrong, Error::Input(error) if error.path == "format.samples"));
 }

@@ -116,7 +116,7 @@ impl Stage {
     }
 
     pub fn object<'a>(&'a self, drawable: &'a Drawable, ground: Option<&'a Group>) -> DrawnObject<'a> {
-        DrawnObject { drawable, lod: &self.lod, sides: [true; 2], ground }
+        DrawnObject { number: 1, drawable, lod: &self.lod, sides: [true; 2], ground }
     }
 }
 

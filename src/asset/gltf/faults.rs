@@ -1,0 +1,152 @@
+//! What is wrong with a document that gltf-json refuses: the path, the value there, and what glTF allows in its place.
+
+use std::fmt::Debug;
+
+use gltf_json::validation::Error as Fault;
+use gltf_json::{accessor, animation, buffer, camera, material, mesh, texture};
+use serde_json::Value;
+
+use crate::InputError;
+use crate::error::json::{refused_value, shown};
+
+/// The version of glTF that is read, of which any minor version is.
+const MAJOR: &str = "2";
+
+/// Fields that hold an index, each with the list into which the index points.
+const LISTS: [(&str, &str); 21] = [
+    ("buffer", "buffers"),
+    ("bufferView", "bufferViews"),
+    ("camera", "cameras"),
+    ("children", "nodes"),
+    ("indices", "accessors"),
+    ("input", "accessors"),
+    ("inverseBindMatrices", "accessors"),
+    ("joints", "nodes"),
+    ("mesh", "meshes"),
+    ("node", "nodes"),
+    ("nodes", "nodes"),
+    ("output", "accessors"),
+    ("scene", "scenes"),
+    ("index", "textures"),
+    ("material", "materials"),
+    ("skeleton", "nodes"),
+    ("skin", "skins"),
+    ("source", "images"),
+    ("POSITION", "accessors"),
+    ("NORMAL", "accessors"),
+    ("TANGENT", "accessors"),
+];
+
+/// Refuses what is no glTF, and another version than 2.
+pub fn check_version(document: &Value) -> Result<(), InputError> {
+    let version = || document.pointer("/asset/version");
+    for (path, value) in [("glTF", Some(document)), ("asset", document.get("asset"))] {
+        if !value.is_some_and(Value::is_object) {
+            let bound = "must be an object: glTF 2.0 begins with {\"asset\": {\"version\": \"2.0\"}";
+            return Err(InputError::new(path, value.map_or("missing".to_owned(), shown), bound));
+        }
+    }
+    for (path, value) in
+        [("asset.version", version()), ("asset.minVersion", document.pointer("/asset/minVersion"))]
+    {
+        let major = value.and_then(Value::as_str).map(|text| text.split('.').next());
+        if (value.is_some() || path == "asset.version") && major != Some(Some(MAJOR)) {
+            let bound = "must be \"2.0\", the version of glTF that is read: convert the file to it";
+            return Err(InputError::new(path, value.map_or("missing".to_owned(), shown), bound));
+        }
+    }
+    Ok(())
+}
+
+/// The error of a value that has another type than glTF gives it, or that lacks a field.
+pub fn of_type(document: &Value, error: &serde_path_to_error::Error<serde_json::Error>) -> InputError {
+    let path = match error.path().to_string() {
+        root if root == "." => String::new(),
+        path => path,
+    };
+    let message = error.inner().to_string();
+    if let Some((field, _)) = message.strip_prefix("missing field `").and_then(|rest| rest.split_once('`')) {
+        let path = if path.is_empty() { field.to_owned() } else { format!("{path}.{field}") };
+        return InputError::new(path, "missing", "must be given");
+    }
+    refused_value(document, error).unwrap_or_else(|| InputError::new(path, "unreadable", message))
+}
+
+/// The error of a value of the right type.
+pub fn of_value(document: &Value, path: &str, fault: Fault) -> InputError {
+    let steps = steps(path);
+    let field = steps.iter().rev().find(|step| step.parse::<usize>().is_err()).copied().unwrap_or_default();
+    let bound = match (fault, steps.as_slice()) {
+        (Fault::IndexOutOfBounds, _) => out_of_list(document, &steps, field),
+        (Fault::Missing, _) => "must be given".to_owned(),
+        (Fault::Oversize, _) => "must fit the machine's memory".to_owned(),
+        (_, [of_mesh @ .., "attributes", _]) => return of_attribute(document, of_mesh, path),
+        _ => known(&steps, field),
+    };
+    let absent = if fault == Fault::Missing { "missing" } else { "invalid" };
+    let value = value_at(document, &steps).map_or(absent.to_owned(), shown);
+    InputError::new(path, value, bound)
+}
+
+/// The fields and indices of a path of gltf-json.
+fn steps(path: &str) -> Vec<&str> {
+    let steps = path.split(['.', '[']).map(|step| step.trim_matches([']', '"']));
+    steps.filter(|step| !step.is_empty()).collect()
+}
+
+fn value_at<'a>(document: &'a Value, steps: &[&str]) -> Option<&'a Value> {
+    steps.iter().try_fold(document, |value, step| match value {
+        Value::Array(list) => list.get(step.parse::<usize>().ok()?),
+        value => value.get(step),
+    })
+}
+
+/// The bound of an index that its list does not have.
+fn out_of_list(document: &Value, steps: &[&str], field: &str) -> String {
+    let is_attribute = steps.iter().rev().nth(1) == Some(&"attributes");
+    let listed = LISTS.iter().find(|(name, _)| *name == field).map(|(_, list)| *list);
+    match listed.or(is_attribute.then_some("accessors")) {
+        None => "must lie in the list it points into".to_owned(),
+        Some(list) => {
+            let count = document.get(list).and_then(Value::as_array).map_or(0, Vec::len);
+            format!("must lie in the list {list}, below {count}")
+        }
+    }
+}
+
+/// The error of an attribute whose name glTF does not have; gltf-json does not tell the name.
+fn of_attribute(document: &Value, of_mesh: &[&str], path: &str) -> InputError {
+    let is_known = |name: &str| {
+        let set =
+            ["TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"].iter().find_map(|set| name.strip_prefix(set));
+        ["POSITION", "NORMAL", "TANGENT"].contains(&name) || set.is_some_and(|set| set.parse::<u32>().is_ok())
+    };
+    let all = value_at(document, of_mesh).and_then(|mesh| mesh.get("attributes")?.as_object());
+    let unknown = all.and_then(|all| all.keys().find(|name| !is_known(name)));
+    let bound =
+        "must be POSITION, NORMAL, TANGENT, TEXCOORD_n, COLOR_n, JOINTS_n or WEIGHTS_n, or begin with _";
+    let parent = path.rsplit_once('[').map_or(path, |(parent, _)| parent);
+    InputError::new(parent, unknown.map_or("invalid", String::as_str), bound)
+}
+
+/// The values that glTF allows in a field.
+fn known(steps: &[&str], field: &str) -> String {
+    let of =
+        |values: &dyn Debug| format!("must be one of {}", format!("{values:?}").trim_matches(['[', ']']));
+    match (field, steps.first().copied()) {
+        ("componentType", _) if steps.contains(&"sparse") => of(&accessor::VALID_INDEX_TYPES),
+        ("componentType", _) => of(&accessor::VALID_COMPONENT_TYPES),
+        ("type", Some("accessors")) => of(&accessor::VALID_ACCESSOR_TYPES),
+        ("type", Some("cameras")) => of(&camera::VALID_CAMERA_TYPES),
+        ("interpolation", _) => of(&animation::VALID_INTERPOLATIONS),
+        ("path", _) => of(&animation::VALID_PROPERTIES),
+        ("alphaMode", _) => of(&material::VALID_ALPHA_MODES),
+        ("mode", _) => of(&mesh::VALID_MODES),
+        ("magFilter", _) => of(&texture::VALID_MAG_FILTERS),
+        ("minFilter", _) => of(&texture::VALID_MIN_FILTERS),
+        ("wrapS" | "wrapT", _) => of(&texture::VALID_WRAPPING_MODES),
+        ("target", _) => of(&buffer::VALID_TARGETS),
+        ("byteStride", _) => format!("must be in {}..={}", buffer::MIN_BYTE_STRIDE, buffer::MAX_BYTE_STRIDE),
+        _ => "must be one of the values that glTF allows".to_owned(),
+    }
+}
