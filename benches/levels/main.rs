@@ -3,7 +3,7 @@
 //!
 //! ```sh
 //! cargo bench --no-default-features --features samples --bench levels                  # creature, rock and helmet
-//! cargo bench … -- model.glb other.glb       # of your files instead
+//! cargo bench … -- helmet model.glb          # of these alone: names of the three above, and files
 //! ```
 
 mod helmet;
@@ -58,18 +58,20 @@ fn report(name: &str, model: &mut Model) -> Result<(), Box<dyn Error>> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Cargo passes `--bench` of its own.
-    let files: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let mut names: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    if names.is_empty() {
+        names.extend(["creature", "rock", "helmet"].map(str::to_owned));
+    }
     println!("| model | meshes | vertices | triangles | poses | processor, s | passed, s |");
     println!("|---|---|---|---|---|---|---|");
-    for file in &files {
-        let mut model = Model::from_file(Path::new(file))?;
-        let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
-        report(&name, &mut model)?;
-    }
-    if files.is_empty() {
-        report("creature", &mut relievo::samples::creature()?)?;
-        report("rock", &mut relievo::samples::rock()?)?;
-        report("helmet", &mut helmet::helmet()?)?;
+    for name in &names {
+        let mut model = match name.as_str() {
+            "creature" => relievo::samples::creature()?,
+            "rock" => relievo::samples::rock()?,
+            "helmet" => helmet::helmet()?,
+            file => Model::from_file(Path::new(file))?,
+        };
+        report(&Path::new(name).file_stem().unwrap_or_default().to_string_lossy(), &mut model)?;
     }
     Ok(())
 }

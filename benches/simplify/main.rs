@@ -5,6 +5,9 @@
 //! cargo bench --no-default-features --features samples --bench simplify                 # generated terrain
 //! cargo bench … -- --elevation map.png --mesh spot.obj --mesh creature.glb --grass      # of your files
 //! cargo bench … -- --out DIR      # the levels as OBJ, which tests/truth/simplify.py measures
+//! cargo bench … -- --terrain --torus --helmet  # meshes of its own
+//! cargo bench … -- --plain                    # without normals and texture coordinates
+//! cargo bench … -- --out DIR --within        # those of `simplify_within` too
 //! cargo bench … -- --percent 6 --normals 0.25   # other levels, another weight of normals
 //! cargo bench … -- --growth       # 10,000 to 2 million triangles, and the peak of memory
 //! ```
@@ -27,63 +30,82 @@ static MEMORY: PeakAlloc = PeakAlloc;
 
 /// The weight of normals in meshoptimizer's own example; both programs understand it alike.
 const NORMALS: f32 = 0.5;
+const ROUNDS: usize = 5;
 const PERCENT: [usize; 4] = [50, 20, 10, 2];
 
-/// Triangles to simplify to, by one of two programs.
-type Simplify = fn(&Mesh, usize, Option<f32>) -> Result<Vec<u32>, Box<dyn Error>>;
+/// What counts beside positions.
+#[derive(Clone, Copy)]
+enum Counted {
+    Nothing,
+    /// Normals by this weight.
+    Normals(f32),
+    /// What [`Mesh::as_reduced`] says.
+    Model,
+}
 
-fn ours(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>, Box<dyn Error>> {
-    level(mesh, normals, |surface| simplify(surface, &Options { triangles, ..Options::default() }))
+/// A mesh with what counts beside positions.
+struct Task<'a> {
+    mesh: &'a Mesh,
+    attributes: Vec<f32>,
+    /// Numbers of `attributes` per vertex.
+    stride: usize,
+    /// What the names of its files have behind that of the mesh.
+    suffix: &'static str,
+}
+
+/// Triangles to simplify to, by one of two programs.
+type Simplify = fn(&Task<'_>, usize) -> Result<Vec<u32>, Box<dyn Error>>;
+
+fn ours(task: &Task<'_>, triangles: usize) -> Result<Vec<u32>, Box<dyn Error>> {
+    level(task, |surface| simplify(surface, &Options { triangles, ..Options::default() }))
 }
 
 /// Within limited distances instead: the smallest that reaches the number of triangles, of those that double from a
 /// hundred-thousandth of the mesh's extent.
-fn within(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>, Box<dyn Error>> {
+fn within(task: &Task<'_>, triangles: usize) -> Result<Vec<u32>, Box<dyn Error>> {
     let along = |axis: usize| {
-        let all = || mesh.positions.iter().map(|position| position[axis]);
+        let all = || task.mesh.positions.iter().map(|position| position[axis]);
         all().fold(f32::NEG_INFINITY, f32::max) - all().fold(f32::INFINITY, f32::min)
     };
     let extent = along(0).max(along(1)).max(along(2));
     let distances: Vec<f32> = (0..17).map(|doubled| extent * 1e-5 * f32::from(2_u16).powi(doubled)).collect();
     let options = Options { triangles, ..Options::default() };
-    level(mesh, normals, |surface| simplify_within(surface, &options, &distances))
+    level(task, |surface| simplify_within(surface, &options, &distances))
 }
 
 /// The triangles that are left of a mesh.
 fn level(
-    mesh: &Mesh,
-    normals: Option<f32>,
+    Task { mesh, attributes, stride, .. }: &Task<'_>,
     simplify: impl Fn(&Surface<'_>) -> Result<Simplified, relievo::InputError>,
 ) -> Result<Vec<u32>, Box<dyn Error>> {
-    let scaled = normals.map_or_else(Vec::new, |weight| {
-        mesh.normals.as_flattened().iter().map(|number| number * weight).collect()
-    });
     let surface = Surface {
         poses: std::slice::from_ref(&mesh.positions),
         indices: &mesh.indices,
-        attributes: &scaled,
-        stride: if normals.is_some() { 3 } else { 0 },
+        attributes,
+        stride: *stride,
     };
     let simplified = simplify(&surface)?;
     Ok(simplified.triangles(&mesh.indices, simplified.collapses().len()))
 }
 
-fn theirs(mesh: &Mesh, triangles: usize, normals: Option<f32>) -> Result<Vec<u32>, Box<dyn Error>> {
+fn theirs(
+    Task { mesh, attributes, stride, .. }: &Task<'_>,
+    triangles: usize,
+) -> Result<Vec<u32>, Box<dyn Error>> {
     let bytes: Vec<u8> =
         mesh.positions.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
     let vertices = VertexDataAdapter::new(&bytes, 12, 0)?;
     let (count, error, options) = (triangles * 3, f32::MAX, SimplifyOptions::None);
-    let Some(weight) = normals else {
+    if *stride == 0 {
         return Ok(meshopt::simplify(&mesh.indices, &vertices, count, error, options, None));
-    };
-    let (normals, weights, locks) =
-        (mesh.normals.as_flattened(), [weight; 3], vec![false; mesh.positions.len()]);
+    }
+    let (weights, locks) = (vec![1.0; *stride], vec![false; mesh.positions.len()]);
     Ok(meshopt::simplify_with_attributes_and_locks(
         &mesh.indices,
         &vertices,
-        normals,
+        attributes,
         &weights,
-        12,
+        4 * stride,
         &locks,
         count,
         error,
@@ -106,6 +128,10 @@ struct Asked {
     percent: Vec<usize>,
     normals: Option<f32>,
     is_growth: bool,
+    /// Whether nothing counts beside positions.
+    is_plain: bool,
+    /// Whether levels within limited distances are written too.
+    is_within: bool,
 }
 
 impl Asked {
@@ -119,11 +145,16 @@ impl Asked {
                 "--bench" => {}
                 "--elevation" => asked.meshes.push(meshes::elevation(Path::new(&value()?), 200_000)?),
                 "--mesh" => asked.meshes.push(meshes::file(Path::new(&value()?))?),
+                "--torus" => asked.meshes.push(meshes::torus()),
+                "--helmet" => asked.meshes.push(meshes::helmet()?),
+                "--terrain" => asked.meshes.push(meshes::generated(200_000)?),
                 "--grass" => asked.meshes.push(meshes::grass(1000)),
                 "--out" => asked.out = Some(value()?.into()),
                 "--rounds" => asked.rounds = Some(value()?.parse()?),
                 "--percent" => asked.percent.push(value()?.parse()?),
                 "--normals" => asked.normals = Some(value()?.parse()?),
+                "--plain" => asked.is_plain = true,
+                "--within" => asked.is_within = true,
                 "--growth" => asked.is_growth = true,
                 _ => return Err(format!("no such argument: {word}").into()),
             }
@@ -140,46 +171,70 @@ impl Asked {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let asked = Asked::parse()?;
-    let rounds = asked.rounds.unwrap_or(5).max(1);
     if asked.is_growth {
-        return growth(rounds);
+        return growth(asked.rounds.unwrap_or(ROUNDS).max(1));
     }
-    println!("| mesh | triangles | normals | left | ours, ms | meshoptimizer, ms | ratio |");
+    println!("| mesh | triangles | counted | left | ours, ms | meshoptimizer, ms | ratio |");
     println!("|---|---|---|---|---|---|---|");
     for mesh in &asked.meshes {
-        if let Some(out) = &asked.out {
-            fs::create_dir_all(out)?;
-            write_obj(&out.join(format!("{}.obj", mesh.name)), mesh, &mesh.indices)?;
-        }
-        for normals in [None, Some(asked.normals.unwrap_or(NORMALS))] {
-            for percent in &asked.percent {
-                compare(mesh, normals, *percent, rounds, asked.out.as_deref())?;
-            }
+        for counted in [Counted::Nothing, Counted::Normals(asked.normals.unwrap_or(NORMALS)), Counted::Model]
+        {
+            let welded = mesh.as_reduced();
+            let task = match (counted, &welded) {
+                (Counted::Nothing, _) => Task { mesh, attributes: Vec::new(), stride: 0, suffix: "" },
+                (Counted::Normals(weight), _) => {
+                    let attributes =
+                        mesh.normals.as_flattened().iter().map(|number| number * weight).collect();
+                    Task { mesh, attributes, stride: 3, suffix: "_normals" }
+                }
+                (Counted::Model, Some((mesh, attributes))) => {
+                    Task { mesh, attributes: attributes.clone(), stride: 5, suffix: "_model" }
+                }
+                (Counted::Model, None) => continue,
+            };
+            compare(&task, &asked)?;
         }
     }
     Ok(())
 }
 
-/// Compares one level: both simplify to the number of triangles that both reach.
-fn compare(
-    mesh: &Mesh,
-    normals: Option<f32>,
-    percent: usize,
-    rounds: usize,
-    out: Option<&Path>,
-) -> Result<(), Box<dyn Error>> {
+/// Compares the levels of a mesh: both programs simplify to the number of triangles that both reach.
+fn compare(task: &Task<'_>, asked: &Asked) -> Result<(), Box<dyn Error>> {
+    let Task { mesh, suffix, .. } = task;
+    let name = format!("{}{suffix}", mesh.name);
+    if let Some(out) = &asked.out {
+        fs::create_dir_all(out)?;
+        write_obj(&out.join(format!("{name}.obj")), mesh, &mesh.indices)?;
+    }
+    let mut sums = [0.0, 0.0];
+    for percent in &asked.percent {
+        let all = compare_level(task, *percent, asked)?;
+        sums.iter_mut().zip(all).for_each(|(sum, time)| *sum += time);
+    }
+    let [ours, theirs] = sums;
+    println!(
+        "| {name} | {} | {suffix} | all | {ours:.1} | {theirs:.1} | {:.2} |",
+        mesh.triangles(),
+        ours / theirs
+    );
+    Ok(())
+}
+
+/// The times of both programs, in milliseconds.
+fn compare_level(task: &Task<'_>, percent: usize, asked: &Asked) -> Result<[f64; 2], Box<dyn Error>> {
+    let Task { mesh, suffix, .. } = task;
     let target = mesh.triangles() * percent / 100;
     // Either may stop early, where nothing more is legal.
-    let reached = theirs(mesh, target, normals)?.len() / 3;
-    let reached = ours(mesh, reached, normals)?.len() / 3;
+    let reached = theirs(task, target)?.len() / 3;
+    let reached = ours(task, reached)?.len() / 3;
     let target = if reached > target + 2 { reached } else { target };
     let both: [Simplify; 2] = [ours, theirs];
     let (mut times, mut levels) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
-    for round in 0..rounds {
+    for round in 0..asked.rounds.unwrap_or(ROUNDS).max(1) {
         for turn in 0..2 {
             let who = (round + turn) % 2;
             let start = Instant::now();
-            levels[who] = both[who](mesh, [reached, target][who], normals)?;
+            levels[who] = both[who](task, [reached, target][who])?;
             times[who].push(start.elapsed().as_secs_f64() * 1e3);
         }
     }
@@ -187,21 +242,20 @@ fn compare(
     let [ours, theirs] = times.map(median);
     let left = levels.each_ref().map(|level| level.len() / 3);
     println!(
-        "| {} | {} | {} | {} / {} | {ours:.1} | {theirs:.1} | {ratio:.2} |",
+        "| {} | {} | {suffix} | {} / {} | {ours:.1} | {theirs:.1} | {ratio:.2} |",
         mesh.name,
         mesh.triangles(),
-        if normals.is_some() { "yes" } else { "no" },
         left[0],
         left[1]
     );
-    if let Some(out) = out {
-        let near = within(mesh, target, normals)?;
-        let normals = if normals.is_some() { "_normals" } else { "" };
-        for (name, level) in [("relievo", &levels[0]), ("meshoptimizer", &levels[1]), ("within", &near)] {
-            write_obj(&out.join(format!("{}{normals}_{percent}_{name}.obj", mesh.name)), mesh, level)?;
+    if let Some(out) = &asked.out {
+        let near = if asked.is_within { within(task, target)? } else { Vec::new() };
+        let all = [("relievo", &levels[0]), ("meshoptimizer", &levels[1]), ("within", &near)];
+        for (name, level) in all.into_iter().filter(|(_, level)| !level.is_empty()) {
+            write_obj(&out.join(format!("{}{suffix}_{percent}_{name}.obj", mesh.name)), mesh, level)?;
         }
     }
-    Ok(())
+    Ok([ours, theirs])
 }
 
 /// Time and memory from 10,000 to 2 million triangles, to 10 %.
@@ -212,6 +266,7 @@ fn growth(rounds: usize) -> Result<(), Box<dyn Error>> {
     println!("|---|---|---|---|---|---|");
     for triangles in [10_000, 50_000, 200_000, 800_000, 2_000_000] {
         let mesh = meshes::generated(triangles)?;
+        let task = Task { mesh: &mesh, attributes: Vec::new(), stride: 0, suffix: "" };
         let before = MEMORY.current_usage_as_mb();
         MEMORY.reset_peak_usage();
         let mut times = [Vec::new(), Vec::new()];
@@ -220,7 +275,7 @@ fn growth(rounds: usize) -> Result<(), Box<dyn Error>> {
         for _ in 0..rounds {
             for who in 0..2 {
                 let start = Instant::now();
-                both[who](&mesh, mesh.triangles() / 10, None)?;
+                both[who](&task, mesh.triangles() / 10)?;
                 times[who].push(start.elapsed().as_secs_f64() * 1e3);
                 if peak == 0.0 {
                     peak = MEMORY.peak_usage_as_mb() - before;

@@ -2,20 +2,26 @@
 
 use std::collections::HashMap;
 use std::error::Error;
+use std::f32::consts::TAU;
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use relievo::asset::model::Model;
 use relievo::terrain::config::Config;
 use relievo::terrain::features::Features;
 use relievo::terrain::height::reference::height;
 use relievo::terrain::window::Window;
 
+#[path = "../levels/helmet.rs"]
+mod helmet;
+
 /// A triangle mesh with a normal at each vertex.
 pub struct Mesh {
     pub name: String,
     pub positions: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates; empty for a mesh that has none.
+    pub uv: Vec<[f32; 2]>,
     pub indices: Vec<u32>,
 }
 
@@ -29,7 +35,77 @@ impl Mesh {
             corners.iter().for_each(|corner| sums[*corner] += (b - a).cross(c - a));
         }
         let normals = sums.iter().map(|sum| sum.normalize_or(Vec3::Y).into()).collect();
-        Self { name: name.to_owned(), positions, normals, indices }
+        Self { name: name.to_owned(), positions, normals, uv: Vec::new(), indices }
+    }
+
+    /// All meshes of a model at rest.
+    fn of_model(name: &str, model: &Model) -> Self {
+        let mut all = Self {
+            name: name.to_owned(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            uv: Vec::new(),
+            indices: Vec::new(),
+        };
+        for mesh in &model.meshes {
+            let first = all.positions.len() as u32;
+            all.positions.extend(&mesh.positions);
+            all.normals.extend(&mesh.normals);
+            all.uv.extend(&mesh.uv);
+            all.indices.extend(mesh.indices.iter().map(|index| first + index));
+        }
+        all
+    }
+
+    /// The mesh as `skinning::reduce_model` gives it to reducers, with its attributes, five numbers per vertex: vertices that
+    /// differ only in their normals are one, with the mean of these by 0.05; and texture coordinates count by how far a
+    /// texture slips over the surface. `None` for a mesh without texture coordinates.
+    pub fn as_reduced(&self) -> Option<(Self, Vec<f32>)> {
+        if self.uv.is_empty() {
+            return None;
+        }
+        let mut known: HashMap<[u32; 5], u32> = HashMap::new();
+        let mut welded = Self {
+            name: self.name.clone(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            uv: Vec::new(),
+            indices: Vec::new(),
+        };
+        let mut sums: Vec<Vec3> = Vec::new();
+        let slots: Vec<u32> = (0..self.positions.len())
+            .map(|at| {
+                let ([x, y, z], [u, v]) = (self.positions[at], self.uv[at]);
+                let slot = *known
+                    .entry([x, y, z, u, v].map(|one| (one + 0.0).to_bits()))
+                    .or_insert(sums.len() as u32);
+                if slot as usize == sums.len() {
+                    sums.push(Vec3::ZERO);
+                    welded.positions.push([x, y, z]);
+                    welded.uv.push([u, v]);
+                }
+                sums[slot as usize] += Vec3::from(self.normals[at]);
+                slot
+            })
+            .collect();
+        welded.normals = sums.iter().map(|sum| sum.normalize_or(Vec3::Y).into()).collect();
+        welded.indices = self.indices.iter().map(|at| slots[*at as usize]).collect();
+        let (mut surface, mut texture) = (0.0, 0.0);
+        for triangle in welded.indices.as_chunks::<3>().0 {
+            let [a, b, c] = triangle.map(|at| Vec3::from(welded.positions[at as usize]));
+            let [d, e, f] = triangle.map(|at| Vec2::from(welded.uv[at as usize]));
+            surface += (b - a).cross(c - a).length();
+            texture += (e - d).perp_dot(f - d).abs();
+        }
+        let corners = || welded.positions.iter().map(|position| Vec3::from(*position));
+        let size = corners().fold(Vec3::MIN, Vec3::max).distance(corners().fold(Vec3::MAX, Vec3::min));
+        let factor = (surface / texture).sqrt() / (0.03 * size);
+        let factor = if factor.is_finite() { factor } else { 0.0 };
+        let attributes = welded.normals.iter().zip(&welded.uv);
+        let attributes =
+            attributes.flat_map(|([x, y, z], [u, v])| [0.05 * x, 0.05 * y, 0.05 * z, factor * u, factor * v]);
+        let attributes = attributes.collect();
+        Some((welded, attributes))
     }
 
     pub fn triangles(&self) -> usize {
@@ -114,15 +190,33 @@ pub fn file(path: &Path) -> Result<Mesh, Box<dyn Error>> {
     if path.extension().is_some_and(|extension| extension == "obj") {
         return obj(&name, &std::fs::read_to_string(path)?);
     }
-    let model = Model::from_file(path)?;
-    let (mut positions, mut normals, mut indices) = (Vec::new(), Vec::new(), Vec::new());
-    for mesh in &model.meshes {
-        let first = positions.len() as u32;
-        positions.extend(&mesh.positions);
-        normals.extend(&mesh.normals);
-        indices.extend(mesh.indices.iter().map(|index| first + index));
-    }
-    Ok(Mesh { name, positions, normals, indices })
+    Ok(Mesh::of_model(&name, &Model::from_file(path)?))
+}
+
+/// A closed torus of 90,000 triangles.
+pub fn torus() -> Mesh {
+    let [around, along] = [300, 150];
+    let place = |at: usize| {
+        let (turn, tube) = (at / along, at % along);
+        let [turn, tube] = [turn as f32 / around as f32, tube as f32 / along as f32].map(|part| part * TAU);
+        let ripple = 0.4 + 0.01 * (9.0 * turn).sin() * (5.0 * tube).sin();
+        let radius = 1.0 + ripple * tube.cos();
+        [radius * turn.cos(), ripple * tube.sin(), radius * turn.sin()]
+    };
+    let corner = |turn: usize, tube: usize| (turn % around * along + tube % along) as u32;
+    let quad = |at: usize| {
+        let (turn, tube) = (at / along, at % along);
+        let [a, b] = [corner(turn, tube), corner(turn, tube + 1)];
+        let [c, d] = [corner(turn + 1, tube + 1), corner(turn + 1, tube)];
+        [a, b, c, a, c, d]
+    };
+    let all = 0..around * along;
+    Mesh::smooth("torus", all.clone().map(place).collect(), all.flat_map(quad).collect())
+}
+
+/// The helmet of the benchmark of levels: six closed parts with hard edges and a seam each, 95,256 triangles.
+pub fn helmet() -> Result<Mesh, Box<dyn Error>> {
+    Ok(Mesh::of_model("helmet", &helmet::helmet()?))
 }
 
 /// A vertex for each pair of position and texture coordinate; polygons become fans.

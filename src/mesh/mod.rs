@@ -11,4 +11,4 @@ pub mod simplify;
 
 pub use progressive::ProgressiveMesh;
 pub use reduce::{Limits, Reduced, Reducer};
-pub use simplify::{Collapse, Cost, Options, Simplified, Stopped, Surface, simplify, simplify_within};
+pub use simplify::{Collapse, Cost, Options, Seams, Simplified, Stopped, Surface, simplify, simplify_within};

@@ -18,7 +18,7 @@
 //! - Every wedge of the point becomes a wedge with which it shares an edge. Seams therefore collapse only along
 //!   themselves: no triangle leaves its chart of the texture, and no holes appear. Where wedges are split at
 //!   one end of an edge only, as at the poles of a sphere, adjacent wedges count as one. If every triangle has
-//!   vertices of its own, nothing can collapse: index such meshes first.
+//!   vertices of its own, nothing can collapse: index such meshes first, or let seams be crossed ([`Seams::Crossed`]).
 //!
 //! # Parts
 //!
@@ -104,11 +104,32 @@ pub enum Cost {
     },
 }
 
+/// Whether collapses may cross seams.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Seams {
+    /// Seams collapse only along themselves.
+    #[default]
+    Held,
+    /// Seams between wedges that differ only in the first `attributes` numbers of [`Surface::attributes`] do not hinder
+    /// collapses: each wedge becomes that vertex of the neighbour which costs least, of those that have the neighbour's other
+    /// numbers. So `attributes: 3` lets hard edges of normals collapse where seams of texture coordinates, which come after
+    /// the normals, are held. What is crossed costs the difference of its attributes over its area. (meshoptimizer's option
+    /// `Permissive`.)
+    Crossed {
+        /// From 0 to [`Surface::stride`].
+        attributes: usize,
+    },
+    /// All seams may be crossed.
+    AllCrossed,
+}
+
 /// The cost function, and when to stop: at the first limit that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// The cost function of collapses.
     pub cost: Cost,
+    /// Whether collapses may cross seams.
+    pub seams: Seams,
     /// Stop at this number of triangles, or at one less; or at fewer, where a part vanishes.
     pub triangles: usize,
     /// Stop before a collapse that costs more than this, in units of positions; at least 0, may be infinite.
@@ -122,9 +143,9 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Quadrics, without a limit; parts may vanish.
+    /// Quadrics, without a limit; seams are held, parts may vanish.
     fn default() -> Self {
-        Self { cost: Cost::Quadric, triangles: 0, error: f32::INFINITY, prune: true }
+        Self { cost: Cost::Quadric, seams: Seams::Held, triangles: 0, error: f32::INFINITY, prune: true }
     }
 }
 
@@ -150,8 +171,35 @@ pub enum Stopped {
     Triangles,
     /// The next collapse costs more than [`Options::error`].
     Error,
-    /// No collapse is legal.
+    /// No collapse is legal, and reducers other than half-edge collapses do not tell why.
     Exhausted,
+    /// As all others below, no collapse is legal: most points that are left are on seams that would not go on, or where
+    /// several meet. [`Seams::Crossed`] helps.
+    Seams,
+    /// Most points that are left are on borders that would not go on.
+    Borders,
+    /// Most points that are left would turn a triangle by more than 75°, or take its area away.
+    Flips,
+    /// Most points that are left would change the topology, or are where the surface is not manifold.
+    Topology,
+    /// Most points that are left would bring a point of the mesh further away than [`simplify_within`] allows.
+    Distance,
+}
+
+impl Stopped {
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangles",
+            Self::Error => "error",
+            Self::Exhausted => "exhausted",
+            Self::Seams => "seams",
+            Self::Borders => "borders",
+            Self::Flips => "flips",
+            Self::Topology => "topology",
+            Self::Distance => "distance",
+        }
+    }
 }
 
 /// The sequence of collapses, which describes every level of a mesh.
@@ -291,8 +339,8 @@ impl Simplified {
 ///
 /// # Errors
 /// [`InputError`] for no pose, poses of different lengths, indices that are out of range or not three per
-/// triangle, attributes that are not `stride` per vertex, numbers that are not finite, and an error that is
-/// negative or NaN.
+/// triangle, attributes that are not `stride` per vertex, numbers that are not finite, an error that is
+/// negative or NaN, and [`Seams::Crossed`] of more attributes than there are.
 pub fn simplify(surface: &Surface<'_>, options: &Options) -> Result<Simplified, InputError> {
     simplify_within(surface, options, &[f32::INFINITY])
 }
@@ -341,6 +389,12 @@ pub(crate) fn simplify_watched<B>(
     }
     if options.error.is_nan() || options.error < 0.0 {
         return Err(InputError::new("error", options.error, "must be at least 0"));
+    }
+    if let Seams::Crossed { attributes } = options.seams
+        && attributes > surface.stride
+    {
+        let bound = format!("must be at most {}, the stride", surface.stride);
+        return Err(InputError::new("seams.attributes", attributes, bound));
     }
     Ok(reducer::reduce(surface, options, distances, bodies, watch))
 }

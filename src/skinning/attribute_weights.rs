@@ -3,6 +3,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::asset::{Mesh, Model};
+
 /// The factor of normals. Where normals differ at one point they are averaged, so that a larger one would keep the inside of
 /// flat faces, and cut their corners.
 pub(super) const NORMAL: f32 = 0.05;
@@ -10,6 +12,14 @@ pub(super) const NORMAL: f32 = 0.05;
 /// The edge of a square, as a fraction of a mesh's size, on which a texture that slips over the surface by some distance
 /// counts as much as a position that is off by it.
 const SQUARE: f64 = 3e-2;
+
+/// The texture coordinates of a mesh that count: zeros where its material shows no texture. A mesh without a material may
+/// have any.
+pub(super) fn shown_uv(model: &Model, mesh: &Mesh) -> Vec<[f32; 2]> {
+    let material = mesh.material.and_then(|at| model.materials.get(at));
+    let is_shown = material.is_none_or(|material| material.texture.is_some() || material.normal.is_some());
+    if is_shown { mesh.uv.clone() } else { vec![[0.0; 2]; mesh.uv.len()] }
+}
 
 /// The areas of a mesh's triangles, in the mesh's units and in texture coordinates.
 #[derive(Debug, Clone, Copy, Default)]

@@ -64,7 +64,8 @@ impl MeshLevels {
     /// evenly spaced from start to end; [`poses_of`](super::poses_of) gives a sufficient number for a clip.
     /// Without clips only the rest pose counts. Blending is linear, with the clips' weights of morph targets.
     /// Edges that are hard in normals only do not hinder simplification: each remaining corner keeps a vertex
-    /// whose normal is close to its own. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
+    /// whose normal is close to its own, or to that of its triangle where this is flat-shaded. Texture coordinates count where
+    /// the mesh's material shows a texture, and where it has none. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
     ///
     /// The error of a level is the largest distance, in all of these poses, between a vertex of the mesh and
     /// the level's triangles close to it, and between midpoints of the level's triangles and edges and the
@@ -171,7 +172,7 @@ impl<'a> Group<'a> {
             ControlFlow::Continue(simplified) => simplified,
             ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
         };
-        let levels = found(whole, &welded, &simplified);
+        let levels = found(whole, &welded, &keys, &simplified);
         let unit = keys.unit;
         let poses: Vec<Vec<Vec3>> =
             keys.poses.into_iter().map(|pose| pose.into_iter().map(Vec3::from).collect()).collect();
@@ -355,7 +356,7 @@ struct Found {
 }
 
 /// The levels, each using a subset of the vertices of the one before.
-fn found(whole: &Whole<'_>, welded: &Welded, simplified: &Simplified) -> Vec<Found> {
+fn found(whole: &Whole<'_>, welded: &Welded, keys: &Keys, simplified: &Simplified) -> Vec<Found> {
     let mut distances: Vec<f32> = simplified.collapses().iter().map(|collapse| collapse.distance).collect();
     distances.dedup();
     let mut last = whole.indices.len() / 3;
@@ -363,7 +364,7 @@ fn found(whole: &Whole<'_>, welded: &Welded, simplified: &Simplified) -> Vec<Fou
     for distance in distances {
         let remap = welded.remap(simplified, simplified.collapses_near(distance));
         let before = levels.last().map_or(&whole.indices, |level| &level.indices);
-        let (indices, into, triangles) = welded.next(whole, simplified, &remap, before);
+        let (indices, into, triangles) = welded.next(whole, keys, simplified, &remap, before);
         if triangles > 0 && triangles as f64 <= WORTHWHILE * last as f64 {
             last = triangles;
             levels.push(Found { remap, into, indices });
@@ -398,7 +399,7 @@ mod tests {
                 simplified(&whole, &welded, &keys, &[], &mut watch).expect("valid");
             let mut distances: Vec<f32> = simplified.collapses().iter().map(|one| one.distance).collect();
             distances.dedup();
-            let levels = super::found(&whole, &welded, &simplified);
+            let levels = super::found(&whole, &welded, &keys, &simplified);
             let found = MeshLevels::new(&model, 0, &[0], 1).expect("valid").levels;
             assert_eq!(levels.len(), found.len());
             assert!(levels.len() > 9, "{} at {scale}", levels.len());

@@ -6,13 +6,13 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3, Vec3};
 
 use super::at_rest;
-use super::attribute_weights::{NORMAL, TextureArea};
+use super::attribute_weights::{NORMAL, TextureArea, shown_uv};
 use crate::InputError;
 use crate::asset::mesh::{smooth_normals, solved_tangents};
 use crate::asset::{Influence, Influences, Mesh, Model};
 use crate::mesh::distance::{self, Distance, Triangles};
 use crate::mesh::reduce::{Limits, Reduced, Reducer};
-use crate::mesh::simplify::{Stopped, Surface};
+use crate::mesh::simplify::{Seams, Stopped, Surface};
 
 /// What normals of a reduced model are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -20,7 +20,8 @@ pub enum Normals {
     /// Those of the model. They count in the cost. Edges that are hard in normals only do not hinder reducers: vertices that
     /// differ in nothing else are one for them, with the mean of their normals, and afterwards every corner gets the normal
     /// that is closest to those of the triangle from which its own comes. Where a reducer places a vertex anew,
-    /// all corners have the normal that it gives.
+    /// all corners have the normal that it gives. Triangles that were flat-shaded stay so: where no such normal is within 2.5° of the
+    /// triangle's own, all of its corners get that.
     #[default]
     Carry,
     /// Computed again: the normalized sums of the normals of the triangles around each vertex, weighted by area. Hard edges
@@ -79,6 +80,10 @@ fn joined(model: &Model) -> (Vec<[f32; 3]>, Vec<u32>) {
 /// Reduces a model to several limits, as it stands [at rest](at_rest()). All meshes together are one surface: where two of
 /// them share a border, the reducer sees a seam, and what it guarantees for seams holds ([`Reducer`]).
 ///
+/// Texture coordinates count on meshes whose material shows a texture, and on those without a material. Their seams are held, unless a [`Reducer::HalfEdge`] may cross them: normals are numbers 0 to 2 of
+/// [`Surface::attributes`] if they are carried, and texture coordinates follow. Then they collapse at the price by which
+/// the texture slips. Borders between meshes are always held.
+///
 /// Costs count positions; texture coordinates, scaled by the size of the texture's texels on each mesh; and normals if they
 /// are carried. Tangents are computed again.
 ///
@@ -92,7 +97,16 @@ pub fn reduce_model(
     normals: Normals,
 ) -> Result<Vec<ReducedModel>, InputError> {
     let whole = at_rest(model)?;
-    let input = Input::new(&whole, normals);
+    let mut input = Input::new(&whole, normals);
+    let mut reducer = *reducer;
+    if let Reducer::HalfEdge { seams, .. } = &mut reducer
+        && *seams != Seams::Held
+    {
+        if *seams == Seams::AllCrossed {
+            *seams = Seams::Crossed { attributes: input.stride() };
+        }
+        input.add_meshes();
+    }
     if input.indices.is_empty() {
         let bound = "must be at least 1";
         return Err(InputError::new("model.triangles.len", 0, bound));
@@ -122,6 +136,8 @@ struct Input<'a> {
     meshes: Vec<u32>,
     /// For each mesh, the factor of texture coordinates.
     texture: Vec<f32>,
+    /// Whether the last of each vertex' attributes is its mesh, which holds borders between meshes.
+    has_meshes: bool,
 }
 
 impl<'a> Input<'a> {
@@ -140,7 +156,12 @@ impl<'a> Input<'a> {
             vertices: Vec::new(),
             first: Vec::new(),
             meshes: Vec::new(),
-            texture: model.meshes.iter().map(|mesh| texture_factor(mesh, low.distance(high))).collect(),
+            texture: model
+                .meshes
+                .iter()
+                .map(|mesh| texture_factor(mesh, &shown_uv(model, mesh), low.distance(high)))
+                .collect(),
+            has_meshes: false,
         };
         for (at, mesh) in model.meshes.iter().enumerate() {
             input.add(at, mesh);
@@ -148,22 +169,34 @@ impl<'a> Input<'a> {
         input
     }
 
-    /// Numbers per vertex: normals if they are carried, and texture coordinates.
+    /// Numbers per vertex: normals if they are carried, texture coordinates, and the mesh if that counts.
     fn stride(&self) -> usize {
-        if self.normals == Normals::Carry { 5 } else { 2 }
+        self.uv_at() + 2 + usize::from(self.has_meshes)
+    }
+
+    /// The number of texture coordinates among the attributes.
+    fn uv_at(&self) -> usize {
+        if self.normals == Normals::Carry { 3 } else { 0 }
+    }
+
+    fn add_meshes(&mut self) {
+        let own = self.attributes.chunks_exact(self.stride()).zip(&self.vertices);
+        self.attributes =
+            own.flat_map(|(own, (mesh, _))| own.iter().copied().chain([*mesh as f32])).collect();
+        self.has_meshes = true;
     }
 
     fn add(&mut self, index: usize, mesh: &Mesh) {
         let mut known = HashMap::new();
         let mut slots = Vec::with_capacity(mesh.vertices());
-        for vertex in 0..mesh.vertices() {
-            let (place, uv) = (mesh.positions[vertex], mesh.uv[vertex]);
+        let places = mesh.positions.iter().copied().zip(shown_uv(self.model, mesh));
+        for (vertex, (place, uv)) in (0_u32..).zip(places) {
             let slot = *known.entry((place.map(bits), uv.map(bits))).or_insert(self.vertices.len());
             if slot == self.vertices.len() {
                 self.vertices.push((index, Vec::new()));
                 self.poses[0].push(place);
             }
-            self.vertices[slot].1.push(vertex as u32);
+            self.vertices[slot].1.push(vertex);
             slots.push(slot as u32);
         }
         self.first.push(self.meshes.len());
@@ -192,7 +225,8 @@ impl<'a> Input<'a> {
         for (triangle, from) in reduced.indices.as_chunks::<3>().0.iter().zip(&reduced.triangles) {
             let mesh = self.meshes[*from as usize] as usize;
             let normal = self.normal_of(mesh, *from as usize);
-            corners[mesh].extend(triangle.map(|vertex| self.corner(vertex, normal, reduced)));
+            let own = triangle.map(|vertex| self.corner(vertex, normal, reduced));
+            corners[mesh].extend(self.flat(mesh, *from as usize, own, reduced));
         }
         let meshes = self.model.meshes.iter().zip(corners).filter(|(_, corners)| !corners.is_empty());
         let meshes = meshes
@@ -218,7 +252,7 @@ impl<'a> Input<'a> {
         let from = reduced.vertices[vertex as usize] as usize;
         let (mesh, members) = &self.vertices[from];
         if self.normals == Normals::Recompute || !self.is_same(vertex, reduced) {
-            return Corner { vertex, member: None };
+            return Corner { vertex, member: None, face: None };
         }
         let along = |member: &u32| normal.dot(Vec3::from(self.model.meshes[*mesh].normals[*member as usize]));
         // The first of equal ones.
@@ -226,7 +260,27 @@ impl<'a> Input<'a> {
             .iter()
             .copied()
             .reduce(|best, other| if along(&other) > along(&best) { other } else { best });
-        Corner { vertex, member: best }
+        Corner { vertex, member: best, face: None }
+    }
+
+    /// The corners of a triangle, with its own normal if it was flat-shaded and does not look so any more.
+    fn flat(&self, mesh: usize, triangle: usize, corners: [Corner; 3], reduced: &Reduced) -> [Corner; 3] {
+        let own = self.model.meshes[mesh].indices[3 * (triangle - self.first[mesh])..].first_chunk::<3>();
+        let Some(own) = own.filter(|_| self.normals == Normals::Carry) else { return corners };
+        let mesh = &self.model.meshes[mesh];
+        let is_flat = |places: [[f32; 3]; 3], normals: [[f32; 3]; 3]| {
+            let face = face_normal(places);
+            normals.iter().all(|normal| face.dot(Vec3::from(*normal)) > FLAT)
+        };
+        let was = own.map(|corner| corner as usize);
+        let places = corners.map(|corner| reduced.poses[0][corner.vertex as usize]);
+        if !is_flat(was.map(|at| mesh.positions[at]), was.map(|at| mesh.normals[at]))
+            || is_flat(places, corners.map(|corner| self.normal(&corner, reduced)))
+        {
+            return corners;
+        }
+        let face = Some(face_normal(places).to_array().map(f32::to_bits));
+        corners.map(|corner| Corner { face, ..corner })
     }
 
     /// A mesh of `corners`, three a triangle, with a vertex for all that are equal.
@@ -279,13 +333,16 @@ impl<'a> Input<'a> {
         if scale == 0.0 || self.is_same(vertex, reduced) {
             return self.model.meshes[*mesh].uv[members[0] as usize];
         }
-        let end = self.stride() * (vertex as usize + 1);
-        [reduced.attributes[end - 2] / scale, reduced.attributes[end - 1] / scale]
+        let at = self.stride() * vertex as usize + self.uv_at();
+        [reduced.attributes[at] / scale, reduced.attributes[at + 1] / scale]
     }
 
     fn normal(&self, corner: &Corner, reduced: &Reduced) -> [f32; 3] {
         let (mesh, members) = &self.vertices[reduced.vertices[corner.vertex as usize] as usize];
         let own = |member: u32| self.model.meshes[*mesh].normals[member as usize];
+        if let Some(face) = corner.face {
+            return face.map(f32::from_bits);
+        }
         let Some(member) = corner.member else {
             let scaled = Vec3::from_slice(&reduced.attributes[self.stride() * corner.vertex as usize..]);
             let unit = scaled.as_dvec3().try_normalize();
@@ -295,11 +352,22 @@ impl<'a> Input<'a> {
     }
 }
 
-/// A corner of a reduced mesh: a vertex of the result, and the vertex of the model that gives the normal.
+/// A corner of a reduced mesh: a vertex of the result, and what gives the normal: a vertex of the model, or the triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 struct Corner {
     vertex: u32,
     member: Option<u32>,
+    /// The bits of the normal of a triangle that is flat-shaded.
+    face: Option<[u32; 3]>,
+}
+
+/// The cosine of the angle up to which normals make a triangle look flat: 2.5°.
+const FLAT: f32 = 0.999;
+
+/// The unit normal of a triangle; 0 if it has no area.
+fn face_normal(places: [[f32; 3]; 3]) -> Vec3 {
+    let [a, b, c] = places.map(Vec3::from);
+    (b - a).cross(c - a).normalize_or_zero()
 }
 
 /// The normalized sum of normals; the first of them where they cancel.
@@ -318,11 +386,11 @@ fn bits(number: f32) -> u32 {
 }
 
 /// The factor of a mesh's texture coordinates in a model of this size.
-fn texture_factor(mesh: &Mesh, size: f64) -> f32 {
+fn texture_factor(mesh: &Mesh, uv: &[[f32; 2]], size: f64) -> f32 {
     let mut area = TextureArea::default();
     for triangle in mesh.indices.as_chunks::<3>().0 {
         let place = |corner: u32| DVec3::from(mesh.positions[corner as usize].map(f64::from));
-        let uv = |corner: u32| DVec2::from(mesh.uv[corner as usize].map(f64::from));
+        let uv = |corner: u32| DVec2::from(uv[corner as usize].map(f64::from));
         area.add(triangle.map(place), triangle.map(uv));
     }
     area.factor(size)

@@ -232,6 +232,47 @@ fn reducers_are_compared() {
     assert_eq!(image::open(bench.path("out/compare.png")).expect("a picture").width(), 1200);
 }
 
+/// A model in which each triangle has texture coordinates of its own keeps its triangles, and the output says why.
+#[test]
+fn seams_of_textures_are_held_or_crossed() {
+    let bench = Bench::new();
+    let mut text = "mtllib charts.mtl\nusemtl charts\n".to_owned();
+    let mut corners = 0;
+    for cell in 0..256_u32 {
+        let [x, z] = [cell % 16, cell / 16];
+        for triangle in [[[0, 0], [0, 1], [1, 1]], [[0, 0], [1, 1], [1, 0]]] {
+            let chart = corners / 3;
+            for ([right, down], [u, v]) in triangle.into_iter().zip([[0.1, 0.1], [0.1, 0.8], [0.8, 0.8]]) {
+                let [x, z] = [x + right, z + down].map(|at| f64::from(at) / 16.0);
+                let [u, v] = [f64::from(chart % 32) + u, f64::from(chart / 32) + v].map(|at| at / 32.0);
+                let y = 0.1 * (5.0 * x).sin() * (4.0 * z).cos();
+                text += &format!("v {x} {y} {z}\nvt {u} {v}\n");
+            }
+            text += &format!("f {0}/{0} {1}/{1} {2}/{2}\n", corners + 1, corners + 2, corners + 3);
+            corners += 3;
+        }
+    }
+    bench.write("charts.obj", &text);
+    bench.write("charts.mtl", "newmtl charts\nmap_Kd charts.png\n");
+    image::RgbaImage::new(4, 4).save(bench.path("charts.png")).expect("writable");
+    let out = bench.path("out");
+    let model = bench.model("charts.obj");
+    let arguments = ["simplify", "--model", &model, "--share", "0.2", "--out", out.to_str().expect("UTF-8")];
+    let run = relievo(&arguments);
+    assert_eq!((run.code, run.stderr.trim()), (Some(0), ""));
+    let hindrance = "held by seams of texture coordinates: see --texture-seams";
+    assert!(run.stdout.contains(hindrance), "{}", run.stdout);
+    let level = &bench.json("out/report.json")["levels"][0];
+    assert_eq!((&level["triangles"], &level["stopped"]), (&510.into(), &"seams".into()));
+
+    let run = relievo(&[&arguments[..], &["--texture-seams", "cross"]].concat());
+    assert_eq!((run.code, run.stderr.trim()), (Some(0), ""));
+    assert!(!run.stdout.contains("held"), "{}", run.stdout);
+    let level = &bench.json("out/report.json")["levels"][0];
+    assert_eq!(level["stopped"], "triangles");
+    assert!(level["triangles"].as_u64().is_some_and(|left| (80..=102).contains(&left)), "{level}");
+}
+
 #[test]
 fn mistakes_are_refused_and_nothing_is_written() {
     let bench = Bench::new();
@@ -257,6 +298,12 @@ fn mistakes_are_refused_and_nothing_is_written() {
         ),
         ("hills.obj", &["--share", "0.5", "--format", "ply"], "--format"),
         ("hills.obj", &["--share", "0.5", "--normals", "no"], "--normals"),
+        ("hills.obj", &["--share", "0.5", "--texture-seams", "no"], "--texture-seams"),
+        (
+            "hills.obj",
+            &["--share", "0.5", "--texture-seams", "cross", "--reducer", "vertex-pair"],
+            "texture-seams = cross: must be hold with the reducer vertex-pair",
+        ),
         ("hills.obj", &["--share", "0.5", "--compare"], "--compare"),
         ("builtin:cow", &["--share", "0.5"], "model = cow: must be one of creature, rock, wall"),
         ("gone.obj", &["--share", "0.5"], "gone.obj"),

@@ -1,7 +1,7 @@
 //! What is decided where thesis B contradicts itself on simplification (`docs/sources.md`).
 
 use glam::DVec3;
-use relievo::mesh::{Cost, Limits, Options, Reducer, Simplified};
+use relievo::mesh::{Cost, Limits, Options, Reducer, Seams, Simplified};
 
 use crate::shapes::{Shape, sphere};
 
@@ -61,10 +61,10 @@ fn the_check_of_normals_weights_triangles_equally() {
 #[test]
 fn melax_among_all_reducers_is_without_the_check() {
     let reducer: Reducer = "melax".parse().expect("a reducer");
-    assert_eq!(reducer, Reducer::HalfEdge { cost: Cost::Melax { check_normals: false } });
+    assert_eq!(reducer, Reducer::HalfEdge { cost: Cost::Melax { check_normals: false }, seams: Seams::Held });
     let shape = spiky();
     let limits = Limits { triangles: 40, ..Limits::default() };
     let reduced = |reducer: Reducer| reducer.reduce(&shape.bare(), &limits).expect("valid").indices;
-    let checked = Reducer::HalfEdge { cost: Cost::Melax { check_normals: true } };
+    let checked = Reducer::HalfEdge { cost: Cost::Melax { check_normals: true }, seams: Seams::Held };
     assert!(reduced(reducer) != reduced(checked), "the check changes nothing");
 }

@@ -18,6 +18,7 @@ fn items() {
     use relievo::gpu::shaders::MODULES as _; // gpu::shaders::MODULES
     use relievo::mesh::ProgressiveMesh as _; // mesh::ProgressiveMesh
     use relievo::mesh::Reducer as _; // mesh::Reducer
+    use relievo::mesh::Stopped as _; // mesh::Stopped
     use relievo::mesh::distance as _; // mesh::distance
     use relievo::mesh::simplify as _; // mesh::simplify
     use relievo::skinning::Extent as _; // skinning::Extent

@@ -4,6 +4,7 @@ mod blending;
 mod borders;
 mod collapse;
 mod fading;
+mod flat;
 mod gating;
 #[cfg(feature = "verify")]
 #[path = "../harness/mod.rs"]

@@ -2,11 +2,12 @@
 
 python3 -m venv venv && venv/bin/pip install libigl && venv/bin/python tests/truth/simplify.py DIR
 
-DIR has MESH.obj, and MESH[_normals]_PERCENT_{relievo,meshoptimizer,within}.obj, the last of which `simplify_within` made.
+DIR has MESH[_normals|_model].obj, and MESH[_normals|_model]_PERCENT_{relievo,meshoptimizer}.obj; and where the benchmark ran
+with `--within`, MESH…_within.obj, which `simplify_within` made.
 Both directions are measured, at the vertices that are used, at the middles of edges and of triangles, and at points spread
 evenly over the area: root mean square (over the latter alone, since only these are spread evenly) and largest. Where
 normals count, so do their differences, at points spread evenly over the mesh and the nearest points of the level: the root
-mean square length. Prints a table of both programs and their ratios, with the distances of `simplify_within` beside, and the geometric means of the ratios.
+mean square length. Prints a table of both programs and their ratios, and the geometric means of the ratios.
 """
 
 import pathlib
@@ -78,29 +79,31 @@ def bend(mesh, level):
 
 
 def main(folder):
-    pattern = re.compile(r"(.+?)(_normals)?_(\d+)_relievo\.obj")
+    pattern = re.compile(r"(.+?)(_normals|_model)?_(\d+)_relievo\.obj")
     found = [match for match in map(lambda path: pattern.fullmatch(path.name), sorted(folder.iterdir())) if match]
     meshes, ratios = {}, {}
-    print("| mesh | normals | % | triangles | rms | largest | bend | rms, ratio | largest, ratio | bend, ratio "
+    print("| mesh | counted | % | triangles | rms | largest | bend | rms, ratio | largest, ratio | bend, ratio "
           "| within: triangles | rms | largest |\n" + "|---" * 13 + "|")
     for match in sorted(found, key=lambda match: (match[1], match[2] or "", -int(match[3]))):
-        name, normals, percent = match[1], match[2] or "", match[3]
-        mesh = meshes.setdefault(name, None) or read(folder / f"{name}.obj")
-        meshes[name] = mesh
-        levels = [read(folder / f"{name}{normals}_{percent}_{who}.obj") for who in ("relievo", "meshoptimizer")]
-        within = read(folder / f"{name}{normals}_{percent}_within.obj")
-        near = distances(mesh, within)
+        name, counted, percent = match[1], match[2] or "", match[3]
+        mesh = meshes.setdefault(name + counted, None) or read(folder / f"{name}{counted}.obj")
+        meshes[name + counted] = mesh
+        levels = [read(folder / f"{name}{counted}_{percent}_{who}.obj") for who in ("relievo", "meshoptimizer")]
+        within = folder / f"{name}{counted}_{percent}_within.obj"
+        near = ""
+        if within.exists():
+            level = read(within)
+            near = " | ".join([str(len(level[1])), *(f"{number:.4g}" for number in distances(mesh, level))])
         ours, theirs = ((*distances(mesh, level), bend(mesh, level)) for level in levels)
         ratio = [a / b if b > 0 else float(a <= b) for a, b in zip(ours, theirs)]
-        ratios.setdefault(normals, []).append(ratio)
+        ratios.setdefault(counted, []).append(ratio)
         both = [f"{a:.4g} / {b:.4g}" for a, b in zip(ours, theirs)]
         count = " / ".join(str(len(level[1])) for level in levels)
-        print(f"| {name} | {'yes' if normals else 'no'} | {percent} | {count} | {both[0]} | {both[1]} "
-              f"| {both[2]} | {ratio[0]:.3f} | {ratio[1]:.3f} | {ratio[2]:.3f} "
-              f"| {len(within[1])} | {near[0]:.4g} | {near[1]:.4g} |", flush=True)
-    for normals, all_ratios in ratios.items():
+        print(f"| {name} | {counted[1:] or 'nothing'} | {percent} | {count} | {both[0]} | {both[1]} "
+              f"| {both[2]} | {ratio[0]:.3f} | {ratio[1]:.3f} | {ratio[2]:.3f} | {near} |", flush=True)
+    for counted, all_ratios in ratios.items():
         mean, worst = numpy.exp(numpy.log(numpy.maximum(all_ratios, 1e-9)).mean(axis=0)), numpy.max(all_ratios, axis=0)
-        print(f"\n{'with' if normals else 'without'} normals: geometric mean of rms {mean[0]:.3f}, of largest {mean[1]:.3f}, of bend "
+        print(f"\n{counted[1:] or 'nothing'} counted: geometric mean of rms {mean[0]:.3f}, of largest {mean[1]:.3f}, of bend "
               f"{mean[2]:.3f}; worst {worst[0]:.3f}, {worst[1]:.3f}, {worst[2]:.3f}")
 
 

@@ -11,7 +11,7 @@ use image::{DynamicImage, RgbaImage};
 use relievo::asset::Model;
 use relievo::files::Staged;
 use relievo::measure::reduction::{MeasuredLevel, ReducerComparison, Reduction, Target, reduction};
-use relievo::mesh::Reducer;
+use relievo::mesh::{Reducer, Seams};
 use relievo::plot::strip;
 use relievo::render::portraits;
 use relievo::samples;
@@ -26,6 +26,8 @@ use crate::pose;
 use report::{LevelReport, Report};
 
 const NORMALS: [(&str, Normals); 2] = [("carry", Normals::Carry), ("recompute", Normals::Recompute)];
+
+const SEAMS: [(&str, Seams); 2] = [("hold", Seams::Held), ("cross", Seams::AllCrossed)];
 
 /// How each level is drawn.
 const PORTRAIT: Portrait =
@@ -44,7 +46,8 @@ const BUILT_IN: &str = "builtin:";
 /// --share, then by --error. levels.png shows the model and all levels side by side. report.json has the reducer's
 /// seconds and, for each level, its file, triangles, vertices, the root mean square and the largest distance between its
 /// surface and the model's (both ways, in the model's units; the largest is at most 1 % too large and never too
-/// small), and the SHA-256 of the file.
+/// small), why the reducer stopped, and the SHA-256 of the file. A level that has more triangles than were asked for says
+/// what is in the way.
 ///
 /// With --compare, every reducer makes levels of 50, 20, 10 and 2 % of the triangles instead. compare.json, compare.md and
 /// compare.png have their errors, times, and sizes on the wire.
@@ -71,6 +74,11 @@ pub struct Simplify {
     /// The normals of the levels: the model's, with its hard edges, or computed again from the triangles.
     #[arg(long, value_name = "NORMALS", default_value = "carry", value_parser = one_of(NORMALS))]
     normals: Normals,
+    /// Whether triangles may collapse across seams of texture coordinates, at the price by which the texture slips. A model
+    /// in which each triangle has texture coordinates of its own keeps all triangles otherwise. Seams of normals are always
+    /// crossed, and borders between meshes never.
+    #[arg(long, value_name = "SEAMS", default_value = "hold", value_parser = one_of(SEAMS))]
+    texture_seams: Seams,
     /// The format of the levels. OBJ has a material library and images beside each level.
     #[arg(long, default_value_t, value_enum)]
     format: Format,
@@ -78,7 +86,7 @@ pub struct Simplify {
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
     /// Compares all reducers instead of writing levels.
-    #[arg(long, conflicts_with_all = ["triangles", "share", "error", "reducer", "format"])]
+    #[arg(long, conflicts_with_all = ["triangles", "share", "error", "reducer", "format", "texture_seams"])]
     compare: bool,
     /// The folder to write to.
     #[arg(long, value_name = "DIR")]
@@ -96,7 +104,15 @@ enum Format {
 impl Simplify {
     pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
         // What is wrong with names is reported before the work.
-        let reducer: Reducer = self.reducer.parse()?;
+        let mut reducer: Reducer = self.reducer.parse()?;
+        if self.texture_seams != Seams::Held {
+            let Reducer::HalfEdge { seams, .. } = &mut reducer else {
+                let bound =
+                    format!("must be hold with the reducer {}: quadric and melax cross seams", self.reducer);
+                return Err(InputError::new("texture-seams", "cross", bound).into());
+            };
+            *seams = self.texture_seams;
+        }
         drop(Staged::new(&self.out)?);
         let model = open(&self.model)?;
         let in_file = |source: InputError| Error::InputFile { path: self.model.clone(), source };

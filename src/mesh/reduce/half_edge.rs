@@ -2,17 +2,18 @@
 
 use super::{Limits, Reduced};
 use crate::InputError;
-use crate::mesh::simplify::{Cost, Options, Simplified, Stopped, Surface, simplify};
+use crate::mesh::simplify::{Cost, Options, Seams, Simplified, Stopped, Surface, simplify};
 
 /// Simplifies once, as far as any of the limits asks for, and takes a prefix of the sequence for each of them.
 pub(super) fn reduce(
     surface: &Surface<'_>,
     cost: Cost,
+    seams: Seams,
     limits: &[Limits],
 ) -> Result<Vec<Reduced>, InputError> {
     let triangles = limits.iter().map(|limit| limit.triangles).min().unwrap_or(usize::MAX);
     let error = limits.iter().map(|limit| limit.error).fold(0.0, f32::max);
-    let simplified = simplify(surface, &Options { cost, triangles, error, ..Options::default() })?;
+    let simplified = simplify(surface, &Options { cost, seams, triangles, error, ..Options::default() })?;
     Ok(limits.iter().map(|limit| level(surface, &simplified, limit)).collect())
 }
 
@@ -33,8 +34,8 @@ fn level(surface: &Surface<'_>, simplified: &Simplified, limit: &Limits) -> Redu
         _ if triangles.len() <= limit.triangles => Stopped::Triangles,
         Some(_) => Stopped::Error,
         None => match simplified.stopped() {
-            Stopped::Exhausted => Stopped::Exhausted,
-            _ => Stopped::Error,
+            Stopped::Triangles => Stopped::Error,
+            why => why,
         },
     };
     Reduced::of_vertices(surface, &corners, triangles, (error, stopped))

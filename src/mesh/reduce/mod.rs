@@ -7,7 +7,7 @@
 //!
 //! | reducer | vertices | topology | triangles | seams and attributes | error |
 //! |---|---|---|---|---|---|
-//! | [`HalfEdge`](Reducer::HalfEdge) | the mesh's own | stays; parts may vanish | no step turns one | seams stay | estimated mean, or Melax's cost |
+//! | [`HalfEdge`](Reducer::HalfEdge) | the mesh's own | stays; parts may vanish | no step turns one | seams stay, or are crossed | estimated mean, or Melax's cost |
 //! | [`FullEdge`](Reducer::FullEdge) | new ones | stays | no step turns one | seams stay; interpolated | estimated mean |
 //! | [`VertexPair`](Reducer::VertexPair) | new ones | may change | no step turns one | wedges stay apart; interpolated | estimated mean |
 //! | [`UniformClustering`](Reducer::UniformClustering) | new ones | may change | may turn | may be lost in a cell | largest distance of a vertex from the one that stands for it |
@@ -40,7 +40,7 @@ use removal::Removal;
 
 use crate::InputError;
 use crate::mesh::cluster::MAX_CELLS;
-use crate::mesh::simplify::{Cost, Surface, validate};
+use crate::mesh::simplify::{Cost, Seams, Surface, validate};
 
 /// The operator that takes triangles away.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +50,8 @@ pub enum Reducer {
     HalfEdge {
         /// The cost function of collapses.
         cost: Cost,
+        /// Whether collapses may cross seams.
+        seams: Seams,
     },
     /// Contracts edges to the place that is best for the planes of both ends (Garland and Heckbert, "Surface Simplification
     /// Using Quadric Error Metrics", SIGGRAPH 1997). Attributes are interpolated along the edge.
@@ -115,8 +117,8 @@ impl Reducer {
     /// **Decided**: `melax` is B's equation 3.1 without the check of normals. In B the check is on, an addition that can be
     /// disabled for each mesh (3.2.3). [`Cost::Melax`] has both.
     pub const ALL: [(&str, Self); 7] = [
-        ("quadric", Self::HalfEdge { cost: Cost::Quadric }),
-        ("melax", Self::HalfEdge { cost: Cost::Melax { check_normals: false } }),
+        ("quadric", Self::HalfEdge { cost: Cost::Quadric, seams: Seams::Held }),
+        ("melax", Self::HalfEdge { cost: Cost::Melax { check_normals: false }, seams: Seams::Held }),
         ("full-edge", Self::FullEdge),
         ("vertex-pair", Self::VertexPair { distance: 0.02 }),
         ("uniform-clustering", Self::UniformClustering { cells: MAX_CELLS }),
@@ -127,8 +129,8 @@ impl Reducer {
     /// The name of the operator, whatever its parameters are.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::HalfEdge { cost: Cost::Quadric } => "quadric",
-            Self::HalfEdge { cost: Cost::Melax { .. } } => "melax",
+            Self::HalfEdge { cost: Cost::Quadric, .. } => "quadric",
+            Self::HalfEdge { cost: Cost::Melax { .. }, .. } => "melax",
             Self::FullEdge => "full-edge",
             Self::VertexPair { .. } => "vertex-pair",
             Self::UniformClustering { .. } => "uniform-clustering",
@@ -182,7 +184,7 @@ impl Reducer {
             return Err(InputError::new("poses.len", poses, bound));
         }
         match *self {
-            Self::HalfEdge { cost } => half_edge::reduce(surface, cost, limits),
+            Self::HalfEdge { cost, seams } => half_edge::reduce(surface, cost, seams, limits),
             Self::FullEdge => Ok(steps::run(Contraction::new(surface, Pairs::Edges), limits)),
             Self::VertexPair { distance } => {
                 if !(0.0..=1.0).contains(&distance) {

@@ -1,6 +1,7 @@
 //! The neighbours into which a point may collapse, and the vertex that each of its wedges would become.
 
 use super::marks::Marks;
+use super::points::Points;
 use super::topology::{Kind, Topology};
 
 /// The vertices that may replace a wedge: none, one or two.
@@ -67,11 +68,19 @@ pub(crate) struct Neighbors {
     all: Vec<Neighbor>,
     wedges: Vec<Wedge>,
     sheets: usize,
+    /// The vertices of each neighbour that triangles use, and the neighbour; where seams may be crossed.
+    beyond: Vec<[u32; 2]>,
 }
 
 impl Neighbors {
     /// Collects the neighbours and wedges of a point that is not locked.
-    pub(crate) fn look(&mut self, topology: &Topology, point: u32, marks: &mut [Marks; 2]) {
+    pub(crate) fn look(
+        &mut self,
+        topology: &Topology,
+        points_of: &Points,
+        point: u32,
+        marks: &mut [Marks; 2],
+    ) {
         self.all.clear();
         self.wedges.clear();
         let [points, vertices] = marks;
@@ -96,14 +105,24 @@ impl Neighbors {
         }
         self.sheets = 1;
         if is_split {
-            self.find_sheets(topology, point, vertices);
+            self.find_sheets(topology, points_of, point, vertices);
         }
         self.keep_allowed(topology, point);
+        self.beyond.clear();
+        if points_of.has_charts() {
+            vertices.clear();
+            for neighbor in &self.all {
+                let used = topology.one_ring(neighbor.point).map(|ring| ring.vertex);
+                let first = used.filter(|vertex| vertices.insert(*vertex));
+                self.beyond.extend(first.map(|vertex| [neighbor.point, vertex]));
+            }
+            self.beyond.sort_unstable();
+        }
     }
 
     /// Lists each wedge once. Wedges are in one sheet if their triangles meet in an edge that has a single
     /// vertex at its far end.
-    fn find_sheets(&mut self, topology: &Topology, point: u32, vertices: &mut Marks) {
+    fn find_sheets(&mut self, topology: &Topology, points: &Points, point: u32, vertices: &mut Marks) {
         self.wedges.clear();
         vertices.clear();
         for ring in topology.one_ring(point) {
@@ -115,7 +134,15 @@ impl Neighbors {
             });
             vertices.set(ring.last.vertex, own);
         }
-        self.sheets = self.wedges.len();
+        for at in 0..self.wedges.len() {
+            let chart = points.chart(self.wedges[at].vertex);
+            let first = self.wedges[..at].iter().find(|other| points.chart(other.vertex) == chart);
+            if let Some(sheet) = first.map(|first| first.sheet) {
+                self.wedges[at].sheet = sheet;
+            }
+        }
+        let of_own = |(at, wedge): (usize, &Wedge)| wedge.sheet as usize == at;
+        self.sheets = self.wedges.iter().enumerate().filter(|all| of_own(*all)).count();
         let wedge = |vertex| vertices.get(vertex).map(|at| at as usize);
         for ring in topology.one_ring(point) {
             let (Some(own), Some(beside)) = (wedge(ring.vertex), wedge(ring.next.vertex)) else { continue };
@@ -151,8 +178,27 @@ impl Neighbors {
         &self.all
     }
 
+    /// Whether several sheets meet at the point.
+    pub(crate) fn is_split(&self) -> bool {
+        self.sheets > 1
+    }
+
     pub(crate) fn wedges(&self) -> &[Wedge] {
         &self.wedges
+    }
+
+    /// Vertices of a neighbour that are of one chart with `target`, a vertex of it, in ascending order; where seams may be
+    /// crossed.
+    pub(crate) fn beyond<'a>(
+        &'a self,
+        points: &'a Points,
+        neighbor: &Neighbor,
+        target: u32,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let from = self.beyond.partition_point(|[point, _]| *point < neighbor.point);
+        let to = from + self.beyond[from..].partition_point(|[point, _]| *point == neighbor.point);
+        let all = self.beyond[from..to].iter().map(|[_, vertex]| *vertex);
+        all.filter(move |vertex| points.chart(*vertex) == points.chart(target))
     }
 
     /// The vertices that may replace a wedge: those with which it shares an edge, or else those with which the

@@ -17,6 +17,8 @@ pub(crate) struct Points {
     are_vertices: bool,
     /// The rigid body of each point, or [`NO_BODY`]; empty if there are none.
     bodies: Vec<u32>,
+    /// For each vertex, the first one at its point that differs from it in nothing that holds seams; empty if that is itself.
+    charts: Vec<u32>,
 }
 
 /// The body of a vertex or point that belongs to none.
@@ -55,7 +57,35 @@ impl Points {
             extent: extent * scale,
             are_vertices,
             bodies: Vec::new(),
+            charts: Vec::new(),
         }
+    }
+
+    /// The same points, where only the numbers of `attributes` from number `first` of each vertex on hold seams.
+    pub(crate) fn on_charts(mut self, attributes: &[f32], stride: usize, first: usize) -> Self {
+        // Adding 0 turns −0 into +0.
+        let held = |vertex: u32| {
+            let own = &attributes[vertex as usize * stride..][..stride];
+            own.iter().skip(first).map(|number| (number + 0.0).to_bits())
+        };
+        let chart = |vertex: u32| {
+            let mut wedges = self.wedges(self.of(vertex)).iter().copied();
+            wedges.find(|other| held(*other).eq(held(vertex))).unwrap_or(vertex)
+        };
+        self.charts = (0..self.of.len() as u32).map(chart).collect();
+        self
+    }
+
+    /// What two vertices of a point have in common if no seam is between them.
+    #[inline]
+    pub(crate) fn chart(&self, vertex: u32) -> u32 {
+        self.charts.get(vertex as usize).copied().unwrap_or(vertex)
+    }
+
+    /// Whether several vertices of a point may belong to one chart.
+    #[inline]
+    pub(crate) fn has_charts(&self) -> bool {
+        !self.charts.is_empty()
     }
 
     /// The same points on rigid bodies: `bodies` has the body of each vertex, or [`NO_BODY`]. Vertices of one body have the

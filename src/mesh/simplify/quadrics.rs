@@ -13,7 +13,8 @@ use super::turned::normal;
 const BORDER: f64 = 10.0;
 
 /// As [`BORDER`], of each of the two triangles at an edge of a seam. The surface goes on there: a seam only holds its way.
-const SEAM: f64 = 1.0;
+/// With more of it, models of many hard-edged parts are further off.
+const SEAM: f64 = 0.25;
 
 /// The quadrics of a mesh.
 pub(crate) struct Quadrics<'a> {
@@ -127,19 +128,26 @@ impl<'a> Quadrics<'a> {
     }
 
     /// The sum of squared differences in attributes, by area, if a point collapses and each of its wedges is replaced by the
-    /// cheapest vertex allowed.
+    /// cheapest vertex allowed; or a part of it that is above `most`.
     pub(crate) fn attribute_cost(
         &self,
         points: &Points,
         neighbors: &Neighbors,
         point: u32,
         neighbor: &Neighbor,
+        most: f64,
     ) -> f64 {
-        if self.attributes.is_none() {
-            return 0.0;
+        let mut sum = 0.0;
+        if self.attributes.is_some() {
+            for wedge in neighbors.wedges() {
+                sum += self.target(points, neighbors, point, neighbor, wedge).1;
+                // Rounding to f32 makes no number that is larger than another one smaller than it.
+                if sum > most {
+                    break;
+                }
+            }
         }
-        let wedges = neighbors.wedges().iter();
-        wedges.map(|wedge| self.target(points, neighbors, point, neighbor, wedge).1).sum()
+        sum
     }
 
     /// The cheapest replacement of a wedge, and its cost in attributes.
@@ -153,8 +161,11 @@ impl<'a> Quadrics<'a> {
     ) -> (u32, f64) {
         let d = points.position(neighbor.point, 0) - points.position(point, 0);
         let cost = |target| self.attributes.as_ref().map_or(0.0, |all| all.cost(wedge.vertex, target, d));
-        let all = neighbors.remap(neighbor, wedge).into_iter().map(|target| (target, cost(target)));
-        all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0))
+        let near = neighbors.remap(neighbor, wedge).into_iter().map(|target| (target, cost(target)));
+        let near = near.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0));
+        // Of one chart, by vertex: the first of equally cheap ones.
+        let beyond = neighbors.beyond(points, neighbor, near.0).map(|target| (target, cost(target)));
+        beyond.fold(near, |best, other| if other.1 < best.1 { other } else { best })
     }
 
     /// What the attributes of these points cost if their triangles vanish.
@@ -260,6 +271,9 @@ fn hold(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -> O
     });
     match beside {
         None => Some(BORDER),
-        Some([vertex, end]) => (vertex != near_vertex && end != far_vertex).then_some(SEAM),
+        Some([vertex, end]) => {
+            let is_split = |a: u32, b: u32| points.chart(a) != points.chart(b);
+            (is_split(vertex, near_vertex) && is_split(end, far_vertex)).then_some(SEAM)
+        }
     }
 }

@@ -14,7 +14,7 @@ use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
 use super::topology::{Change, Kind, Topology};
 use super::tracked_samples::TrackedSamples;
-use super::{Collapse, Cost, Options, Simplified, Stopped, Surface};
+use super::{Collapse, Cost, Options, Seams, Simplified, Stopped, Surface};
 
 /// The state of a mesh that is being simplified.
 struct Reducer<'a> {
@@ -34,6 +34,10 @@ struct Reducer<'a> {
     marks: [Marks; 2],
     /// The points whose triangles the last collapse changed.
     changed: Vec<u32>,
+    /// The point whose collapses were listed last, if nothing has collapsed since.
+    listed: Option<u32>,
+    /// For that point, the cost of each collapse in ascending order, as bits, with the neighbour.
+    costs: Vec<(u32, u32)>,
 }
 
 /// Number of collapses between two reports of progress.
@@ -50,7 +54,7 @@ pub(crate) fn reduce<B>(
     watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
 ) -> ControlFlow<B, Simplified> {
     let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
-    let mut reducer = Reducer::new(surface, options.cost, is_limited, bodies);
+    let mut reducer = Reducer::new(surface, options, is_limited, bodies);
     if options.prune && options.cost == Cost::Quadric && !is_limited {
         reducer.parts = Parts::new(&reducer.points, &reducer.topology);
     }
@@ -63,6 +67,9 @@ pub(crate) fn reduce<B>(
         if stopped != Stopped::Exhausted {
             break;
         }
+    }
+    if stopped == Stopped::Exhausted {
+        stopped = reducer.hindrance();
     }
     let Done { collapses, moved, .. } = done;
     ControlFlow::Continue(Simplified {
@@ -83,8 +90,14 @@ struct Done {
 }
 
 impl<'a> Reducer<'a> {
-    fn new(surface: &Surface<'a>, cost: Cost, is_limited: bool, bodies: &[u32]) -> Self {
+    fn new(surface: &Surface<'a>, options: &Options, is_limited: bool, bodies: &[u32]) -> Self {
+        let cost = options.cost;
         let points = Points::new(surface.poses);
+        let points = match options.seams {
+            Seams::Held => points,
+            Seams::AllCrossed => points.on_charts(surface.attributes, surface.stride, surface.stride),
+            Seams::Crossed { attributes } => points.on_charts(surface.attributes, surface.stride, attributes),
+        };
         let points = if bodies.is_empty() { points } else { points.on_bodies(bodies) };
         let topology = Topology::new(&points, surface.indices, is_limited);
         let quadrics = match cost {
@@ -95,8 +108,21 @@ impl<'a> Reducer<'a> {
             is_limited.then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3));
         let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
         let (neighbors, changed, watched) = (Neighbors::default(), Vec::new(), vec![false; points.len()]);
-        let parts = Parts::default();
-        Self { points, topology, cost, quadrics, tracked_samples, neighbors, parts, watched, marks, changed }
+        let (parts, listed, costs) = (Parts::default(), None, Vec::new());
+        Self {
+            points,
+            topology,
+            cost,
+            quadrics,
+            tracked_samples,
+            neighbors,
+            parts,
+            watched,
+            marks,
+            changed,
+            listed,
+            costs,
+        }
     }
 
     /// Collapses until no legal collapse keeps every sample within `distance`, or until a limit of `options` is
@@ -318,7 +344,7 @@ impl<'a> Reducer<'a> {
             moved.push([vertex, target]);
             return;
         }
-        self.neighbors.look(&self.topology, point, &mut self.marks);
+        self.neighbors.look(&self.topology, &self.points, point, &mut self.marks);
         let Some(to) = self.neighbors.all().iter().find(|other| other.point == neighbor) else { return };
         for wedge in self.neighbors.wedges() {
             let target = match &self.quadrics {
@@ -332,6 +358,7 @@ impl<'a> Reducer<'a> {
     /// Merges a point into its neighbour: all its vertices, including those that no longer belong to a
     /// triangle.
     fn collapse(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
+        self.listed = None;
         let start = moved.len();
         self.replace(point, neighbor, moved);
         let live = moved.len();

@@ -26,6 +26,7 @@ pub(crate) struct TrackedSamples {
     middles: Middles,
     /// The square of the largest distance allowed, in the unit of points' positions.
     most: f32,
+    verdicts: Verdicts,
     /// The collapse that was tested last, if it keeps within the limit.
     looked_at: Option<[u32; 2]>,
     /// For that collapse: the triangles that would exist afterwards, the changed ones first.
@@ -36,6 +37,54 @@ pub(crate) struct TrackedSamples {
     below: Vec<u32>,
 }
 
+/// Results of tests. A result holds until a triangle around one of the two points changes, or gets or loses a sample.
+struct Verdicts {
+    /// For each point, the results of its tests.
+    of: Vec<Vec<Verdict>>,
+    /// For each point, the number of collapses after which a triangle around it has changed last.
+    changed: Vec<u32>,
+    /// Number of collapses so far.
+    collapses: u32,
+}
+
+#[derive(Clone, Copy)]
+struct Verdict {
+    neighbor: u32,
+    /// Number of collapses before the test.
+    collapses: u32,
+    /// The square of a limit that is needed at least; 0 if the collapse has passed the test.
+    needed: f32,
+}
+
+impl Verdicts {
+    fn new(points: usize) -> Self {
+        Self { of: vec![Vec::new(); points], changed: vec![0; points], collapses: 0 }
+    }
+
+    /// Whether a collapse passes within a limit, whose square is `most`. `None` if it must be tested.
+    fn get(&self, [point, neighbor]: [u32; 2], most: f32) -> Option<bool> {
+        let changed = self.changed[point as usize].max(self.changed[neighbor as usize]);
+        let mut of = self.of[point as usize].iter();
+        let known = of.find(|known| known.neighbor == neighbor && known.collapses >= changed)?;
+        (known.needed == 0.0 || known.needed > most).then_some(known.needed == 0.0)
+    }
+
+    fn set(&mut self, [point, neighbor]: [u32; 2], needed: f32) {
+        let changed = self.changed[point as usize];
+        let of = &mut self.of[point as usize];
+        of.retain(|known| known.collapses >= changed && known.neighbor != neighbor);
+        of.push(Verdict { neighbor, collapses: self.collapses, needed });
+    }
+
+    /// Records a collapse before it happens.
+    fn collapse(&mut self, topology: &Topology, both: [u32; 2]) {
+        self.collapses += 1;
+        for other in both.iter().flat_map(|point| topology.ring(*point)).flatten() {
+            self.changed[*other as usize] = self.collapses;
+        }
+    }
+}
+
 /// The midpoints of the mesh's edges and triangles.
 struct Middles {
     /// Positions, one midpoint after the other, each in all poses.
@@ -44,14 +93,53 @@ struct Middles {
     triangles: Vec<Face>,
 }
 
+/// A triangle of three points.
+#[derive(Clone, Copy)]
+struct Corners {
+    points: [u32; 3],
+    /// The rigid body of all of them, or [`NO_BODY`](super::points::NO_BODY).
+    body: u32,
+    /// Their positions in the first pose.
+    first: [Vec3; 3],
+}
+
+impl Corners {
+    #[inline]
+    fn new(points: &Points, corners: [u32; 3]) -> Self {
+        let first = corners.map(|corner| points.position(corner, 0).as_vec3());
+        Self { points: corners, body: points.common_body(&corners), first }
+    }
+}
+
+/// The square of the largest distance of a triangle from a sample in any pose; more than `most` if it is larger than that.
+#[inline]
+fn off(points: &Points, corners: &Corners, sample: &Place<impl Fn(usize) -> Vec3>, most: f32) -> f32 {
+    let mut largest = nearest_on_triangle(sample.first, corners.first).distance_squared(sample.first);
+    for pose in 1..points.poses_between(sample.body, corners.body) {
+        if largest > most {
+            break;
+        }
+        let wanted = (sample.at)(pose);
+        let corners = corners.points.map(|corner| points.position(corner, pose).as_vec3());
+        largest = largest.max(nearest_on_triangle(wanted, corners).distance_squared(wanted));
+    }
+    largest
+}
+
+/// The square of the smallest distance of some triangles from a sample; of each its largest in any pose.
+fn nearest_off<'a>(
+    points: &Points,
+    sample: &Place<impl Fn(usize) -> Vec3>,
+    faces: impl Iterator<Item = &'a Face>,
+) -> f32 {
+    faces.fold(f32::INFINITY, |least, face| least.min(off(points, &face.corners, sample, least)))
+}
+
 /// A triangle, and what tells that it is far from a position.
 #[derive(Clone, Copy)]
 struct Face {
     number: u32,
-    /// Its points.
-    corners: [u32; 3],
-    /// Its rigid body, or [`NO_BODY`](super::points::NO_BODY).
-    body: u32,
+    corners: Corners,
     /// The middle of a sphere around it in the first pose, and the radius.
     middle: Vec3,
     radius: f32,
@@ -65,7 +153,8 @@ impl Face {
     fn new(points: &Points, number: u32, corners: [u32; 3]) -> Self {
         /// The square of the sine of the angle below which a triangle's normal is not exact enough.
         const LEAST: f32 = 1e-4;
-        let [a, b, c] = corners.map(|corner| points.position(corner, 0).as_vec3());
+        let corners = Corners::new(points, corners);
+        let [a, b, c] = corners.first;
         let (ab, ac) = (b - a, c - a);
         let normal = ab.cross(ac);
         let edges = ab.length_squared() * ac.length_squared();
@@ -76,7 +165,6 @@ impl Face {
         Self {
             number,
             corners,
-            body: points.common_body(&corners),
             middle,
             radius,
             normal: if is_exact { normal.normalize_or_zero() } else { Vec3::ZERO },
@@ -93,18 +181,31 @@ impl Face {
         from.dot(self.normal).abs() > limit || from.length_squared() > reach * reach
     }
 
-    /// The square of its largest distance from a sample in any pose; more than `most` if it is larger than that.
-    fn off(&self, points: &Points, body: u32, wanted: impl Fn(usize) -> Vec3, most: f32) -> f32 {
-        let mut largest = 0.0_f32;
-        for pose in 0..points.poses_between(body, self.body) {
-            let (wanted, corners) =
-                (wanted(pose), self.corners.map(|corner| points.position(corner, pose).as_vec3()));
-            largest = largest.max(nearest_on_triangle(wanted, corners).distance_squared(wanted));
-            if largest > most {
-                break;
-            }
-        }
-        largest
+    /// Whether it is within a limit, whose square is `most`, of a sample in all poses.
+    #[inline]
+    fn is_near(
+        &self,
+        points: &Points,
+        sample: &Place<impl Fn(usize) -> Vec3>,
+        [limit, most]: [f32; 2],
+    ) -> bool {
+        !self.is_far(sample.first, limit) && off(points, &self.corners, sample, most) <= most
+    }
+}
+
+/// Where a sample is.
+struct Place<F> {
+    /// Its rigid body, or [`NO_BODY`](super::points::NO_BODY).
+    body: u32,
+    /// Its position in the first pose.
+    first: Vec3,
+    /// Its position in a pose.
+    at: F,
+}
+
+impl<F: Fn(usize) -> Vec3> Place<F> {
+    fn new(body: u32, at: F) -> Self {
+        Self { body, first: at(0), at }
     }
 }
 
@@ -130,7 +231,19 @@ impl TrackedSamples {
         }
         let (faces, below) = (Vec::new(), Vec::new());
         let witnesses = vec![[NONE; WITNESSES]; points.len()];
-        Self { samples, homes, witnesses, middles, most: 0.0, looked_at: None, faces, changed: 0, below }
+        let verdicts = Verdicts::new(points.len());
+        Self {
+            samples,
+            homes,
+            witnesses,
+            middles,
+            most: 0.0,
+            verdicts,
+            looked_at: None,
+            faces,
+            changed: 0,
+            below,
+        }
     }
 
     /// Sets the largest distance that is allowed from now on, in the unit of points' positions.
@@ -148,33 +261,80 @@ impl TrackedSamples {
         point: u32,
         neighbor: u32,
     ) -> bool {
+        let both = [point, neighbor];
+        if let Some(known) = self.verdicts.get(both, self.most) {
+            return known;
+        }
+        let mut needed = self.needed_by_point(topology, points, both);
+        if needed <= self.most {
+            needed = self.needed_by_all(topology, points, both);
+        }
+        self.verdicts.set(both, needed);
+        needed == 0.0
+    }
+
+    /// As [`Self::keeps_near`], if the point itself passes: the square of a limit that is needed at least, or 0 if the
+    /// collapse passes.
+    fn needed_by_all(&mut self, topology: &Topology, points: &Points, both: [u32; 2]) -> f32 {
+        let [point, neighbor] = both;
         self.looked_at = None;
         self.list_faces(topology, points, point, neighbor);
-        if !self.has_near(points, point) {
-            return false;
-        }
-        let around = topology.around(point);
+        let (around, mut near) = (topology.around(point), 0);
         for sample in self.witnesses[point as usize] {
             let home = self.homes.get(sample as usize).copied().unwrap_or(NONE);
-            if around.contains(&home) && !self.has_near(points, sample) {
-                return false;
+            if around.contains(&home) && self.near(points, sample, near).is_none() {
+                return self.needed(points, sample);
             }
         }
-        let samples = around.iter().flat_map(|triangle| &self.samples[*triangle as usize]);
-        if let Some(&far) = samples.into_iter().find(|sample| !self.has_near(points, **sample)) {
+        let mut samples = around.iter().flat_map(|triangle| &self.samples[*triangle as usize]);
+        let far = samples.find(|sample| match self.near(points, **sample, near) {
+            None => true,
+            Some(at) => {
+                near = at;
+                false
+            }
+        });
+        if let Some(&far) = far {
             let witnesses = &mut self.witnesses[point as usize];
             witnesses.rotate_right(1);
             witnesses[0] = far;
-            return false;
+            return self.needed(points, far);
         }
-        self.list_below(topology, points, [point, neighbor]);
-        let is_near = self.faces[..self.changed].iter().all(|face| {
-            let [to, next, last] = face.corners;
-            let sides: [&[u32]; 3] = [&[to, next], &[last, to], &[to, next, last]];
-            sides.iter().all(|side| self.is_near(points, side))
-        });
-        self.looked_at = is_near.then_some([point, neighbor]);
-        is_near
+        self.list_below(topology, points, both);
+        let mut behind = 0;
+        for face in &self.faces[..self.changed] {
+            let [to, next, last] = face.corners.points;
+            for side in [&[to, next][..], &[last, to], &[to, next, last]] {
+                match self.behind(points, side, behind) {
+                    Ok(at) => behind = at,
+                    Err(needed) => return needed,
+                }
+            }
+        }
+        self.looked_at = Some(both);
+        0.0
+    }
+
+    /// The square of a distance of the point that collapses from the triangles that would exist afterwards: the smallest, or
+    /// any that is within the limit. Most refused collapses fail here, so that triangles are not listed before.
+    fn needed_by_point(&self, topology: &Topology, points: &Points, [point, neighbor]: [u32; 2]) -> f32 {
+        let place = self.place(points, point);
+        let mut least = f32::INFINITY;
+        for (around, other) in [(point, neighbor), (neighbor, point)] {
+            for [next, last] in topology.ring(around).iter().filter(|ends| !ends.contains(&other)) {
+                least =
+                    least.min(off(points, &Corners::new(points, [neighbor, *next, *last]), &place, least));
+                if least <= self.most {
+                    return least;
+                }
+            }
+        }
+        least
+    }
+
+    /// The square of the distance of a sample from the triangles after a collapse.
+    fn needed(&self, points: &Points, sample: u32) -> f32 {
+        nearest_off(points, &self.place(points, sample), self.faces.iter())
     }
 
     /// Lists the triangles that would exist after a collapse.
@@ -208,54 +368,56 @@ impl TrackedSamples {
         }
     }
 
-    /// Whether the midpoint of some points is within the limit of a triangle of the mesh, the same one in all
-    /// poses.
-    fn is_near(&self, points: &Points, ends: &[u32]) -> bool {
-        let (body, first, limit) = (points.common_body(ends), middle(points, ends, 0), self.most.sqrt());
-        self.below.iter().any(|at| {
-            let face = &self.middles.triangles[*at as usize];
-            !face.is_far(first, limit)
-                && face.off(points, body, |pose| middle(points, ends, pose), self.most) <= self.most
-        })
+    /// A triangle of the mesh, as a place in the list of those below, that is within the limit of the midpoint of some
+    /// points in all poses: `likely`, or else the first one. If there is none, the square of the smallest distance.
+    fn behind(&self, points: &Points, ends: &[u32], likely: usize) -> Result<usize, f32> {
+        let place = Place::new(points.common_body(ends), |pose| middle(points, ends, pose));
+        let limits = [self.most.sqrt(), self.most];
+        let face = |at: &u32| &self.middles.triangles[*at as usize];
+        let is_near = |at: &u32| face(at).is_near(points, &place, limits);
+        if self.below.get(likely).is_some_and(is_near) {
+            return Ok(likely);
+        }
+        let near = self.below.iter().position(is_near);
+        near.ok_or_else(|| nearest_off(points, &place, self.below.iter().map(face)))
     }
 
-    /// The position of a sample in a pose.
-    fn position(&self, points: &Points, sample: u32, pose: usize) -> Vec3 {
-        match (sample as usize).checked_sub(points.len()) {
+    /// Where a sample is.
+    fn place(&self, points: &Points, sample: u32) -> Place<impl Fn(usize) -> Vec3> {
+        let middle = (sample as usize).checked_sub(points.len());
+        let body = middle.map_or_else(|| points.body(sample), |at| self.middles.triangles[at].corners.body);
+        Place::new(body, move |pose| match middle {
             None => points.position(sample, pose).as_vec3(),
             Some(at) => self.middles.positions[at * points.poses() + pose],
-        }
-    }
-
-    /// The rigid body of a sample, or [`NO_BODY`](super::points::NO_BODY).
-    fn body(&self, points: &Points, sample: u32) -> u32 {
-        match (sample as usize).checked_sub(points.len()) {
-            None => points.body(sample),
-            Some(at) => self.middles.triangles[at].body,
-        }
-    }
-
-    /// Whether one of the triangles is within the limit of a sample in all poses.
-    fn has_near(&self, points: &Points, sample: u32) -> bool {
-        let (first, limit) = (self.position(points, sample, 0), self.most.sqrt());
-        let body = self.body(points, sample);
-        self.faces.iter().any(|face| {
-            !face.is_far(first, limit)
-                && face.off(points, body, |pose| self.position(points, sample, pose), self.most) <= self.most
         })
     }
 
-    /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the
-    /// limit.
-    fn nearest(&self, points: &Points, sample: u32) -> Option<u32> {
-        let (first, limit) = (self.position(points, sample, 0), self.most.sqrt());
-        let body = self.body(points, sample);
-        let mut best = None;
-        let mut least = self.most.next_up();
-        for face in self.faces.iter().filter(|face| !face.is_far(first, limit)) {
-            let off = face.off(points, body, |pose| self.position(points, sample, pose), least);
+    /// A triangle that is within the limit of a sample in all poses, as a place in the list of those after a collapse:
+    /// `likely`, or else the first one.
+    fn near(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
+        let (place, limits) = (self.place(points, sample), [self.most.sqrt(), self.most]);
+        let is_near = |face: &Face| face.is_near(points, &place, limits);
+        if self.faces.get(likely).is_some_and(is_near) {
+            return Some(likely);
+        }
+        self.faces.iter().position(is_near)
+    }
+
+    /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the limit, as a place
+    /// in the list of those after a collapse. `likely` is looked at first, so that most others are seen to be further away.
+    fn nearest(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
+        let place = self.place(points, sample);
+        let off = |face: &Face, most| off(points, &face.corners, &place, most);
+        let first = self.faces.get(likely).map_or(self.most, |face| off(face, self.most));
+        let most = first.min(self.most);
+        let (mut best, mut limit, mut least) = (None, most.sqrt(), most.next_up());
+        for (at, face) in self.faces.iter().enumerate() {
+            if face.is_far(place.first, limit) {
+                continue;
+            }
+            let off = off(face, least);
             if off < least {
-                (best, least) = (Some(face.number), off);
+                (best, limit, least) = (Some(at), off.sqrt(), off);
             }
         }
         best
@@ -271,8 +433,12 @@ impl TrackedSamples {
         for triangle in topology.around(point) {
             moved.append(&mut self.samples[*triangle as usize]);
         }
+        self.verdicts.collapse(topology, [point, neighbor]);
+        let mut likely = 0;
         for sample in moved {
-            if let Some(triangle) = self.nearest(points, sample) {
+            if let Some(at) = self.nearest(points, sample, likely) {
+                likely = at;
+                let triangle = self.faces[at].number;
                 self.samples[triangle as usize].push(sample);
                 self.homes[sample as usize] = triangle;
             }
@@ -342,7 +508,7 @@ mod tests {
         let surface = Surface { poses: &poses, indices: &indices, attributes: &[], stride: 0 };
         let distances = [0.0, 0.008, 0.02, 0.05];
         let found = simplify_within(&surface, &Options::default(), &distances).expect("valid");
-        assert_eq!(found.stopped(), Stopped::Exhausted);
+        assert_eq!(found.stopped(), Stopped::Distance);
         let level = |found: &Simplified, count| found.triangles(&indices, count);
         let mut last = indices.len();
         for distance in distances {
@@ -408,6 +574,6 @@ mod tests {
         assert_eq!(refused(&[0.5, 0.25]), "distances[1]");
         assert_eq!(refused(&[0.5, f32::NAN]), "distances[1]");
         let none = simplify_within(&surface, &Options::default(), &[]).expect("valid");
-        assert_eq!((none.collapses().len(), none.stopped()), (0, Stopped::Exhausted));
+        assert_eq!((none.collapses().len(), none.stopped()), (0, Stopped::Distance));
     }
 }

@@ -1,6 +1,7 @@
 //! The parts of a level and of its mesh that are close to each other. Collapses are local: the vertex into
 //! which a vertex has collapsed, and the triangles around it, are close to it in every pose.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::Vec3;
@@ -43,9 +44,9 @@ impl Near {
 
     /// The triangles of the things in a range, with other numbers of their corners.
     pub(super) fn part(&self, range: Range<usize>, local: impl Fn(u32) -> u32) -> Self {
-        Self::of(
-            range.map(|thing| self.triangles_of(thing).iter().map(|corners| corners.map(&local)).collect()),
-        )
+        let is_own = |corners: &&[u32; 3]| range.contains(&(corners[0] as usize));
+        let own = |thing: usize| self.triangles_of(thing).iter().filter(is_own);
+        Self::of(range.clone().map(|thing| own(thing).map(|corners| corners.map(&local)).collect()))
     }
 
     /// The point nearest to `wanted` on the triangles of an item, if it has any.
@@ -94,18 +95,28 @@ impl Sides {
         let became = around(&area, &|vertex| found.remap[vertex as usize]);
         let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
         let mut search = Search::new(&area, keys, bodies);
+        let clusters = Clusters::new(&search, &became);
         let mut candidates: Vec<u32> = Vec::new();
         let behind = Near::of(level.chunks_exact(3).flat_map(|triangle| {
             let is_own = |at: &u32| whole.member_of(&corners_of(&area, *at)) == whole.member_of(triangle);
-            candidates.clear();
-            for point in ring.beside(triangle, level, &point) {
-                candidates.extend(became.of(point).filter(is_own));
+            let beside = ring.beside(triangle, level, &point);
+            let body = common(bodies, &[triangle[0], triangle[1], triangle[2]]);
+            let is_rigid = clusters.are_rigid(&beside, body);
+            if !is_rigid {
+                candidates.clear();
+                candidates.extend(beside.iter().flat_map(|point| became.of(*point)).filter(is_own));
+                candidates.sort_unstable();
+                candidates.dedup();
             }
-            candidates.sort_unstable();
-            candidates.dedup();
+            let mut likely = None;
             samples_of(triangle).map(|(corners, parts)| {
                 let point = |key: &Vec<Vec3>| blend(&corners, &parts, &|vertex| key[vertex as usize]);
-                search.nearest_in_each(point, common(bodies, &corners), &candidates)
+                if is_rigid {
+                    let found = clusters.nearest(&search, point(&keys[0]), &beside, is_own, likely);
+                    likely = found;
+                    return found.map(|at| corners_of(&area, at)).into_iter().collect();
+                }
+                search.nearest_in_each(point, body, &candidates)
             })
         }));
         Self { near, samples, behind }
@@ -134,7 +145,14 @@ fn before(
     let (mut is_used, mut is_left) = (vec![false; whole.vertices()], vec![false; whole.vertices()]);
     whole.indices.iter().for_each(|vertex| is_used[*vertex as usize] = true);
     level.iter().for_each(|vertex| is_left[*vertex as usize] = true);
+    // Whether a mesh has triangles that are not one point.
+    let mut has = vec![false; whole.meshes.len()];
+    for corners in level.as_chunks::<3>().0.iter().filter(|[a, b, c]| a != b || b != c) {
+        has[whole.member_of(corners) as usize] = true;
+    }
     let mut search = Search::new(level, keys, bodies);
+    // Many vertices have collapsed into the same one.
+    let mut rings: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
     let near = |vertex: u32| {
         if is_left[vertex as usize] {
             return Vec::new();
@@ -142,13 +160,20 @@ fn before(
         let is_own = |at: &u32| whole.member_of(&corners_of(level, *at)) == whole.member[vertex as usize];
         // There may be none for a vertex without triangles. The replacement itself may be a wedge that no triangle of the
         // level uses.
-        let mut candidates = ring.two_rings(remap[vertex as usize], level, point);
-        candidates.retain(is_own);
-        if candidates.is_empty() && is_used[vertex as usize] {
-            // Of what became a point, or of a part of the mesh that has vanished.
-            candidates = (0..level.len() as u32 / 3).filter(is_own).collect();
+        let target = remap[vertex as usize];
+        let own = || ring.two_rings(target, level, point).into_iter().filter(is_own).collect();
+        let candidates = rings.entry((target, whole.member[vertex as usize])).or_insert_with(own);
+        if !candidates.is_empty() || !is_used[vertex as usize] {
+            return search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], candidates);
         }
-        search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], &candidates)
+        // A piece of the mesh has become a point between triangles of other meshes.
+        let member = whole.member[vertex as usize];
+        if has[member as usize] {
+            return vec![[target; 3]];
+        }
+        // The whole mesh has become a point.
+        let all: Vec<u32> = (0..level.len() as u32 / 3).filter(is_own).collect();
+        search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], &all)
     };
     (0..whole.vertices() as u32).map(near).collect()
 }
@@ -240,23 +265,122 @@ impl<'a> Search<'a> {
 
     /// The nearest of some triangles in the first pose, the first of several.
     fn nearest(&self, wanted: Vec3, candidates: &[u32]) -> Option<u32> {
-        let to_middle = |triangle: u32| self.spheres[triangle as usize].0.distance_squared(wanted);
-        let likely = candidates.iter().copied().min_by(|a, b| to_middle(*a).total_cmp(&to_middle(*b)))?;
-        let (mut best, mut least) = (likely, self.off(0, wanted, likely));
-        let mut within = 1.000_01 * least.sqrt();
-        for &triangle in candidates {
-            let (middle, radius) = self.spheres[triangle as usize];
-            // All of it is further away.
-            if middle.distance_squared(wanted) > (within + radius) * (within + radius) {
-                continue;
-            }
-            let off = self.off(0, wanted, triangle);
-            if off < least || off == least && triangle < best {
-                (best, least) = (triangle, off);
-                within = 1.000_01 * least.sqrt();
+        let mut best = Nearest::default();
+        best.start(self, wanted, candidates.iter().copied());
+        candidates.iter().for_each(|triangle| best.add(self, wanted, *triangle));
+        best.found()
+    }
+}
+
+/// The nearest triangle so far, in the first pose; the first of several.
+struct Nearest {
+    triangle: u32,
+    squared: f32,
+    /// What is further away than this is not nearest.
+    within: f32,
+}
+
+impl Default for Nearest {
+    fn default() -> Self {
+        Self { triangle: u32::MAX, squared: f32::INFINITY, within: f32::INFINITY }
+    }
+}
+
+impl Nearest {
+    /// Begins with the triangle whose middle is nearest, so that most others are seen to be further away.
+    fn start(&mut self, search: &Search<'_>, wanted: Vec3, triangles: impl Iterator<Item = u32>) {
+        let to_middle = |triangle: &u32| search.spheres[*triangle as usize].0.distance_squared(wanted);
+        if let Some(likely) = triangles.min_by(|a, b| to_middle(a).total_cmp(&to_middle(b))) {
+            self.add(search, wanted, likely);
+        }
+    }
+
+    fn add(&mut self, search: &Search<'_>, wanted: Vec3, triangle: u32) {
+        if self.is_beyond(wanted, search.spheres[triangle as usize]) {
+            return;
+        }
+        let squared = search.off(0, wanted, triangle);
+        if squared < self.squared || squared == self.squared && triangle < self.triangle {
+            *self = Self { triangle, squared, within: 1.000_01 * squared.sqrt() };
+        }
+    }
+
+    /// Whether all of a sphere is further away.
+    fn is_beyond(&self, wanted: Vec3, (middle, radius): (Vec3, f32)) -> bool {
+        middle.distance_squared(wanted) > (self.within + radius) * (self.within + radius)
+    }
+
+    fn found(&self) -> Option<u32> {
+        (self.triangle != u32::MAX).then_some(self.triangle)
+    }
+}
+
+/// The triangles of the mesh by the points of a level into which their corners have collapsed.
+struct Clusters<'a> {
+    around: &'a Around,
+    /// For each point, a sphere around its triangles in the first pose.
+    spheres: Vec<(Vec3, f32)>,
+    /// For each point, the rigid body of all of its triangles.
+    bodies: Vec<u32>,
+    /// Whether the first pose shows all distances.
+    is_still: bool,
+}
+
+impl<'a> Clusters<'a> {
+    fn new(search: &Search<'_>, around: &'a Around) -> Self {
+        let sphere = |point: u32| {
+            let all = || around.of(point).map(|triangle| search.spheres[triangle as usize]);
+            let count = all().count().max(1) as f32;
+            let middle = all().map(|(middle, _)| middle).sum::<Vec3>() / count;
+            // As in the spheres of triangles.
+            let reach = |(other, radius): (Vec3, f32)| 1.000_01 * (other.distance(middle) + radius);
+            (middle, all().map(reach).fold(0.0, f32::max))
+        };
+        let body = |point: u32| {
+            let mut bodies =
+                around.of(point).map(|triangle| common(search.bodies, &corners_of(search.indices, triangle)));
+            let first = bodies.next().unwrap_or(NO_BODY);
+            if bodies.all(|other| other == first) { first } else { NO_BODY }
+        };
+        let points = || 0..around.len();
+        let is_still = search.keys.len() == 1;
+        let bodies = if is_still { Vec::new() } else { points().map(body).collect() };
+        Self { around, spheres: points().map(sphere).collect(), bodies, is_still }
+    }
+
+    /// Whether the triangles of all of these points have the same distances from a body in every pose.
+    fn are_rigid(&self, points: &[u32], body: u32) -> bool {
+        let is_on =
+            |point: &u32| self.bodies[*point as usize] == body || self.around.of(*point).next().is_none();
+        self.is_still || body != NO_BODY && points.iter().all(is_on)
+    }
+
+    /// The nearest triangle of some points in the first pose, of those that are `is_own`. `likely` is one of these, and looked
+    /// at first.
+    fn nearest(
+        &self,
+        search: &Search<'_>,
+        wanted: Vec3,
+        points: &[u32],
+        is_own: impl Fn(&u32) -> bool,
+        likely: Option<u32>,
+    ) -> Option<u32> {
+        let mut best = Nearest::default();
+        match likely {
+            Some(triangle) => best.add(search, wanted, triangle),
+            None => {
+                let to_middle = |point: &u32| self.spheres[*point as usize].0.distance_squared(wanted);
+                let point = *points.iter().min_by(|a, b| to_middle(a).total_cmp(&to_middle(b)))?;
+                best.start(search, wanted, self.around.of(point).filter(&is_own));
             }
         }
-        Some(best)
+        for &point in points {
+            if !best.is_beyond(wanted, self.spheres[point as usize]) {
+                let own = self.around.of(point).filter(&is_own);
+                own.for_each(|triangle| best.add(search, wanted, triangle));
+            }
+        }
+        best.found()
     }
 }
 
@@ -267,6 +391,11 @@ impl Around {
     /// `corners` are points, three per triangle.
     fn new(corners: &[u32], points: usize) -> Self {
         Self(Adjacency::new(points, corners))
+    }
+
+    /// Number of points.
+    fn len(&self) -> u32 {
+        self.0.offsets.len() as u32 - 1
     }
 
     fn of(&self, point: u32) -> impl Iterator<Item = u32> + '_ {

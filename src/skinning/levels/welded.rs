@@ -6,6 +6,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
+use super::keys::Keys;
 use super::whole::Whole;
 use crate::mesh::simplify::{Simplified, weld};
 
@@ -64,16 +65,25 @@ impl Welded {
     ///
     /// A mesh of which nothing is left becomes a point: all of its vertices go to one, and one triangle has it in all
     /// corners. The number counts the other triangles.
+    ///
+    /// Where triangles are flat-shaded, the normal of a vertex that has collapsed is to be that of the new triangle.
     pub(super) fn next(
         &self,
         whole: &Whole<'_>,
+        keys: &Keys,
         simplified: &Simplified,
         remap: &[u32],
         triangles: &[u32],
     ) -> (Vec<u32>, Vec<u32>, usize) {
         let mut used = vec![false; whole.vertices()];
         triangles.iter().for_each(|vertex| used[*vertex as usize] = true);
-        let corner = |vertex: u32| self.corner(whole, remap, &used, vertex);
+        let faces = flat_faces(keys, remap, triangles);
+        let corner = |vertex: u32| match faces[vertex as usize] {
+            Vec3::ZERO => {
+                self.corner(&whole.normals, whole.normals[vertex as usize].into(), remap, &used, vertex)
+            }
+            face => self.corner(&keys.normals, face, remap, &used, vertex),
+        };
         let mut into: Vec<u32> =
             (0..whole.vertices() as u32).map(|at| if used[at as usize] { corner(at) } else { at }).collect();
         let is_left =
@@ -102,15 +112,41 @@ impl Welded {
         (left, into, count)
     }
 
-    fn corner(&self, whole: &Whole<'_>, remap: &[u32], used: &[bool], vertex: u32) -> u32 {
-        let normal = |vertex: u32| Vec3::from(whole.normals[vertex as usize]);
+    /// The vertex that takes the place of another one: at its new point, of those that are used, the one whose normal is
+    /// closest to `wanted`.
+    fn corner(&self, normals: &[[f32; 3]], wanted: Vec3, remap: &[u32], used: &[bool], vertex: u32) -> u32 {
         let target = remap[vertex as usize];
         if target == self.first[vertex as usize] {
             return vertex;
         }
-        let facing = |other: &&u32| normal(**other).dot(normal(vertex));
+        let facing = |other: &&u32| wanted.dot(normals[**other as usize].into());
         let others = self.all[&target].iter().filter(|other| used[**other as usize]);
         // Takes the first of several equally close ones.
         others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(target)
     }
+}
+
+/// The cosine of the angle up to which the corners of a triangle have the same normal: 2.5°.
+const FLAT: f32 = 0.999;
+
+/// For each vertex, the sum of the new normals of flat-shaded triangles that have it, in the first key pose; 0 for a vertex of
+/// another triangle.
+fn flat_faces(keys: &Keys, remap: &[u32], triangles: &[u32]) -> Vec<Vec3> {
+    let mut faces = vec![Vec3::ZERO; remap.len()];
+    let mut is_smooth = vec![false; remap.len()];
+    for triangle in triangles.as_chunks::<3>().0 {
+        let [a, b, c] = triangle.map(|vertex| Vec3::from(keys.normals[vertex as usize]));
+        if a.dot(b).min(b.dot(c)).min(c.dot(a)) < FLAT {
+            triangle.iter().for_each(|vertex| is_smooth[*vertex as usize] = true);
+            continue;
+        }
+        let [a, b, c] = triangle.map(|vertex| Vec3::from(keys.poses[0][remap[vertex as usize] as usize]));
+        triangle.iter().for_each(|vertex| faces[*vertex as usize] += (b - a).cross(c - a));
+    }
+    faces
+        .iter_mut()
+        .zip(is_smooth)
+        .filter(|(_, is_smooth)| *is_smooth)
+        .for_each(|(face, _)| *face = Vec3::ZERO);
+    faces
 }

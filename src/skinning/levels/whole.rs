@@ -9,6 +9,7 @@ use glam::Vec3;
 use crate::asset::Model;
 use crate::asset::mesh::Mesh;
 use crate::asset::transform::Affine;
+use crate::skinning::attribute_weights::shown_uv;
 use crate::skinning::pose::{Moment, Pose, positions_of};
 pub(super) use shared::{Shared, shared};
 
@@ -25,6 +26,7 @@ pub(super) struct Whole<'a> {
     pub shared: Vec<u32>,
     /// The triangles of all meshes, in their order.
     pub indices: Vec<u32>,
+    /// [`shown_uv`].
     pub uv: Vec<[f32; 2]>,
     /// Before skinning.
     pub normals: Vec<[f32; 3]>,
@@ -54,7 +56,7 @@ impl<'a> Whole<'a> {
             indices: members()
                 .flat_map(|(mesh, start)| mesh.indices.iter().map(move |at| start + at))
                 .collect(),
-            uv: members().flat_map(|(mesh, _)| &mesh.uv).copied().collect(),
+            uv: members().flat_map(|(mesh, _)| shown_uv(model, mesh)).collect(),
             normals: members().flat_map(|(mesh, _)| &mesh.normals).copied().collect(),
             starts,
         }

@@ -1,6 +1,6 @@
 //! What holds for every reducer: names, limits, and what is refused.
 
-use relievo::mesh::{Cost, Limits, Options, Reducer, Stopped, Surface, simplify};
+use relievo::mesh::{Cost, Limits, Options, Reducer, Seams, Stopped, Surface, simplify};
 
 use crate::shapes::{bare, bumps, cube, ground, sphere};
 
@@ -67,7 +67,7 @@ fn half_edges_are_those_of_simplify() {
     let shape = cube(5);
     for cost in [Cost::Quadric, Cost::Melax { check_normals: true }] {
         let simplified = simplify(&shape.with_uv(), &Options { cost, ..Options::default() }).expect("valid");
-        let reduced = Reducer::HalfEdge { cost }
+        let reduced = Reducer::HalfEdge { cost, seams: Seams::Held }
             .reduce(&shape.with_uv(), &Limits { triangles: 50, ..Limits::default() })
             .expect("valid");
         let expected = simplified.triangles(&shape.indices, simplified.collapses_to(50));

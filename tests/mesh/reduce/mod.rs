@@ -8,14 +8,14 @@ mod quality;
 mod topology;
 mod turned;
 
-use relievo::mesh::{Cost, Limits, Reduced, Reducer, Surface};
+use relievo::mesh::{Cost, Limits, Reduced, Reducer, Seams, Surface};
 
 use crate::shapes::Shape;
 
 /// The reducers that keep the topology.
 const KEEPING: [Reducer; 4] = [
-    Reducer::HalfEdge { cost: Cost::Quadric },
-    Reducer::HalfEdge { cost: Cost::Melax { check_normals: true } },
+    Reducer::HalfEdge { cost: Cost::Quadric, seams: Seams::Held },
+    Reducer::HalfEdge { cost: Cost::Melax { check_normals: true }, seams: Seams::Held },
     Reducer::FullEdge,
     Reducer::VertexRemoval,
 ];

@@ -30,7 +30,7 @@ fn closed_stays_closed() {
                     assert_eq!(found, whole, "{} at {}", reducer.name(), level.triangles());
                 }
                 let last = levels(&reducer, &surface).pop().expect("levels");
-                assert_eq!(last.stopped, Stopped::Exhausted);
+                assert!(![Stopped::Triangles, Stopped::Error].contains(&last.stopped), "{:?}", last.stopped);
                 assert!(
                     last.triangles.len() <= least,
                     "{}: {} of {}",

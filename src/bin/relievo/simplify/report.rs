@@ -4,6 +4,7 @@ use std::fmt::{Display, Formatter};
 
 use relievo::files::sha256;
 use relievo::measure::reduction::MeasuredLevel;
+use relievo::mesh::Stopped;
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -22,8 +23,26 @@ pub struct LevelReport {
     vertices: usize,
     error_rms: f64,
     error_max: f64,
+    /// Why the reducer stopped: [`Stopped::name`].
+    stopped: &'static str,
     /// SHA-256 of the file.
     hash: String,
+    /// What hindered the reducer.
+    #[serde(skip)]
+    hindrance: Option<&'static str>,
+}
+
+/// What hinders a reducer from reaching its target.
+fn hindrance(stopped: Stopped) -> Option<&'static str> {
+    match stopped {
+        Stopped::Triangles | Stopped::Error => None,
+        Stopped::Seams => Some("held by seams of texture coordinates: see --texture-seams"),
+        Stopped::Borders => Some("held by borders"),
+        Stopped::Flips => Some("the next step would turn a triangle"),
+        Stopped::Topology => Some("held by the topology: closed parts keep four triangles"),
+        Stopped::Distance => Some("held by the distance allowed"),
+        Stopped::Exhausted => Some("the reducer finds no further step"),
+    }
 }
 
 impl LevelReport {
@@ -35,17 +54,20 @@ impl LevelReport {
             vertices: level.reduced.vertices(),
             error_rms: level.distance.rms(),
             error_max: level.distance.max(),
+            stopped: level.reduced.stopped.name(),
             hash: sha256(bytes),
+            hindrance: hindrance(level.reduced.stopped),
         }
     }
 }
 
 impl Display for LevelReport {
     fn fmt(&self, out: &mut Formatter<'_>) -> std::fmt::Result {
-        let Self { file, triangles, vertices, error_rms, error_max, .. } = self;
+        let Self { file, triangles, vertices, error_rms, error_max, hindrance, .. } = self;
         write!(
             out,
             "{file}: {triangles} triangles, {vertices} vertices, {error_rms:.4e} rms, {error_max:.4e} at most"
-        )
+        )?;
+        hindrance.map_or(Ok(()), |hindrance| write!(out, " ({hindrance})"))
     }
 }

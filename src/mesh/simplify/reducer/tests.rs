@@ -39,7 +39,8 @@ fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
 /// steps, how often the collapse was more than a tenth above the cheapest, and how often it was not the cheapest of
 /// its point.
 fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
-    let mut reducer = Reducer::new(surface, cost, distance < f32::INFINITY, &[]);
+    let mut reducer =
+        Reducer::new(surface, &Options { cost, ..Options::default() }, distance < f32::INFINITY, &[]);
     let most = (f64::from(distance) * reducer.points.scale()) as f32;
     reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(most));
     let mut queue = reducer.queue();
