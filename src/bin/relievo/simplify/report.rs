@@ -27,12 +27,12 @@ pub struct LevelReport {
     stopped: &'static str,
     /// SHA-256 of the file.
     hash: String,
-    /// What hindered the reducer.
+    /// The reason in words, where the reducer missed its target.
     #[serde(skip)]
     hindrance: Option<&'static str>,
 }
 
-/// What hinders a reducer from reaching its target.
+/// The reason in words why a reducer missed its target; `None` if it reached it.
 fn hindrance(stopped: Stopped) -> Option<&'static str> {
     match stopped {
         Stopped::Triangles | Stopped::Error => None,

@@ -70,7 +70,7 @@ impl Reducer<'_> {
         (self.costs, self.listed) = (costs, Some(point));
     }
 
-    /// What hinders the collapses of most points that are left; [`Stopped::Topology`] if there are none.
+    /// The most frequent reason why points that are left cannot collapse; [`Stopped::Topology`] if there are none.
     pub(super) fn hindrance(&mut self) -> Stopped {
         const ALL: [Stopped; 5] =
             [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance];
@@ -90,7 +90,7 @@ impl Reducer<'_> {
         most.map_or(Stopped::Topology, |at| ALL[at])
     }
 
-    /// What hinders the cheapest collapse of a point.
+    /// The reason why the cheapest collapse of a point is illegal.
     fn hindrance_of(&mut self, point: u32) -> Stopped {
         if self.topology.kind(point) == Kind::Locked {
             return Stopped::Topology;
