@@ -237,8 +237,7 @@ fn of_one_run(task: &Task<'_>, levels: &[Vec<u32>], rounds: usize) -> Result<f64
     let mut times = Vec::new();
     for _ in 0..rounds {
         let start = Instant::now();
-        let simplified =
-            simplify(&task.surface(), &Options { triangles: smallest, ..Options::default() })?;
+        let simplified = simplify(&task.surface(), &Options { triangles: smallest, ..Options::default() })?;
         let made: Vec<Vec<u32>> = targets
             .iter()
             .map(|&target| simplified.triangles(&task.mesh.indices, simplified.collapses_to(target)))
