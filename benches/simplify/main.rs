@@ -141,6 +141,11 @@ struct Asked {
 }
 
 impl Asked {
+    /// How often each time is taken.
+    fn rounds(&self) -> usize {
+        self.rounds.unwrap_or(ROUNDS).max(1)
+    }
+
     fn parse() -> Result<Self, Box<dyn Error>> {
         let mut asked = Self::default();
         let mut words = std::env::args().skip(1);
@@ -178,7 +183,7 @@ impl Asked {
 fn main() -> Result<(), Box<dyn Error>> {
     let asked = Asked::parse()?;
     if asked.is_growth {
-        return growth(asked.rounds.unwrap_or(ROUNDS).max(1));
+        return growth(asked.rounds());
     }
     println!("| mesh | triangles | counted | left | ours, ms | meshoptimizer, ms | ratio |");
     println!("|---|---|---|---|---|---|---|");
@@ -218,7 +223,7 @@ fn compare(task: &Task<'_>, asked: &Asked) -> Result<(), Box<dyn Error>> {
         sums.iter_mut().zip(times).for_each(|(sum, time)| *sum += time);
         levels.push(level);
     }
-    let of_one_run = of_one_run(task, &levels, asked.rounds.unwrap_or(ROUNDS).max(1))?;
+    let of_one_run = of_one_run(task, &levels, asked.rounds())?;
     let [ours, theirs] = sums;
     for (which, ours) in [("all", ours), ("all of one run", of_one_run)] {
         println!(
@@ -264,7 +269,7 @@ fn compare_level(
     let target = if reached > target + 2 { reached } else { target };
     let both: [Simplify; 2] = [ours, theirs];
     let (mut times, mut levels) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
-    for round in 0..asked.rounds.unwrap_or(ROUNDS).max(1) {
+    for round in 0..asked.rounds() {
         for turn in 0..2 {
             let who = (round + turn) % 2;
             let start = Instant::now();
