@@ -34,13 +34,13 @@ const NORMALS: f32 = 0.5;
 const ROUNDS: usize = 5;
 const PERCENT: [usize; 4] = [50, 20, 10, 2];
 
-/// What counts beside positions.
+/// The attributes that count beside positions.
 #[derive(Clone, Copy)]
 enum Counted {
     Nothing,
     /// Normals by this weight.
     Normals(f32),
-    /// What [`Mesh::as_reduced`] says.
+    /// Those of [`Mesh::as_reduced`].
     Model,
 }
 
@@ -50,7 +50,7 @@ struct Task<'a> {
     attributes: Vec<f32>,
     /// Numbers of `attributes` per vertex.
     stride: usize,
-    /// What the names of its files have behind that of the mesh.
+    /// The end of the names of its files, behind that of the mesh.
     suffix: &'static str,
 }
 
@@ -125,7 +125,7 @@ fn median(mut all: Vec<f64>) -> f64 {
     all[all.len() / 2]
 }
 
-/// What the arguments ask for.
+/// The arguments.
 #[derive(Default)]
 struct Asked {
     meshes: Vec<Mesh>,

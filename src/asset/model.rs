@@ -79,6 +79,33 @@ impl Model {
         Ok(Some(material))
     }
 
+    /// Checks one of the skins.
+    ///
+    /// # Errors
+    /// As [`Skin::validate`], with the number of the skin (`skins[0].bones[3]`).
+    pub(crate) fn check_skin(&self, skin: usize) -> Result<(), InputError> {
+        self.skins[skin].validate(&self.skeleton).map_err(|error| numbered("skin", "skins", skin, error))
+    }
+
+    /// Checks one of the meshes, with its skin.
+    ///
+    /// # Errors
+    /// As [`Mesh::validate`], with the number of the mesh (`meshes[2].indices[1]`), and as [`Self::check_skin`].
+    pub(crate) fn check_mesh(&self, mesh: usize) -> Result<(), InputError> {
+        let checked = self.meshes[mesh].validate(&self.skins);
+        checked.map_err(|error| numbered("mesh", "meshes", mesh, error))?;
+        self.check_skin(self.meshes[mesh].skin)
+    }
+
+    /// Checks the material of one of the meshes.
+    ///
+    /// # Errors
+    /// As [`Self::material`], with the number of the mesh (`meshes[2].material`) or of the material.
+    pub(crate) fn check_material(&self, mesh: usize) -> Result<(), InputError> {
+        let found = self.material(&self.meshes[mesh]);
+        found.map(|_| ()).map_err(|error| numbered("mesh", "meshes", mesh, error))
+    }
+
     /// The clip with this name or this index, counted from 0. A name that is a number takes precedence.
     ///
     /// # Errors
@@ -90,5 +117,14 @@ impl Model {
             let bound = error::name_or_index("clips", self.clips.iter().map(Clip::name));
             InputError::new("clip", name_or_index, bound)
         })
+    }
+}
+
+/// An error that names a field of `item`, which is one of `list`, with its number there. Others stay as they are.
+fn numbered(item: &str, list: &str, number: usize, error: InputError) -> InputError {
+    let field = error.path.strip_prefix(item).filter(|field| field.starts_with('.'));
+    match field {
+        Some(field) => InputError { path: format!("{list}[{number}]{field}"), ..error },
+        None => error,
     }
 }

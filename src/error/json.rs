@@ -20,7 +20,7 @@ pub(crate) fn shown(value: &Value) -> String {
     }
 }
 
-/// What serde says, without the place in the text.
+/// The message of serde, without the place in the text.
 pub(crate) fn message(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let end = format!(" at {}", place(error));
@@ -37,8 +37,8 @@ pub(crate) fn place(error: &serde_json::Error) -> String {
     format!("line {} column {}", error.line(), error.column())
 }
 
-/// What is wrong with a value of a document that is not what its field may be, or with a field that is unknown or given twice, if
-/// that is what is wrong.
+/// The error of a value that its field may not have, or of a field that is unknown or given twice. `None` if serde refused
+/// something else.
 pub(crate) fn refused_value(
     document: &Value,
     error: &serde_path_to_error::Error<serde_json::Error>,

@@ -65,13 +65,21 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels or
-    /// larger than the device's textures, and for an index beyond; [`crate::gpu::GpuError`].
+    /// larger than the device's textures, and for an index beyond; [`crate::gpu::GpuError`]. The images stay what they were
+    /// then.
     pub fn set_image(&mut self, object: ObjectId, index: usize, image: RgbaImage) -> Result<(), Error> {
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let mut staged = std::mem::take(&mut self.staged);
         let set = self.object_mut(object).map_err(Error::from).and_then(|entry| {
-            looks(entry)?.set_image(&gpu, index, image)?;
-            entry.change_materials((&gpu, &layouts), &mut staged, &Change::Image(index))
+            let old = looks(entry)?.set_image(&gpu, index, image)?;
+            let set = entry.change_materials((&gpu, &layouts), &mut staged, &Change::Image(index));
+            if let (Err(_), Some(looks)) = (&set, &mut entry.looks) {
+                match old {
+                    Some(old) => looks.images[index] = old,
+                    None => looks.images.truncate(index),
+                }
+            }
+            set
         });
         self.staged = staged;
         set

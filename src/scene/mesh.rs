@@ -95,18 +95,11 @@ pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) 
 /// # Errors
 /// [`InputError`] with the number of the mesh or the skin (`model.meshes[2].indices[1]`).
 fn check(model: &Model) -> Result<(), InputError> {
-    let numbered = |list: String, error: InputError| {
-        let field = error.path.split_once('.').map_or(&*error.path, |(_, field)| field);
-        InputError { path: format!("model.{list}.{field}"), ..error }
-    };
-    for (at, mesh) in model.meshes.iter().enumerate() {
-        mesh.validate(&model.skins).map_err(|error| numbered(format!("meshes[{at}]"), error))?;
-        let skin = model.skins[mesh.skin].validate(&model.skeleton);
-        skin.map_err(|error| numbered(format!("skins[{}]", mesh.skin), error))?;
-        model.material(mesh).map_err(|error| match error.path.starts_with("mesh.") {
-            true => numbered(format!("meshes[{at}]"), error),
-            false => error.below("model"),
-        })?;
+    for mesh in 0..model.meshes.len() {
+        model
+            .check_mesh(mesh)
+            .and_then(|()| model.check_material(mesh))
+            .map_err(|error| error.below("model"))?;
     }
     if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
         return Err(InputError::new("model.meshes", "none", "must have a triangle"));

@@ -25,8 +25,7 @@ pub fn at_rest(model: &Model) -> Result<Model, InputError> {
 /// The vertices of a mesh at rest.
 fn resting(model: &Model, index: usize) -> Result<Vec<Vertex>, InputError> {
     let mesh = &model.meshes[index];
-    mesh.validate(&model.skins)?;
-    model.skins[mesh.skin].validate(&model.skeleton)?;
+    model.check_mesh(index)?;
     Ok(Pose::new(model, mesh, Moment::Rest).vertices(mesh))
 }
 

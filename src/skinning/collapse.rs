@@ -134,8 +134,8 @@ fn validate(model: &Model) -> Result<(), InputError> {
         let bound = format!("must be {bones}, as the skeleton's");
         return Err(InputError::new(format!("clips[{at}].bones"), model.clips[at].bones(), bound));
     }
-    model.skins.iter().try_for_each(|skin| skin.validate(&model.skeleton))?;
-    model.meshes.iter().try_for_each(|mesh| mesh.validate(&model.skins))
+    (0..model.skins.len()).try_for_each(|skin| model.check_skin(skin))?;
+    (0..model.meshes.len()).try_for_each(|mesh| model.check_mesh(mesh))
 }
 
 /// The skeleton of the kept bones, each below the nearest kept bone above it. If a joint collapsed, the bone

@@ -88,10 +88,9 @@ pub fn merged(model: &Model, levels: usize) -> Result<Merged, InputError> {
 
 /// The key of a mesh that matches its model.
 fn checked(model: &Model, mesh: usize) -> Result<PartKey, InputError> {
-    let mesh = &model.meshes[mesh];
-    mesh.validate(&model.skins)?;
-    model.skins[mesh.skin].validate(&model.skeleton)?;
-    PartKey::of(model, mesh)
+    model.check_mesh(mesh)?;
+    model.check_material(mesh)?;
+    PartKey::of(model, &model.meshes[mesh])
 }
 
 /// A model without its meshes and skins.

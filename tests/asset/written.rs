@@ -288,6 +288,6 @@ fn what_glb_cannot_say_is_said() {
     assert_eq!(model.to_obj("a").expect_err("no such image").path, "materials[1].texture.image");
     let mut model = painted();
     model.meshes[0].positions[1][0] = f32::NAN;
-    assert_eq!(model.to_glb().expect_err("NaN").path, "mesh.positions[1][0]");
-    assert_eq!(model.to_obj("a").expect_err("NaN").path, "mesh.positions[1][0]");
+    assert_eq!(model.to_glb().expect_err("NaN").path, "meshes[0].positions[1][0]");
+    assert_eq!(model.to_obj("a").expect_err("NaN").path, "meshes[0].positions[1][0]");
 }

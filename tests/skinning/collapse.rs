@@ -350,7 +350,7 @@ fn requests_are_checked() {
     assert_eq!(refused(options(9), &wrong), text("clips[1].bones", "153"));
     let mut wrong = model.clone();
     wrong.skins[0].bones[0] = 99;
-    assert_eq!(refused(options(9), &wrong), text("skin.bones[0]", "99"));
+    assert_eq!(refused(options(9), &wrong), text("skins[0].bones[0]", "99"));
     let mut wrong = model.clone();
     wrong.clips[0] = Clip::new("", &model.skeleton, &vec![Default::default(); 18], 4000.0).expect("valid");
     assert_eq!(refused(options(9), &wrong), text("clip.duration", "4000"));

@@ -418,9 +418,9 @@ fn what_does_not_match_is_refused() {
             .map(|found| found.map_err(|error| error.path))
     };
     let both = |path: &str| [Err(path.to_owned()), Err(path.to_owned())];
-    assert_eq!(refused(&|model| model.meshes[2].indices[1] = 999), both("mesh.indices[1]"));
-    assert_eq!(refused(&|model| model.skins[0].bones[3] = 999), both("skin.bones[3]"));
-    let path = "mesh.material".to_owned();
+    assert_eq!(refused(&|model| model.meshes[2].indices[1] = 999), both("meshes[2].indices[1]"));
+    assert_eq!(refused(&|model| model.skins[0].bones[3] = 999), both("skins[0].bones[3]"));
+    let path = "meshes[1].material".to_owned();
     assert_eq!(refused(&|model| model.meshes[1].material = Some(3)), [Err(path), Ok(())]);
     let path = "meshes[0].positions[0]".to_owned();
     assert_eq!(

@@ -1,4 +1,4 @@
-//! What is wrong with a document that gltf-json refuses: the path, the value there, and what glTF allows in its place.
+//! Errors of a document that gltf-json refuses: the path, the value there, and what glTF allows in its place.
 
 use std::fmt::Debug;
 

@@ -28,9 +28,7 @@ impl TryFrom<StoredModel> for Model {
     fn try_from(stored: StoredModel) -> Result<Self, InputError> {
         let StoredModel { skeleton, skins, clips, meshes, skinned, materials, images } = stored;
         let model = Self { skeleton, skins, clips, meshes, skinned, materials, images };
-        for (at, skin) in model.skins.iter().enumerate() {
-            skin.validate(&model.skeleton).map_err(|error| within(&format!("skins[{at}]"), error))?;
-        }
+        (0..model.skins.len()).try_for_each(|skin| model.check_skin(skin))?;
         for (at, clip) in model.clips.iter().enumerate() {
             if clip.bones() != model.skeleton.len() {
                 let bound = format!("must be {}, one a bone", model.skeleton.len());
@@ -38,12 +36,11 @@ impl TryFrom<StoredModel> for Model {
             }
         }
         for (at, mesh) in model.meshes.iter().enumerate() {
-            let path = format!("meshes[{at}]");
-            mesh.validate(&model.skins).map_err(|error| within(&path, error))?;
-            model.material(mesh).map_err(|error| within(&path, error))?;
+            model.check_mesh(at)?;
+            model.check_material(at)?;
             if let Some((clip, _)) = mesh.weight_keys.iter().find(|(clip, _)| *clip >= model.clips.len()) {
                 let bound = format!("must be below {}", model.clips.len());
-                return Err(InputError::new(format!("{path}.weight_keys.clip"), clip, bound));
+                return Err(InputError::new(format!("meshes[{at}].weight_keys.clip"), clip, bound));
             }
         }
         if model.skinned > model.meshes.len() {
@@ -52,10 +49,6 @@ impl TryFrom<StoredModel> for Model {
         }
         Ok(model)
     }
-}
-
-fn within(path: &str, error: InputError) -> InputError {
-    InputError { path: format!("{path}: {}", error.path), ..error }
 }
 
 /// Images as their sizes and texels.

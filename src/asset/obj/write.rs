@@ -135,8 +135,8 @@ impl Model {
         if !library.names.is_empty() {
             writer.library(&format!("{name}.mtl")).map_err(failed)?;
         }
-        for mesh in &self.meshes {
-            mesh.validate(&self.skins)?;
+        for (at, mesh) in self.meshes.iter().enumerate() {
+            self.check_mesh(at)?;
             writer.object(object(mesh, library.material(mesh))).map_err(failed)?;
         }
         let mut files = vec![(format!("{name}.obj"), text)];

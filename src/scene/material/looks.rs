@@ -74,21 +74,27 @@ impl Looks {
         Ok(())
     }
 
-    /// Replaces an image, or adds one behind the last.
+    /// Replaces an image, or adds one behind the last. Returns the image that was there.
     ///
     /// # Errors
     /// [`InputError`] for an image without texels or beyond the device's limit, and for an index beyond that.
-    pub fn set_image(&mut self, gpu: &Gpu, index: usize, image: RgbaImage) -> Result<(), InputError> {
+    pub fn set_image(
+        &mut self,
+        gpu: &Gpu,
+        index: usize,
+        image: RgbaImage,
+    ) -> Result<Option<RgbaImage>, InputError> {
         check_image(gpu, "image", &image)?;
         if index > self.images.len() {
             let bound = format!("must be at most {}, which adds an image", self.images.len());
             return Err(InputError::new("index", index, bound));
         }
-        if index == self.images.len() {
-            self.images.push(image);
-        } else {
-            self.images[index] = image;
+        match self.images.get_mut(index) {
+            Some(old) => Ok(Some(std::mem::replace(old, image))),
+            None => {
+                self.images.push(image);
+                Ok(None)
+            }
         }
-        Ok(())
     }
 }

@@ -36,12 +36,8 @@ impl Model {
     /// [`InputError`] for a mesh, a skin or a material that is not valid, for images that PNG cannot hold, and for
     /// more than 4 GiB.
     pub fn to_glb(&self) -> Result<Vec<u8>, InputError> {
-        for skin in &self.skins {
-            skin.validate(&self.skeleton)?;
-        }
-        for mesh in &self.meshes {
-            mesh.validate(&self.skins)?;
-        }
+        (0..self.skins.len()).try_for_each(|skin| self.check_skin(skin))?;
+        (0..self.meshes.len()).try_for_each(|mesh| self.check_mesh(mesh))?;
         let mut document = Document::new(self);
         document.add_meshes(self)?;
         document.add_skins(self)?;

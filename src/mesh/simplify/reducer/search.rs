@@ -72,22 +72,24 @@ impl Reducer<'_> {
 
     /// The most frequent reason why points that are left cannot collapse; [`Stopped::Topology`] if there are none.
     pub(super) fn hindrance(&mut self) -> Stopped {
-        const ALL: [Stopped; 5] =
-            [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance];
-        let mut counts = [0_usize; ALL.len()];
+        let mut counts =
+            [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance]
+                .map(|reason| (reason, 0_usize));
         for point in 0..self.points.len() as u32 {
             self.topology.refresh(point);
             if !self.topology.ring(point).is_empty() {
-                let why = self.hindrance_of(point);
-                counts
-                    .iter_mut()
-                    .zip(ALL)
-                    .filter(|(_, other)| *other == why)
-                    .for_each(|(count, _)| *count += 1);
+                let hindrance = self.hindrance_of(point);
+                for (reason, count) in &mut counts {
+                    *count += usize::from(*reason == hindrance);
+                }
             }
         }
-        let most = (0..ALL.len()).rev().max_by_key(|at| counts[*at]);
-        most.map_or(Stopped::Topology, |at| ALL[at])
+        // `max_by_key` finds the last of equal ones, and the reversed list ends with the first.
+        counts
+            .into_iter()
+            .rev()
+            .max_by_key(|(_, count)| *count)
+            .map_or(Stopped::Topology, |(reason, _)| reason)
     }
 
     /// The reason why the cheapest collapse of a point is illegal.
@@ -108,7 +110,8 @@ impl Reducer<'_> {
         }
     }
 
-    /// The cheapest collapse of a point that is legal at the moment.
+    /// The cheapest collapse of a point that is legal at the moment. Where distances are limited, the test of a collapse
+    /// takes longer than its cost: costs are listed once, and tested from the cheapest on.
     pub(super) fn find_legal(&mut self, point: u32) -> Option<Best> {
         if self.tracked_samples.is_none() {
             return self.find_turning_none(point);
@@ -131,8 +134,8 @@ impl Reducer<'_> {
         best
     }
 
-    /// As [`Self::find_legal`], where distances are not limited: most costs, which take longer than the tests then, are not
-    /// needed.
+    /// As [`Self::find_legal`], where distances are not limited. The cost of a collapse takes longer than its tests then,
+    /// and is worked out only for those that pass.
     fn find_turning_none(&mut self, point: u32) -> Option<Best> {
         self.neighbors.look(&self.topology, &self.points, point, &mut self.marks);
         let neighbors = std::mem::take(&mut self.neighbors);
