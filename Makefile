@@ -12,28 +12,24 @@ OUT ?= target/demo
 .PHONY: demo test bench bless lint setup adapter browser
 
 demo: adapter
-	$(CARGO) run --features cli --bin relievo -- demo --out $(OUT)
+	$(CARGO) run --bin relievo -- demo --out $(OUT)
 	@echo "open $(OUT)/index.html"
 
 test: browser
-	$(CARGO) test --features cli
-	$(CARGO) test --no-default-features --features samples
+	$(CARGO) test
 
 bench: setup
-	RELIEVO_COMMIT=$$(git rev-parse --short HEAD 2>/dev/null || echo unknown) $(CARGO) run --release --features cli --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json
+	RELIEVO_COMMIT=$$(git rev-parse --short HEAD 2>/dev/null || echo unknown) $(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json
 
 # The only way to write a golden.
 bless: adapter
-	RELIEVO_BLESS=1 $(CARGO) test --features cli --test golden
+	RELIEVO_BLESS=1 $(CARGO) test --test golden --test demo
 
 lint: setup
 	$(CARGO) fmt --all --check
-	$(CARGO) clippy --all-targets --features cli -- -D warnings
 	$(CARGO) clippy --all-targets -- -D warnings
-	$(CARGO) clippy --all-targets --features samples -- -D warnings
-	$(CARGO) clippy --all-targets --no-default-features -- -D warnings
-	$(CARGO) clippy --all-targets --no-default-features --features samples -- -D warnings
-	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --features cli --no-deps --document-private-items
+	$(CARGO) clippy -p relievo -p relievo-samples --no-default-features -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps --document-private-items
 
 setup:
 	@scripts/setup.sh

@@ -7,10 +7,10 @@ use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::{Gpu, Options};
 use relievo::render::{Layer, Offscreen, Renderer};
-use relievo::samples::creature;
 use relievo::scene::{Camera, Placement, Play, Quality, Scene};
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::{add_levels, poses_of};
+use relievo_samples::creature;
 
 /// Number of instances of each character.
 const COUNT: usize = 40;

@@ -11,7 +11,7 @@ use relievo::animation::{BoundTable, ClipSet, Frame, Gate, Lod, Projection};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::bone_radii;
 use relievo::gpu::{Gpu, Options};
-use relievo::samples::creature;
+use relievo_samples::creature;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // In your program: `Gpu::from_wgpu(device, queue)`.

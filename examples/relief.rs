@@ -5,9 +5,9 @@
 
 use relievo::gpu::{Gpu, Options, shaders::MODULES};
 use relievo::render::{Offscreen, target::COLOR_FORMAT, target::DEPTH_FORMAT};
-use relievo::samples::BuiltInMap;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::{Address, Method};
+use relievo_samples::BuiltInMap;
 
 /// The material: a wall seen at an angle. `surface_ray`, `surface_quadtree` and `surface_normal` come from
 /// relievo.

@@ -22,7 +22,7 @@ have_browser() {
     done
     return 1
 }
-# The suite's own Rust with the target, or Debian's Rust for browsers (tests/web/wasm.rs chooses in the same way).
+# The suite's own Rust with the target, or Debian's Rust for browsers (crates/relievo-cli/tests/web/wasm.rs chooses in the same way).
 have_wasm() {
     [ -d "$(rustc --print sysroot 2>/dev/null)/lib/rustlib/wasm32-unknown-unknown" ] ||
         { [ -f /usr/lib/rustlib/src/rust/library/std/Cargo.toml ] && [ -x /usr/bin/cargo ] && [ -x /usr/bin/rustc ] &&
@@ -30,7 +30,7 @@ have_wasm() {
 }
 # A driver's file may be there without its library or its hardware: only opening a device tells.
 have_adapter() {
-    "$cargo" run --quiet --features cli --bin relievo -- info >/dev/null 2>&1
+    "$cargo" run --quiet --bin relievo -- info >/dev/null 2>&1
 }
 provide() {
     if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
@@ -60,10 +60,10 @@ fi
 [ ${#missing[@]} = 0 ] || provide "${missing[@]}"
 
 [ "${1:-}" = adapter ] || exit 0
-"$cargo" build --features cli --bin relievo
+"$cargo" build --bin relievo
 have_adapter && exit 0
 # A driver that was chosen by name is the user's business.
 if [ "$(uname -s)" = Linux ] && [ -z "${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-}${RELIEVO_ADAPTER:-}" ]; then
     provide mesa-vulkan-drivers
 fi
-have_adapter || { "$cargo" run --quiet --features cli --bin relievo -- info >/dev/null; exit 1; }
+have_adapter || { "$cargo" run --quiet --bin relievo -- info >/dev/null; exit 1; }

@@ -30,15 +30,10 @@
 //!
 //! `scene_file` reads scenes from JSON, builds them and draws their frames; it needs the feature `gpu`.
 //!
-//! `samples` generates a creature with clips, and height maps with their colours. It needs the feature `samples`.
-//!
-//! `verify` compares every kernel with its reference (`relievo verify`), and `bench` measures it against a copy of
-//! the same bytes (`relievo bench`). They use `harness` (comparators and clocks). All
-//! three need the feature `verify`.
-//!
-//! `measure` says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
-//! models, and surface mapping on height maps. `files` writes reports and pictures whole or not at all. Both need the
-//! feature `verify`. `plot` draws charts of such figures and needs `cli`.
+//! Beside the library there are `relievo-samples` (a creature with clips, and height maps with their colours), `relievo-lab`
+//! (it compares every kernel with its reference, measures it against a copy of the same bytes, and says what level of detail
+//! costs and shows on the caller's own data), and the program `relievo-cli`. [`baseline`] has the kernels that move bytes alone,
+//! against which others are measured.
 //!
 //! [`srgb`] converts between bytes and linear light. [`mod@hash`] draws counter-based random words. [`error`] names
 //! invalid input by path, value and bound.
@@ -95,41 +90,33 @@
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
+#[cfg(test)]
+extern crate self as relievo;
+
 pub mod animation;
 pub mod asset;
-#[cfg(feature = "verify")]
-mod baseline;
-#[cfg(feature = "verify")]
-pub mod bench;
+#[cfg(feature = "gpu")]
+pub mod baseline;
 pub mod error;
-#[cfg(feature = "verify")]
-pub mod files;
 #[cfg(feature = "gpu")]
 pub mod gpu;
-#[cfg(feature = "verify")]
-pub mod harness;
 pub mod hash;
 pub mod lod;
-#[cfg(feature = "verify")]
-pub mod measure;
 pub mod mesh;
-#[cfg(feature = "cli")]
-pub mod plot;
 #[cfg(feature = "gpu")]
 pub mod render;
-#[cfg(feature = "samples")]
-pub mod samples;
+#[cfg(test)]
+#[path = "../crates/relievo-samples/src/lib.rs"]
+mod samples;
 #[cfg(feature = "gpu")]
 pub mod scene;
 #[cfg(feature = "gpu")]
 pub mod scene_file;
-mod shared;
+pub mod shared;
 pub mod skinning;
 pub mod srgb;
 pub mod surface;
 pub mod terrain;
-#[cfg(feature = "verify")]
-pub mod verify;
 
 pub use error::{Error, InputError};
 #[cfg(feature = "gpu")]

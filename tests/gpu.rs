@@ -1,8 +1,6 @@
 //! The device: every failure is an `Err` with what to do, batches are split, memory stays within its bound.
-#![cfg(feature = "gpu")]
 
-#[path = "harness/mod.rs"]
-mod harness;
+use relievo_testing as harness;
 
 use std::pin::pin;
 use std::task::{Context, Poll, Wake};
@@ -199,7 +197,7 @@ fn census(instance: &wgpu::Instance, gpu: &Gpu) -> ([usize; 3], Option<usize>) {
 fn a_frame_of_a_crowd_allocates_nothing() {
     let (instance, device, queue) = foreign_with_instance();
     let gpu = Gpu::from_wgpu(device, queue);
-    let model = relievo::samples::creature().expect("valid");
+    let model = relievo_samples::creature().expect("valid");
     let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>()).expect("one skeleton");
     let instances: Vec<_> = (0..100).map(|i| Instance::new(i % 3, Wrap::Loop, i as f32, 1.0)).collect();
     let clips = ClipBuffers::new(&gpu, &set).expect("allocated");

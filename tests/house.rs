@@ -7,16 +7,14 @@ use std::path::{Path, PathBuf};
 /// The folders and files below `src/`, lowest floor first; those of one floor do not use each other.
 const FLOORS: &[&[&str]] = &[
     &["error", "hash", "shared", "srgb"],
-    &["asset", "files", "gpu", "plot"],
-    &["harness", "mesh"],
+    &["asset", "gpu"],
+    &["mesh"],
     &["animation", "surface", "terrain"],
     &["baseline", "skinning"],
     &["lod"],
     &["scene"],
     &["render"],
-    &["samples"],
     &["scene_file"],
-    &["bench", "measure", "verify"],
 ];
 
 /// A source file: its path below `src/`, and its text without comments and tests.
@@ -28,7 +26,6 @@ struct Source {
 impl Source {
     fn new(path: &str, text: &str) -> Self {
         let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
-        let text = text.split("#[cfg(all(test, ").next().unwrap_or_default();
         let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
         Self { path: path.to_owned(), text: lines.collect::<Vec<_>>().join("\n") }
     }
@@ -42,9 +39,9 @@ impl Source {
         names
     }
 
-    /// Parity cases, benchmarks and tests may use what lies above them: samples.
-    fn is_case(&self) -> bool {
-        self.module().iter().skip(1).any(|name| ["verify", "bench", "tests"].contains(name))
+    /// Unit tests may use what lies above them: samples.
+    fn is_test(&self) -> bool {
+        self.module().iter().skip(1).any(|name| *name == "tests")
     }
 
     /// Whether the file is an operation's CPU reference, or a part of one.
@@ -185,7 +182,7 @@ fn floor(name: &str) -> Option<usize> {
 /// The uses of folders that do not lie below the user's.
 fn arrows_upward(sources: &[Source]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
-    for source in sources.iter().filter(|source| !source.is_case()) {
+    for source in sources.iter().filter(|source| !source.is_test()) {
         let own = source.module()[0].to_owned();
         let Some(here) = floor(&own) else {
             found.insert(format!("{own} is on no floor"));
@@ -233,7 +230,7 @@ fn rooms(sources: &[Source]) -> BTreeMap<String, BTreeSet<String>> {
     let (modules, imports) = (modules(sources), imports(sources));
     let room = |module: &str| module.split("::").take(2).collect::<Vec<_>>().join("/");
     let mut rooms: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for source in sources.iter().filter(|source| !source.is_case() && source.module().len() > 1) {
+    for source in sources.iter().filter(|source| !source.is_test() && source.module().len() > 1) {
         let own = room(&source.module().join("::"));
         for path in source.paths() {
             let path = origin(&path, &imports);
@@ -282,7 +279,7 @@ fn a_planted_arrow_is_found() {
         Source::new("gpu/buffer.rs", "use super::super::{animation::Crowd, error};\n"),
         Source::new("attic/mod.rs", ""),
         // These uses are allowed.
-        Source::new("terrain/height/verify.rs", "use crate::samples::creature;\n"),
+        Source::new("terrain/height/tests.rs", "use crate::samples::creature;\n"),
         Source::new("skinning/pose.rs", "use crate::animation::Frame; // crate::render::no\n"),
         Source::new("mesh/mod.rs", "#[cfg(test)]\nmod tests { use crate::samples::creature; }\n"),
     ];
@@ -367,7 +364,7 @@ fn a_planted_reference_that_uses_a_pass_is_found() {
         Source::new("terrain/wrap/reference/mod.rs", "use crate::terrain::{Pad, surrounds};\n"),
         Source::new("terrain/blend/reference.rs", "fn f() { super::pass::count() }\n"),
         // This use is allowed.
-        Source::new("terrain/pad/verify.rs", "use super::pass::PadPass;\n"),
+        Source::new("terrain/pad/job.rs", "use super::pass::PadPass;\n"),
     ];
     let expected = [
         "terrain/pad/reference.rs uses terrain::pad::pass::PadPass",
@@ -378,7 +375,7 @@ fn a_planted_reference_that_uses_a_pass_is_found() {
 }
 
 /// The files that make an operation, below its folder.
-const FILES: [&str; 5] = ["mod", "reference", "pass", "verify", "bench"];
+const FILES: [&str; 3] = ["mod", "reference", "pass"];
 
 /// The folders that have some of these files and no kernel, each with the reason.
 const WITHOUT_A_KERNEL: [(&str, &str); 1] =
@@ -454,9 +451,9 @@ fn planted_folders_and_kernels_are_found() {
     files.extend(
         ["terrain/erode/mod.rs", "terrain/erode/pass.rs", "animation/frame/pass.rs"].map(str::to_owned),
     );
-    // The verify.rs and the bench.rs of a domain are no operations.
+    // The files of a domain are no operations.
     files.extend(
-        ["animation/verify/mod.rs", "animation/verify/edges.rs", "animation/bench.rs"].map(str::to_owned),
+        ["animation/edges/mod.rs", "animation/edges/times.rs", "animation/crowd.rs"].map(str::to_owned),
     );
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
     let kernels = ["terrain/pad", "terrain/wrap", "terrain/nothing"].map(str::to_owned);

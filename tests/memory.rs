@@ -1,9 +1,7 @@
 //! Device memory: at most two `i32` per sample of the enlarged windows, or ten with hydraulic erosion, whatever else the recipe
 //! asks for.
-#![cfg(feature = "gpu")]
 
-#[path = "harness/mod.rs"]
-mod harness;
+use relievo_testing as harness;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 

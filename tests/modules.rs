@@ -1,10 +1,8 @@
 //! The modules for shaders outside the crate, used as such shaders use them: put before a shader that this
 //! crate does not know (`tests/modules/`), compiled by wgpu, and compared with the reference and with closed
 //! forms.
-#![cfg(feature = "gpu")]
 
-#[path = "harness/mod.rs"]
-mod harness;
+use relievo_testing as harness;
 
 use std::collections::BTreeSet;
 use std::num::NonZeroU64;

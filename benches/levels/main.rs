@@ -66,8 +66,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|---|---|---|---|---|");
     for name in &names {
         let mut model = match name.as_str() {
-            "creature" => relievo::samples::creature()?,
-            "rock" => relievo::samples::rock()?,
+            "creature" => relievo_samples::creature()?,
+            "rock" => relievo_samples::rock()?,
             "helmet" => helmet::helmet()?,
             file => Model::from_file(Path::new(file))?,
         };

@@ -9,9 +9,9 @@ mod own;
 use glam::{Mat4, Vec3};
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer, TargetFormat};
-use relievo::samples::{creature, maps::BuiltInMap};
 use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource};
 use relievo::terrain::config::Config;
+use relievo_samples::{creature, maps::BuiltInMap};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The program's own device: WebGPU's default limits, no features.

@@ -5,8 +5,8 @@ mod two_bones;
 
 use glam::DVec3;
 use relievo::gpu::{Gpu, Options};
-use relievo::samples::creature;
 use relievo::scene::{Camera, Placement, Play, Quality, Scene};
+use relievo_samples::creature;
 use two_bones::Limb;
 
 const ARM: [&str; 3] = ["upper_arm_left", "forearm_left", "hand_left"];

@@ -3,9 +3,9 @@
 use glam::Vec3;
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
-use relievo::samples::{creature, maps::BuiltInMap};
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Relief, Scene, TerrainSource, View};
 use relievo::terrain::config::Config;
+use relievo_samples::{creature, maps::BuiltInMap};
 
 use crate::Failure;
 use crate::eye::Eye;

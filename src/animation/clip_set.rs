@@ -213,7 +213,7 @@ fn all_times(clip: &Clip) -> Vec<f32> {
     common
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::samples::creature;

@@ -83,7 +83,7 @@ pub struct Crowd {
     /// The local transforms that [`crate::animation::sample::SamplePass`] writes, at `instance · bones + bone`.
     pub locals: Buffer<Local>,
     /// The matrices that [`crate::animation::local_to_model::LocalToModelPass`] writes.
-    pub(crate) model_matrices: ModelMatrices,
+    pub model_matrices: ModelMatrices,
     /// The model matrices of the frame before, for motion vectors, if they are kept; see
     /// [`Crowd::with_previous`].
     pub previous: Option<ModelMatrices>,

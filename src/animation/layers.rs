@@ -15,9 +15,8 @@
 //! mask of the arm ([`mask_below`]).
 //!
 //! ```
-//! # #[cfg(feature = "samples")] {
 //! use relievo::animation::{ClipSet, Instance, Layer, Wrap, layers::mask_below};
-//! use relievo::samples::creature;
+//! use relievo_samples::creature;
 //!
 //! let model = creature()?;
 //! let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>())?;
@@ -27,7 +26,6 @@
 //! let layers = [wave.masked(mask_below(&model.skeleton, arm)?)];
 //! // Crowd::layered(&gpu, &set, &walk, &layers)?, sampled by SamplePass::layered; later crowd.set_weights(&gpu, 1, …)?
 //! layers[0].validate("layers[0]", 100, set.clips().len(), set.bones())?;
-//! # }
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
@@ -124,7 +122,7 @@ pub fn all_instances(base: &[Instance], layers: &[Layer]) -> Vec<Instance> {
     base.iter().chain(layers.iter().flat_map(|layer| &layer.instances)).copied().collect()
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::animation::instance::Wrap;

@@ -2,8 +2,6 @@
 //! root motion for the host.
 
 pub mod active;
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 pub mod bounds;
 pub mod budget;
 #[cfg(feature = "gpu")]
@@ -35,8 +33,6 @@ pub mod root_motion;
 pub mod sample;
 #[cfg(feature = "gpu")]
 pub mod updated_bones;
-#[cfg(feature = "verify")]
-pub mod verify;
 
 pub use crate::asset::keyframe::RotationPath;
 pub use bounds::Bounds;

@@ -75,7 +75,7 @@ impl ModelMatrices {
     }
 
     /// The buffer. It is not public: a second handle made from it would not share the record.
-    pub(crate) fn buffer(&self) -> &Buffer<Affine> {
+    pub fn buffer(&self) -> &Buffer<Affine> {
         &self.matrices
     }
 

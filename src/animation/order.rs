@@ -143,7 +143,7 @@ fn remap(skeleton: &Skeleton) -> Vec<Option<u32>> {
     target
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::skeleton::Bone;

@@ -75,7 +75,7 @@ impl UpdatedBones {
     }
 
     /// The bits in a buffer that nothing else reads or clears.
-    pub(crate) fn over(bits: Buffer<u32>) -> Self {
+    pub fn over(bits: Buffer<u32>) -> Self {
         Self { bits, readers: Arc::default() }
     }
 

@@ -115,7 +115,7 @@ impl Mesh {
 
 /// Normals for vertices that have none: the normals of adjacent triangles, weighted by area. A vertex without
 /// triangles gets +Z.
-pub(crate) fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
+pub fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     let mut sums = vec![glam::DVec3::ZERO; positions.len()];
     let position = |index: u32| glam::DVec3::from(positions[index as usize].map(f64::from));
     for triangle in indices.chunks_exact(3) {
@@ -131,7 +131,7 @@ pub(crate) fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f3
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
-pub(crate) fn solved_tangents(
+pub fn solved_tangents(
     positions: &[[f32; 3]],
     normals: &[[f32; 3]],
     uv: &[[f32; 2]],

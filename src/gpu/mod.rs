@@ -47,7 +47,7 @@ pub(crate) use pending::PendingUploads;
 pub use readback_ring::ReadbackRing;
 #[cfg(not(target_arch = "wasm32"))]
 pub use timer::{Measurement, TimedBy, Timer};
-pub(crate) use tuning::Tuning;
+pub use tuning::Tuning;
 pub(crate) use upload::StagingStream;
 pub use upload::{Staged, StagingRing, Upload};
 
@@ -170,7 +170,7 @@ impl Gpu {
     }
 
     /// What is fastest on the adapter.
-    pub(crate) fn tuning(&self) -> Tuning {
+    pub fn tuning(&self) -> Tuning {
         self.tuning
     }
 

@@ -17,7 +17,7 @@ enum Processor {
 
 /// How kernels are cut on a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Tuning {
+pub struct Tuning {
     processor: Processor,
 }
 
@@ -43,8 +43,7 @@ impl Tuning {
     }
 
     /// Whether the driver compiles long shaders at all: SwiftShader's compiler takes gigabytes for them.
-    #[cfg(any(test, feature = "verify"))]
-    pub(crate) fn compiles_long_shaders(self) -> bool {
+    pub fn compiles_long_shaders(self) -> bool {
         self.processor != Processor::SwiftShader
     }
 }

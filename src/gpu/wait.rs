@@ -40,7 +40,7 @@ impl Gpu {
     /// # Errors
     /// [`Error::Gpu`](crate::Error::Gpu) with what the device reports, and the error of `record`.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn try_run(
+    pub fn try_run(
         &self,
         label: &str,
         record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), crate::Error>,

@@ -188,6 +188,3 @@ fn up(number: f64) -> f32 {
     let rounded = number as f32;
     if f64::from(rounded) < number { rounded.next_up() } else { rounded }
 }
-
-#[cfg(all(test, feature = "verify"))]
-mod tests;

@@ -19,7 +19,7 @@ pub mod attach;
 mod camera;
 mod instance;
 pub mod list;
-mod object;
+pub mod object;
 pub mod select;
 pub mod single;
 
@@ -30,6 +30,3 @@ pub use crate::shared::lod::instance::{
 pub use crate::shared::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 pub use crate::shared::lod::view::{LodCamera, SelectView, VIEW_CAMERAS};
 pub use camera::planes;
-
-#[cfg(feature = "verify")]
-pub(crate) mod verify;

@@ -71,7 +71,7 @@ impl LodObject {
 }
 
 /// The coarsest level whose error is at most `within`.
-pub(super) fn level_within(levels: u32, errors: &[[f32; 4]; 2], within: f32) -> u32 {
+pub fn level_within(levels: u32, errors: &[[f32; 4]; 2], within: f32) -> u32 {
     let fits = |level: &u32| errors.as_flattened()[*level as usize] <= within;
     (1..levels.min(OBJECT_LEVELS)).rev().find(fits).unwrap_or(0)
 }

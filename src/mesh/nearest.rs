@@ -7,7 +7,7 @@ macro_rules! nearest_on_triangle {
     ($(#[$documentation:meta])* $name:ident, $vector:ty, $number:ty) => {
         $(#[$documentation])*
         #[inline]
-        pub(crate) fn $name(point: $vector, [a, b, c]: [$vector; 3]) -> $vector {
+        pub fn $name(point: $vector, [a, b, c]: [$vector; 3]) -> $vector {
             // `one / all` where that is in 0..=1; 0 otherwise, also for 0 / 0 and NaN.
             let ratio = |one: $number, all: $number| {
                 let ratio = one / all;

@@ -5,7 +5,7 @@ mod pipelines;
 mod programs;
 mod rebuild;
 mod scene_pass;
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests;
 
 use std::collections::HashMap;

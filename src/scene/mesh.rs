@@ -22,7 +22,7 @@ use crate::{Error, InputError};
 pub(super) type Drawn = (Vec<Drawable>, Vec<SceneDraw>);
 
 /// A model's meshes at rest, merged, with a sphere around them.
-pub(crate) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
+pub fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
     check(model)?;
     let mut rest = at_rest(model).map_err(|error| error.below("model"))?;
     if model.clips.is_empty() {
@@ -39,7 +39,7 @@ pub(crate) fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), 
 }
 
 /// The meshes of a model with clips, merged.
-pub(crate) fn moving_merged(model: &Model) -> Result<Merged, InputError> {
+pub fn moving_merged(model: &Model) -> Result<Merged, InputError> {
     check(model)?;
     merged(model, OBJECT_LEVELS as usize)
 }
@@ -194,7 +194,7 @@ fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
 }
 
 /// For each vertex of a merged mesh, the coarsest level of the object that has it; `errors` are those of the object's levels.
-pub(crate) fn coarsest_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
+pub fn coarsest_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
     let own = own_levels(mesh, errors);
     let of_object = |coarsest: u32| own.iter().rposition(|level| *level <= coarsest).unwrap_or(0) as u32;
     mesh.coarsest_levels().into_iter().map(of_object).collect()

@@ -28,9 +28,9 @@ pub(crate) mod layouts;
 pub(crate) mod material;
 mod materials;
 mod matrices;
-#[cfg(feature = "verify")]
+#[cfg(not(target_arch = "wasm32"))]
 mod measured;
-pub(crate) mod mesh;
+pub mod mesh;
 pub(crate) mod object;
 mod objects;
 mod options;
@@ -42,7 +42,7 @@ mod placement;
 mod playing;
 mod poses;
 mod quality;
-pub(crate) mod query;
+pub mod query;
 mod ray;
 mod rebuild;
 mod relief;

@@ -8,8 +8,8 @@ use super::{ClipTime, InstanceId, ObjectId, Placement, Scene};
 use crate::InputError;
 use crate::shared::lod::instance::SceneInstance;
 
-#[cfg(feature = "verify")]
-pub(crate) use drawn::{DrawnAs, DrawnInstance};
+#[cfg(not(target_arch = "wasm32"))]
+pub use drawn::{DrawnAs, DrawnInstance};
 
 impl Scene {
     /// All instances of an object, in the order in which views list them. Those of terrain are its patches: they can be
@@ -82,7 +82,7 @@ impl Scene {
     }
 }
 
-#[cfg(feature = "verify")]
+#[cfg(not(target_arch = "wasm32"))]
 mod drawn {
     use super::*;
     use crate::Error;
@@ -96,7 +96,8 @@ mod drawn {
 
     /// An instance that a view may show, as the view's last frame drew it.
     #[derive(Debug, Clone, Copy)]
-    pub(crate) struct DrawnInstance {
+    pub struct DrawnInstance {
+        /// The instance.
         pub instance: InstanceId,
         /// How it was drawn; `None` if it was not.
         pub drawn: Option<DrawnAs>,
@@ -104,7 +105,7 @@ mod drawn {
 
     /// How a view drew an instance.
     #[derive(Debug, Clone, Copy, PartialEq)]
-    pub(crate) struct DrawnAs {
+    pub struct DrawnAs {
         /// Its list, 2 · level + mirrored.
         pub list: u32,
         /// How far its level had moved to the next coarser one, 0 to 1.
@@ -115,17 +116,13 @@ mod drawn {
 
     impl Scene {
         /// Whether the instances of an object are animated.
-        pub(crate) fn is_character(&self, object: ObjectId) -> Result<bool, InputError> {
+        pub fn is_character(&self, object: ObjectId) -> Result<bool, InputError> {
             Ok(matches!(self.object_at(object)?.kind, Kind::Character(_)))
         }
 
         /// The instances of an object that a view may show, as its last frame, which must be submitted, drew them. Waits
         /// for the device.
-        pub(crate) fn drawn_instances(
-            &self,
-            view: &View,
-            object: ObjectId,
-        ) -> Result<Vec<DrawnInstance>, Error> {
+        pub fn drawn_instances(&self, view: &View, object: ObjectId) -> Result<Vec<DrawnInstance>, Error> {
             let entry = self.object_at(object)?;
             let buffers = self.lists_of(view)?;
             let draws = buffers.arguments.read_blocking(&self.gpu)?;
@@ -166,7 +163,7 @@ mod drawn {
 
         /// The triangles that a view draws of the instances of an object's list, for each of its merged meshes; corners are
         /// slots of vertices. Waits for the device.
-        pub(crate) fn drawn_triangles(
+        pub fn drawn_triangles(
             &self,
             view: &View,
             object: ObjectId,
@@ -192,7 +189,7 @@ mod drawn {
         /// The vertices that are drawn of instances of an object, instance by instance, for each of its merged meshes: those
         /// of their pages in the mesh's own order if it is a character, those without a page `None`; and those that all
         /// instances share, slot by slot and once for all of them, if it is a mesh. Waits for the device.
-        pub(crate) fn drawn_vertices(
+        pub fn drawn_vertices(
             &self,
             object: ObjectId,
             instances: &[InstanceId],

@@ -1,4 +1,4 @@
-//! Models and maps that need no file, by the names that scene files give them after `builtin:`.
+//! Models and height maps that need no file, by the names that scene files give them after `builtin:`.
 
 use image::RgbaImage;
 
@@ -6,69 +6,31 @@ use crate::InputError;
 use crate::asset::Model;
 use crate::surface::HeightMap;
 
-#[cfg(feature = "samples")]
-pub(super) use there::{CHARACTERS, MAPS, MODELS, map, model};
-
-#[cfg(not(feature = "samples"))]
-pub(super) use nothing::{CHARACTERS, MAPS, MODELS, map, model};
-
-#[cfg(feature = "samples")]
-mod there {
-    use super::*;
-    use crate::asset::Material;
-    pub use crate::samples::MODELS;
-    use crate::samples::{self, BuiltInMap};
-
-    /// Models that a character may be.
-    pub const CHARACTERS: [&str; 1] = ["creature"];
-
-    /// Height maps, with colours.
-    pub const MAPS: [&str; 4] = ["bricks", "cobbles", "text", "posts"];
-
-    /// The colour of the creature, in linear light.
-    const CLAY: [f32; 4] = [0.6, 0.3, 0.16, 1.0];
-
-    /// Texels along an edge of a map.
-    const TEXELS: u32 = 512;
-
+/// Models and height maps that scene files name after `builtin:`. The crate `relievo-samples` has some.
+pub trait BuiltIns {
     /// The model of this name.
-    pub fn model(name: &str) -> Result<Model, InputError> {
-        match name {
-            "creature" => samples::model(name).map(of_clay),
-            _ => samples::model(name),
-        }
-    }
+    ///
+    /// # Errors
+    /// [`InputError`] for another name, which lists those there are.
+    fn model(&self, name: &str) -> Result<Model, InputError>;
 
-    /// The model with a colour: it has no material of its own.
-    fn of_clay(mut model: Model) -> Model {
-        let material = Material::opaque("clay", CLAY);
-        for mesh in &mut model.meshes {
-            mesh.material = Some(model.materials.len());
-        }
-        model.materials.push(material);
-        model
-    }
-
-    /// Heights and colours of the map of this name.
-    pub fn map(name: &str) -> Result<(HeightMap, RgbaImage), InputError> {
-        let map: BuiltInMap = name.parse()?;
-        Ok((map.height_map(TEXELS)?, map.albedo(TEXELS)?))
-    }
+    /// The heights and the colours of the relief of this name.
+    ///
+    /// # Errors
+    /// [`InputError`] for another name, which lists those there are.
+    fn map(&self, name: &str) -> Result<(HeightMap, RgbaImage), InputError>;
 }
 
-#[cfg(not(feature = "samples"))]
-mod nothing {
-    use super::*;
+/// Neither models nor height maps: a scene file may name files alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoBuiltIns;
 
-    pub const MODELS: [&str; 0] = [];
-    pub const CHARACTERS: [&str; 0] = [];
-    pub const MAPS: [&str; 0] = [];
-
-    pub fn model(name: &str) -> Result<Model, InputError> {
-        Err(InputError::new("file", name, "must be a file"))
+impl BuiltIns for NoBuiltIns {
+    fn model(&self, name: &str) -> Result<Model, InputError> {
+        Err(InputError::new("builtin", name, "must be a file: nothing is built in"))
     }
 
-    pub fn map(name: &str) -> Result<(HeightMap, RgbaImage), InputError> {
-        Err(InputError::new("relief", name, "must be a file"))
+    fn map(&self, name: &str) -> Result<(HeightMap, RgbaImage), InputError> {
+        Err(InputError::new("builtin", name, "must be a file: nothing is built in"))
     }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use image::{DynamicImage, Rgba, RgbaImage};
 
-use super::builtin;
+use super::builtin::BuiltIns;
 use super::entries::{EntryKind, ObjectEntry, PlayEntry, ReliefEntry, Source};
 use super::spec::SceneFile;
 #[cfg(not(target_arch = "wasm32"))]
@@ -50,16 +50,17 @@ impl LoadedScene {
         &self.file
     }
 
-    /// Reads a scene file and the files that it names, from the file system.
+    /// Reads a scene file and the files that it names, from the file system, and takes what it names after `builtin:` from
+    /// `built_ins`.
     ///
     /// # Errors
     /// [`Error::File`] if the file cannot be read; [`Error::InputFile`] with the path of a mistake inside the file.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn from_path(path: &Path) -> Result<Self, Error> {
+    pub fn from_path(path: &Path, built_ins: &dyn BuiltIns) -> Result<Self, Error> {
         let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let read = |name: &Path| std::fs::read(folder.join(name));
-        let loaded = SceneFile::from_json(&text).and_then(|file| file.load(&read));
+        let loaded = SceneFile::from_json(&text).and_then(|file| file.load(&read, built_ins));
         loaded.map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 }
@@ -67,13 +68,18 @@ impl LoadedScene {
 impl SceneFile {
     /// Reads the files that the scene names through `read`, which gets their paths relative to the scene file, and computes
     /// levels of detail of all meshes and of characters in the clips that they play, from 15 poses a second and at most 48 a
-    /// clip. A model that several objects show is read and simplified once, for all that they do with it.
+    /// clip. A model that several objects show is read and simplified once, for all that they do with it. What the scene
+    /// names after `builtin:` comes from `built_ins`; [`NoBuiltIns`](super::NoBuiltIns) has nothing.
     ///
     /// # Errors
     /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for one
     /// that does not suit its use, and for a clip that a model does not have.
-    pub fn load(&self, read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> Result<LoadedScene, InputError> {
-        let mut files = Files::new(read);
+    pub fn load(
+        &self,
+        read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
+        built_ins: &dyn BuiltIns,
+    ) -> Result<LoadedScene, InputError> {
+        let mut files = Files::new(read, built_ins);
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones).enumerate();
         let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
             ZoneTexture::BuiltIn(kind) => Ok(Texture::built_in(kind)),
@@ -91,6 +97,7 @@ impl SceneFile {
 /// What was read so far, each model once.
 struct Files<'a> {
     read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
+    built_ins: &'a dyn BuiltIns,
     models: HashMap<Source, Arc<Model>>,
     needs: HashMap<Source, Needs>,
     /// With levels of detail for all that is needed.
@@ -109,9 +116,9 @@ struct Needs {
 }
 
 impl<'a> Files<'a> {
-    fn new(read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> Self {
+    fn new(read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>, built_ins: &'a dyn BuiltIns) -> Self {
         let (models, needs) = (HashMap::new(), HashMap::new());
-        Self { read, models, needs, levelled: HashMap::new(), resting: HashMap::new() }
+        Self { read, built_ins, models, needs, levelled: HashMap::new(), resting: HashMap::new() }
     }
 
     fn objects(&mut self, entries: &[ObjectEntry]) -> Result<Vec<Loaded>, InputError> {
@@ -161,7 +168,7 @@ impl<'a> Files<'a> {
             return Ok(known.clone());
         }
         let model = match source {
-            Source::BuiltIn(name) => builtin::model(name),
+            Source::BuiltIn(name) => self.built_ins.model(name),
             Source::File(file) => {
                 let bytes = self.bytes(path, file)?;
                 let folder = file.parent().unwrap_or(Path::new(""));
@@ -250,7 +257,8 @@ impl<'a> Files<'a> {
         let within = |error: InputError| within(path, &relief.heights, &error);
         match &relief.heights {
             Source::BuiltIn(name) => {
-                builtin::map(name).map(|(heights, colors)| (heights, Some(colors))).map_err(within)
+                let found = self.built_ins.map(name).map_err(within);
+                found.map(|(heights, colors)| (heights, Some(colors)))
             }
             Source::File(file) => {
                 let image = self.decoded(path, file)?;
@@ -267,7 +275,10 @@ impl<'a> Files<'a> {
 
     fn colors(&self, path: &str, source: &Source) -> Result<RgbaImage, InputError> {
         match source {
-            Source::BuiltIn(name) => builtin::map(name).map(|(_, colors)| colors),
+            Source::BuiltIn(name) => {
+                let found = self.built_ins.map(name).map_err(|error| within(path, source, &error));
+                found.map(|(_, colors)| colors)
+            }
             Source::File(file) => Ok(self.decoded(path, file)?.into_rgba8()),
         }
     }
@@ -334,9 +345,11 @@ fn base_color(model: &Model) -> RgbaImage {
     })
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::Samples;
+    use crate::scene_file::NoBuiltIns;
 
     /// A model that characters with different clips, and a mesh, show is simplified for all of them at once.
     #[test]
@@ -355,7 +368,9 @@ mod tests {
         ));
         let file = file.expect("a scene");
         let read = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
-        let mut files = Files::new(&read);
+        let refused = file.load(&read, &NoBuiltIns).expect_err("nothing is built in").to_string();
+        assert!(refused.contains("builtin = creature: must be a file"), "{refused}");
+        let mut files = Files::new(&read, &Samples);
         let loaded = files.objects(&file.objects).expect("loaded");
         assert_eq!((loaded.len(), files.levelled.len()), (3, 1));
         let models: Vec<&Arc<Model>> = loaded

@@ -2,7 +2,7 @@
 //! tests draw such files, and a program may do the same.
 //!
 //! [`SceneFile::from_json`] checks a text. [`SceneFile::load`] reads what it names, through a function of the caller's, so
-//! that it works without a file system. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it (and
+//! that it works without a file system; what it names after `builtin:` comes from the caller's [`BuiltIns`]. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it (and
 //! [`LoadedScene::build_async`] without blocking), and `Player` draws its frames off screen.
 //!
 //! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`), the
@@ -13,7 +13,6 @@
 //! # An example
 //!
 //! ```
-//! # #[cfg(feature = "samples")] {
 //! use relievo::scene::Depth;
 //! use relievo::scene_file::SceneFile;
 //!
@@ -25,10 +24,9 @@
 //! assert!(file.files().is_empty() && file.quality().pixels == 1.0);
 //! let camera = file.camera().camera(0.0, [640, 400], Depth::Reversed);
 //! assert_eq!(camera.viewport, [640, 400]);
-//! // Then, with a device: `file.load(&|path| std::fs::read(folder.join(path)))?.build(&gpu)?`
+//! // Then, with a device: `file.load(&|path| std::fs::read(folder.join(path)), &relievo_samples::Samples)?.build(&gpu)?`
 //! let error = SceneFile::from_json(r#"{"camera": {"at": [0, 1, 0], "look": [0, 1, "far"]}}"#).unwrap_err();
 //! assert_eq!(error.to_string(), "camera.look[2] = far: must be a number in -1000000000..=1000000000");
-//! # }
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
@@ -46,6 +44,7 @@ mod scatter;
 mod spec;
 mod world;
 
+pub use builtin::{BuiltIns, NoBuiltIns};
 pub use camera::CameraPath;
 pub use load::LoadedScene;
 #[cfg(not(target_arch = "wasm32"))]

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use glam::{DVec3, Quat, Vec3};
 
-use super::builtin;
 use super::entries::{
     BUILT_IN, EntryKind, InstanceEntry, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
 };
@@ -31,7 +30,7 @@ const SHADOWS: [(&str, Shadow); 3] = [("none", Shadow::None), ("hard", Shadow::H
 /// An entry of `meshes`.
 pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
     let fields = at.fields(&["file", "material", "transition", "instances", "scatter"])?;
-    let source = model(&fields, &builtin::MODELS)?;
+    let source = model(&fields)?;
     let kind = fields.maybe("material", |at| relief(&at))?.map_or(EntryKind::Mesh, EntryKind::Relief);
     placed(at, &fields, (source, kind), MAX_MESHES)
 }
@@ -40,7 +39,7 @@ pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
 pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
     let fields =
         at.fields(&["file", "clip", "rate", "start", "wrap", "transition", "instances", "scatter"])?;
-    let source = model(&fields, &builtin::CHARACTERS)?;
+    let source = model(&fields)?;
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
     let kind = EntryKind::Character(play(&fields, &all)?);
     placed(at, &fields, (source, kind), MAX_CHARACTERS)
@@ -79,9 +78,9 @@ pub(super) fn transition(at: &At<'_>) -> Result<Transition, InputError> {
 }
 
 /// The model's `file`.
-fn model(fields: &Fields<'_>, built_in: &[&str]) -> Result<Source, InputError> {
+fn model(fields: &Fields<'_>) -> Result<Source, InputError> {
     let at = fields.need("file", "a .glb, .gltf or .obj file, or a built-in model")?;
-    let found = source(&at, built_in)?;
+    let found = source(&at)?;
     let Source::File(path) = &found else { return Ok(found) };
     match extension(path).as_str() {
         ending if ENDINGS.contains(&ending) => Ok(found),
@@ -91,7 +90,7 @@ fn model(fields: &Fields<'_>, built_in: &[&str]) -> Result<Source, InputError> {
 
 /// An image file, or a built-in map.
 fn image(at: At<'_>) -> Result<Source, InputError> {
-    let found = source(&at, &builtin::MAPS)?;
+    let found = source(&at)?;
     match &found {
         Source::File(path) if !["png", "jpg", "jpeg"].contains(&extension(path).as_str()) => {
             Err(at.error("must be a .png or .jpg file"))
@@ -104,19 +103,12 @@ fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-fn source(at: &At<'_>, built_in: &[&str]) -> Result<Source, InputError> {
+fn source(at: &At<'_>) -> Result<Source, InputError> {
     let text = at.text()?;
-    let Some(name) = text.strip_prefix(BUILT_IN) else { return Ok(Source::File(text.into())) };
-    if built_in.contains(&name) {
-        return Ok(Source::BuiltIn(name.to_owned()));
-    }
-    Err(at.error(match built_in.is_empty() {
-        true => "must be a file: this build has nothing built in (feature `samples`)".to_owned(),
-        false => {
-            let all: Vec<_> = built_in.iter().map(|name| format!("{BUILT_IN}{name}")).collect();
-            format!("must be a file or one of {}", all.join(", "))
-        }
-    }))
+    Ok(match text.strip_prefix(BUILT_IN) {
+        Some(name) => Source::BuiltIn(name.to_owned()),
+        None => Source::File(text.into()),
+    })
 }
 
 fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {

@@ -43,7 +43,7 @@ impl BonePath {
     }
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use glam::Mat3;
 

@@ -136,7 +136,7 @@ pub(crate) fn stretch(rows: [Vec3; 3]) -> f32 {
     (squares + mixed + mixed.zxy()).max_element().min(squares.element_sum()).sqrt()
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::clip::{BoneKeys, Interpolation, Keys};

@@ -70,7 +70,7 @@ impl Step {
     }
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::mesh::MeshLevel;

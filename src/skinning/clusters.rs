@@ -209,7 +209,7 @@ fn mask(mesh: &Mesh, skin: &Skin, slot_of: &[usize], cluster: &[u32], words: usi
     mask
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::mesh::MeshLevel;

@@ -172,7 +172,7 @@ fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
     influences[1..].iter().map(|other| off(other.weight / second.weight)).fold(0.0, f32::max)
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::skinning::lod::LevelRanges;

@@ -257,17 +257,15 @@ pub(crate) fn add_levels_and_at_rest(
 /// model stays as it is, and the result is `None`.
 ///
 /// ```
-/// # #[cfg(feature = "samples")] {
 /// use std::ops::ControlFlow;
 ///
-/// let mut rock = relievo::samples::rock()?;
+/// let mut rock = relievo_samples::rock()?;
 /// let mut drawn = 0;
 /// let found = relievo::skinning::add_levels_with_progress(&mut rock, &[], 1, &mut |fraction| {
 ///     drawn = (100.0 * fraction) as u32; // the width of a bar
 ///     ControlFlow::Continue(())
 /// })?;
 /// assert_eq!((drawn, found.map(|levels| levels.len())), (100, Some(1)));
-/// # }
 /// # Ok::<(), relievo::InputError>(())
 /// ```
 ///
@@ -373,7 +371,7 @@ fn found(whole: &Whole<'_>, welded: &Welded, keys: &Keys, simplified: &Simplifie
     levels
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::{Influence, Influences, Mesh};

@@ -3,8 +3,6 @@
 
 pub mod at_rest;
 mod attribute_weights;
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod bone_path;
 pub mod bounding_sphere;
@@ -33,8 +31,6 @@ pub mod posed;
 pub mod reduced;
 pub mod select;
 pub mod skin;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 pub mod vertex;
 
 pub use at_rest::{at_rest, still};

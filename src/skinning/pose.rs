@@ -183,7 +183,7 @@ pub(super) fn mean(influences: &[Influence], points: &[Vec3]) -> Vec3 {
     influences.iter().zip(points).map(|(influence, point)| influence.weight * *point).sum()
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::clip::BoneKeys;

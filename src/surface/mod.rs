@@ -1,10 +1,8 @@
 //! Surface mapping: ray-height methods with a common result, the maps that accelerate them, and tangent frames
 //! (B sections 3.1 and 4.2).
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
-pub(crate) mod color;
+pub mod color;
 pub mod cone_map;
 pub mod exact;
 #[cfg(feature = "gpu")]
@@ -21,8 +19,6 @@ pub mod picture;
 pub mod relief;
 pub mod shade;
 pub mod tangent;
-#[cfg(feature = "verify")]
-pub mod verify;
 pub mod view;
 
 #[cfg(feature = "gpu")]

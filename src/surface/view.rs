@@ -54,19 +54,19 @@ impl SquareView {
     }
 
     /// The unit vector towards the eye, in tangent space.
-    pub(crate) fn towards(&self) -> [f64; 3] {
+    pub fn towards(&self) -> [f64; 3] {
         let ((sine, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         [sine * east, sine * south, cosine]
     }
 
     /// The unit vectors to the right and up in the picture, in tangent space.
-    pub(crate) fn axes(&self) -> [[f64; 3]; 2] {
+    pub fn axes(&self) -> [[f64; 3]; 2] {
         let ((sine, cosine), (east, south)) = (sin_cos(self.angle), sin_cos(self.azimuth));
         [[south, -east, 0.0], [-cosine * east, -cosine * south, sine]]
     }
 
     /// Pixels per edge length of the square.
-    pub(crate) fn zoom(&self) -> f64 {
+    pub fn zoom(&self) -> f64 {
         let [right, up] = self.axes();
         let extent = |axis: [f64; 3]| axis[0].abs() + axis[1].abs();
         let [width, height] = self.size.map(f64::from);

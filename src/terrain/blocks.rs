@@ -17,7 +17,7 @@ pub(crate) fn rows(tuning: Tuning) -> u32 {
 
 /// The rows of blocks, and which of them neighbouring threads make (`wgsl/terrain/order.wgsl`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Order {
+pub struct Order {
     /// Rows of a block, at least 1.
     pub rows: u32,
     /// Whether neighbouring threads make the blocks of a column, not of a row.
@@ -25,8 +25,10 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    pub(crate) const SOFTWARE: Self = Self { rows: ROWS_DOWNWARDS, downwards: true };
-    pub(crate) const HARDWARE: Self = Self { rows: ROWS_HARDWARE, downwards: false };
+    /// For software adapters.
+    pub const SOFTWARE: Self = Self { rows: ROWS_DOWNWARDS, downwards: true };
+    /// For hardware.
+    pub const HARDWARE: Self = Self { rows: ROWS_HARDWARE, downwards: false };
 
     /// What suits a device.
     pub(crate) fn of(tuning: Tuning) -> Self {
@@ -36,7 +38,7 @@ impl Order {
 
 /// What a thread makes of windows (`wgsl/terrain/columns.wgsl`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Columns {
+pub struct Columns {
     /// Vectors of four samples along a row: 1 or 4.
     pub quads: u32,
     /// Its rows, and the order of threads.
@@ -53,8 +55,7 @@ impl Columns {
     }
 
     /// What suits software adapters, and hardware.
-    #[cfg(feature = "verify")]
-    pub(crate) const ALL: [Self; 2] = [Self::SOFTWARE, Self::HARDWARE];
+    pub const ALL: [Self; 2] = [Self::SOFTWARE, Self::HARDWARE];
 
     /// The blocks of windows that lose their outermost ring.
     pub(crate) fn blocks(self, windows: &Fields) -> Blocks {

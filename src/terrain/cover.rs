@@ -1,7 +1,6 @@
 //! What covers the ground, as shaders take it: zones, the texels of their textures at the scale of a colour map, and how these lie
 //! on the ground.
 
-#[cfg(feature = "verify")]
 use crate::hash::{LANES, threefry2x32};
 #[cfg(feature = "gpu")]
 use glam::{UVec4, Vec4};
@@ -99,8 +98,7 @@ impl Cover {
     }
 
     /// A cover whose zones have random texels, 4^`edge_log2` each.
-    #[cfg(feature = "verify")]
-    pub(crate) fn random(zones: &[Zone], edge_log2: u32) -> Self {
+    pub fn random(zones: &[Zone], edge_log2: u32) -> Self {
         let texels = 1_u32 << (2 * edge_log2);
         let map_zone =
             |(at, zone): (u32, &Zone)| MapZone { zone: zone_of(zone), first: at * texels, edge_log2 };

@@ -152,7 +152,7 @@ impl Features {
 
     /// The mode of injection, or `None` if there are no features.
     #[cfg(feature = "gpu")]
-    pub(crate) fn injection(&self) -> Option<FeatureMode> {
+    pub fn injection(&self) -> Option<FeatureMode> {
         (!self.is_empty()).then_some(self.mode)
     }
 

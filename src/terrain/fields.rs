@@ -108,7 +108,7 @@ impl Fields {
     }
 
     /// Number of samples in all fields when they are `crop` samples smaller on every side.
-    pub(crate) fn points(&self, crop: u32) -> usize {
+    pub fn points(&self, crop: u32) -> usize {
         (self.inner_width(crop) as usize).pow(2) * self.count as usize
     }
 

@@ -3,11 +3,9 @@
 //! **Decided**: heights are integers. B requires the exact same content on every client (3.3), but computes in floating
 //! point, which devices round differently.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 pub mod blend;
 #[cfg(feature = "gpu")]
-pub(crate) mod blocks;
+pub mod blocks;
 pub mod border;
 pub mod color_maps;
 pub mod config;
@@ -36,7 +34,5 @@ pub mod recipe;
 pub mod smooth;
 pub mod texture;
 pub mod thermal;
-#[cfg(feature = "verify")]
-pub mod verify;
 pub mod window;
 pub mod wrap;

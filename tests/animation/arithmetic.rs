@@ -2,8 +2,8 @@
 
 use relievo::animation::budget::reference::rank_of;
 use relievo::animation::gate_table::sums::{motion_at, motion_between, scale_by_fraction};
-use relievo::animation::verify::Draw;
 use relievo::gpu::shaders::{ANIMATION_BUDGET, ANIMATION_GATE};
+use relievo_lab::cases::animation::Draw;
 
 use crate::harness::gpu;
 use crate::shader::called;

@@ -4,11 +4,11 @@ use relievo::animation::frame::reference::Crowd;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::order::Order;
-use relievo::animation::verify::Draw;
 use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Frame, Gate};
 use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Bone, Clip, Skeleton, Transform};
+use relievo_lab::cases::animation::Draw;
 
 fn skeleton(parents: &[Option<u32>]) -> Skeleton {
     let bone =

@@ -8,7 +8,7 @@ use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::AFFINE_IDENTITY;
 use relievo::asset::{Affine, Bone, Skeleton, Transform};
-use relievo::samples::creature;
+use relievo_samples::creature;
 
 use crate::player::unit;
 use crate::sampling::noise;

@@ -17,8 +17,8 @@ use relievo::animation::{ClipSet, Layer};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Model, Transform};
 use relievo::gpu::{Buffer, Gpu};
-use relievo::harness::compare::absolute;
-use relievo::samples::creature;
+use relievo_lab::harness::compare::absolute;
+use relievo_samples::creature;
 
 use crate::harness::gpu;
 

@@ -14,11 +14,11 @@ use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Gate, GateState, Mo
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{Buffer, Gpu};
-use relievo::samples::creature;
 use relievo::skinning::Blend;
 use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use relievo::skinning::frame::SkinFrame;
 use relievo::skinning::palette::PalettePass;
+use relievo_samples::creature;
 
 use crate::harness::gpu;
 

@@ -17,7 +17,7 @@ use relievo::animation::{
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Clip, Model, Skeleton};
 use relievo::gpu::Gpu;
-use relievo::samples::creature;
+use relievo_samples::creature;
 
 use crate::harness::gpu;
 

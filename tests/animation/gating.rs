@@ -8,7 +8,6 @@ use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
 use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
-use relievo::animation::verify::{Draw, random_clips, random_skeleton};
 use relievo::animation::{
     AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable, Sampling,
 };
@@ -16,7 +15,8 @@ use relievo::asset::clip::BoneKeys;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Skeleton};
-use relievo::samples::creature;
+use relievo_lab::cases::animation::{Draw, random_clips, random_skeleton};
+use relievo_samples::creature;
 
 /// The skeleton, clips and tables that a test plays.
 struct Stage {

@@ -9,7 +9,7 @@ use relievo::animation::{ClipSet, Layer};
 use relievo::asset::Transform;
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
-use relievo::samples::creature;
+use relievo_samples::creature;
 
 use crate::player::{angle, dot, unit, wide};
 use crate::sampling::{noise, skeleton};

@@ -1,27 +1,18 @@
 //! Skeletons and clips, their import and their sampling, compared with independent code in double precision.
 
-#[cfg(feature = "verify")]
 mod arithmetic;
-#[cfg(feature = "verify")]
 mod bounded;
 mod bounds;
 mod compressed;
 mod concatenation;
-#[cfg(feature = "verify")]
 mod crowds;
-#[cfg(feature = "verify")]
 mod exclusive;
-#[cfg(feature = "verify")]
 mod frames;
-#[cfg(feature = "verify")]
 mod gating;
-#[cfg(feature = "verify")]
-#[path = "../harness/mod.rs"]
-mod harness;
+use relievo_testing as harness;
 mod import;
 mod layers;
 mod malformed;
-#[cfg(feature = "verify")]
 mod measures;
 mod meshes;
 mod player;
@@ -30,8 +21,6 @@ mod root_motion;
 mod sampling;
 mod scene;
 mod scenes;
-#[cfg(feature = "verify")]
-#[path = "../harness/shader.rs"]
-mod shader;
+use relievo_testing::shader;
 mod tangents;
 mod textures;

@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use relievo::Error;
 use relievo::asset::Model;
-use relievo::measure::{
+use relievo_lab::measure::{
     AnimationReport, CrowdOptions, DrawnOptions, GateMode, GateName, LodOptions, MeshDetail, ParetoOptions,
     ParetoPoint, ParetoReport, Progress, SkinningDetail, Subject, animation, drawn, pareto, scene,
 };

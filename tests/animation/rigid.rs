@@ -1,4 +1,4 @@
-//! Meshes without a skin: which bones they follow, and what becomes of their nodes. `tests/cli/skin.rs` checks
+//! Meshes without a skin: which bones they follow, and what becomes of their nodes. `crates/relievo-cli/tests/cli/skin.rs` checks
 //! the positions of their vertices.
 
 use relievo::asset::Model;

@@ -10,7 +10,7 @@ use relievo::animation::sample::reference::{sample, sample_bone};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Bone, Skeleton, Transform};
-use relievo::samples::creature;
+use relievo_samples::creature;
 
 use crate::sampling::noise;
 

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 /// The creature with levels of detail, a morph target, and a material with an image.
 fn model() -> Model {
-    let mut model = relievo::samples::creature().expect("valid");
+    let mut model = relievo_samples::creature().expect("valid");
     let texture = Texture { image: 0, sampling: Sampling::default() };
     let skin =
         Material { texture: Some(texture), alpha: Alpha::Mask(0.3), ..Material::opaque("skin", [0.9; 4]) };

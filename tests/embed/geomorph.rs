@@ -1,7 +1,6 @@
 //! Levels of detail that move into each other: no pixel changes where one level becomes the next, and in between every
 //! vertex is where the host moves it.
 
-#[cfg(feature = "verify")]
 mod measured;
 mod transparent;
 
@@ -11,13 +10,13 @@ use relievo::asset::Model;
 use relievo::gpu::Gpu;
 use relievo::mesh::ProgressiveMesh;
 use relievo::render::{Layer, Renderer};
-use relievo::samples::{creature, rock};
 use relievo::scene::{
     Camera, ObjectId, Placement, Play, Quality, Scene, Shares, TerrainSource, Transition, View,
 };
 use relievo::skinning::add_levels;
 use relievo::skinning::merged::merged;
 use relievo::terrain::config::Config;
+use relievo_samples::{creature, rock};
 
 use crate::frame::{Frame, device};
 

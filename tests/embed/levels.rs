@@ -10,7 +10,6 @@ use relievo::asset::{Mesh, Model};
 use relievo::gpu::Gpu;
 use relievo::mesh::ProgressiveMesh;
 use relievo::render::Renderer;
-use relievo::samples::{creature, rock};
 use relievo::scene::{Camera, Placement, Quality, Scene, View};
 use relievo::skinning::at_rest::still;
 use relievo::skinning::instance_lod::InstanceLod;
@@ -19,6 +18,7 @@ use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::{Blend, Vertex};
 use relievo::skinning::{MeshLevels, add_levels};
+use relievo_samples::{creature, rock};
 
 use crate::frame::{Frame, device};
 use crate::hull::{Hull, halves};

@@ -1,8 +1,6 @@
 //! The scene inside a program with its own device, targets and frames, on WebGPU's default limits without features.
-#![cfg(all(feature = "gpu", feature = "samples"))]
 
-#[path = "../harness/mod.rs"]
-mod harness;
+use relievo_testing as harness;
 
 mod bones;
 mod bundles;
@@ -25,7 +23,6 @@ mod morphing;
 mod picked;
 mod pieces;
 mod placements;
-#[cfg(feature = "verify")]
 mod promise;
 mod query;
 mod raw;

@@ -7,10 +7,10 @@ use relievo::asset::material::{Alpha, Filter, Sampling, Texture};
 use relievo::asset::{Material, Mesh, Model};
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer};
-use relievo::samples::creature;
 use relievo::scene::{Camera, ObjectId, Placement, Quality, Scene, View};
+use relievo_samples::creature;
 
-use crate::frame::{Frame, device};
+use crate::frame::{Frame, device, devices};
 use crate::world::{SIZE, World};
 
 /// A square that faces +Z, beside the middle.
@@ -168,6 +168,25 @@ fn images_are_replaced_and_added() {
         stage.scene.set_image(stage.object, index, image).expect_err("refused").to_string()
     });
     assert!(path[0].starts_with("index = 9") && path[1].starts_with("image = 0 × 3"), "{path:?}");
+}
+
+/// Images stay what they were when a lost device refuses another one, and the next device draws them.
+#[test]
+fn a_refused_image_changes_nothing() {
+    let [lost, second] = devices();
+    lost.device().on_uncaptured_error(std::sync::Arc::new(|_| ()));
+    let stage = Stage::new(&lost, &model(false));
+    lost.device().destroy();
+    let Stage { mut scene, object, mut view, .. } = stage;
+    let other = image([[9, 250, 9, 255]; 2]);
+    let told = scene.set_image(object, 0, other).expect_err("lost").to_string();
+    assert!(told.contains("lost"), "{told}");
+    scene.rebuild(&second).expect("a device");
+    view.rebuild(&scene).expect("a device");
+    let frame = Frame::plain(&second, SIZE);
+    let renderer = frame.renderer(&second, &scene);
+    let mut stage = Stage { scene, object, view, frame, renderer };
+    assert!(stage.shot() == Stage::new(&second, &model(false)).shot(), "another picture");
 }
 
 /// What was recorded keeps its colours, and a pipeline that is missing is told.

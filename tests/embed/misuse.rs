@@ -4,10 +4,10 @@ use relievo::InputError;
 use relievo::asset::{Light, Model, Transform};
 use relievo::gpu::{Gpu, GpuError};
 use relievo::render::{DepthFormat, Layer, Renderer, SunShadow, TargetFormat};
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Quality, Relief, Scene, TerrainSource};
 use relievo::terrain::config::Config;
 use relievo::wgpu::{self, TextureFormat as Format};
+use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::{COLOR, Frame, device, devices};
 use crate::world::{SIZE, World, camera};

@@ -5,8 +5,8 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
 use relievo::asset::material::Alpha;
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{InstanceId, Placement, Ray, Relief, Scene};
+use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::device;
 use crate::host::Draw;

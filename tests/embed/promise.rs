@@ -6,10 +6,10 @@ use std::sync::LazyLock;
 use glam::{Quat, Vec3};
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
-use relievo::measure::{Displacement, DisplacementMeter};
 use relievo::scene::{Camera, ObjectId, Placement, Play, Quality, Scene, View};
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::{add_levels, poses_of};
+use relievo_lab::measure::{Displacement, DisplacementMeter};
 
 use crate::frame::device;
 
@@ -125,7 +125,7 @@ fn measured() -> u32 {
 
 fn creature() -> &'static Model {
     static MODEL: LazyLock<Model> =
-        LazyLock::new(|| levelled(relievo::samples::creature().expect("valid"), 16));
+        LazyLock::new(|| levelled(relievo_samples::creature().expect("valid"), 16));
     &MODEL
 }
 
@@ -172,7 +172,7 @@ fn planted_faults_exceed_the_promise() {
 #[test]
 fn displacements_are_those_of_a_closed_form() {
     let gpu = device();
-    let mut model = relievo::samples::creature().expect("valid");
+    let mut model = relievo_samples::creature().expect("valid");
     model.clips.clear();
     let way = 0.125;
     let mut moved = model.clone();

@@ -6,9 +6,9 @@ use relievo::asset::Transform;
 use relievo::asset::material::{Alpha, Material};
 use relievo::gpu::{Gpu, GpuError};
 use relievo::render::{Layer, Renderer, SunShadow};
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{InstanceId, ObjectId, Placement, Quality, Relief, View};
 use relievo::wgpu;
+use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::{Frame, device, devices};
 use crate::world::{SIZE, World, model};
@@ -177,7 +177,7 @@ fn changed_materials_outlive_a_device() {
     let [first, second] = devices();
     first.device().on_uncaptured_error(std::sync::Arc::new(|_| ()));
     let mut world = World::new(&first, 1);
-    let rock = relievo::samples::rock().expect("valid");
+    let rock = relievo_samples::rock().expect("valid");
     let object = world.scene.add_mesh(&rock, 1).expect("added");
     world.scene.spawn(object, Placement::at([0.0, 5.0, 0.0]).scaled(4.0)).expect("room");
     let mut view = world.view(1.0);

@@ -4,13 +4,13 @@ use glam::Vec3;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::render::Offscreen;
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Relief, ReliefSource, Scene};
 use relievo::surface::{
     Address, ColorTexture, Green, HeightMap, March, Material, Method, Mips, ReliefMaps, ReliefOptions,
     Shadow, SurfaceMesh, SurfaceTextures,
 };
 use relievo::{Error, InputError};
+use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::device;
 use crate::harness::Difference;

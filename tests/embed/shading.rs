@@ -5,9 +5,9 @@ use glam::Vec3;
 use relievo::asset::material::Alpha;
 use relievo::gpu::{Gpu, Uniform};
 use relievo::render::{Layer, Renderer, TargetFormat};
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Quality, Relief, View};
 use relievo::wgpu;
+use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::{COLOR, Frame, device};
 use crate::harness::{Difference, Tolerance};

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use relievo::asset::influences::{Influence, Influences};
 use relievo::asset::{Mesh, Model};
-use relievo::samples::creature;
+use relievo_samples::creature;
 
 /// A tetrahedron with unequal faces, about two units large, mirrored along x if `mirrors`. Its triangles are
 /// counter-clockwise seen from outside either way.

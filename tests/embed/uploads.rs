@@ -6,12 +6,12 @@ use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::{Material, Model, Transform};
 use relievo::gpu::Gpu;
 use relievo::render::Renderer;
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{
     Camera, InstanceId, ObjectId, Placement, Play, Quality, Ray, Relief, Scene, TerrainSource, View,
 };
 use relievo::surface::SurfaceMesh;
 use relievo::terrain::config::Config;
+use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::{Frame, device, devices};
 use crate::solids::solid;

@@ -9,8 +9,8 @@ use glam::{DMat4, DVec3, Vec3};
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer, TargetFormat};
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{Camera, Placement, Quality, Relief, Scene, View};
+use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::device;
 use crate::raw::Raw;

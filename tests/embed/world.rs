@@ -5,10 +5,10 @@ use std::sync::LazyLock;
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
-use relievo::samples::creature;
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Quality, Scene, TerrainSource, View};
 use relievo::skinning::add_levels;
 use relievo::terrain::config::Config;
+use relievo_samples::creature;
 
 /// Width and height of the pictures.
 pub const SIZE: [u32; 2] = [192, 128];

@@ -3,9 +3,9 @@
 use glam::{Vec3, camera::rh};
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
-use relievo::samples::creature;
 use relievo::scene::{ObjectId, Placement, Play, Quality, Scene, View};
 use relievo::skinning::{add_levels, poses_of};
+use relievo_samples::creature;
 
 use crate::figure::figure;
 use crate::harness::{Tolerance, check_golden, gpu};

@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 use relievo::gpu::Gpu;
-use relievo::samples::creature;
 use relievo::scene::{Camera, InstanceId, Placement, Play, Quality, Scene, View};
+use relievo_samples::creature;
 
 use crate::harness::gpu;
 use crate::stage::picture;

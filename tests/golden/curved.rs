@@ -5,11 +5,11 @@ use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::render::Offscreen;
-use relievo::samples::BuiltInMap;
 use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
 use relievo::surface::tangent::Mesh;
 use relievo::surface::tangent::reference::tangents;
 use relievo::surface::{Green, Method, ReliefOptions, Shadow, SurfaceMesh, SurfaceVertex};
+use relievo_samples::BuiltInMap;
 
 use crate::harness::{self, Tolerance, check_golden};
 

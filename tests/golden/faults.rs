@@ -82,7 +82,7 @@ fn every_golden_is_small_and_documented() {
         text.contains("adapter") && text.contains("tolerance"),
         "goldens/README.md says what they were made with"
     );
-    for name in crate::VIEWS.iter().chain(crate::MAPS) {
+    for name in crate::harness::DEMO_VIEWS.iter().chain(crate::harness::DEMO_MAPS) {
         let size =
             std::fs::metadata(folder.join(format!("{name}.png"))).map(|data| data.len()).unwrap_or(u64::MAX);
         assert!(size <= 65_536, "{name}: {size} bytes");

@@ -54,7 +54,8 @@ fn scene_of(name: &str, file: &str) -> Value {
 fn player(scene: &Value, seconds: f32) -> Player {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
     let file = SceneFile::from_json(&scene.to_string()).expect("valid");
-    let loaded = file.load(&|name| std::fs::read(folder.join(name))).expect("valid");
+    let loaded =
+        file.load(&|name| std::fs::read(folder.join(name)), &relievo_samples::Samples).expect("valid");
     let rendering = Rendering {
         size: SIZE.map(|edge| 2 * edge),
         samples: 1,

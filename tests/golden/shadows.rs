@@ -4,10 +4,10 @@ use glam::Vec3;
 use image::RgbaImage;
 use relievo::asset::Light;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow};
-use relievo::samples::maps::BuiltInMap;
-use relievo::samples::{creature, rock};
 use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource};
 use relievo::terrain::config::Config;
+use relievo_samples::maps::BuiltInMap;
+use relievo_samples::{creature, rock};
 
 use crate::harness::{Difference, Tolerance, check_golden, gpu};
 

@@ -1,5 +1,5 @@
 //! The same sequence of collapses on every machine: hashes of meshes that are made without functions that differ. The
-//! crate of `tests/web/scene` computes the same hashes in a browser.
+//! crate of `relievo-web-scene` computes the same hashes in a browser.
 
 use relievo::mesh::{Limits, Options, Reducer, Surface, simplify, simplify_within};
 

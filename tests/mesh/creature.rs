@@ -6,13 +6,13 @@ use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::mesh::{Options, Stopped, Surface, simplify};
-use relievo::samples::creature;
 use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::Blend;
 use relievo::terrain::export::sha256;
+use relievo_samples::creature;
 
 use crate::measure::{Topology, distances, topology};
 use crate::shapes::Shape;

@@ -1,4 +1,4 @@
-//! The hashes of `alike`, as this program and a browser compute them (`tests/web/scene.rs`).
+//! The hashes of `alike`, as this program and a browser compute them (`crates/relievo-cli/tests/web/scene.rs`).
 
 use crate::alike::{hashes, reduced};
 

@@ -72,7 +72,7 @@ fn a_hull_of_two_parts_has_no_gap_at_any_level() {
 #[test]
 fn parts_that_vanish_leave_no_gap() {
     let first = {
-        let rock = relievo::samples::rock().expect("valid").meshes.remove(0);
+        let rock = relievo_samples::rock().expect("valid").meshes.remove(0);
         let [a, b, c] =
             [0, 1, 2].map(|at| glam::Vec3::from(rock.positions[rock.indices[3000 + at] as usize]));
         (a + b + c) / 3.0
@@ -128,7 +128,7 @@ fn copies_of_a_surface_are_not_joined() {
 /// The levels of a skinned mesh as a progressive mesh, whose order is that of clusters already.
 #[test]
 fn levels_of_a_skinned_mesh_are_progressive() {
-    let mut model = relievo::samples::creature().expect("valid");
+    let mut model = relievo_samples::creature().expect("valid");
     add_levels(&mut model, &[0], 5).expect("valid");
     let progressive = ProgressiveMesh::of_levels(&model.meshes[0]).expect("valid");
     assert!(progressive.levels() > 8, "{}", progressive.levels());

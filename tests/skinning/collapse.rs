@@ -357,7 +357,6 @@ fn requests_are_checked() {
 }
 
 /// The passes take a collapsed model as they take any other.
-#[cfg(feature = "verify")]
 #[test]
 fn a_crowd_of_it_is_skinned_on_the_device() {
     use relievo::animation::crowd::{ClipBuffers, Crowd};

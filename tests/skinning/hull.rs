@@ -18,7 +18,7 @@ const SCALES: [[f32; 3]; 3] = [[0.01; 3], [-1.0, 1.0, 1.0], [0.3048; 3]];
 
 /// A rock, each of whose triangles belongs to the part that `part` gives for its middle.
 pub fn hull(part: impl Fn(glam::Vec3) -> usize) -> Hull {
-    let mut model = relievo::samples::rock().expect("valid");
+    let mut model = relievo_samples::rock().expect("valid");
     let rock = model.meshes.remove(0);
     let mut numbers = HashMap::new();
     let points: Vec<u32> = (rock.positions.iter().enumerate())

@@ -110,7 +110,7 @@ fn each_mesh_changes_where_its_own_error_allows() {
 /// The fractions ascend from 0 to 1, and a program that cancels keeps its model.
 #[test]
 fn progress_is_told_and_can_end_the_work() {
-    let plain = relievo::samples::creature().expect("valid");
+    let plain = relievo_samples::creature().expect("valid");
     let mut model = plain.clone();
     let mut told = Vec::new();
     let found = add_levels_with_progress(&mut model, &[0], 100, &mut |fraction| {
@@ -139,7 +139,7 @@ fn progress_is_told_and_can_end_the_work() {
 #[cfg(unix)]
 #[test]
 fn poses_of_rigid_parts_cost_little() {
-    let mut model = relievo::samples::creature().expect("valid");
+    let mut model = relievo_samples::creature().expect("valid");
     let mesh = &mut model.meshes[0];
     let strongest = (0..mesh.vertices()).map(|vertex| {
         let bone = mesh.influences.of(vertex)[0].bone;

@@ -6,9 +6,7 @@ mod collapse;
 mod fading;
 mod flat;
 mod gating;
-#[cfg(feature = "verify")]
-#[path = "../harness/mod.rs"]
-mod harness;
+use relievo_testing as harness;
 mod hull;
 mod levels;
 mod merged;
@@ -16,5 +14,4 @@ mod reduced;
 mod rigs;
 mod scales;
 mod shapes;
-#[cfg(feature = "verify")]
 mod updated;

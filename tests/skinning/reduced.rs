@@ -4,8 +4,8 @@ use glam::Vec3;
 use relievo::asset::{Mesh, Model};
 use relievo::mesh::distance::Options;
 use relievo::mesh::{Limits, Reducer};
-use relievo::samples::creature;
 use relievo::skinning::{Normals, ReducedModel, at_rest, reduce_model};
+use relievo_samples::creature;
 
 fn model(text: &str) -> Model {
     Model::from_obj(text.as_bytes(), None).expect("valid")

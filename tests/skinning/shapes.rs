@@ -6,7 +6,7 @@ use relievo::asset::Model;
 use relievo::asset::influences::{Influence, Influences};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
-use relievo::samples::creature;
+use relievo_samples::creature;
 
 pub fn model() -> Model {
     creature().expect("valid")

@@ -3,9 +3,9 @@
 use relievo::hash::threefry2x32;
 use relievo::surface::exact::exact;
 use relievo::surface::relief::reference::Surface;
-use relievo::surface::verify::bounds::{Judged, Source, judge};
-use relievo::surface::verify::{Shape, random_map, random_rays};
 use relievo::surface::{Address, HeightMap, March, Method, Ray};
+use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
+use relievo_lab::cases::surface::{Shape, random_map, random_rays};
 
 use crate::height;
 

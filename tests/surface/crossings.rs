@@ -115,7 +115,7 @@ proptest! {
 /// Cones that are too wide lose crossings, and the check fails.
 #[test]
 fn wider_cones_are_found_out() {
-    let map = relievo::samples::BuiltInMap::Posts.height_map(64).expect("a map");
+    let map = relievo_samples::BuiltInMap::Posts.height_map(64).expect("a map");
     let mut surface = Surface::new(&map, Method::Cone, Address::Wrap);
     let rays: Vec<Ray> = (0..2000)
         .map(|i| Ray::new([i as f32 * 0.017, i as f32 * 0.031], [0.6, 0.6, 0.53], 0.3, 1.0))

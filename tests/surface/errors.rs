@@ -1,9 +1,9 @@
 //! Measures the error and the cost of each method on the built-in maps, against what the method promises. The relief
 //! is 0.1 tiles deep, and addresses wrap.
 
-use relievo::samples::BuiltInMap;
 use relievo::surface::relief::reference::Surface;
 use relievo::surface::{Address, HeightMap, March, Measured, Method, Ray, SquareView};
+use relievo_samples::BuiltInMap;
 
 fn rays(angle: f64) -> Vec<Ray> {
     let view = SquareView { angle, azimuth: 25.0, tiles: 1.0, size: [120, 120] };

@@ -1,8 +1,6 @@
 //! Surface mapping on the CPU.
 
-#[cfg(feature = "verify")]
 mod bounds;
-#[cfg(feature = "verify")]
 mod compared;
 mod crossings;
 mod decided;

@@ -2,7 +2,7 @@
 
 use relievo::gpu::shaders::{TERRAIN_HEIGHT, TERRAIN_WRAP};
 use relievo::terrain::config::HEIGHT_LIMIT;
-use relievo::terrain::verify::{random_heights, random_words};
+use relievo_lab::cases::terrain::{random_heights, random_words};
 
 use crate::harness::gpu;
 use crate::properties::exact_mean;

@@ -16,18 +16,14 @@
 use crate::InputError;
 use crate::asset::skeleton::Skeleton;
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::BoundsPass;
-#[cfg(feature = "verify")]
-pub(crate) use pass::Threads;
+#[cfg(feature = "gpu")]
+pub use pass::Threads;
 
 /// The largest difference allowed between a side and the reference, on any device, relative to the largest
 /// side: 14ε and 6ε of the extent, 4ε of the center and 2ε of the side from either: 52ε < 4e-6.
@@ -74,7 +70,7 @@ pub fn check_bone_radii(bone_radii: &[f32], bones: usize) -> Result<(), InputErr
     }
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -12,7 +12,7 @@ impl SeenAs<[f32; 4]> for Bounds {}
 
 /// The threads that handle the bones of one instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Threads {
+pub enum Threads {
     /// A workgroup, which gives enough threads to hardware.
     Workgroup,
     /// A single thread, without barriers, which are slow on adapters with few processors.
@@ -46,7 +46,7 @@ impl BoundsPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn with_threads(gpu: &Gpu, threads: Threads) -> Result<Self, GpuError> {
+    pub fn with_threads(gpu: &Gpu, threads: Threads) -> Result<Self, GpuError> {
         let whole = threads == Threads::Whole;
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { whole })?, threads })
     }

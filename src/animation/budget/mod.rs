@@ -9,13 +9,9 @@
 //!
 //! [`ExpectationTable`]: super::gate_table::ExpectationTable
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{BudgetJob, BudgetPass};

@@ -9,13 +9,9 @@ pub use crate::shared::animation::clip_clock::BLENDED;
 use crate::shared::animation::gate_state;
 pub use crate::shared::animation::gate_state::ClipClock;
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{ClipClockJob, ClipClockPass};

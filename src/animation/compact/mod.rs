@@ -2,15 +2,11 @@
 //! bone at or above them is sampled, and the arguments of the indirect dispatches. It uses prefix sums, so that
 //! the order is the same on every device.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
-pub(crate) use pass::Stages;
+pub use pass::Stages;
 #[cfg(feature = "gpu")]
 pub use pass::{CompactJob, CompactPass};

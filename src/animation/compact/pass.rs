@@ -10,7 +10,7 @@ use crate::shared::animation::compact::{ALL, CompactParams, SCAN, SCATTER, SPREA
 
 /// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Stages {
+pub enum Stages {
     /// Three dispatches: one spreads, one sums, one lists.
     Three,
     /// One workgroup does everything. On lavapipe, where a dispatch takes 20 µs and more, this is faster for up
@@ -78,7 +78,7 @@ impl CompactPass {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub(crate) fn prepare_stages(
+    pub fn prepare_stages(
         &self,
         gpu: &Gpu,
         crowd: &Crowd,
@@ -125,6 +125,7 @@ pub(crate) fn group<'a>(uniform: &'a Uniform<CompactParams>, active: &'a Active)
 }
 
 impl CompactParams {
+    /// The parameters for a crowd and its lists.
     pub fn new(gpu: &Gpu, crowd: &Crowd, active: &Active) -> Self {
         Self {
             instances: crowd.len() as u32,

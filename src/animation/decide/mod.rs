@@ -3,15 +3,11 @@
 //! where a dispatch costs more than other processors gain and the device lets a shader bind that many buffers. Both ways
 //! leave the same in every buffer.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
-#[cfg(feature = "verify")]
-pub(crate) use pass::Dispatches;
+#[cfg(feature = "gpu")]
+pub use pass::Dispatches;
 #[cfg(feature = "gpu")]
 pub use pass::{DecideJob, DecidePass};

@@ -18,7 +18,7 @@ use crate::shared::animation::compact::CompactParams;
 
 /// How many dispatches divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Dispatches {
+pub enum Dispatches {
     /// One workgroup does all of it.
     One,
     /// At least one dispatch for each step.
@@ -79,7 +79,7 @@ impl DecidePass {
     /// # Errors
     /// [`GpuError::Limit`] for a single dispatch on a device that does not permit enough buffers in a shader;
     /// errors of the driver's compiler.
-    pub(crate) fn with_dispatches(gpu: &Gpu, gate: &Gate, dispatches: Dispatches) -> Result<Self, GpuError> {
+    pub fn with_dispatches(gpu: &Gpu, gate: &Gate, dispatches: Dispatches) -> Result<Self, GpuError> {
         let leads = matches!(gate, Gate::Bounded(_));
         let kernels = match dispatches {
             Dispatches::One => match Decider::new(gpu, gate, |mode| whole(gpu, mode))? {
@@ -259,7 +259,7 @@ impl DecideJob {
     }
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::animation::clip_set::ClipSet;

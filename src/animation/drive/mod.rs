@@ -5,13 +5,9 @@
 //! instance is seen, at the time of the frame, whatever the gate says; they and all bones below them count as updated. They
 //! are added to the bits of a gate before [`compact`](super::compact) makes lists of them.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::DrivePass;

@@ -6,13 +6,9 @@
 //!
 //! [`animation::frame`](super::frame) has the steps of a frame before and after the gate.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 pub(crate) mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{GateJob, GatePass};
@@ -99,7 +95,7 @@ impl Gate {
     }
 
     /// The seconds by which bones may be sampled ahead in a frame; only [`Gate::Bounded`] does so.
-    pub(crate) fn ahead(&self, frame: &Frame) -> f32 {
+    pub fn ahead(&self, frame: &Frame) -> f32 {
         if matches!(self, Self::Bounded(_)) { frame.ahead } else { 0.0 }
     }
 }

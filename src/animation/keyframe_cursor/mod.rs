@@ -5,13 +5,9 @@
 //! The search first guesses that keys are evenly spaced; if the guess is wrong, bisection finds the key. Two
 //! devices therefore agree on a key unless they disagree on the time.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{KeyframeCursorJob, KeyframeCursorPass};

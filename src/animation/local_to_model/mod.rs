@@ -10,16 +10,12 @@
 //! Everything below an active bone is a run of slots too, so that a thread that knows the first bone to compute
 //! knows them all.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
-#[cfg(feature = "verify")]
-pub(crate) use pass::Walk;
+#[cfg(feature = "gpu")]
+pub use pass::Walk;
 #[cfg(feature = "gpu")]
 pub use pass::{LocalToModelActiveJob, LocalToModelJob, LocalToModelPass};
 

@@ -12,7 +12,7 @@ use crate::{Error, InputError};
 
 /// How threads divide the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Walk {
+pub enum Walk {
     /// One thread per chain and one dispatch per level of chains, which gives enough threads to hardware.
     Levels,
     /// One thread per instance, in one dispatch: the bones of an instance stay in a processor's cache. On
@@ -55,7 +55,7 @@ impl LocalToModelPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn with_walk(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
+    pub fn with_walk(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
         let whole = walk == Walk::Whole;
         let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { whole, compacted });
         Ok(Self { all: kernel(false)?, compacted: kernel(true)?, walk })

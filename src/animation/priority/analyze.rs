@@ -175,7 +175,7 @@ fn solve(normal: &[[f64; 5]; 5], right: &[f64; 5], subset: u32) -> Option<[f64; 
     Some(x)
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::clip::{BoneKeys, Interpolation, Keys};

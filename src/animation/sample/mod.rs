@@ -4,13 +4,9 @@
 //! (Eberly 2011, `docs/sources.md`), which needs neither `sin` nor `acos`. The arc is halved first, so that
 //! five terms keep the result within [`SLERP_BOUND`] of the true rotation for any two keys.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 pub use crate::shared::animation::rotation::{SLERP_U, SLERP_V};
 #[cfg(feature = "gpu")]

@@ -1,10 +1,6 @@
 //! A copy of bytes (`kernels/baseline/copy.wgsl`).
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 mod pass;
-pub(crate) mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
+pub mod reference;
 
-pub(crate) use pass::{CopyBuffers, CopyPass};
+pub use pass::{CopyBuffers, CopyPass};

@@ -7,15 +7,16 @@ use crate::{Error, InputError};
 
 /// What a copy reads and writes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct CopyBuffers<'a> {
-    pub(crate) source: &'a Buffer<u32>,
+pub struct CopyBuffers<'a> {
+    /// Read.
+    pub source: &'a Buffer<u32>,
     /// Written.
-    pub(crate) destination: &'a Buffer<u32>,
+    pub destination: &'a Buffer<u32>,
 }
 
 /// Copies one buffer to another.
 #[derive(Debug, Clone)]
-pub(crate) struct CopyPass {
+pub struct CopyPass {
     kernel: Kernel,
 }
 
@@ -24,7 +25,7 @@ impl CopyPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
@@ -32,7 +33,7 @@ impl CopyPass {
     ///
     /// # Errors
     /// [`InputError`] for a length that is not a multiple of four; [`GpuError`].
-    pub(crate) fn prepare(&self, gpu: &Gpu, words: usize, buffers: CopyBuffers<'_>) -> Result<Job, Error> {
+    pub fn prepare(&self, gpu: &Gpu, words: usize, buffers: CopyBuffers<'_>) -> Result<Job, Error> {
         let CopyBuffers { source, destination } = buffers;
         if !words.is_multiple_of(4) || words > source.len() || words > destination.len() {
             let bound = "must be a multiple of 4 that fits both buffers";

@@ -1,17 +1,13 @@
 //! The memory traffic of sampling without its arithmetic (`kernels/baseline/gather.wgsl`).
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 mod pass;
-pub(crate) mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
+pub mod reference;
 
-pub(crate) use pass::GatherPass;
+pub use pass::GatherPass;
 
 /// The data that the kernel reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Reads {
+pub enum Reads {
     /// Everything that sampling reads: 20 words of keys per bone, and the 9 words that locate them (the
     /// instance's clip, three tracks, a cursor).
     Everything,

@@ -10,7 +10,7 @@ use crate::{Error, InputError};
 /// Moves the bytes of sampling: for each bone of each instance it reads the two keys of three tracks around the
 /// instance's cursor, where instances share the tracks of a clip, and writes a local transform (12 words).
 #[derive(Debug, Clone)]
-pub(crate) struct GatherPass {
+pub struct GatherPass {
     kernel: Kernel,
     reads: Reads,
 }
@@ -20,7 +20,7 @@ impl GatherPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn new(gpu: &Gpu, reads: Reads) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, reads: Reads) -> Result<Self, GpuError> {
         let constants = bindings::Constants { tables: reads == Reads::Everything };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, reads })
     }
@@ -31,7 +31,7 @@ impl GatherPass {
     /// # Errors
     /// [`InputError`] for a set with a clip that has more than one timeline, and for fewer values than
     /// [`Reads::Keys`] needs; [`GpuError`].
-    pub(crate) fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
+    pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
         if clips.timelines_a_clip != 1 {
             let bound = "must be 1: a cursor an instance";
             return Err(InputError::new("clips.timelines_a_clip", clips.timelines_a_clip, bound).into());

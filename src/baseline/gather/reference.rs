@@ -10,7 +10,7 @@ use crate::asset::keyframe::KeyframeCursor;
 ///
 /// # Panics
 /// If there are fewer values than the tracks have, and for a cursor at the last key.
-pub(crate) fn gather(
+pub fn gather(
     set: &ClipSet,
     instances: &[Instance],
     cursors: &[KeyframeCursor],
@@ -34,12 +34,7 @@ pub(crate) fn gather(
 ///
 /// # Panics
 /// As [`gather`].
-pub(crate) fn gather_keys(
-    set: &ClipSet,
-    keys: u32,
-    cursors: &[KeyframeCursor],
-    gathered: &mut [[[u32; 4]; 3]],
-) {
+pub fn gather_keys(set: &ClipSet, keys: u32, cursors: &[KeyframeCursor], gathered: &mut [[[u32; 4]; 3]]) {
     for (cursor, gathered) in cursors.iter().zip(gathered.chunks_mut(set.bones())) {
         for (bone, gathered) in (0..).zip(gathered) {
             let [moved, turned, scaled] =

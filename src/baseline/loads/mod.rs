@@ -1,10 +1,6 @@
 //! Texel loads (`kernels/baseline/loads.wgsl`).
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 mod pass;
-pub(crate) mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
+pub mod reference;
 
-pub(crate) use pass::LoadsPass;
+pub use pass::LoadsPass;

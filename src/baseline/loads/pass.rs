@@ -9,7 +9,7 @@ use crate::{Error, InputError};
 
 /// Loads texels along rows and adds them up.
 #[derive(Debug, Clone)]
-pub(crate) struct LoadsPass {
+pub struct LoadsPass {
     kernel: Kernel,
 }
 
@@ -18,7 +18,7 @@ impl LoadsPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
@@ -26,7 +26,7 @@ impl LoadsPass {
     ///
     /// # Errors
     /// [`InputError`] for a buffer with too few sums; [`GpuError`].
-    pub(crate) fn prepare(
+    pub fn prepare(
         &self,
         gpu: &Gpu,
         texture: &wgpu::Texture,

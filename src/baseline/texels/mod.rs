@@ -1,8 +1,6 @@
 //! The texel loads of colour maps (`kernels/baseline/texels.wgsl`).
 
-pub(crate) mod bench;
 mod pass;
-pub(crate) mod reference;
-pub(crate) mod verify;
+pub mod reference;
 
-pub(crate) use pass::TexelsPass;
+pub use pass::TexelsPass;

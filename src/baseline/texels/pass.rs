@@ -10,7 +10,7 @@ use crate::terrain::cover::{Cover, planes};
 
 /// Loads the texels of colour maps.
 #[derive(Debug, Clone)]
-pub(crate) struct TexelsPass {
+pub struct TexelsPass {
     /// By whether textures lie on the ground from the sides too.
     kernels: [Kernel; 2],
 }
@@ -20,7 +20,7 @@ impl TexelsPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let Order { downwards, .. } = Order::of(gpu.tuning());
         let kernel = |triplanar| {
             bindings::kernel(gpu, &bindings::Constants { quads: 1, downwards, planes: planes(triplanar) })
@@ -33,7 +33,7 @@ impl TexelsPass {
     /// # Errors
     /// [`crate::InputError`] for a cover out of bounds, for windows with nothing inside the outermost ring, and for places or an
     /// output that are too short; [`GpuError`].
-    pub(crate) fn prepare(&self, gpu: &Gpu, cover: &Cover, buffers: BlendBuffers<'_>) -> Result<Job, Error> {
+    pub fn prepare(&self, gpu: &Gpu, cover: &Cover, buffers: BlendBuffers<'_>) -> Result<Job, Error> {
         let BlendBuffers { windows, places, pixels } = buffers;
         cover.validate()?;
         windows.check("windows", 1)?;

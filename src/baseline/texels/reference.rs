@@ -5,7 +5,7 @@ use crate::terrain::cover::Cover;
 
 /// For each sample of a window but those of the outermost ring, the exclusive or of the words of the texels that its pixel of a
 /// colour map blends. `place` is that of the first sample inside ([`Cover::place`]).
-pub(crate) fn texels(window: &[i32], width: usize, cover: &Cover, place: [u32; 2]) -> Vec<u32> {
+pub fn texels(window: &[i32], width: usize, cover: &Cover, place: [u32; 2]) -> Vec<u32> {
     let packed = cover.packed_texels();
     let inside = (1..width - 1).flat_map(|y| (1..width - 1).map(move |x| [x, y]));
     let word = |[x, y]: [usize; 2]| {

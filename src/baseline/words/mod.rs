@@ -1,10 +1,6 @@
 //! Random words, drawn and stored (`kernels/baseline/words.wgsl`).
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 mod pass;
-pub(crate) mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
+pub mod reference;
 
-pub(crate) use pass::WordsPass;
+pub use pass::WordsPass;

@@ -9,7 +9,7 @@ use crate::{Error, InputError};
 
 /// Draws the random words of counters (x, y), row by row.
 #[derive(Debug, Clone)]
-pub(crate) struct WordsPass {
+pub struct WordsPass {
     kernel: Kernel,
 }
 
@@ -18,7 +18,7 @@ impl WordsPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
@@ -26,7 +26,7 @@ impl WordsPass {
     ///
     /// # Errors
     /// [`InputError`] for sizes that do not fit; [`GpuError`].
-    pub(crate) fn prepare(
+    pub fn prepare(
         &self,
         gpu: &Gpu,
         key: [u32; 2],

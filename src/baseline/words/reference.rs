@@ -3,7 +3,7 @@
 use crate::hash::{LANES, threefry2x32};
 
 /// The first word of each counter (x, y), in `rows` rows of `width`.
-pub(crate) fn words(key: [u32; 2], width: u32, rows: u32) -> Vec<u32> {
+pub fn words(key: [u32; 2], width: u32, rows: u32) -> Vec<u32> {
     let mut all = vec![0; width as usize * rows as usize];
     for (y, row) in all.chunks_exact_mut(width.max(1) as usize).enumerate() {
         for (chunk, words) in row.chunks_mut(LANES).enumerate() {

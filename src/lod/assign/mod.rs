@@ -4,13 +4,9 @@
 //! detail of the mesh, to bones that are not sampled, and to influences that fade; together they must not exceed 1, because
 //! displacements add up. An instance that no view sees is neither sampled nor skinned.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{AssignBuffers, AssignPass};

@@ -9,13 +9,9 @@
 //! before, and writes the transform that the mesh had then. A mesh whose character was not seen then, or that was attached
 //! since, counts as if its bone had been where it is.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{AttachBuffers, AttachPass};

@@ -53,7 +53,7 @@ pub fn last_local(
 }
 
 /// The product `a · b`, which applies b first.
-pub(super) fn product(a: &Affine, b: &Affine) -> Affine {
+pub fn product(a: &Affine, b: &Affine) -> Affine {
     a.map(|[x, y, z, moved]| {
         let entry = |at: usize| x * b[0][at] + y * b[1][at] + z * b[2][at];
         [entry(0), entry(1), entry(2), entry(3) + moved]

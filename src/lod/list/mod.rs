@@ -5,13 +5,9 @@
 //! instances of a block begin, and the order inside a block is that of the instances, so that no order depends on which
 //! thread came first. The totals are the numbers of instances of the object's draws.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
-mod pass;
+pub mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{ListBuffers, ListPass};

@@ -25,7 +25,7 @@ pub struct ListBuffers<'a> {
 
 /// How threads divide the instances that are written into lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Threads {
+pub enum Threads {
     /// One thread for each instance. Those of a block find their order together, with barriers.
     Instances,
     /// One thread for each block, without barriers, which are slow on processors.
@@ -60,7 +60,7 @@ impl ListPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn with_threads(gpu: &Gpu, threads: Threads) -> Result<Self, GpuError> {
+    pub fn with_threads(gpu: &Gpu, threads: Threads) -> Result<Self, GpuError> {
         let kernel = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
         let place = match threads {
             Threads::Instances => PLACE,

@@ -7,13 +7,9 @@
 //! its fraction of that. Merged over the views of a frame, it also limits what gates and skinning may leave out
 //! ([`assign`](super::assign)), since poses are the same for all views.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{SelectBuffers, SelectPass};

@@ -5,13 +5,9 @@
 //! device fills from [`select`](super::select)'s decision: of nothing if the view does not see the instance. Each draw has a
 //! list of its own with one entry, as those of [`list`](super::list), which also tells how far the level has moved.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 pub use crate::shared::lod::single::Single;
 #[cfg(feature = "gpu")]

@@ -20,13 +20,9 @@
 
 use crate::InputError;
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{ClusterBuffers, ClusterJob, ClusterPass};

@@ -36,11 +36,10 @@ use stored::Stored;
 /// hashes of all levels included.
 ///
 /// ```
-/// # #[cfg(feature = "samples")] {
 /// use relievo::mesh::progressive::Chosen;
 /// use relievo::mesh::{Options, ProgressiveMesh, Surface, simplify};
 ///
-/// let rock = relievo::samples::rock()?.meshes.remove(0);
+/// let rock = relievo_samples::rock()?.meshes.remove(0);
 /// let surface =
 ///     Surface { poses: &[rock.positions.clone()], indices: &rock.indices, attributes: &[], stride: 0 };
 /// let simplified = simplify(&surface, &Options::default())?;
@@ -55,7 +54,6 @@ use stored::Stored;
 /// progressive.refine(1, &mut triangles)?;
 /// assert!(triangles == progressive.indices(1));
 /// assert!(progressive.vertices(2) < progressive.vertices(1));
-/// # }
 /// # Ok::<(), relievo::InputError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

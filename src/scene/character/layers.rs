@@ -289,7 +289,7 @@ pub(super) fn layered_pose<'a>(
     pose
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -3,7 +3,7 @@
 mod drawn;
 mod driven;
 mod layers;
-#[cfg(feature = "verify")]
+#[cfg(not(target_arch = "wasm32"))]
 mod measured;
 mod played;
 mod posed;

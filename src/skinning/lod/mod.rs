@@ -14,13 +14,9 @@ use crate::asset::transform::Affine;
 use crate::shared::skinning::lod::LEAST_NORMAL;
 use crate::skinning::instance_lod::FadeRange;
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{LodBuffers, LodJob, LodPass};

@@ -1,13 +1,9 @@
 //! Morph targets: displacements of vertices, added before skinning, and the keys of their weights (glTF 2.0,
 //! sections 3.7.2.2 and 3.11).
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::MorphPass;

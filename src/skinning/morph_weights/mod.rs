@@ -8,13 +8,9 @@ use crate::asset::Mesh;
 #[cfg(feature = "gpu")]
 use crate::shared::skinning::morph_weights as packed;
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{MorphWeightsJob, MorphWeightsPass};
@@ -95,7 +91,7 @@ impl WeightSet {
     }
 }
 
-#[cfg(all(test, feature = "samples"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::asset::MorphTarget;

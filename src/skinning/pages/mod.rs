@@ -4,13 +4,9 @@
 //! Pages stay with their cluster while it is needed, so that vertices that do not move are not skinned again. Which page an
 //! instance gets is the same on every run.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{PageBuffers, PagesPass};

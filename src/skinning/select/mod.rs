@@ -7,14 +7,10 @@
 //! An instance that is not seen keeps its vertices. When it is seen again, all of it is skinned, whatever
 //! moved. Clusters beyond its level keep their vertices likewise, and are skinned when the level becomes finer.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 mod state;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 pub use state::ClusterState;
 

@@ -5,13 +5,9 @@
 //! itself, and a mirrored frame changes its handedness. *Dual-quaternion* blending uses the mean of the bones'
 //! rigid motions instead, so that twisted limbs keep their volume; see [`super::palette`].
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{SkinPass, keep_last};

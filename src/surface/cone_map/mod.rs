@@ -6,13 +6,9 @@
 //!
 //! A radius is at most the shorter edge of the map, in cells. On maps with few rows `quadtree` is far cheaper.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 pub use crate::shared::surface::cone_map::OPENING;
 #[cfg(feature = "gpu")]

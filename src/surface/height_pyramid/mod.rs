@@ -1,13 +1,9 @@
 //! Max-mip pyramids of height maps (B section 2.3.4): a leaf is the highest corner of a bilinear cell, and a
 //! node the highest of its four children. `quadtree` traverses them, and cone maps are computed from them.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{HeightPyramidPass, Pyramids};

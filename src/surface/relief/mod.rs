@@ -3,15 +3,11 @@
 //! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
 //! kernel of this folder runs them on lists of rays.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 #[cfg(feature = "gpu")]
 pub mod textures;
-#[cfg(feature = "verify")]
-pub mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::ReliefPass;

@@ -4,13 +4,9 @@
 //! Material shaders import the functions from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
 //! kernel of this folder runs them on lists of points.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::ShadePass;

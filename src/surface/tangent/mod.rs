@@ -28,13 +28,9 @@ use crate::InputError;
 use crate::asset::indices::check_triangles;
 pub use crate::asset::tangents::{Adjacency, COORDINATE_LIMIT, DEGENERATE, Mesh, TANGENT_BOUND, VANISHING};
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{TangentBuffers, TangentPass};

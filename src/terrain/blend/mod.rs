@@ -1,13 +1,9 @@
 //! The top-down colour map of a patch: zones of ground with their textures (B section 3.3.1, equations 3.6 and 3.7), and
 //! hill-shading.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 use crate::InputError;
 use crate::terrain::config::finite;

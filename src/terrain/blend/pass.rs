@@ -40,7 +40,7 @@ impl BlendPass {
     }
 
     /// As [`BlendPass::new`], with blocks in the given order.
-    pub(crate) fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
+    pub fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
         let kernel = |triplanar, varied| {
             let downwards = order.downwards;
             bindings::kernel(

@@ -7,13 +7,9 @@
 
 use crate::InputError;
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 #[cfg(feature = "gpu")]
 mod visits;
 

@@ -326,7 +326,7 @@ impl Config {
     }
 
     /// The key of the hash.
-    pub(crate) fn key(&self) -> [u32; 2] {
+    pub fn key(&self) -> [u32; 2] {
         crate::hash::key_of(&self.seed)
     }
 

@@ -38,7 +38,7 @@ impl DespikePass {
     }
 
     /// As [`DespikePass::new`], with the given columns.
-    pub(crate) fn with_columns(gpu: &Gpu, with_features: bool, columns: Columns) -> Result<Self, GpuError> {
+    pub fn with_columns(gpu: &Gpu, with_features: bool, columns: Columns) -> Result<Self, GpuError> {
         let constants = bindings::Constants {
             quads: columns.quads,
             downwards: columns.order.downwards,

@@ -3,15 +3,11 @@
 
 #[cfg(feature = "gpu")]
 mod batch;
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod job;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use batch::HeightBatch;
@@ -19,7 +15,7 @@ pub use batch::HeightBatch;
 pub use job::{HeightJob, HeightScratch};
 #[cfg(feature = "gpu")]
 pub(in crate::terrain) use job::{LevelInputs, level_widths};
-#[cfg(all(feature = "gpu", any(test, feature = "verify")))]
-pub(crate) use pass::Blocks;
+#[cfg(feature = "gpu")]
+pub use pass::Blocks;
 #[cfg(feature = "gpu")]
 pub use pass::HeightPass;

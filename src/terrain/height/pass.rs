@@ -20,7 +20,7 @@ const CELL_ROWS_TWO_LEVELS: u32 = 33;
 
 /// How a dispatch is cut into threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Blocks {
+pub struct Blocks {
     /// Rows of coarse cells per thread, at least one.
     pub cell_rows: u32,
     /// Levels per dispatch: one, or two where no features are injected. If the number of levels is odd, the
@@ -67,7 +67,7 @@ impl HeightPass {
     ///
     /// # Errors
     /// [`InputError`] for blocks out of bounds; what the driver's compiler reports.
-    pub(crate) fn with_blocks(
+    pub fn with_blocks(
         gpu: &Gpu,
         offset: Offset,
         features: Option<FeatureMode>,

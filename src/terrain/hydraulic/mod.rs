@@ -4,13 +4,9 @@
 use crate::InputError;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
-mod pass;
+pub mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 pub use crate::shared::terrain::pipes::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
 #[cfg(feature = "gpu")]

@@ -11,7 +11,7 @@ use crate::terrain::fields::Fields;
 
 /// What a thread makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Shape {
+pub struct Shape {
     /// Cycles of a dispatch, 1 or 2.
     pub cycles: u32,
     /// Rows of samples, at least 1.
@@ -61,7 +61,7 @@ impl HydraulicPass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub(crate) fn with_shape(gpu: &Gpu, shape: Shape) -> Result<Self, Error> {
+    pub fn with_shape(gpu: &Gpu, shape: Shape) -> Result<Self, Error> {
         let kernel = |cycles| bindings::kernel(gpu, &bindings::Constants { cycles });
         let kernels = (1..=shape.cycles).map(kernel).collect::<Result<_, _>>()?;
         Ok(Self { kernels, rows: shape.rows })

@@ -5,13 +5,9 @@ use crate::terrain::config::{Config, finite};
 
 #[cfg(feature = "gpu")]
 mod batch;
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use batch::MorphedFields;

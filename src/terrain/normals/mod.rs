@@ -1,12 +1,8 @@
 //! Slopes of height fields: exact integer central differences, and the unit normals that follow from them.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::NormalsPass;

@@ -25,7 +25,7 @@ impl NormalsPass {
     }
 
     /// As [`NormalsPass::new`], with the given columns.
-    pub(crate) fn with_columns(gpu: &Gpu, columns: Columns) -> Result<Self, GpuError> {
+    pub fn with_columns(gpu: &Gpu, columns: Columns) -> Result<Self, GpuError> {
         let constants = bindings::Constants { quads: columns.quads, downwards: columns.order.downwards };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
     }

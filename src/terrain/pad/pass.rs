@@ -25,7 +25,7 @@ impl PadPass {
     }
 
     /// As [`PadPass::new`], with blocks in the given order.
-    pub(crate) fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
+    pub fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
         let constants = bindings::Constants { downwards: order.downwards };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, order })
     }

@@ -4,13 +4,9 @@
 //! design", Computer Aided Geometric Design 1987); random offsets are those of [`height`](super::height), with a range half a
 //! step smaller on edges (Saupe 1988). All arithmetic is on integers: every device computes the same bits.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::SmoothPass;

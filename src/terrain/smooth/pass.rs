@@ -40,7 +40,7 @@ impl SmoothPass {
     ///
     /// # Errors
     /// [`InputError`] for no rows; what the driver's compiler reports.
-    pub(crate) fn with_order(
+    pub fn with_order(
         gpu: &Gpu,
         offset: Offset,
         features: Option<FeatureMode>,

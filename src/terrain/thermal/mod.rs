@@ -3,13 +3,9 @@
 use crate::InputError;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{ThermalBuffers, ThermalPass};

@@ -1,13 +1,9 @@
 //! Heights of a patch that is generated alone and whose neighbours wrap around (B section 3.3.1), for the
 //! border mode `wrap`. A patch with equal corners tiles with itself bit for bit.
 
-#[cfg(feature = "verify")]
-pub(crate) mod bench;
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-#[cfg(feature = "verify")]
-pub(crate) mod verify;
 
 #[cfg(feature = "gpu")]
 pub use pass::{WrapBuffers, WrapJob, WrapPass};

@@ -50,7 +50,7 @@ impl WrapPass {
     }
 
     /// As [`WrapPass::new`], with blocks in the given order.
-    pub(crate) fn with_order(
+    pub fn with_order(
         gpu: &Gpu,
         offset: Offset,
         features: Option<FeatureMode>,

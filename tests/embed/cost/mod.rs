@@ -16,7 +16,7 @@ use clock::{Program, table, take_turns};
 use crowd::{Crowd, SIZE, Staged};
 
 fn creature() -> Model {
-    relievo::samples::creature().expect("valid")
+    relievo_samples::creature().expect("valid")
 }
 
 /// The creature, and the files that `RELIEVO_MODELS` names.

@@ -5,12 +5,12 @@ use std::fmt::Write;
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
-use relievo::measure::{Displacement, DisplacementMeter};
-use relievo::samples::{creature, rock};
 use relievo::scene::{Placement, Play, Quality, Scene, Shares, Transition};
 use relievo::skinning::add_levels;
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::merged::merged;
+use relievo_lab::measure::{Displacement, DisplacementMeter};
+use relievo_samples::{creature, rock};
 
 use super::{HALF, SIZE, Stage, camera, models};
 use crate::frame::{Frame, device};

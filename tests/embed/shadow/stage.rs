@@ -6,10 +6,10 @@ use relievo::asset::Light;
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
-use relievo::samples::maps::BuiltInMap;
 use relievo::scene::{InstanceId, Placement, Relief, Scene, View};
 use relievo::terrain::config::Config;
 use relievo::wgpu;
+use relievo_samples::maps::BuiltInMap;
 
 use super::occluders::Occluders;
 use crate::frame::Frame;

@@ -5,10 +5,10 @@ use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 use relievo::asset::{Clip, Mesh, Model};
 use relievo::gpu::Gpu;
 use relievo::mesh::ProgressiveMesh;
-use relievo::samples::rock;
 use relievo::scene::{Camera, Placement, Quality, Scene, Shares, Transition, View};
 use relievo::skinning::add_levels;
 use relievo::skinning::merged::merged;
+use relievo_samples::rock;
 
 use super::{Eye, SIZE, Scenery};
 use crate::frame::device;

@@ -9,7 +9,7 @@ use crate::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 
 /// The ray from the light to a point of the surface. `light` is the unit vector towards the light, in tangent
 /// space.
-pub(crate) fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
+pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
     let steepness = -scale / light[2].max(LEAST_COSINE);
     let slope = [light[0] * steepness, light[1] * steepness];
     let rise = 1.0 - hit.height;

@@ -7,11 +7,9 @@ use glam::Vec3;
 use crate::asset::light::lambert;
 use crate::srgb;
 use crate::terrain::blend::{Shading, WeightMode};
-#[cfg(feature = "verify")]
 use crate::terrain::cover::MapZone;
 use crate::terrain::cover::{Cover, ShaderZone};
 use crate::terrain::normals::reference::unit_normal;
-#[cfg(feature = "verify")]
 pub(crate) use texturing::texel_indices;
 pub(crate) use texturing::tiles_of;
 pub use texturing::{color_variation, triplanar_weights, varied};
@@ -85,8 +83,7 @@ pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, pla
 
 /// The sum of weights at each pixel of a map. Its colour is divided by their products with factors of height maps, which have
 /// small relative errors.
-#[cfg(feature = "verify")]
-pub(crate) fn totals(window: &[i32], width: usize, cover: &Cover) -> Vec<f32> {
+pub fn totals(window: &[i32], width: usize, cover: &Cover) -> Vec<f32> {
     let at = |x: usize, y: usize| window[y * width + x];
     let mut totals = Vec::new();
     for (y, x) in (1..width - 1).flat_map(|y| (1..width - 1).map(move |x| (y, x))) {

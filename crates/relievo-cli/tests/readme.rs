@@ -1,0 +1,419 @@
+//! What README.md and docs/*.md say, held against the program: code, names of items, commands and their options, kernels,
+//! fields, links, and figures that are the same on every machine.
+
+#[path = "readme/blocks.rs"]
+mod blocks;
+#[path = "program/mod.rs"]
+mod program;
+
+mod harness {
+    pub use crate::program::*;
+    pub use relievo_testing::*;
+}
+#[path = "readme/names.rs"]
+mod names;
+
+use std::collections::BTreeSet;
+
+use harness::relievo;
+use relievo::InputError;
+use relievo::animation::{bounds, keyframe_cursor, local_to_model, sample};
+use relievo::gpu::shaders;
+use relievo::scene_file::SceneFile;
+use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
+use relievo::skinning::{morph, morph_weights, palette, skin};
+use relievo::surface::{cone_map, tangent};
+use relievo::terrain::config::Config;
+use relievo::terrain::fields::Fields;
+use relievo::terrain::normals;
+use relievo_samples::creature;
+
+const README: &str = include_str!("../../../README.md");
+
+/// The text in `quote`s of a piece of Markdown.
+fn quoted(text: &str) -> Vec<&str> {
+    text.split('`').skip(1).step_by(2).collect()
+}
+
+/// The cells of a table's rows, from the row whose first cell is `head` to the table's end.
+fn table(head: &str) -> Vec<Vec<&'static str>> {
+    let cells = |line: &'static str| line.trim_matches('|').split(" | ").map(str::trim).collect::<Vec<_>>();
+    let rows: Vec<_> = (README.lines().skip_while(|line| !line.starts_with(head)).skip(2))
+        .take_while(|line| line.starts_with('|'))
+        .map(cells)
+        .collect();
+    assert!(!rows.is_empty(), "README.md has no table {head}");
+    rows
+}
+
+/// The lines of all code blocks in `language`, without comments.
+fn code(language: &str, comment: &str) -> Vec<&'static str> {
+    let fence = format!("```{language}\n");
+    let blocks = README.split(fence.as_str()).skip(1).filter_map(|rest| rest.split("```").next());
+    blocks
+        .flat_map(str::lines)
+        .filter_map(|line| line.split(comment).next())
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect()
+}
+
+#[test]
+fn every_command_has_the_options_that_it_is_shown_with() {
+    let commands: Vec<_> =
+        (code("sh", "#").into_iter()).filter_map(|line| line.strip_prefix("relievo ")).collect();
+    assert!(!commands.is_empty());
+    for command in commands
+        .iter()
+        .copied()
+        .chain(quoted(README).into_iter().filter_map(|text| text.strip_prefix("relievo ")))
+    {
+        let mut words = command.split_whitespace();
+        let name = words.next().unwrap_or_default();
+        let help = relievo(&[name, "--help"]);
+        assert_eq!(help.code, Some(0), "relievo {command}: {}", help.stderr);
+        for option in words.filter(|word| word.starts_with("--")) {
+            assert!(
+                help.stdout.split_whitespace().any(|word| word.trim_end_matches(',') == option),
+                "relievo {command}: no {option}"
+            );
+        }
+    }
+}
+
+/// Options that stand alone, as in "`--scene` times …", are those of `relievo crowd`, of `relievo scene` or of all commands.
+#[test]
+fn options_that_are_named_exist() {
+    let help: String = ["crowd", "scene", "terrain"].map(|name| relievo(&[name, "--help"]).stdout).concat();
+    for option in quoted(README).into_iter().filter(|text| text.starts_with("--")) {
+        for word in option.split_whitespace().filter(|word| word.starts_with("--")) {
+            assert!(help.split_whitespace().any(|other| other == word), "{option}");
+        }
+    }
+}
+
+#[test]
+fn the_table_lists_every_kernel_and_drawing_pass() {
+    let listed: BTreeSet<_> = table("| | kernel").into_iter().flat_map(|row| quoted(row[1])).collect();
+    let all: BTreeSet<_> = shaders::ALL.iter().map(|shader| shader.name).collect();
+    assert_eq!(listed, all);
+}
+
+#[test]
+fn the_configuration_has_the_fields_and_defaults_of_the_table() {
+    let json = |more: &str| format!(r#"{{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"{more}}}"#);
+    assert!(README.contains(&json("")));
+    let plain = Config::from_json(&json("")).expect("the README's configuration");
+    let rows = table("| field | default");
+    let named: BTreeSet<_> = rows.iter().map(|row| quoted(row[0])[0]).collect();
+    let unknown = |text: &str| Config::from_json(&json(text)).expect_err("unknown").to_string();
+    let known = unknown(r#", "nothing": 0"#);
+    let known: BTreeSet<_> = quoted(&known).into_iter().filter(|name| *name != "nothing").collect();
+    let given = BTreeSet::from(["patchSize", "scaleFactor", "seed"]);
+    assert_eq!(named, &known - &given);
+    for row in &rows {
+        let default = match row[1] {
+            "(`patchSize` − 1) / 10" => "25.6".to_owned(),
+            "four" | "none" => continue,
+            default => default.replace('`', ""),
+        };
+        let name = quoted(row[0])[0];
+        let config = Config::from_json(&json(&format!(", \"{name}\": {default}"))).expect("the default");
+        // Not the words, but what they mean.
+        let tiles = (config.tiles_per_patch(), Config { texture_tile: None, ..config });
+        assert_eq!(tiles, (plain.tiles_per_patch(), plain.clone()), "{name}");
+    }
+    assert_eq!(plain.zones.len(), 4);
+}
+
+#[test]
+fn the_scene_file_is_one() {
+    let documents = documents();
+    let blocks = documents.iter().flat_map(Document::blocks).filter(|[language, _]| *language == "json");
+    let scenes: Vec<_> = blocks.map(|[_, text]| SceneFile::from_json(text).expect(text)).collect();
+    assert!(!scenes.is_empty());
+    assert!(scenes.iter().any(|scene| scene.files().len() == 2), "the README's names two models");
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let root = relievo_testing::root();
+    let links: Vec<_> = README.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(!links.is_empty());
+    for link in links.into_iter().filter(|link| !link.starts_with("https://")) {
+        let Some(anchor) = link.strip_prefix('#') else {
+            assert!(root.join(link).exists(), "{link}");
+            continue;
+        };
+        let headings = README.lines().filter_map(|line| line.strip_prefix('#'));
+        let anchors =
+            headings.map(|line| line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-"));
+        assert!(anchors.into_iter().any(|known| known == anchor), "{link}");
+    }
+    for path in quoted(README).into_iter().filter(|text| text.ends_with(".rs") || text.ends_with(".wgsl")) {
+        let is_below = ["", "src/terrain", "src/terrain/height"]
+            .iter()
+            .any(|folder| root.join(folder).join(path).exists());
+        assert!(is_below, "{path}");
+    }
+}
+
+/// A program in `examples/` that nobody finds helps nobody.
+#[test]
+fn every_example_is_named() {
+    let folder = relievo_testing::root().join("examples");
+    let mut programs = 0;
+    for path in std::fs::read_dir(folder).expect("examples").map(|entry| entry.expect("an entry").path()) {
+        if path.extension().is_some_and(|extension| extension == "rs") || path.join("main.rs").exists() {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            assert!(README.contains(&format!("](examples/{name}")), "{name}");
+            programs += 1;
+        }
+    }
+    assert!(programs > 1);
+}
+
+/// A Markdown file of the repository, and its text.
+struct Document {
+    path: String,
+    text: String,
+}
+
+/// README.md and `docs/*.md`, in the order of their paths.
+fn documents() -> Vec<Document> {
+    let root = relievo_testing::root();
+    let names = std::fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry"));
+    let mut paths: Vec<_> = names.map(|entry| format!("docs/{}", entry.file_name().display())).collect();
+    paths.push("README.md".to_owned());
+    paths.sort();
+    let read = |path: String| Document {
+        text: std::fs::read_to_string(root.join(&path)).expect("a document"),
+        path,
+    };
+    paths.into_iter().map(read).collect()
+}
+
+impl Document {
+    /// Its code blocks, each with its language.
+    fn blocks(&self) -> Vec<[&str; 2]> {
+        let fenced = self.text.split("\n```").skip(1).step_by(2);
+        fenced
+            .map(|block| block.split_once('\n').map_or([block, ""], |(language, code)| [language, code]))
+            .collect()
+    }
+
+    /// Its text without code blocks.
+    fn prose(&self) -> String {
+        self.text.split("\n```").step_by(2).collect()
+    }
+}
+
+#[test]
+fn every_block_is_in_a_language_that_is_checked() {
+    for document in documents() {
+        for [language, code] in document.blocks() {
+            let is_checked = match language {
+                "rust" | "json" => true,
+                "sh" | "wgsl" => document.path == "README.md",
+                _ => false,
+            };
+            assert!(is_checked, "{}: ```{language}\n{code}", document.path);
+        }
+    }
+}
+
+#[test]
+fn rust_is_compiled_as_it_stands_there() {
+    let mut written = Vec::new();
+    for document in documents() {
+        let rust = document.blocks().into_iter().filter(|[language, _]| *language == "rust");
+        written.extend(rust.map(|[_, code]| format!("{}\n{code}", document.path)));
+    }
+    let compiled = include_str!("readme/blocks.rs").split("\n    // begin ").skip(1);
+    let compiled: Vec<String> = compiled
+        .filter_map(|rest| rest.split_once("\n    // end"))
+        .map(|(block, _)| block.replace("\n    ", "\n"))
+        .collect();
+    assert!(!written.is_empty());
+    for (written, compiled) in written.iter().zip(&compiled) {
+        assert_eq!(written, compiled, "tests/readme/blocks.rs has another text");
+    }
+    assert_eq!(
+        written.len(),
+        compiled.len(),
+        "blocks without a function in tests/readme/blocks.rs, or the reverse"
+    );
+}
+
+/// The paths in the prose, such as `Scene::new` or `mesh::simplify`, and names of types, such as `SunShadow`.
+fn names_in(prose: &str) -> BTreeSet<String> {
+    let is_word =
+        |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    let is_type = |name: &str| {
+        name.starts_with(|c: char| c.is_ascii_uppercase())
+            && name.contains(|c: char| c.is_ascii_lowercase())
+            && name.chars().filter(char::is_ascii_uppercase).count() > 1
+    };
+    quoted(prose)
+        .into_iter()
+        .map(|text| text.trim_end_matches("()"))
+        .filter(|text| text.split("::").all(is_word) && (text.contains("::") || is_type(text)))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Each name that the documents mention is in `tests/readme/names.rs`, which the compiler reads.
+#[test]
+fn names_in_the_prose_exist() {
+    let mentioned: BTreeSet<String> =
+        documents().iter().flat_map(|document| names_in(&document.prose())).collect();
+    let mut compiled = BTreeSet::new();
+    for (code, name) in include_str!("readme/names.rs").lines().filter_map(|line| line.split_once("; // ")) {
+        // A field is named after a value of its type.
+        let (owner, last) = name.rsplit_once("::").unwrap_or(("", name));
+        let is_module = owner.starts_with(|c: char| c.is_ascii_lowercase());
+        let of_crate = |name: &&str| code.contains(&format!("{name}::{owner}"));
+        let is_named =
+            if is_module { ["relievo", "relievo_lab"].iter().any(of_crate) } else { code.contains(owner) };
+        assert!(is_named && code.contains(last), "`{code}` is not {name}");
+        compiled.insert(name.to_owned());
+    }
+    assert!(mentioned.len() > 30, "{mentioned:?}");
+    assert_eq!(mentioned, compiled, "tests/readme/names.rs has other names than the documents");
+}
+
+/// Runs the README's WGSL as a fragment shader after the module, on the device.
+#[test]
+fn wgsl_is_compiled_as_it_stands_there() {
+    let gpu = harness::gpu();
+    let module = shaders::MODULES.iter().find(|module| module.name == "surface").expect("a module");
+    let source = format!(
+        "{}
+         @group(0) @binding(0) var heights: texture_2d<f32>;
+         @group(0) @binding(1) var pyramid: texture_2d<f32>;
+         @group(0) @binding(2) var colors: texture_2d<f32>;
+         @group(0) @binding(3) var filtering: sampler;
+         @fragment
+         fn fragment(@location(0) uv: vec2<f32>, @location(1) to_eye: vec3<f32>) -> @location(0) vec4<f32> {{
+             let scale = 0.08;
+             let march = SurfaceMarch(SURFACE_WRAP, 1u, 1u, 8u, 0u);
+             let uv_dx = dpdx(uv);
+             let uv_dy = dpdy(uv);
+             {}
+             return albedo;
+         }}",
+        module.source,
+        code("wgsl", "//").join("\n")
+    );
+    let scope = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);
+    let source = wgpu::ShaderSource::Wgsl(source.into());
+    let _ = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("README"), source });
+    let error = pollster::block_on(scope.pop());
+    assert!(error.is_none(), "{error:?}");
+}
+
+#[test]
+fn bounds_of_the_table_are_those_that_parity_holds() {
+    let bounds = [
+        ("terrain/normals", normals::NORMAL_BOUND),
+        ("surface/tangent", tangent::TANGENT_BOUND),
+        ("surface/cone_map", cone_map::RADIUS_BOUND),
+        ("animation/keyframe_cursor", keyframe_cursor::KEYFRAME_CURSOR_BOUND),
+        ("animation/sample", sample::SAMPLE_BOUND),
+        ("animation/sample", sample::LAYER_GROWTH),
+        ("animation/local_to_model", local_to_model::LOCAL_TO_MODEL_BOUND),
+        ("animation/bounds", bounds::BOUNDS_BOUND),
+        ("skinning/palette", palette::PALETTE_BOUND),
+        ("skinning/morph_weights", morph_weights::MORPH_WEIGHTS_BOUND),
+        ("skinning/morph", morph::MORPH_BOUND),
+        ("skinning/skin", skin::SKIN_BOUND),
+    ];
+    let rows = table("| | kernel");
+    for (stem, bound) in bounds {
+        let row = rows.iter().find(|row| quoted(row[1]).contains(&stem)).expect(stem);
+        let text = if bound < 1.0 { format!("{bound:e}") } else { bound.to_string() };
+        assert!(row[3].split([' ', ',', ';']).any(|word| word == text), "{stem}: {text}, not {}", row[3]);
+    }
+}
+
+#[test]
+fn the_oldest_rust_is_that_of_the_manifest() {
+    assert!(README.contains(&format!("Rust {} or newer", env!("CARGO_PKG_RUST_VERSION"))));
+}
+
+#[test]
+fn batches_are_split_where_it_says() {
+    let patches = Fields::most(&harness::gpu(), 257);
+    assert!(README.contains(&format!("128 MiB ({patches} patches of 257²)")), "{patches}");
+}
+
+/// 8112 as 8,112.
+fn thousands(number: usize) -> String {
+    if number < 1000 { number.to_string() } else { format!("{},{:03}", number / 1000, number % 1000) }
+}
+
+#[test]
+fn the_creature_has_as_many_bones_vertices_and_triangles() {
+    let model = creature().expect("built in");
+    let vertices: usize = model.meshes.iter().map(|mesh| mesh.vertices()).sum();
+    let figures = format!("{} bones, {} vertices each", model.skeleton.len(), thousands(vertices));
+    assert!(README.contains(&figures), "{figures}");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    for millimetres in [15, 29] {
+        let within = format!("0.0{millimetres}");
+        let common = ["skin", "--model", "builtin", "--clip", "walk", "--time", "0.3", "--out", out];
+        let run = relievo(&[&common[..], &["--within", &within]].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let words: Vec<_> = run.stdout.split_whitespace().collect();
+        let of = words.iter().position(|word| *word == "of").expect("triangles of all");
+        let [left, all] = [words[of - 1], words[of + 1]].map(|word| word.parse::<usize>().expect("a number"));
+        for figures in
+            [format!("all {} triangles", thousands(all)), format!("{} within {millimetres}", thousands(left))]
+        {
+            assert!(README.contains(&figures), "{figures}: {}", run.stdout);
+        }
+    }
+}
+
+/// Bones that a clip does not move are no part of what gates save.
+#[test]
+fn the_creature_moves_as_many_bones_in_its_walk() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let run = relievo(&[
+        "crowd",
+        "--model",
+        "builtin",
+        "--clip",
+        "walk",
+        "--gate",
+        "off",
+        "--instances",
+        "1",
+        "--frames",
+        "1",
+        "--distance",
+        "400",
+        "--backend",
+        "cpu",
+        "--out",
+        out,
+    ]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let report = std::fs::read(folder.path().join("report.json")).expect("a report");
+    let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+    let figures = format!("creature's {} bones {} in its walk", report["bones"], report["animated_bones"]);
+    assert!(README.contains(&figures), "{figures}");
+}
+
+#[test]
+fn the_creature_does_with_80_bones() -> Result<(), InputError> {
+    let model = creature()?;
+    let collapsed = collapse_bones(&model, &CollapseOptions::new(KeptBones::Count(80)))?;
+    let [all, left] = [&model, &collapsed.model].map(|model| model.skeleton.len());
+    println!("{all} to {left} bones: {:?}", collapsed.error);
+    assert!(README.contains(&format!("{all} to {left} for less than 2 cm")));
+    assert!(collapsed.error.largest < 0.02, "{:?}", collapsed.error);
+    Ok(())
+}

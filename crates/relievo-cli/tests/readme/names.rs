@@ -1,0 +1,84 @@
+//! What README.md and docs/*.md name in their prose, each for the compiler to find: an item, a method, a field or a variant.
+//! The comment of a line is the name as it stands there; `tests/readme.rs` compares these with the documents.
+#![allow(dead_code, unused_imports, reason = "it is compiled, not run")]
+
+use relievo::animation::lod::Projection;
+use relievo::asset::Model;
+use relievo::asset::material::Alpha;
+use relievo::lod::LodCamera;
+use relievo::mesh::{Options, Simplified};
+use relievo::render::{Layer, Renderer, TargetFormat};
+use relievo::scene::{Scene, Transition};
+use relievo::skinning::Extent;
+use relievo::skinning::lod::LodView;
+use relievo::surface::ReliefOptions;
+
+#[rustfmt::skip]
+fn items() {
+    use relievo::gpu::shaders::MODULES as _; // gpu::shaders::MODULES
+    use relievo::mesh::ProgressiveMesh as _; // mesh::ProgressiveMesh
+    use relievo::mesh::Reducer as _; // mesh::Reducer
+    use relievo::mesh::Stopped as _; // mesh::Stopped
+    use relievo::mesh::distance as _; // mesh::distance
+    use relievo::mesh::simplify as _; // mesh::simplify
+    use relievo::skinning::Extent as _; // skinning::Extent
+    use relievo::skinning::add_levels as _; // skinning::add_levels
+    use relievo::skinning::collapse_bones as _; // skinning::collapse_bones
+    use relievo::skinning::frame::SkinFrame as _; // skinning::frame::SkinFrame
+    use relievo::skinning::paged::PagedSkin as _; // skinning::paged::PagedSkin
+    use relievo::skinning::reduce_model as _; // skinning::reduce_model
+    use relievo::surface::SurfaceTextures as _; // surface::SurfaceTextures
+    use relievo::surface::tangent as _; // surface::tangent
+    use relievo::terrain::ground::Ground as _; // terrain::ground::Ground
+    use relievo_lab::measure::DisplacementMeter as _; // measure::DisplacementMeter
+    use relievo_lab::measure::reduction::reduction as _; // measure::reduction::reduction
+    use relievo::animation::priority as _; // animation::priority
+    use relievo::animation::frame::GatedFrame as _; // GatedFrame
+    use relievo::render::SunShadow as _; // SunShadow
+    use relievo_lab::measure::FrameSummary as _; // FrameSummary
+    use relievo_lab::measure::ScenePlay as _; // ScenePlay
+}
+
+#[rustfmt::skip]
+fn members() {
+    let _ = Alpha::Blended; // Alpha::Blended
+    let _ = |frame: relievo::animation::Frame| frame.ahead; // Frame::ahead
+    let _ = Layer::Measure; // Layer::Measure
+    let _ = Layer::Surface; // Layer::Surface
+    let _ = Layer::Transparent; // Layer::Transparent
+    let _ = Layer::Velocity; // Layer::Velocity
+    let _ = Model::blend; // Model::blend
+    let _ = Model::from_file; // Model::from_file
+    let _ = Model::to_glb; // Model::to_glb
+    let _ = Model::to_obj; // Model::to_obj
+    let _ = |options: Options| options.prune; // Options::prune
+    let _ = Renderer::with_shading; // Renderer::with_shading
+    let _ = Scene::draws; // Scene::draws
+    let _ = Scene::health; // Scene::health
+    let _ = Scene::keep_last_frame; // Scene::keep_last_frame
+    let _ = Scene::set_material; // Scene::set_material
+    let _ = Scene::set_transition; // Scene::set_transition
+    let _ = Simplified::hash; // Simplified::hash
+    let _ = TargetFormat::velocity; // TargetFormat::velocity
+    let _ = Extent::fade_range; // Extent::fade_range
+    let _ = |projection: &Projection, extent: &Extent| extent.level_ranges(projection, 1.0, [0.0]); // Extent::level_ranges
+    let _ = |extent: Extent| extent.stray; // Extent::stray
+    let _ = LodCamera::new; // LodCamera::new
+    let _ = LodView::projected_distance; // LodView::projected_distance
+    let _ = Projection::allowed; // Projection::allowed
+    let _ = Transition::Geomorph; // Transition::Geomorph
+    let _ = |options: ReliefOptions| options.shadow; // ReliefOptions::shadow
+}
+
+#[rustfmt::skip]
+fn decided() {
+    let _ = relievo::animation::lod::Range::omega; // animation::lod::Range::omega
+    let _ = |gate| matches!(gate, relievo::animation::Gate::SkipPeriod { .. }); // animation::Gate::SkipPeriod
+    let _ = relievo::mesh::Reducer::ALL; // mesh::Reducer::ALL
+    let _ = |cost| matches!(cost, relievo::mesh::Cost::Melax { .. }); // mesh::Cost::Melax
+    let _ = relievo::skinning::Normals::Recompute; // skinning::Normals::Recompute
+    let _ = relievo::surface::Method::Parallax; // surface::Method::Parallax
+    let _ = |march: relievo::surface::March| march.steps; // surface::March::steps
+    let _ = |material: relievo::surface::Material| material.plane; // surface::Material::plane
+    let _ = |config: relievo::terrain::config::Config| config.scale_factor; // terrain::config::Config::scale_factor
+}

@@ -1,0 +1,20 @@
+//! Headless Chromium compiles every flat shader and every module that `relievo shaders` writes, with WebGPU's default
+//! limits, and draws a scene.
+
+#[path = "../program/mod.rs"]
+mod program;
+
+mod harness {
+    pub use crate::program::*;
+    pub use relievo_testing::*;
+}
+
+#[path = "../../../../tests/mesh/alike.rs"]
+mod alike;
+mod driver;
+#[path = "scene/src/picture.rs"]
+mod picture;
+mod plan;
+mod scene;
+mod shaders;
+mod wasm;

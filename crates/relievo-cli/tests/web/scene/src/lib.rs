@@ -1,0 +1,76 @@
+//! What the page `scene.html` calls: a small scene, drawn in the browser.
+
+#[path = "../../../../../../tests/mesh/alike.rs"]
+mod alike;
+mod picture;
+
+use picture::World;
+use relievo::gpu::{Buffer, Gpu, Options};
+use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
+
+#[wasm_bindgen]
+unsafe extern "C" {
+    /// Tells the page why the program ends.
+    fn panicked(message: &str);
+}
+
+/// Lets the page know why a call fails that Rust aborts.
+#[wasm_bindgen(start)]
+pub fn start() {
+    std::panic::set_hook(Box::new(|panic| panicked(&panic.to_string())));
+}
+
+/// Draws the scene on a device of its own, under the light of the day or, for a picture that must be refused, of the
+/// evening. Pixels are RGBA in sRGB, row by row.
+#[wasm_bindgen]
+pub async fn draw(evening: bool) -> Result<Vec<u8>, JsValue> {
+    let drawn = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        drawn(&gpu, World::new(&gpu, evening).await?).await
+    };
+    drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
+/// Draws the scene of a file on a device of its own; pixels as above.
+#[wasm_bindgen]
+pub async fn draw_file() -> Result<Vec<u8>, JsValue> {
+    let drawn = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        drawn(&gpu, World::of_file(&gpu).await?).await
+    };
+    drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
+async fn drawn(gpu: &Gpu, mut world: World) -> Result<Vec<u8>, relievo::Error> {
+    let pixels = world.draw(gpu).await?;
+    gpu.check_async().await?;
+    Ok(pixels)
+}
+
+/// Hashes of simplified meshes, and of those that other reducers leave.
+#[wasm_bindgen]
+pub fn collapses() -> Vec<String> {
+    alike::hashes().into_iter().chain(alike::reduced()).collect()
+}
+
+/// What the library says of a write between two words: at once, and once the browser has told the errors so far.
+#[wasm_bindgen]
+pub async fn mistake() -> Result<Vec<String>, JsValue> {
+    made().await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
+async fn made() -> Result<Vec<String>, relievo::Error> {
+    let gpu = Gpu::headless_async(&Options::default()).await?;
+    let buffer = Buffer::from_slice(&gpu, "short", &[1_u32, 2])?;
+    let said = |result: Result<(), relievo::gpu::GpuError>| match result {
+        Ok(()) => "nothing".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    let bytes = Buffer::from_slice(&gpu, "bytes", &[0_u8; 8])?;
+    let at_once = said(bytes.write_at(&gpu, 1, &[9_u8; 4]));
+    let later = said(gpu.check_async().await);
+    // The buffer and the device are of use afterwards.
+    buffer.write_at(&gpu, 1, &[7_u32])?;
+    let kept = format!("{:?}", buffer.read(&gpu).await?);
+    Ok(vec![at_once, later, kept])
+}

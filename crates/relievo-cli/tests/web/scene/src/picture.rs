@@ -1,0 +1,94 @@
+//! A small scene and a picture of it: a patch of terrain, three walking creatures that stand on it, and a relief wall.
+//! The page and the native test draw it with this code.
+
+use std::path::Path;
+
+use relievo::Error;
+use relievo::asset::Light;
+use relievo::glam::Vec3;
+use relievo::gpu::Gpu;
+use relievo::render::{Layer, Offscreen, Renderer};
+use relievo::scene::{Camera, Depth, Placement, Play, Relief, Scene, TerrainSource, View};
+use relievo::scene_file::SceneFile;
+use relievo::terrain::config::Config;
+use relievo_samples::{creature, maps::BuiltInMap};
+
+/// Pixels of the picture.
+pub const SIZE: [u32; 2] = [512, 384];
+
+const SKY: [f32; 3] = [0.36, 0.55, 0.8];
+
+/// The frames before the picture: more than recordings may wait for their submission.
+const FRAMES: usize = 6;
+
+/// The scene with what draws it.
+pub struct World {
+    scene: Scene,
+    renderer: Renderer,
+    eye: View,
+    target: Offscreen,
+}
+
+impl World {
+    /// Builds the scene, under the light of the day or of the evening.
+    pub async fn new(gpu: &Gpu, evening: bool) -> Result<Self, Error> {
+        let mut scene = Scene::new_async(gpu).await?;
+        let config = Config::new(33, 6.0, "browser")?;
+        let land = scene.add_terrain_async(&TerrainSource::new(config)).await?;
+        let walkers = scene.add_character_async(&creature()?, 3).await?;
+        let bricks = BuiltInMap::Bricks;
+        let relief = Relief::wall(2.0, bricks.height_map(128)?, bricks.albedo(128)?);
+        let walls = scene.add_relief_async(&relief, 1).await?;
+        let ground = |scene: &Scene, x: f64, z: f64| {
+            let found = scene.ground(land, x, z).ok().flatten();
+            Placement::at_world([x, found.map_or(0.0, |point| point.height), z])
+        };
+        for at in 0..3 {
+            let place = ground(&scene, 11.0 + 3.5 * f64::from(at), 18.0 + f64::from(at));
+            let walker = scene.spawn(walkers, place.turned(0.7 * at as f32).scaled(2.0))?;
+            scene.play(walker, &Play { start: -0.3 * f64::from(at), ..Play::new("walk") })?;
+        }
+        let place = ground(&scene, 16.0, 12.0);
+        scene.spawn(walls, Placement { offset: place.offset + Vec3::Y * 3.0, ..place.scaled(8.0) })?;
+        if evening {
+            scene.set_light(Light { direction: Vec3::new(-0.8, 0.3, 0.1), ..Light::default() })?;
+        }
+        let focus = ground(&scene, 15.0, 17.0).world().as_vec3() + Vec3::Y * 2.0;
+        let position = focus + Vec3::new(-4.0, 4.0, 13.0);
+        Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
+    }
+
+    /// Builds the scene of a file, which names no other files.
+    pub async fn of_file(gpu: &Gpu) -> Result<Self, Error> {
+        let none = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
+        let file = SceneFile::from_json(include_str!("scene.json"))?;
+        let camera = file.camera().camera(0.0, SIZE, Depth::Forward);
+        let world = file.load(&none, &relievo_samples::Samples)?.build_async(gpu).await?;
+        Self::seen(gpu, world.scene, camera).await
+    }
+
+    async fn seen(gpu: &Gpu, scene: Scene, camera: Camera) -> Result<Self, Error> {
+        let target = Offscreen::new(gpu, SIZE, true, 1, false)?;
+        let mut renderer = Renderer::new(gpu, target.format())?;
+        renderer.prepare_async(&scene).await?;
+        let mut eye = scene.view(Default::default())?;
+        eye.set(camera)?;
+        Ok(Self { scene, renderer, eye, target })
+    }
+
+    /// Plays some frames, and reads the last one: RGBA in sRGB, row by row.
+    pub async fn draw(&mut self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        let Self { scene, renderer, eye, target } = self;
+        for _ in 0..FRAMES {
+            scene.advance(0.1)?;
+            let mut encoder = gpu.encoder("frame");
+            scene.record(&mut encoder, &mut [&mut *eye])?;
+            target.record(&mut encoder, SKY, |pass| renderer.draw(pass, scene, eye, Layer::Color))?;
+            gpu.queue().submit([encoder.finish()]);
+            // As a page waits for its next frame.
+            gpu.wait_async().await?;
+            scene.health()?;
+        }
+        Ok(target.read_async(gpu).await?.into_raw())
+    }
+}

@@ -1,0 +1,224 @@
+//! The browser's compiler accepts every shader and module, and refuses some that are wrong on purpose.
+
+use std::collections::BTreeSet;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use crate::harness::{browser, relievo};
+use crate::plan::{Written, name_of};
+
+/// Shaders that need more than WebGPU's default limits. The library does without them on devices with these limits.
+const OPTIONAL: &[&str] = &["animation/decide"];
+
+/// A literal just above the largest f32.
+const BEYOND_F32: &str = "const LARGEST = 3.40282347e38;
+@group(0) @binding(0) var<storage, read_write> out: array<f32>;
+@compute @workgroup_size(1) fn main() { out[0] = LARGEST; }";
+
+/// An entry point whose only fault is an index of the wrong type.
+const ILL_TYPED: &str = "@group(0) @binding(0) var<storage, read_write> out: array<f32>;
+@compute @workgroup_size(1) fn main() { out[0] = 1u; }";
+
+/// The results of one page load, which all tests of this file examine.
+struct Said {
+    written: Written,
+    result: Value,
+}
+
+fn said() -> &'static Said {
+    static SAID: OnceLock<Said> = OnceLock::new();
+    SAID.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let out = folder.path().join("wgsl");
+        let run = relievo(&["shaders", "--out", out.to_str().expect("UTF-8")]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let written = Written::read(&out);
+        let jobs = [written.jobs(), modules(&written), faults()].concat();
+        let limits = ["maxStorageBuffersPerShaderStage", "maxComputeInvocationsPerWorkgroup"];
+        let plan = json!({ "jobs": jobs, "limits": limits }).to_string();
+        let files = [("/", include_bytes!("shaders.html").as_slice()), ("/plan.json", plan.as_bytes())];
+        let start = Instant::now();
+        let program = browser::program().expect("the suite needs a browser");
+        let result = browser::visit(&program, &files, Duration::from_secs(240)).expect("a result");
+        println!("{} in {:.1} s", result["adapter"], start.elapsed().as_secs_f32());
+        Said { written, result }
+    })
+}
+
+/// Each module by itself, and each in front of a shader of another program.
+fn modules(written: &Written) -> Vec<Value> {
+    let mut jobs = Vec::new();
+    for (name, source) in &written.modules {
+        let path = format!("{}/tests/modules/{name}.wgsl", relievo_testing::root().display());
+        let user = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        jobs.push(json!({ "name": format!("module {name}"), "code": source, "pipelines": [] }));
+        let pipeline = json!({ "label": format!("user of {name}"), "constants": {}, "compute": "main" });
+        jobs.push(json!({
+            "name": format!("user of {name}"),
+            "code": format!("{source}\n{user}"),
+            "pipelines": [pipeline],
+        }));
+    }
+    let everything: Vec<_> = written.modules.iter().map(|(_, source)| source.as_str()).collect();
+    jobs.push(json!({ "name": "all modules", "code": everything.join("\n"), "pipelines": [] }));
+    jobs
+}
+
+/// Shaders that must be refused, with names that begin with `fault: `.
+fn faults() -> Vec<Value> {
+    let pipeline = |constants: Value| json!({ "label": "fault", "constants": constants, "compute": "main" });
+    let storage = |kind: &str| json!([[{ "binding": 0, "visibility": 4, "buffer": { "type": kind } }]]);
+    let fine = "@group(0) @binding(0) var<storage, read_write> out: array<f32>;
+@compute @workgroup_size(1) fn main() { out[0] = 1.0; }";
+    let job = |name: &str, code: &str, groups: Value, constants: Value| json!({ "name": format!("fault: {name}"), "code": code, "groups": groups, "pipelines": [pipeline(constants)] });
+    vec![
+        job("literal", BEYOND_F32, Value::Null, json!({})),
+        job("type", ILL_TYPED, Value::Null, json!({})),
+        job("nine buffers", &bound(9), Value::Null, json!({})),
+        job("layout", fine, storage("read-only-storage"), json!({})),
+        job("constant", fine, storage("storage"), json!({ "NOTHING": 1 })),
+        job("none", fine, storage("storage"), json!({})),
+        job("eight buffers", &bound(8), Value::Null, json!({})),
+    ]
+}
+
+/// A shader that binds `buffers` storage buffers.
+fn bound(buffers: u32) -> String {
+    let declared: String = (0..buffers)
+        .map(|at| format!("@group(0) @binding({at}) var<storage, read_write> b{at}: array<f32>;\n"))
+        .collect();
+    let written: String = (0..buffers).map(|at| format!("b{at}[0] = 1.0; ")).collect();
+    format!("{declared}@compute @workgroup_size(1) fn main() {{ {written}}}")
+}
+
+fn jobs() -> &'static [Value] {
+    let result = &said().result;
+    result["jobs"].as_array().unwrap_or_else(|| panic!("the page failed: {result}"))
+}
+
+fn job(name: &str) -> &'static Value {
+    jobs().iter().find(|job| job["name"] == name).unwrap_or_else(|| panic!("no job `{name}`"))
+}
+
+fn pipelines(job: &Value) -> &[Value] {
+    job["pipelines"].as_array().expect("a list")
+}
+
+/// The messages of everything that the browser refused in a job.
+fn refusals(job: &Value) -> Vec<String> {
+    let messages = job["messages"].as_array().expect("a list").iter();
+    let errors = messages.filter(|message| message["type"] == "error").map(|message| &message["message"]);
+    let pipelines = pipelines(job).iter().map(|pipeline| &pipeline["error"]);
+    (errors.chain([&job["error"], &job["layout"]]).chain(pipelines))
+        .filter_map(Value::as_str)
+        .map(str::to_owned)
+        .collect()
+}
+
+fn assert_accepted(job: &Value) {
+    assert_eq!(refusals(job), Vec::<String>::new(), "{}", job["name"]);
+    for message in job["messages"].as_array().expect("a list") {
+        println!("{}: {message}", job["name"]);
+    }
+}
+
+#[test]
+fn the_device_has_default_limits() {
+    let result = &said().result;
+    assert_eq!(result["limits"]["maxStorageBuffersPerShaderStage"], 8, "{result}");
+    assert_eq!(result["limits"]["maxComputeInvocationsPerWorkgroup"], 256);
+    assert_eq!(result["uncaptured"], json!([]));
+    assert_eq!(
+        jobs().len(),
+        said().written.shaders.len() + 2 * said().written.modules.len() + 1 + faults().len()
+    );
+}
+
+#[test]
+fn every_shader_compiles_with_every_value_of_its_constants() {
+    let mut made = 0;
+    for shader in &said().written.shaders {
+        let name = name_of(shader);
+        if OPTIONAL.contains(&name.as_str()) {
+            continue;
+        }
+        let job = job(&name);
+        assert_accepted(job);
+        // Every entry point occurs equally often; a vertex entry comes with each of its fragment entries.
+        let entries = shader["entry_points"].as_array().expect("a list");
+        let starts: Vec<_> = entries.iter().filter(|entry| entry["stage"] != "vertex").map(name_of).collect();
+        for start in &starts {
+            let begin = format!("{name} {start} ");
+            let of_entry = pipelines(job).iter().filter(|made| name_begins(made, &begin)).count();
+            assert!(of_entry > 0 && of_entry * starts.len() == pipelines(job).len(), "{begin}");
+        }
+        println!(
+            "{name}: {} pipelines in {:.2} s",
+            pipelines(job).len(),
+            job["seconds"].as_f64().unwrap_or(0.0)
+        );
+        made += pipelines(job).len();
+    }
+    let planned: usize = (said().written.jobs().iter())
+        .filter(|job| !OPTIONAL.contains(&job["name"].as_str().unwrap_or_default()))
+        .map(|job| job["pipelines"].as_array().map_or(0, Vec::len))
+        .sum();
+    assert_eq!(made, planned);
+    println!("{made} pipelines of {} shaders", said().written.shaders.len() - OPTIONAL.len());
+}
+
+fn name_begins(pipeline: &Value, begin: &str) -> bool {
+    pipeline["label"].as_str().is_some_and(|label| label.starts_with(begin))
+}
+
+/// The test lists these shaders by name, so that a new one is noticed.
+#[test]
+fn shaders_that_need_more_than_the_default_limits_are_known_by_name_and_refused() {
+    let needs = |shader: &&Value| !shader["limits"].as_array().expect("a list").is_empty();
+    let found: BTreeSet<_> = said().written.shaders.iter().filter(needs).map(name_of).collect();
+    assert_eq!(found, OPTIONAL.iter().map(|name| (*name).to_owned()).collect());
+    for name in OPTIONAL {
+        let job = job(name);
+        assert!(job["error"].is_null(), "the module itself is fine: {job}");
+        let layout = job["layout"].as_str().unwrap_or_default();
+        assert!(layout.contains("number of storage buffers (20)"), "{job}");
+        assert!(pipelines(job).iter().all(|pipeline| pipeline["error"].is_string()), "{job}");
+    }
+}
+
+#[test]
+fn every_module_compiles_alone_before_a_shader_and_with_all_others() {
+    let modules = &said().written.modules;
+    assert_eq!(
+        modules.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+        ["animation", "lod", "skinning", "surface", "terrain"]
+    );
+    for (name, _) in modules {
+        assert_accepted(job(&format!("module {name}")));
+        let user = job(&format!("user of {name}"));
+        assert_accepted(user);
+        assert_eq!(pipelines(user).len(), 1);
+    }
+    assert_accepted(job("all modules"));
+}
+
+#[test]
+fn what_must_be_refused_is_refused_for_its_reason() {
+    for (name, words) in [
+        ("literal", "cannot be represented as 'f32'"),
+        ("type", "u32"),
+        ("nine buffers", "(9)"),
+        ("layout", "not compatible with the type in the layout"),
+        ("constant", "NOTHING"),
+    ] {
+        let job = job(&format!("fault: {name}"));
+        let refused = refusals(job);
+        println!("{name}: {refused:?}");
+        assert!(refused.iter().any(|why| why.contains(words)), "{job}");
+        assert!(pipelines(job)[0]["error"].is_string(), "{job}");
+    }
+    assert_accepted(job("fault: none"));
+    assert_accepted(job("fault: eight buffers"));
+}

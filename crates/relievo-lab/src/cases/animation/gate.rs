@@ -1,0 +1,222 @@
+//! Parity and benchmark cases of `kernels/animation/gate.wgsl`.
+
+use relievo::Error;
+use relievo::animation::active::Active;
+use relievo::animation::clip_clock::{ClipClock, UpdateReason};
+use relievo::animation::clip_set::ClipSet;
+use relievo::animation::crowd::Crowd;
+use relievo::animation::gate::reference::gate;
+use relievo::animation::gate::{Frame, Gate, GatePass};
+use relievo::animation::gate_state::GateState;
+use relievo::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
+use relievo::animation::lod::{Lod, OMEGA_ONE};
+use relievo::animation::order::Order;
+use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
+use relievo::asset::clip::Clip;
+use relievo::asset::keyframe::RotationPath;
+use relievo::asset::skeleton::Skeleton;
+use relievo::gpu::Buffer;
+
+use crate::cases::animation::scene::{CROWDS, Scene};
+use crate::cases::animation::{Draw, SIZES, random_clips, random_crowd};
+use crate::cases::terrain::copy_of;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Backend, Bench, Cases, Contender, compare};
+
+/// The cases cover every gate over sequences of frames, with integers of every size: Ω from 0 to 1, clip clocks
+/// at both ends of rows, ticks before and after they wrap, and all update reasons. The integer results must be
+/// equal to the bit.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let case = case as u32;
+        let (skeleton, set, instances) = random_crowd(case, bones, count)?;
+        let clips = random_clips(case, &skeleton, 3)?;
+        let crowd = Crowd::new(cases.gpu, &set, &instances)?;
+        for gate in gates(&skeleton, &set, &clips.iter().collect::<Vec<_>>())? {
+            add(cases, case, &gate, &Order::new(&skeleton), &set, &crowd)?;
+        }
+    }
+    Ok(())
+}
+
+/// Every gate but a budget, of clips.
+pub(crate) fn gates(skeleton: &Skeleton, set: &ClipSet, clips: &[&Clip]) -> Result<[Gate; 5], Error> {
+    let order = Order::new(skeleton);
+    let weights = Weights::default();
+    let user = vec![USER_DEFAULT; skeleton.len()];
+    let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
+    let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let bones = AnimatedBones::new(&order, set, clips)?;
+    let bone_radii = vec![0.5; skeleton.len()];
+    Ok([
+        Gate::Off(bones.clone()),
+        Gate::SkipPeriod { table: PriorityTable::new(&order, set, clips, &priorities)?, period: 65536 },
+        Gate::Uniform(bones.clone()),
+        Gate::Random(bones),
+        Gate::Bounded(BoundTable::new(skeleton, set, clips, &bone_radii, RotationPath::Slerp)?),
+    ])
+}
+
+fn add(
+    cases: &mut Cases<'_>,
+    case: u32,
+    mode: &Gate,
+    order: &Order,
+    set: &ClipSet,
+    crowd: &Crowd,
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let count = crowd.len();
+    let mut state = GateState::new(gpu, crowd)?;
+    let mut active = Active::new(gpu, order, crowd)?;
+    let output = Poisoned::<u32>::new(gpu, 2 * count * order.words())?;
+    active.bits = output.buffer.clone();
+    let sums = Poisoned::<u32>::new(gpu, crowd.pairs())?;
+    state.sampled = sums.buffer.clone();
+    let pass = GatePass::new(gpu, mode)?;
+    let job = pass.prepare(gpu, crowd, &state, &active)?;
+    let mut draw = Draw::new(case ^ 0x9a7e);
+    let mut sampled = vec![0; crowd.pairs()];
+    sums.buffer.write(gpu, &sampled)?;
+    for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
+        let (lods, clip_clocks) = random_state(&mut draw, set, count, number == 0);
+        state.write_lods(gpu, &lods)?;
+        state.clip_clocks.write(gpu, &clip_clocks)?;
+        let frame = Frame {
+            ticks,
+            frame_ticks: 1092,
+            frame: u32::MAX - 1 + number as u32 * u32::from(number < 2),
+            ahead: 0.0,
+        };
+        job.set(gpu, &frame)?;
+        output.poison(gpu)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let expected = gate(mode, &frame, &lods, &clip_clocks, &mut sampled).words();
+        let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
+        cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
+    }
+    let name = format!("{} bones × {count}, {}, sums of motion", crowd.bones, mode.name());
+    cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled))?);
+    Ok(())
+}
+
+/// Random levels of detail and clip clocks of a frame; in the first frame all are forced.
+pub(crate) fn random_state(
+    draw: &mut Draw,
+    set: &ClipSet,
+    count: usize,
+    is_first: bool,
+) -> (Vec<Lod>, Vec<ClipClock>) {
+    let lod = |draw: &mut Draw| Lod {
+        omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
+        allowed: draw.word() >> (draw.word() % 32),
+        ..Lod::FULL
+    };
+    let clip_clock = |draw: &mut Draw| {
+        let clip = draw.word() % set.clips().len() as u32;
+        let entry = &set.clips()[clip as usize];
+        let row = entry.first_row + draw.word() % (set.rows(entry) - 1);
+        let fraction = [0, draw.word() % 65536, 65535, 65536][draw.word() as usize % 4];
+        let reason = match draw.word() % 8 {
+            _ if is_first => UpdateReason::Forced,
+            0 => UpdateReason::Hidden,
+            1 => UpdateReason::Forced,
+            2 => UpdateReason::Blended,
+            _ => UpdateReason::Free,
+        };
+        let clip_clock = ClipClock::new(row, fraction, reason, clip);
+        let ahead_row = entry.first_row + draw.word() % (set.rows(entry) - 1);
+        match draw.word() % 3 {
+            0 => clip_clock,
+            // Slightly ahead, or anywhere.
+            1 => ClipClock { ahead_fraction: (fraction + draw.word() % 64).min(65536), ..clip_clock },
+            _ => ClipClock { ahead_row, ahead_fraction: draw.word() % 65537, ..clip_clock },
+        }
+    };
+    (0..count).map(|_| (lod(draw), clip_clock(draw))).unzip()
+}
+
+/// Measures each gate at half detail, where it examines every bone.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let makers = [Scene::uniform, Scene::random, Scene::skip_period, Scene::bounded];
+    for maker in makers {
+        for count in CROWDS {
+            let scene = Scene::new(bench.gpu, count)?;
+            case(bench, &scene, &maker(&scene)?)?;
+        }
+    }
+    Ok(())
+}
+
+fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> {
+    let (gpu, count) = (bench.gpu, scene.instances.len());
+    let state = GateState::new(gpu, &scene.crowd)?;
+    let active = Active::new(gpu, &scene.order(), &scene.crowd)?;
+    let lods = vec![Lod { omega: OMEGA_ONE / 2, allowed: 1 << 16, ..Lod::FULL }; count];
+    let rows = scene.set.rows(&scene.set.clips()[0]) - 1;
+    let clip_clock = |instance: u32| ClipClock::new(instance % rows, instance % 65536, UpdateReason::Free, 0);
+    let clip_clocks: Vec<ClipClock> = (0..count as u32).map(clip_clock).collect();
+    state.write_lods(gpu, &lods)?;
+    state.clip_clocks.write(gpu, &clip_clocks)?;
+    let job = GatePass::new(gpu, mode)?.prepare(gpu, &scene.crowd, &state, &active)?;
+    let frame = Frame { ticks: 100_000, frame_ticks: 1092, frame: 91, ahead: 0.0 };
+    job.set(gpu, &frame)?;
+    // The kernel writes the bits, and for each bone reads half a word of priorities, or reads four words of
+    // motion and writes one.
+    let pairs = scene.pairs();
+    let words = match mode {
+        Gate::Bounded(_) => 5 * pairs / 2,
+        Gate::SkipPeriod { .. } => pairs / 4,
+        _ => 4 * count,
+    };
+    let copied = copy_of(gpu, words.max(1))?;
+    // At each time every bone has missed some motion.
+    let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, |encoder| {
+            if matches!(mode, Gate::Bounded(_)) {
+                encoder.copy_buffer_to_buffer(before.raw(), 0, state.sampled.raw(), 0, before.bytes());
+            }
+            job.record(encoder);
+        }),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Reference, || {
+            sampled.fill(0);
+            drop(std::hint::black_box(gate(mode, &frame, &lods, &clip_clocks, &mut sampled)));
+        }),
+    ];
+    bench.case(format!("{count} × 153, {}", mode.name()), (pairs, "bone"), 8 * words as u64, contenders)
+}
+
+impl Scene {
+    fn animated_bones(&self) -> Result<AnimatedBones, Error> {
+        Ok(AnimatedBones::new(&self.order(), &self.set, &[&self.clip])?)
+    }
+
+    /// The uniform gate, which samples all bones of an instance together.
+    pub(crate) fn uniform(&self) -> Result<Gate, Error> {
+        Ok(Gate::Uniform(self.animated_bones()?))
+    }
+
+    fn random(&self) -> Result<Gate, Error> {
+        Ok(Gate::Random(self.animated_bones()?))
+    }
+
+    fn skip_period(&self) -> Result<Gate, Error> {
+        let priorities = [self.priorities()?];
+        let table = PriorityTable::new(&self.order(), &self.set, &[&self.clip], &priorities)?;
+        Ok(Gate::SkipPeriod { table, period: 65536 })
+    }
+
+    fn bounded(&self) -> Result<Gate, Error> {
+        let (clips, bone_radii) = ([&self.clip], vec![0.1; self.skeleton.len()]);
+        let path = RotationPath::Slerp;
+        Ok(Gate::Bounded(BoundTable::new(&self.skeleton, &self.set, &clips, &bone_radii, path)?))
+    }
+}

@@ -1,0 +1,214 @@
+//! Parity and benchmark cases of `kernels/animation/keyframe_cursor.wgsl`.
+
+use std::hint::black_box;
+
+use relievo::Error;
+use relievo::animation::active::Active;
+use relievo::animation::crowd::{ClipBuffers, Crowd};
+use relievo::animation::gate_state::GateState;
+use relievo::animation::instance::{Instance, Wrap};
+use relievo::animation::keyframe_cursor::reference::{cursors, cursors_into, inside_clip};
+use relievo::animation::keyframe_cursor::{KEYFRAME_CURSOR_BOUND, KeyframeCursorPass};
+use relievo::animation::layers::{Layer, all_instances};
+use relievo::animation::order::Order;
+use relievo::asset::keyframe::KeyframeCursor;
+
+use crate::cases::animation::edges::{ELAPSED, edges};
+use crate::cases::animation::scene::{CROWDS, ELAPSED as MEASURED, Scene};
+use crate::cases::animation::{SIZES, random_crowd, random_instances};
+use crate::cases::terrain::copy_of;
+use crate::harness::compare::Comparison;
+use crate::harness::poison::{POISON, Poisoned};
+use crate::harness::{Backend, Bench, Cases, Contender, compare};
+
+/// The cases cover every kind of timeline, loops, clamps, reverse play, and clips of 0 seconds, at the start
+/// and later. Cursors of timelines that a clip does not have must stay unchanged.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = KeyframeCursorPass::new(gpu)?;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (_, set, instances) = random_crowd(case as u32, bones, count)?;
+        let clips = ClipBuffers::new(gpu, &set)?;
+        for elapsed in [0.0, 1.375, -3.0] {
+            let mut crowd = Crowd::new(gpu, &set, &instances)?;
+            let rooms = crowd.cursors.len();
+            let output = Poisoned::<KeyframeCursor>::new(gpu, rooms)?;
+            crowd.cursors = output.buffer.clone();
+            let job = pass.prepare(gpu, &clips, &crowd)?;
+            job.set(gpu, elapsed)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let mut expected = cursors(&set, &instances, elapsed);
+            let used = expected.len();
+            // Nothing is sampled ahead.
+            expected.resize(rooms, KeyframeCursor::default());
+            let room = set.timelines_a_clip();
+            let is_used = |at: usize| {
+                at < used && at % room < set.clips()[instances[at / room].clip as usize].timelines as usize
+            };
+            let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used))?;
+            cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
+        }
+    }
+    at_edges(cases, &pass)?;
+    nowhere(cases, &pass)?;
+    of_a_list(cases, &pass)
+}
+
+/// Compares listed instances with their layers, at the times that gates saw, and at the times ahead; the
+/// cursors of others must stay unchanged.
+fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    for (case, [bones, count]) in SIZES.into_iter().enumerate() {
+        let (skeleton, set, base) = random_crowd(case as u32, bones, count)?;
+        let layer = Layer::new(random_instances(case as u32 + 50, &set, count), vec![0.5; count]);
+        let layers = vec![layer; case % 3];
+        let mut crowd = Crowd::layered(gpu, &set, &base, &layers)?;
+        let rooms = crowd.cursors.len();
+        let output = Poisoned::<KeyframeCursor>::new(gpu, rooms)?;
+        crowd.cursors = output.buffer.clone();
+        let (clips, order) = (ClipBuffers::new(gpu, &set)?, Order::new(&skeleton));
+        let state = GateState::new(gpu, &crowd)?;
+        let active = Active::new(gpu, &order, &crowd)?;
+        // Every third instance is listed, and the times that the gate saw differ from the clock.
+        let listed: Vec<u32> = (0..count as u32).step_by(3).collect();
+        active.instances.write(gpu, &listed)?;
+        let room = set.timelines_a_clip();
+        let threads = listed.len() * room * (2 + layers.len());
+        let mut dispatches = active.dispatches.read_blocking(gpu)?;
+        dispatches[0][3] = listed.len() as u32;
+        *dispatches.last_mut().expect("two") = [threads.div_ceil(64) as u32, 1, 1, 0];
+        active.dispatches.write(gpu, &dispatches)?;
+        let seen: Vec<f32> = base
+            .iter()
+            .map(|instance| inside_clip(instance.wrap(), set.clips()[instance.clip as usize].duration, 1.25))
+            .collect();
+        // Every second listed instance has a different time when it is sampled ahead.
+        let ahead: Vec<f32> = (seen.iter().enumerate())
+            .map(|(at, time)| if at.is_multiple_of(6) { 0.75 * time } else { *time })
+            .collect();
+        let history = seen.iter().zip(&ahead).map(|(now, later)| [1, 0, now.to_bits(), later.to_bits()]);
+        state.history.write(gpu, &history.collect::<Vec<_>>())?;
+        let job = pass.prepare_active(gpu, &clips, &crowd, &state, &active)?;
+        job.set(gpu, 0.5)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let all = all_instances(&base, &layers);
+        let mut expected = cursors(&set, &all, 0.5);
+        let first_ahead = expected.len();
+        expected.resize(rooms, KeyframeCursor::default());
+        for instance in listed.iter().map(|at| *at as usize) {
+            for (first, time) in [(0, seen[instance]), (first_ahead, ahead[instance])] {
+                let seen = Instance::new(base[instance].clip, Wrap::Clamp, time, 0.0);
+                expected[first + instance * room..][..room].copy_from_slice(&cursors(&set, &[seen], 0.0));
+            }
+        }
+        let is_used = |at: usize| {
+            let instance = at / room % count;
+            let playing = if at < first_ahead { &all[at / room] } else { &base[instance] };
+            let is_looked_up = at < first_ahead || seen[instance] != ahead[instance];
+            let is_listed = instance.is_multiple_of(3) && is_looked_up;
+            is_listed && at % room < set.clips()[playing.clip as usize].timelines as usize
+        };
+        let name = format!("every third of {count}, {bones} bones, {} layers", 1 + layers.len());
+        let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used))?;
+        cases.add(name, comparison);
+    }
+    Ok(())
+}
+
+/// Compares the cursors that are used, and expects poison elsewhere.
+fn compare_cursors(
+    actual: &[KeyframeCursor],
+    expected: &[KeyframeCursor],
+    is_used: impl Fn(usize) -> bool,
+) -> Comparison {
+    // Unused cursors compare as −1.
+    let clip_clock = |cursor: &KeyframeCursor| match cursor.key == POISON {
+        true if cursor.fraction.to_bits() == POISON => -1.0,
+        _ => cursor.key as f32 + cursor.fraction,
+    };
+    let expected: Vec<f32> = (expected.iter().enumerate())
+        .map(|(at, cursor)| if is_used(at) { clip_clock(cursor) } else { -1.0 })
+        .collect();
+    let actual: Vec<f32> = actual.iter().map(clip_clock).collect();
+    compare::absolute(&actual, &expected, KEYFRAME_CURSOR_BOUND)
+}
+
+/// Loop times too large to resolve, up to infinity, give the clip's start, and clamped ones its end. Valid
+/// instances stay far below; the test writes such values to the device's buffer.
+fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
+    let (gpu, edges) = (cases.gpu, edges()?);
+    let far = [(1e8, 1.0), (-1e8, 1.0), (1.0, 1e9), (0.0, f32::MAX), (0.0, -f32::MAX)];
+    let play = |wrap: Wrap| far.map(|(start, rate)| Instance::new(0, wrap, start, rate));
+    let instances: Vec<_> = [play(Wrap::Loop), play(Wrap::Clamp)].concat();
+    let still = vec![Instance::new(0, Wrap::Loop, 0.0, 0.0); instances.len()];
+    let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &still)?);
+    crowd.instances.write(gpu, &instances)?;
+    let job = pass.prepare(gpu, &clips, &crowd)?;
+    job.set(gpu, 1e9)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let (at_start, at_end) =
+        (Instance::new(0, Wrap::Clamp, 0.0, 0.0), Instance::new(0, Wrap::Clamp, 1.0, 0.0));
+    let of = |instance: &Instance| match (instance.wrap(), instance.start < 0.0 || instance.rate < 0.0) {
+        (Wrap::Clamp, false) => at_end,
+        // 1e9 s at rate 1 outweigh the start.
+        (Wrap::Clamp, true) if instance.rate > 0.0 => at_end,
+        _ => at_start,
+    };
+    let known = cursors(&edges.set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
+    let references = cursors(&edges.set, &instances, 1e9);
+    let clip_clocks = |cursors: &[KeyframeCursor]| {
+        cursors.iter().map(|cursor| cursor.key as f32 + cursor.fraction).collect()
+    };
+    let [actual, references, known]: [Vec<f32>; 3] =
+        [&crowd.cursors.read_blocking(gpu)?[..references.len()], &references, &known].map(clip_clocks);
+    let (actual, known) = ([actual, references].concat(), known.repeat(2));
+    cases.add("nowhere in the clip", compare::absolute(&actual, &known, KEYFRAME_CURSOR_BOUND));
+    Ok(())
+}
+
+/// Compares cursors that are known without a reference.
+fn at_edges(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
+    let (gpu, edges) = (cases.gpu, edges()?);
+    let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &edges.instances)?);
+    let job = pass.prepare(gpu, &clips, &crowd)?;
+    job.set(gpu, ELAPSED)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let found = crowd.cursors.read_blocking(gpu)?;
+    let clip_clock = |cursor: &KeyframeCursor| cursor.key as f32 + cursor.fraction;
+    let (mut actual, mut expected) = (Vec::new(), Vec::new());
+    for (found, known) in found.chunks(edges.set.timelines_a_clip()).zip(edges.cursors()) {
+        actual.extend(found[..known.len()].iter().map(clip_clock));
+        expected.extend(known.iter().map(clip_clock));
+    }
+    cases.add("edges", compare::absolute(&actual, &expected, KEYFRAME_CURSOR_BOUND));
+    Ok(())
+}
+
+/// Measures one timeline per instance, which all tracks share.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = KeyframeCursorPass::new(gpu)?;
+    for count in CROWDS {
+        let scene = Scene::new(gpu, count)?;
+        let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
+        job.set(gpu, MEASURED)?;
+        // The kernel reads an instance and four times, and writes a cursor: 10 words.
+        let copied = copy_of(gpu, 5 * count)?;
+        let mut cursors = vec![KeyframeCursor::default(); count];
+        let contenders = vec![
+            Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Reference, || {
+                cursors_into(&scene.set, &scene.instances, MEASURED, black_box(&mut cursors));
+            }),
+        ];
+        bench.case(format!("{count} instances"), (count, "instance"), 40 * count as u64, contenders)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,256 @@
+//! Parity and benchmark cases of `kernels/lod/assign.wgsl`.
+
+use glam::Vec4;
+use relievo::Error;
+use relievo::animation::lod::PackedLod;
+use relievo::gpu::{Buffer, Uniform};
+use relievo::lod::assign::reference::assign;
+use relievo::lod::assign::{AssignBuffers, AssignParams, AssignPass};
+use relievo::lod::{INSTANCE_CARRIES, SceneInstance};
+use relievo::skinning::instance_lod::InstanceLod;
+
+use crate::cases::animation::Draw;
+use crate::cases::lod::random_instances;
+use crate::cases::terrain::copy_of;
+use crate::harness::compare::{Comparison, Judgement, each};
+use crate::harness::poison::Poisoned;
+use crate::harness::{Backend, Bench, Cases, Contender};
+
+/// How far rounding may move the quotients: products round by 2⁻²³, divisions by 5 · 2⁻²⁴.
+const QUOTIENT: f32 = 1e-6;
+
+/// The fraction of instances whose level or fade rounding may decide either way.
+const MAY_TOUCH: f64 = 1.0 / 200.0;
+
+/// The cases cover numbers of instances around a workgroup's, behind and before instances of other objects; all numbers of
+/// levels, characters without influences to fade, and displacements from 0 to the largest, or of unseen instances.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = AssignPass::new(gpu)?;
+    for (case, instances) in (0..).zip([1, 63, 64, 65, 1000]) {
+        for levels in [1, 2, 5, 8] {
+            let params = params(64 * case, instances, levels);
+            let allowed = random_allowed(case, (64 * case + instances) as usize + 64);
+            let all = random_carriers(case, allowed.len());
+            let (lods, instance_lods) = (
+                Poisoned::<PackedLod>::new(gpu, instances as usize)?,
+                Poisoned::new(gpu, instances as usize)?,
+            );
+            let buffers = AssignBuffers {
+                params: &Uniform::new(gpu, "params", &params)?,
+                allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
+                instances: &Buffer::from_slice(gpu, "instances", &all)?,
+                lods: &lods.buffer,
+                instance_lods: &instance_lods.buffer,
+            };
+            // More threads than instances.
+            let job = pass.prepare(gpu, buffers, instances)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let of_object = params.first as usize..(params.first + instances) as usize;
+            let allowed: Vec<(f32, bool)> =
+                allowed[of_object.clone()].iter().copied().zip(all[of_object].iter().map(carries)).collect();
+            let name = format!("{instances} instances, {levels} levels");
+            let gates = lods.check(gpu, |lods| compared_lods(&params, &allowed, lods))?;
+            cases.add(format!("{name}: gates"), gates);
+            let skins = instance_lods.check(gpu, |lods| compared_instance_lods(&params, &allowed, lods))?;
+            cases.add(format!("{name}: skins"), skins);
+        }
+    }
+    Ok(())
+}
+
+/// Parameters of a character with so many levels; with two of them it has no influences to fade.
+fn params(first: u32, instances: u32, levels: u32) -> AssignParams {
+    let error = |level: usize| if level == 0 { 0.0 } else { 1e-3 * (1 << (2 * level)) as f32 };
+    AssignParams {
+        first,
+        instances,
+        levels,
+        mesh_fraction: 0.5,
+        bone_fraction: 0.3,
+        influence_fraction: 0.2,
+        unit: 3.7e-7,
+        stray: if levels == 2 { 0.0 } else { 0.7 },
+        max_influences: 4,
+        errors: [0, 1].map(|four| Vec4::from_array(std::array::from_fn(|lane| error(4 * four + lane)))),
+    }
+}
+
+/// Displacements from 1e-6 to 1e4, and some that are 0, as large as possible, or of unseen instances.
+fn random_allowed(case: u32, count: usize) -> Vec<f32> {
+    let mut draw = Draw::new(case ^ 0xa551);
+    let mut random = |_| match draw.word() % 16 {
+        0 => 0.0,
+        1 => 1e9,
+        2 | 3 => -1.0,
+        _ => libm::exp2f(3.0 + 20.0 * draw.signed()),
+    };
+    (0..count).map(&mut random).collect()
+}
+
+/// Instances of which some carry a mesh.
+fn random_carriers(case: u32, count: usize) -> Vec<SceneInstance> {
+    let mut draw = Draw::new(case ^ 0xca44);
+    let mut all = random_instances(case, count);
+    for instance in all.iter_mut().filter(|_| draw.word().is_multiple_of(5)) {
+        instance.flags |= INSTANCE_CARRIES;
+    }
+    all
+}
+
+fn carries(instance: &SceneInstance) -> bool {
+    instance.flags & INSTANCE_CARRIES != 0
+}
+
+/// The right results, as the kernel writes them.
+fn packed(params: &AssignParams, (allowed, carries): (f32, bool)) -> (PackedLod, InstanceLod) {
+    let (lod, instance_lod) = assign(params, allowed, carries);
+    (lod.packed(), instance_lod)
+}
+
+/// The right results for the displacement as it is, and for the least and the largest to which rounding may change it.
+fn around(params: &AssignParams, (allowed, carries): (f32, bool)) -> [(PackedLod, InstanceLod); 3] {
+    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, (factor * allowed, carries)))
+}
+
+/// Units must lie between those of the least and the largest displacement; everything else must be equal.
+fn compared_lods(params: &AssignParams, allowed: &[(f32, bool)], found: &[PackedLod]) -> Comparison {
+    let judge = |(found, allowed): (&PackedLod, &(f32, bool))| {
+        let [(right, _), (least, _), (largest, _)] = around(params, *allowed);
+        let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
+            && PackedLod { allowed: right.allowed, ..*found } == right;
+        let error = f64::from(found.allowed.abs_diff(right.allowed));
+        Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: false }
+    };
+    let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
+    each(&judgements, "units", MAY_TOUCH, |at| {
+        format!("{:?} instead of {:?}", found[at], packed(params, allowed[at]).0)
+    })
+}
+
+/// A level or a fade may be that of the least or of the largest displacement, if these differ.
+fn compared_instance_lods(
+    params: &AssignParams,
+    allowed: &[(f32, bool)],
+    found: &[InstanceLod],
+) -> Comparison {
+    let judge = |(found, allowed): (&InstanceLod, &(f32, bool))| {
+        let [(_, right), (_, least), (_, largest)] = around(params, *allowed);
+        let is_right = (least.influence_fade..=largest.influence_fade).contains(&found.influence_fade)
+            && (least.mesh_lod..=largest.mesh_lod).contains(&found.mesh_lod)
+            && found.max_influences == right.max_influences
+            // Fades are whole steps, exact in f32.
+            && libm::truncf(64.0 * found.influence_fade) == 64.0 * found.influence_fade;
+        let error = f64::from((found.influence_fade - right.influence_fade).abs());
+        Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: least != largest }
+    };
+    let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
+    each(&judgements, "fade", MAY_TOUCH, |at| {
+        format!("{:?} instead of {:?}", found[at], packed(params, allowed[at]).1)
+    })
+}
+
+/// Measures characters of which three quarters are seen.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = AssignPass::new(gpu)?;
+    for count in [1_000, 100_000_usize] {
+        let params = AssignParams {
+            first: 0,
+            instances: count as u32,
+            levels: 8,
+            mesh_fraction: 0.5,
+            bone_fraction: 0.3,
+            influence_fraction: 0.2,
+            unit: 1e-6,
+            stray: 0.1,
+            max_influences: 4,
+            errors: [Vec4::new(0.0, 0.01, 0.02, 0.04), Vec4::new(0.08, 0.16, 0.32, 0.64)],
+        };
+        let allowed: Vec<f32> =
+            (0..count).map(|at| if at % 4 == 0 { -1.0 } else { 1e-3 * (at % 1024) as f32 }).collect();
+        let buffers = AssignBuffers {
+            params: &Uniform::new(gpu, "params", &params)?,
+            allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
+            instances: &Buffer::from_slice(gpu, "instances", &random_instances(1, count))?,
+            lods: &Buffer::new(gpu, "lods", count)?,
+            instance_lods: &Buffer::new(gpu, "instance_lods", count)?,
+        };
+        let job = pass.prepare(gpu, buffers, count as u32)?;
+        // The kernel reads two words and writes a Lod and an InstanceLod.
+        let words = 9 * count;
+        let copied = copy_of(gpu, words / 2)?;
+        let contenders = vec![
+            Contender::job(Backend::Gpu, &job),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Reference, || {
+                let all = allowed.iter().map(|allowed| assign(&params, *allowed, false));
+                drop(std::hint::black_box(all.collect::<Vec<_>>()));
+            }),
+        ];
+        bench.case(format!("{count} instances"), (count, "instance"), 4 * words as u64, contenders)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use relievo::shared::animation::gate_state::LOD_HIDDEN;
+
+    #[test]
+    fn what_is_wrong_of_one_instance_is_seen() {
+        let params = params(0, 200, 5);
+        let carriers = random_carriers(5, 200);
+        let allowed: Vec<(f32, bool)> =
+            random_allowed(5, 200).into_iter().zip(carriers.iter().map(carries)).collect();
+        let (lods, instance_lods): (Vec<PackedLod>, Vec<InstanceLod>) =
+            allowed.iter().map(|allowed| packed(&params, *allowed)).unzip();
+        assert!(compared_lods(&params, &allowed, &lods).holds);
+        assert!(compared_instance_lods(&params, &allowed, &instance_lods).holds);
+        let unseen = allowed.iter().position(|(allowed, _)| *allowed < 0.0).expect("some");
+        let faded =
+            (0..200).position(|at| (0.1..0.9).contains(&instance_lods[at].influence_fade) && !allowed[at].1);
+        let faded = faded.expect("some");
+        let carrier = allowed.iter().position(|(allowed, carries)| *allowed > 0.1 && *carries).expect("some");
+        let gate = |at: usize, change: fn(&mut PackedLod)| {
+            let mut found = lods.clone();
+            change(&mut found[at]);
+            compared_lods(&params, &allowed, &found).holds
+        };
+        assert!(!gate(unseen, |lod| lod.flags = 0) && !gate(faded, |lod| lod.flags = LOD_HIDDEN));
+        assert!(!gate(faded, |lod| lod.allowed += lod.allowed / 1000));
+        assert!(!gate(carrier, |lod| lod.allowed = 1));
+        assert!(!gate(faded, |lod| lod.omega = 0) && !gate(faded, |lod| lod.weight -= 1));
+        let skin = |at: usize, change: fn(&mut InstanceLod)| {
+            let mut found = instance_lods.clone();
+            change(&mut found[at]);
+            compared_instance_lods(&params, &allowed, &found).holds
+        };
+        assert!(!skin(unseen, |lod| lod.max_influences = 4) && !skin(faded, |lod| lod.max_influences = 0));
+        assert!(!skin(faded, |lod| lod.influence_fade += 1.0 / 64.0));
+        assert!(!skin(faded, |lod| lod.influence_fade = f32::NAN));
+        assert!(!skin(faded, |lod| lod.mesh_lod += 1));
+    }
+
+    /// A displacement at the very edge of a level may give either level.
+    #[test]
+    fn an_edge_may_go_either_way() {
+        let params = params(0, 1, 5);
+        let edge = params.errors[0].y / params.mesh_fraction;
+        let (_, right) = assign(&params, edge, false);
+        let level = |level| {
+            compared_instance_lods(&params, &[(edge, false)], &[InstanceLod { mesh_lod: level, ..right }])
+        };
+        assert!(level(0).holds && level(1).holds && !level(2).holds);
+        assert_eq!(level(0).spread.expect("given").touching, 1);
+        let two = compared_instance_lods(&params, &[(edge, false); 2], &[right; 2]);
+        assert!(!two.holds && two.fault.expect("a fault").contains("2 of 2 touch"));
+    }
+}

@@ -1,0 +1,149 @@
+//! Parity and benchmark cases of `kernels/lod/single.wgsl`.
+
+use relievo::Error;
+use relievo::gpu::Buffer;
+use relievo::lod::single::reference::{draws, entries};
+use relievo::lod::single::{Single, SingleBuffers, SinglePass};
+use relievo::lod::{OBJECT_LISTS, SceneDraw};
+use relievo::shared::lod::object::{DECISION_MORPH_SHIFT, LIST_INSTANCE};
+
+use crate::cases::animation::Draw;
+use crate::cases::terrain::copy_of;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Backend, Bench, Cases, Contender, compare};
+
+/// Random singles with decisions of which a part sees nothing, and random draws.
+pub(crate) struct Given {
+    pub singles: Vec<Single>,
+    pub decisions: Vec<u32>,
+    pub arguments: Vec<SceneDraw>,
+}
+
+impl Given {
+    /// So many singles of as many instances and a few parts.
+    pub(crate) fn new(count: usize) -> Self {
+        let mut draw = Draw::new(count as u32 ^ 0x51b1);
+        let parts = 7;
+        let single = |draw: &mut Draw| Single {
+            instance: draw.word() % count.max(1) as u32,
+            first_draw: 3 + OBJECT_LISTS * (draw.word() % parts),
+            slot: draw.word() & LIST_INSTANCE,
+        };
+        let argument = |draw: &mut Draw| SceneDraw {
+            indices: draw.word() % 1000,
+            instances: draw.word(),
+            first_index: draw.word(),
+            base_vertex: draw.word(),
+            first_instance: draw.word(),
+        };
+        Self {
+            singles: (0..count).map(|_| single(&mut draw)).collect(),
+            decisions: (0..count)
+                .map(|_| match (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2) {
+                    0 => 0,
+                    list => list | (draw.word() & 0xfff) << DECISION_MORPH_SHIFT,
+                })
+                .collect(),
+            arguments: (0..3 + OBJECT_LISTS * parts).map(|_| argument(&mut draw)).collect(),
+        }
+    }
+
+    /// What the reference writes.
+    pub(crate) fn expected(&self) -> Vec<SceneDraw> {
+        draws(&self.singles, &self.decisions, &self.arguments)
+    }
+}
+
+/// The cases cover numbers of draws around a workgroup's, instances that are not seen and those in each list.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = SinglePass::new(gpu)?;
+    for count in [1, 63, 64, 65, 500] {
+        let given = Given::new(count);
+        let output = Poisoned::<SceneDraw>::new(gpu, count)?;
+        let lists = Poisoned::<u32>::new(gpu, count)?;
+        let buffers = SingleBuffers {
+            singles: &Buffer::from_slice(gpu, "singles", &given.singles)?,
+            decisions: &Buffer::from_slice(gpu, "decisions", &given.decisions)?,
+            arguments: &Buffer::from_slice(gpu, "arguments", &given.arguments)?,
+            draws: &output.buffer,
+            entries: &lists.buffer,
+        };
+        let job = pass.prepare(gpu, buffers, count as u32)?;
+        gpu.run("verify", |encoder| job.record(encoder))?;
+        let expected = given.expected();
+        let comparison = output.check(gpu, |actual| compare::exact(words(actual), words(&expected)))?;
+        cases.add(format!("{count} draws"), comparison);
+        let expected = entries(&given.singles, &given.decisions);
+        let comparison = lists.check(gpu, |actual| compare::exact(actual, &expected))?;
+        cases.add(format!("{count} lists of one"), comparison);
+    }
+    Ok(())
+}
+
+fn words(draws: &[SceneDraw]) -> &[u32] {
+    bytemuck::cast_slice(draws)
+}
+
+/// Measures a thousand draws and a hundred thousand.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = SinglePass::new(gpu)?;
+    for count in [1_000, 100_000] {
+        let given = Given::new(count);
+        let buffers = SingleBuffers {
+            singles: &Buffer::from_slice(gpu, "singles", &given.singles)?,
+            decisions: &Buffer::from_slice(gpu, "decisions", &given.decisions)?,
+            arguments: &Buffer::from_slice(gpu, "arguments", &given.arguments)?,
+            draws: &Buffer::<SceneDraw>::new(gpu, "draws", count)?,
+            entries: &Buffer::new(gpu, "entries", count)?,
+        };
+        let job = pass.prepare(gpu, buffers, count as u32)?;
+        // Three words and a decision are read, a draw of five is read and written, and an entry written.
+        let words = 15 * count;
+        let copied = copy_of(gpu, words / 2)?;
+        let contenders = vec![
+            Contender::job(Backend::Gpu, &job),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Reference, || {
+                drop(std::hint::black_box(draws(&given.singles, &given.decisions, &given.arguments)));
+                drop(std::hint::black_box(entries(&given.singles, &given.decisions)));
+            }),
+        ];
+        bench.case(format!("{count} draws"), (count, "draw"), 4 * words as u64, contenders)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_draw_of_what_is_not_seen_or_of_another_list_is_noticed() {
+        let given = Given::new(65);
+        let right = given.expected();
+        assert!(compare::exact(words(&right), words(&right)).holds);
+        let unseen = given.singles.iter().position(|single| given.decisions[single.instance as usize] == 0);
+        for at in [unseen.expect("one of 65"), 64] {
+            let mut wrong = right.clone();
+            wrong[at].instances ^= 1;
+            assert!(!compare::exact(words(&wrong), words(&right)).holds);
+        }
+        let lists = entries(&given.singles, &given.decisions);
+        let moved = lists.iter().position(|entry| entry >> 20 > 0).expect("one of 65");
+        let still = entries(&given.singles, &[0; 65]);
+        assert!(still[moved] != lists[moved] && !compare::exact(&still, &lists).holds);
+        let mut other = given.singles.clone();
+        other[3].first_draw += OBJECT_LISTS;
+        let other = draws(&other, &vec![2; 65], &given.arguments);
+        let all = draws(&given.singles, &vec![2; 65], &given.arguments);
+        assert!(!compare::exact(words(&other), words(&all)).holds);
+    }
+}

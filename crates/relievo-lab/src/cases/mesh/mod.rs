@@ -1,0 +1,3 @@
+//! Cases of `kernels/mesh/`.
+
+pub mod cluster;

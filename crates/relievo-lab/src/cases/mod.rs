@@ -1,0 +1,83 @@
+//! Parity and benchmark cases, a file for each operation.
+
+pub mod animation;
+pub mod baseline;
+pub mod lod;
+pub mod mesh;
+pub mod skinning;
+pub mod surface;
+pub mod terrain;
+
+use relievo::Error;
+
+use crate::harness::{Bench, Cases};
+
+/// The cases of a kernel.
+#[derive(Clone, Copy)]
+pub struct Operation {
+    /// The kernel's path below `kernels/`, without extension.
+    pub name: &'static str,
+    /// Runs its parity cases.
+    pub parity: fn(&mut Cases<'_>) -> Result<(), Error>,
+    /// Runs its benchmark cases.
+    pub benchmark: fn(&mut Bench<'_>) -> Result<(), Error>,
+}
+
+macro_rules! operations {
+    ($($domain:ident / $operation:ident,)*) => {
+        &[$(Operation {
+            name: concat!(stringify!($domain), "/", stringify!($operation)),
+            parity: $domain::$operation::parity,
+            benchmark: $domain::$operation::benchmark,
+        },)*]
+    };
+}
+
+/// The cases of every kernel.
+pub static OPERATIONS: &[Operation] = operations![
+    baseline / copy,
+    baseline / gather,
+    baseline / loads,
+    baseline / texels,
+    baseline / words,
+    terrain / height,
+    terrain / smooth,
+    terrain / wrap,
+    terrain / border,
+    terrain / pad,
+    terrain / despike,
+    terrain / thermal,
+    terrain / hydraulic,
+    terrain / normals,
+    terrain / morph,
+    terrain / blend,
+    surface / height_pyramid,
+    surface / cone_map,
+    surface / shade,
+    surface / tangent,
+    mesh / cluster,
+    animation / keyframe_cursor,
+    animation / clip_clock,
+    animation / gate,
+    animation / budget,
+    animation / drive,
+    animation / compact,
+    animation / decide,
+    animation / sample,
+    animation / local_to_model,
+    animation / bounds,
+    skinning / lod,
+    skinning / palette,
+    skinning / morph_weights,
+    skinning / morph,
+    skinning / pages,
+    skinning / select,
+    skinning / skin,
+    lod / select,
+    lod / list,
+    lod / single,
+    lod / assign,
+    lod / attach,
+    // Its benchmark draws pictures, and comes last: lavapipe's timestamps are too short afterwards (see its cases).
+    surface / relief,
+];

@@ -1,0 +1,107 @@
+//! Parity and benchmark cases of `kernels/skinning/palette.wgsl`.
+
+use relievo::Error;
+use relievo::animation::ModelMatrices;
+use relievo::gpu::Buffer;
+use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use relievo::skinning::instance_lod::InstanceLod;
+use relievo::skinning::palette::reference::{palette, palette_for};
+use relievo::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
+use relievo::skinning::vertex::Blend;
+
+use crate::cases::skinning::{BONES, CROWDS, SHAPES, Scene, poisoned, random_matrices, random_model};
+use crate::cases::terrain::copy_of;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Backend, Bench, Cases, Contender, compare};
+
+/// The cases cover random skins with some of a skeleton's bones, mirrored and stretched, for both kinds of
+/// blending. A quaternion may have the opposite sign, its dual part with it. The second instance is not seen,
+/// and its palette must stay unchanged.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let pass = PalettePass::new(gpu)?;
+    for (case, shape) in (0..).zip(SHAPES) {
+        let model = random_model(case, shape)?;
+        let skin = &model.skins[0];
+        for (instances, blend) in [(3, Blend::Linear), (7, Blend::DualQuaternion)] {
+            let matrices = random_matrices(case, shape.bones, instances);
+            let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
+            let (mesh, _) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+            let mut crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
+            let output = Poisoned::<[f32; 4]>::new(gpu, crowd.palette.len())?;
+            crowd.palette = output.buffer.clone();
+            crowd.instance_lods.write_at(gpu, 1, &[InstanceLod::UNSEEN])?;
+            let job = pass.prepare(gpu, &mesh, &model_matrices, &crowd)?;
+            gpu.run("verify", |encoder| job.record(encoder))?;
+            let mut expected: Vec<[f32; 4]> = matrices
+                .chunks(shape.bones)
+                .flat_map(|model_matrices| match palette_for(skin, model_matrices, blend) {
+                    Palette::Linear(bones) => bones.as_flattened().to_vec(),
+                    Palette::Dual(bones) => bytemuck::cast_slice(&bones).to_vec(),
+                })
+                .collect();
+            let largest = expected.as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+            let each = expected.len() / instances;
+            expected[each..2 * each].fill(poisoned());
+            let comparison = output.check(gpu, |actual: &[[f32; 4]]| {
+                let actual =
+                    if blend == Blend::Linear { actual.to_vec() } else { same_side(actual, &expected) };
+                compare::absolute(actual.as_flattened(), expected.as_flattened(), PALETTE_BOUND * largest)
+            })?;
+            cases.add(
+                format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones),
+                comparison,
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Gives quaternions the signs of the expected ones.
+fn same_side(actual: &[[f32; 4]], expected: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let bones = actual.chunks_exact(4).zip(expected.chunks_exact(4));
+    let turned = |(actual, expected): (&[[f32; 4]], &[[f32; 4]])| {
+        let dot: f32 = actual[0].iter().zip(expected[0]).map(|(a, b)| a * b).sum();
+        let side = if dot < 0.0 { -1.0 } else { 1.0 };
+        [actual[0].map(|x| side * x), actual[1].map(|x| side * x), actual[2], actual[3]]
+    };
+    bones.flat_map(turned).collect()
+}
+
+/// Measures palettes for linear blending.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let pass = PalettePass::new(gpu)?;
+    for instances in CROWDS {
+        let scene = Scene::new(gpu, 1, 0, instances)?;
+        let matrices = random_matrices(1, 2 * BONES, instances);
+        let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
+        let job = pass.prepare(gpu, &scene.mesh, &model_matrices, &scene.crowd)?;
+        let pairs = BONES * instances;
+        // The kernel reads two matrices and an index, and writes a matrix.
+        let copied = copy_of(gpu, 37 * pairs / 2)?;
+        let reference = || {
+            for model_matrices in matrices.chunks(2 * BONES) {
+                drop(std::hint::black_box(palette(&scene.model.skins[0], model_matrices)));
+            }
+        };
+        let contenders = vec![
+            Contender::job(Backend::Gpu, &job),
+            Contender::job(Backend::Copy, &copied),
+            Contender::host(Backend::Reference, reference),
+        ];
+        bench.case(
+            format!("{BONES} bones × {instances}"),
+            (pairs, "bone"),
+            148 * pairs as u64,
+            contenders,
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,166 @@
+//! Parity and benchmark cases of `kernels/terrain/blend.wgsl`, and with it of zones and of how textures lie on the ground.
+
+use relievo::Error;
+use relievo::gpu::Buffer;
+use relievo::terrain::blend::reference::{blend, totals};
+use relievo::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
+use relievo::terrain::blocks::Order;
+use relievo::terrain::config::{Config, Slope, Zone};
+use relievo::terrain::cover::Cover;
+use relievo::terrain::fields::Fields;
+use relievo::terrain::texture::Texture;
+
+use crate::cases::terrain::{copy_of, random_heights, some_windows};
+use crate::harness::compare::{Comparison, LeftOut, levels};
+use crate::harness::poison::Poisoned;
+use crate::harness::{Backend, Bench, Cases, Contender};
+use relievo::baseline::texels::TexelsPass;
+
+/// One pixel in this many may differ: rounding changes 1 in 50, and a curve that is 1/20 of a level wrong 1 in 10.
+const MOST_DIFFER: usize = 20;
+
+/// One case: its zones, how many samples and windows, and the order of threads.
+struct Ground {
+    name: String,
+    cover: Cover,
+    weights: WeightMode,
+    width: u32,
+    count: u32,
+    order: Order,
+}
+
+/// The cases cover one to 32 zones, overlapping and apart, both weight modes, heights beyond every zone, slopes, height maps,
+/// textures of every size, triplanar mapping and variation.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for weights in [WeightMode::Normalized, WeightMode::Additive] {
+        for (zone_count, gap) in [(1, 0.0), (2, 50.0), (4, 0.0), (4, 9.0), (32, -1.0)] {
+            for (width, count, order) in
+                [(3, 1, Order::HARDWARE), (66, 3, Order::SOFTWARE), (67, 2, Order::HARDWARE)]
+            {
+                let zones: Vec<_> = (0..zone_count).map(|zone| striped(zone, gap)).collect();
+                let name = format!("{zone_count} zones {gap} apart, {weights:?}");
+                compare(
+                    cases,
+                    Ground { name, cover: Cover::random(&zones, 0), weights, width, count, order },
+                )?;
+            }
+        }
+        for (triplanar, variation) in [(false, 0.0), (true, 0.0), (false, 1.0), (true, 0.4)] {
+            for edge_log2 in [0, 3, 9] {
+                let zones: Vec<_> = (0..4).map(sloped).collect();
+                let cover = Cover { triplanar, variation, ..Cover::random(&zones, edge_log2) };
+                let name =
+                    format!("slopes, {} texels, {triplanar}, {variation}, {weights:?}", 1 << edge_log2);
+                compare(cases, Ground { name, cover, weights, width: 67, count: 2, order: Order::SOFTWARE })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let Ground { name, cover, weights, width, count, order } = ground;
+    let heights = random_heights(width, (width * width * count) as usize, 60 << 16);
+    let windows = Fields::new(gpu, "windows", width, count)?;
+    windows.heights.write(gpu, &heights)?;
+    let output = Poisoned::new(gpu, (width - 2).pow(2) as usize * count as usize)?;
+    let shading = Shading { weights, ..Shading::default() };
+    let places: Vec<_> =
+        (0..count as i32).map(|index| cover.place([index, -3 * index - 1], width - 2)).collect();
+    let place_buffer = Buffer::from_slice(gpu, "places", &places)?;
+    let buffers = BlendBuffers { windows: &windows, places: &place_buffer, pixels: &output.buffer };
+    let job = BlendPass::with_order(gpu, order)?.prepare(gpu, &cover, &shading, buffers)?;
+    gpu.run("verify", |encoder| job.record(encoder))?;
+    let maps = || heights.chunks_exact((width * width) as usize).zip(&places);
+    let expected: Vec<u32> =
+        maps().flat_map(|(window, place)| blend(window, width as usize, &cover, &shading, *place)).collect();
+    // Where weights nearly vanish the bound does not hold; there are few such pixels.
+    let is_left_out: Vec<bool> = maps()
+        .flat_map(|(window, _)| totals(window, width as usize, &cover))
+        .map(|total| total > 0.0 && total < MIN_TOTAL)
+        .collect();
+    let left_out = is_left_out.iter().filter(|left_out| **left_out).count();
+    let (of, name) = (expected.len(), format!("{width}×{width} × {count}, {name}"));
+    let left_out = LeftOut { count: left_out, of, most: of / 20 };
+    let compared = output.check(gpu, |actual| {
+        let judged: Vec<u32> = (actual.iter().zip(&expected).zip(&is_left_out))
+            .map(|((actual, expected), left_out)| if *left_out { *expected } else { *actual })
+            .collect();
+        // What was written beyond the output is judged by `output`.
+        nearly_equal(&judged, &expected).leaving_out(left_out)
+    })?;
+    cases.add(name, compared);
+    Ok(())
+}
+
+/// Compares within [`MAP_BOUND`]; most pixels must be equal.
+fn nearly_equal(actual: &[u32], expected: &[u32]) -> Comparison {
+    let values = expected.len();
+    let differ = actual.iter().zip(expected).filter(|(actual, expected)| actual != expected).count();
+    if differ > 1 + values / MOST_DIFFER {
+        let fault = format!("{differ} of {values} pixels differ, and 1 in {MOST_DIFFER} may");
+        return Comparison::failed(values, fault);
+    }
+    levels(actual, expected, MAP_BOUND)
+}
+
+fn striped(zone: u32, gap: f64) -> Zone {
+    let min = -20.0 + f64::from(zone) * (4.0 + gap);
+    Zone::new(min, min + 4.0, None)
+}
+
+/// Zones on slopes of their own, with height maps, and with textures that repeat.
+fn sloped(zone: u32) -> Zone {
+    let [min, max, fade] =
+        [[0.0, 30.0, 12.0], [25.0, 90.0, 1.0], [0.0, 90.0, 10.0], [40.0, 70.0, 45.0]][zone as usize];
+    let low = -40.0 + 25.0 * f64::from(zone);
+    Zone {
+        slope: Slope { min, max, fade },
+        height_blend: f64::from(zone) / 3.0,
+        repeats: 1 + 5 * zone,
+        ..Zone::new(low, low + 60.0, None)
+    }
+}
+
+/// Measures a batch of 64 patches with four zones: textures from above alone, and all that a cover may have.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
+    let plain = Config::new(257, 40.0, "bench")?;
+    case(bench, "257x257 batch 64, 4 zones", &plain)?;
+    let rich = Config { triplanar: true, variation: 0.5, ..plain };
+    case(bench, "257x257 batch 64, 4 zones, triplanar, variation", &rich)
+}
+
+fn case(bench: &mut Bench<'_>, name: &str, config: &Config) -> Result<(), Error> {
+    let gpu = bench.gpu;
+    let (width, count) = (259_u32, 64);
+    let (host, windows) = some_windows(gpu, width, count)?;
+    let points = (width as usize - 2).pow(2) * count as usize;
+    let pixels = Buffer::new(gpu, "pixels", points)?;
+    let cover = Cover::new(config, &Texture::of_zones(&config.zones)?)?;
+    let places = Buffer::from_slice(gpu, "places", &vec![[0_u32; 2]; count as usize])?;
+    let shading = Shading::default();
+    let buffers = BlendBuffers { windows: &windows, places: &places, pixels: &pixels };
+    let job = BlendPass::new(gpu)?.prepare(gpu, &cover, &shading, buffers)?;
+    let words = Buffer::new(gpu, "words", points)?;
+    let loaded = TexelsPass::new(gpu)?.prepare(gpu, &cover, BlendBuffers { pixels: &words, ..buffers })?;
+    let copied = copy_of(gpu, points)?;
+    let contenders = vec![
+        Contender::job(Backend::Gpu, &job),
+        Contender::job(Backend::Limit, &loaded),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Reference, || {
+            let window = &host[..(width * width) as usize];
+            for _ in 0..count {
+                drop(std::hint::black_box(blend(window, width as usize, &cover, &shading, [0; 2])));
+            }
+        }),
+    ];
+    bench.case(name, (points, "point"), 8 * points as u64, contenders)
+}

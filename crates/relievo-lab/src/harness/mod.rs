@@ -1,0 +1,15 @@
+//! Tools that verify and measure operations, independent of any operation: comparators, poisoned buffers and
+//! parity cases; repetition, clocks and tables.
+
+pub(crate) use cases::selected;
+pub use cases::{CaseResult, Cases, Skipped};
+pub use measure::{Bench, Contender};
+pub use row::{Backend, Row};
+pub use table::table;
+
+mod cases;
+pub mod compare;
+mod measure;
+pub mod poison;
+mod row;
+mod table;

@@ -1,0 +1,81 @@
+//! The pixels that each part of level of detail may take, as a scene takes them: their sum, and fractions of it.
+
+use relievo::InputError;
+use relievo::scene::{Quality, Shares};
+
+use crate::measure::gates::GateMode;
+use crate::measure::options::{DrawnOptions, MeshDetail, SkinningDetail};
+
+/// Pixels for bones that keep an old pose, for influences that are left out, and for coarser meshes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Parts {
+    pub bones: f32,
+    pub influences: f32,
+    pub mesh: f32,
+}
+
+impl Parts {
+    /// Full detail.
+    pub const NONE: Self = Self { bones: 0.0, influences: 0.0, mesh: 0.0 };
+
+    /// Those of a gate and of how the crowd is drawn.
+    pub fn new(gate: &GateMode, drawn: &DrawnOptions) -> Result<Self, InputError> {
+        let bones = match gate {
+            GateMode::Off => 0.0,
+            GateMode::Bounded { pixels } => *pixels,
+            other => {
+                let bound = "must be off or bounded where a crowd is drawn: a scene has no other gate";
+                return Err(InputError::new("gate", other.name().as_str(), bound));
+            }
+        };
+        let influences = match drawn.skinning {
+            SkinningDetail::Full => 0.0,
+            SkinningDetail::Bounded { pixels } => pixels,
+        };
+        let mesh = match drawn.mesh {
+            MeshDetail::Full => 0.0,
+            MeshDetail::Bounded { pixels } | MeshDetail::Geomorph { pixels } => pixels,
+        };
+        Ok(Self { bones, influences, mesh })
+    }
+
+    fn sum(&self) -> f32 {
+        self.bones + self.influences + self.mesh
+    }
+
+    /// The quality of a view, and the shares of its scene.
+    pub fn quality(&self) -> (Quality, Shares) {
+        let pixels = self.sum();
+        let share = |part: f32| if pixels > 0.0 { part / pixels } else { 0.0 };
+        let Self { bones, influences, mesh } = *self;
+        let shares = Shares { mesh: share(mesh), bones: share(bones), influences: share(influences) };
+        (Quality { pixels }, shares)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_in_proportion_and_add_up() {
+        let (quality, shares) = Parts { bones: 0.5, influences: 0.25, mesh: 0.25 }.quality();
+        assert_eq!((quality.pixels, shares.bones, shares.influences, shares.mesh), (1.0, 0.5, 0.25, 0.25));
+        let (quality, shares) = Parts { bones: 0.0, influences: 0.0, mesh: 3.0 }.quality();
+        assert_eq!((quality.pixels, shares.bones, shares.influences, shares.mesh), (3.0, 0.0, 0.0, 1.0));
+        let (quality, shares) = Parts::NONE.quality();
+        assert_eq!((quality.pixels, shares.bones + shares.influences + shares.mesh), (0.0, 0.0));
+        // Whatever is rounded, a scene takes them.
+        for part in [1e-30, 1e-3, 1.0 / 3.0, 0.1, 7.7, 1e6] {
+            Parts { bones: part, influences: 1.0 / 3.0, mesh: 0.7 }.quality().1.validate().expect("in range");
+        }
+    }
+
+    #[test]
+    fn a_scene_has_no_other_gates() {
+        let refused = Parts::new(&GateMode::Uniform, &DrawnOptions::default()).expect_err("refused");
+        assert_eq!((refused.path.as_str(), refused.value.as_str()), ("gate", "uniform"));
+        let bounded = Parts::new(&GateMode::Bounded { pixels: 2.0 }, &DrawnOptions::default());
+        assert_eq!(bounded, Ok(Parts { bones: 2.0, influences: 0.5, mesh: 0.5 }));
+    }
+}

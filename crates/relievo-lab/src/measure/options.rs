@@ -1,0 +1,284 @@
+//! The options of all measurements, with their ranges.
+
+use std::fmt;
+
+use relievo::InputError;
+use relievo::animation::{Range, Weights};
+use relievo::asset::{Clip, Model};
+use serde::{Serialize, Serializer};
+
+use crate::measure::bounds::check;
+use crate::measure::gates::GateMode;
+
+/// Distance of the near plane, in units.
+pub(crate) const NEAR: f32 = 1.0;
+
+/// The largest number of frames: 32 bits of ticks hold them at any rate.
+const MAX_FRAMES: u32 = 100_000;
+
+/// Number of distances of the default sweep.
+const SWEEP: u32 = 7;
+
+/// The model and the clip that are measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Subject<'a> {
+    /// The model's name in reports.
+    pub name: &'a str,
+    /// The model.
+    pub model: &'a Model,
+    /// The index of the clip among the model's clips.
+    pub clip: usize,
+}
+
+impl<'a> Subject<'a> {
+    /// The clip, if the model has it.
+    pub(crate) fn clip(&self) -> Result<&'a Clip, InputError> {
+        let clips = &self.model.clips;
+        let bound = || format!("must be below {}, as many clips as the model has", clips.len());
+        clips.get(self.clip).ok_or_else(|| InputError::new("subject.clip", self.clip, bound()))
+    }
+}
+
+/// How a crowd stands before the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Layout {
+    /// Rows and columns that face the camera.
+    Grid,
+    /// Random positions and angles, in the same square.
+    Random,
+}
+
+/// A crowd of one model in one clip. [`size`](Self::size) defines how long a *unit* is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrowdOptions {
+    /// Number of instances, in 1..=100000. Default: 100.
+    pub instances: usize,
+    /// How instances are placed. Default: [`Layout::Grid`].
+    pub layout: Layout,
+    /// Seed of random positions and start times; another number gives another crowd. Default: 0.
+    pub seed: u32,
+    /// Number of units in the largest extent of the model at rest, in 0.001..=1e6. Default: 180, so that the
+    /// units of a person are centimetres.
+    pub size: f32,
+    /// The gap between neighbours in a grid, in multiples of the model's size, in 0..=1000. Default: 0.5.
+    pub spacing: f32,
+    /// The distances in units between which Ω falls from 1 to 0. Default: 200 to 1700, as in A.
+    pub range: Range,
+    /// Number of frames to measure, after a first frame in full, in 1..=100000. Default: 240.
+    pub frames: u32,
+    /// Frames per second, in 1..=1000. Default: 60.
+    pub rate: f64,
+}
+
+impl Default for CrowdOptions {
+    fn default() -> Self {
+        Self {
+            instances: 100,
+            layout: Layout::Grid,
+            seed: 0,
+            size: 180.0,
+            spacing: 0.5,
+            range: Range { min: 200.0, max: 1700.0 },
+            frames: 240,
+            rate: 60.0,
+        }
+    }
+}
+
+impl CrowdOptions {
+    /// Checks all options.
+    ///
+    /// # Errors
+    /// [`InputError`] for an option out of its range.
+    pub fn validate(&self) -> Result<(), InputError> {
+        check("size", self.size.into(), 1e-3..=1e6)?;
+        check("spacing", self.spacing.into(), 0.0..=1e3)?;
+        check("rate", self.rate, 1.0..=1000.0)?;
+        check("instances", self.instances as f64, 1.0..=1e5)?;
+        check("frames", f64::from(self.frames), 1.0..=f64::from(MAX_FRAMES))?;
+        self.range.validate()
+    }
+
+    /// Seven distances in units, evenly spaced from one end of the range to the other.
+    pub fn sweep(&self) -> Vec<f32> {
+        let Range { min, max } = self.range;
+        let at = |step: u32| min + (max - min) * step as f32 / (SWEEP - 1) as f32;
+        (0..SWEEP).map(|step| at(step).max(NEAR)).collect()
+    }
+}
+
+/// A crowd under a gate, at several distances.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LodOptions {
+    /// The crowd.
+    pub crowd: CrowdOptions,
+    /// The gate to measure. Default: [`GateMode::Bounded`] with one pixel.
+    pub gate: GateMode,
+    /// Distances from the camera to the nearest instance in units, each in 1..=1e6; at least one. Default:
+    /// [`CrowdOptions::sweep`].
+    pub distances: Vec<f32>,
+}
+
+impl Default for LodOptions {
+    fn default() -> Self {
+        let crowd = CrowdOptions::default();
+        Self { distances: crowd.sweep(), crowd, gate: GateMode::Bounded { pixels: 1.0 } }
+    }
+}
+
+impl LodOptions {
+    /// Checks all options.
+    ///
+    /// # Errors
+    /// [`InputError`] for an option out of its range.
+    pub fn validate(&self) -> Result<(), InputError> {
+        self.crowd.validate()?;
+        self.gate.validate()?;
+        if self.distances.is_empty() {
+            return Err(InputError::new("distances.len", 0, "must be at least 1"));
+        }
+        (self.distances.iter().enumerate()).try_for_each(|(at, distance)| {
+            check(&format!("distances[{at}]"), (*distance).into(), f64::from(NEAR)..=1e6)
+        })
+    }
+}
+
+/// Which influences vertices follow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SkinningDetail {
+    /// All influences of each vertex.
+    Full,
+    /// They fade only as far as that takes no vertex further away than a number of pixels.
+    Bounded {
+        /// The number of pixels, in 0..=1e6.
+        pixels: f32,
+    },
+}
+
+/// Which triangles meshes have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MeshDetail {
+    /// All triangles of each mesh.
+    Full,
+    /// The coarsest level of detail whose surface is no further off than a number of pixels.
+    Bounded {
+        /// The number of pixels, in 0..=1e6.
+        pixels: f32,
+    },
+    /// The same, but levels move into each other ([`Transition::Geomorph`](relievo::scene::Transition::Geomorph)).
+    Geomorph {
+        /// The number of pixels, in 0..=1e6.
+        pixels: f32,
+    },
+}
+
+/// How a crowd is skinned and drawn. Its scene permits the sum of these pixels and those of the gate, and divides them by
+/// [`Shares`](relievo::scene::Shares) in proportion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrawnOptions {
+    /// The influences that vertices follow. Default: those that half a pixel permits.
+    pub skinning: SkinningDetail,
+    /// The triangles that meshes have. Default: those that half a pixel permits.
+    pub mesh: MeshDetail,
+}
+
+impl Default for DrawnOptions {
+    fn default() -> Self {
+        let pixels = 0.5;
+        Self { skinning: SkinningDetail::Bounded { pixels }, mesh: MeshDetail::Bounded { pixels } }
+    }
+}
+
+impl DrawnOptions {
+    /// Checks both options.
+    ///
+    /// # Errors
+    /// [`InputError`] for pixels out of their range.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if let SkinningDetail::Bounded { pixels } = self.skinning {
+            check("skinning.pixels", pixels.into(), 0.0..=1e6)?;
+        }
+        match self.mesh {
+            MeshDetail::Bounded { pixels } | MeshDetail::Geomorph { pixels } => {
+                check("mesh.pixels", pixels.into(), 0.0..=1e6)
+            }
+            MeshDetail::Full => Ok(()),
+        }
+    }
+}
+
+/// Options of the comparison of every gate at many settings, with all instances at one place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParetoOptions {
+    /// The crowd; its layout, spacing and range are not used. Default: 25 instances.
+    pub crowd: CrowdOptions,
+    /// Period of [`GateMode::SkipPeriod`] in seconds, in 0..=65535. Default: 1.
+    pub period: f64,
+    /// Weights of the priorities of [`GateMode::SkipPeriod`]. Default: all equal.
+    pub weights: Weights,
+    /// Size on screen of the model's largest extent in pixels, in 1..=10000. Default: 100.
+    pub tall_pixels: f32,
+}
+
+impl Default for ParetoOptions {
+    fn default() -> Self {
+        let crowd = CrowdOptions { instances: 25, ..CrowdOptions::default() };
+        Self { crowd, period: 1.0, weights: Weights::default(), tall_pixels: 100.0 }
+    }
+}
+
+impl ParetoOptions {
+    /// Checks all options.
+    ///
+    /// # Errors
+    /// [`InputError`] for an option out of its range.
+    pub fn validate(&self) -> Result<(), InputError> {
+        self.crowd.validate()?;
+        GateMode::SkipPeriod { period: self.period, weights: self.weights }.validate()?;
+        check("tall_pixels", self.tall_pixels.into(), 1.0..=1e4)
+    }
+}
+
+impl fmt::Display for SkinningDetail {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full => f.write_str("full"),
+            Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
+        }
+    }
+}
+
+impl fmt::Display for MeshDetail {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full => f.write_str("full"),
+            Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
+            Self::Geomorph { pixels } => write!(f, "geomorph:{pixels}"),
+        }
+    }
+}
+
+impl Serialize for SkinningDetail {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl Serialize for MeshDetail {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sweeps_have_both_ends() {
+        let sweep = |min, max| CrowdOptions { range: Range { min, max }, ..CrowdOptions::default() }.sweep();
+        assert_eq!(sweep(200.0, 1700.0)[..2], [200.0, 450.0]);
+        assert_eq!(sweep(0.0, 6.0), [1.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    }
+}

@@ -1,0 +1,165 @@
+//! Plays a crowd and counts and times the work of each frame, on the device or the CPU.
+
+use relievo::Error;
+use relievo::asset::Affine;
+use serde::Serialize;
+
+use crate::measure::errors::{Errors, Jump, Meter};
+use crate::measure::placement::Placements;
+use crate::measure::stage::Stage;
+
+/// Largest number of frames of a run that are timed.
+const TIMED: u32 = 40;
+
+/// What a frame computed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Played {
+    /// Number of bones that were sampled.
+    pub interpolated: usize,
+    /// Number of bones whose matrices were computed.
+    pub concatenated: usize,
+    /// The times of the frame, if it was timed.
+    pub times: Option<Times>,
+}
+
+/// How a frame is timed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Timing {
+    None,
+    /// Times the frame as a whole, as a renderer records it.
+    Whole,
+    /// Times each stage separately. The sum exceeds the whole, because the stages cannot share a compute
+    /// pass.
+    Stages,
+}
+
+impl Timing {
+    /// The timing of a frame; timed frames alternate between the two kinds.
+    fn of(number: u32, frames: u32) -> Self {
+        let every = frames.div_ceil(TIMED);
+        match number / every % 2 {
+            _ if number == 0 || !number.is_multiple_of(every) => Self::None,
+            0 => Self::Whole,
+            _ => Self::Stages,
+        }
+    }
+}
+
+/// The times of a frame, in nanoseconds.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Times {
+    /// The crowd under the gate.
+    pub gated: FrameTimes,
+    /// The crowd in full.
+    pub full: FrameTimes,
+}
+
+/// The times that were measured of a frame, in nanoseconds.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct FrameTimes {
+    pub gate: Option<f64>,
+    pub sample: Option<f64>,
+    pub local_to_model: Option<f64>,
+    pub whole: Option<f64>,
+}
+
+/// Times by stage and of the whole frame, in nanoseconds; on the CPU only the whole is measured. Medians over
+/// the frames that were timed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct StageTimes {
+    /// The search for clip clocks, the decision of the gate, and the lists of active bones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gate: Option<f64>,
+    /// The interpolation between keyframes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample: Option<f64>,
+    /// The concatenation of local transforms to model matrices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub local_to_model: Option<f64>,
+    /// The whole frame, recorded as one piece.
+    pub total: f64,
+}
+
+/// A crowd under a gate, and the same crowd in full.
+pub(crate) trait Play {
+    /// Advances both crowds to a frame.
+    fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error>;
+    /// Model matrices of the gated crowd.
+    fn stale(&self) -> &[Affine];
+    /// Model matrices of the crowd in full.
+    fn fresh(&self) -> &[Affine];
+}
+
+/// The measurements of a run.
+pub(crate) struct Found {
+    pub interpolated: u64,
+    pub concatenated: u64,
+    pub errors: Errors,
+    pub jump: Jump,
+    /// Median times of the crowd under the gate.
+    pub gated: StageTimes,
+    pub full: StageTimes,
+}
+
+/// Plays all frames, and measures all but the first. Calls `step` after each frame.
+pub(crate) fn play(
+    crowds: &mut impl Play,
+    stage: &Stage<'_>,
+    placements: &Placements,
+    is_timed: bool,
+    step: impl Fn(),
+) -> Result<Found, Error> {
+    let mut meter = Meter::new(&stage.radii, stage.projection, placements);
+    let (mut interpolated, mut concatenated, mut times) = (0, 0, Vec::new());
+    let frames = stage.options.frames;
+    for number in 0..=frames {
+        let timing = if is_timed { Timing::of(number, frames) } else { Timing::None };
+        let played = crowds.play(number, timing)?;
+        if number > 0 {
+            interpolated += played.interpolated as u64;
+            concatenated += played.concatenated as u64;
+            times.extend(played.times);
+            meter.add(crowds.stale(), crowds.fresh());
+        }
+        step();
+    }
+    let (errors, jump) = meter.finish();
+    let [gated, full] = [|times: &Times| times.gated, |times: &Times| times.full]
+        .map(|of| medians(&times.iter().map(of).collect::<Vec<_>>()));
+    Ok(Found { interpolated, concatenated, errors, jump, gated, full })
+}
+
+/// The median of the times; `None` without times.
+pub(crate) fn middle(mut times: Vec<f64>) -> Option<f64> {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied()
+}
+
+fn medians(times: &[FrameTimes]) -> StageTimes {
+    let median = |of: &dyn Fn(&FrameTimes) -> Option<f64>| middle(times.iter().filter_map(of).collect());
+    let [gate, sample, local_to_model] =
+        [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.local_to_model)];
+    // If no whole frame was timed, the sum of the stages stands for it.
+    let sum = [gate, sample, local_to_model].into_iter().flatten().sum();
+    StageTimes { gate, sample, local_to_model, total: median(&|taken| taken.whole).unwrap_or(sum) }
+}
+
+impl FrameTimes {
+    /// The times of a frame that was timed only as a whole.
+    pub(crate) fn of_whole(nanoseconds: f64) -> Self {
+        Self { whole: Some(nanoseconds), ..Self::default() }
+    }
+}
+
+impl StageTimes {
+    /// Divides all times by the number of bones.
+    pub(crate) fn a_bone(&self, bones: usize) -> Self {
+        let each = |time: Option<f64>| time.map(|time| time / bones as f64);
+        Self {
+            gate: each(self.gate),
+            sample: each(self.sample),
+            local_to_model: each(self.local_to_model),
+            total: self.total / bones as f64,
+        }
+    }
+}

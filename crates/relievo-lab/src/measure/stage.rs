@@ -1,0 +1,145 @@
+//! A crowd before a camera, with the tables that all gates need.
+
+use relievo::InputError;
+use relievo::animation::instance::{Instance, Wrap};
+use relievo::animation::local_to_model::reference::local_to_model;
+use relievo::animation::lod::OMEGA_ONE;
+use relievo::animation::order::Order;
+use relievo::animation::{ClipSet, Gate, Lod, Projection, Sampling};
+use relievo::asset::{Affine, Clip, bone_radii};
+
+use crate::measure::gates::{GateMode, Source};
+use crate::measure::options::{CrowdOptions, NEAR, Subject};
+use crate::measure::placement::{Placements, chance};
+
+/// Height of the picture, in pixels.
+pub(crate) const LINES: u32 = 1080;
+
+/// The vertical field of view, in radians.
+pub(crate) const FIELD_OF_VIEW: f32 = std::f32::consts::FRAC_PI_3;
+
+/// A crowd, its clip, and the tables that all gates need.
+pub(crate) struct Stage<'a> {
+    pub subject: Subject<'a>,
+    pub clip: &'a Clip,
+    pub options: &'a CrowdOptions,
+    pub order: Order,
+    pub set: ClipSet,
+    /// For each bone, the distance in metres from its origin at which errors are measured: its length.
+    pub radii: Vec<f32>,
+    /// For each bone, the radius that gates bound: that of `radii`, or, if the crowd is drawn, of its
+    /// furthest vertex.
+    watched: Vec<f32>,
+    pub instances: Vec<Instance>,
+    pub metres_a_unit: f32,
+    pub projection: Projection,
+    /// The height above its origin of the middle of the model at rest, in metres.
+    middle: f32,
+}
+
+impl<'a> Stage<'a> {
+    /// Prepares the crowd. If it is drawn, gates bound the error of every vertex.
+    pub(crate) fn new(
+        subject: Subject<'a>,
+        options: &'a CrowdOptions,
+        is_drawn: bool,
+    ) -> Result<Self, InputError> {
+        let (clip, skeleton) = (subject.clip()?, &subject.model.skeleton);
+        let set = ClipSet::new(&[clip])?;
+        let lengths = skeleton.lengths();
+        let [low, high] = corners(&local_to_model(skeleton, &skeleton.rest()), &lengths);
+        let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+        if !(extent > 0.0 && extent.is_finite()) {
+            let bound = "must be finite and above 0: the model at rest is a point";
+            return Err(InputError::new("model.extent", extent, bound));
+        }
+        let metres_a_unit = (extent / f64::from(options.size)) as f32;
+        let starts = (0..options.instances as u32).map(|at| clip.duration() * chance(options.seed, at, 0));
+        // Rounded up, so that the radius reaches all the points.
+        let radii: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
+        let meshes = if is_drawn { &subject.model.meshes[..] } else { &[] };
+        let vertices = bone_radii(skeleton.len(), &subject.model.skins, meshes);
+        let watched = radii.iter().zip(&vertices).map(|(bone, vertex)| bone.max(*vertex)).collect();
+        Ok(Self {
+            order: Order::new(skeleton),
+            set,
+            watched,
+            radii,
+            instances: starts.map(|start| Instance::new(0, Wrap::Loop, start, 1.0)).collect(),
+            metres_a_unit,
+            projection: Projection::new(LINES, FIELD_OF_VIEW, NEAR * metres_a_unit),
+            middle: ((low[1] + high[1]) / 2.0) as f32,
+            subject,
+            clip,
+            options,
+        })
+    }
+
+    /// Makes a gate for the clip.
+    pub(crate) fn gate(&self, mode: &GateMode) -> Result<Gate, InputError> {
+        let Self { subject, clip, order, set, watched, .. } = self;
+        Source { skeleton: &subject.model.skeleton, clip, order, set, radii: watched }.gate(mode)
+    }
+
+    /// Number of bones of all instances.
+    pub(crate) fn pairs(&self) -> usize {
+        self.instances.len() * self.set.bones()
+    }
+
+    /// The placements of the layout, `distance` units before the camera.
+    pub(crate) fn placements(&self, distance: f32) -> Placements {
+        let Self { options, metres_a_unit, middle, .. } = *self;
+        Placements::of_layout(options, metres_a_unit, middle, distance * metres_a_unit)
+    }
+
+    /// Places all instances at one point of the optical axis, each turned by another angle, so far away that
+    /// they are `tall_pixels` large.
+    pub(crate) fn line_up(&self, tall_pixels: f32) -> Placements {
+        let extent = self.options.size * self.metres_a_unit;
+        let depth = extent * self.projection.focal_pixels / tall_pixels;
+        Placements::at_one_place(self.instances.len(), [0.0, -self.middle, depth])
+    }
+
+    /// The level of detail of each instance, with errors of `pixels` allowed.
+    pub(crate) fn lods(&self, placements: &Placements, gate: &Gate, pixels: f32) -> Vec<Lod> {
+        let depth = |origin: &[f32; 3]| origin[2].max(self.projection.near);
+        let nearest = placements.origins.iter().map(depth).fold(f32::INFINITY, f32::min);
+        let lod = |origin: &[f32; 3]| {
+            // The distance on the ground: the camera's height does not count.
+            let distance = origin[0].hypot(origin[2]) / self.metres_a_unit;
+            let allowed = match gate {
+                Gate::Bounded(table) if table.radius() > 0.0 => {
+                    table.units(self.projection.allowed(*origin, table.radius(), pixels))
+                }
+                _ => 0,
+            };
+            let weight = (65535.0 * nearest / depth(origin)).round().clamp(1.0, 65535.0) as u32;
+            Lod { omega: self.options.range.omega(distance), allowed, weight, sampling: Sampling::Gated }
+        };
+        placements.origins.iter().map(lod).collect()
+    }
+}
+
+/// The mean of Ω over instances.
+pub(crate) fn mean_omega(lods: &[Lod]) -> f64 {
+    lods.iter().map(|lod| f64::from(lod.omega)).sum::<f64>() / (lods.len() as f64 * f64::from(OMEGA_ONE))
+}
+
+/// Number of bones of an instance that its clip moves.
+pub(crate) fn animated_bones(gate: &Gate) -> usize {
+    gate.animated_bones().count(0)
+}
+
+/// The corners of a box around all bones, each taken as a sphere around its origin.
+fn corners(models: &[Affine], lengths: &[f64]) -> [[f64; 3]; 2] {
+    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for (model, length) in models.iter().zip(lengths) {
+        for (axis, row) in model.iter().enumerate() {
+            let extent = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
+            // The direction of a bone is unknown: the sphere around its origin has half its length as radius.
+            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - extent / 2.0);
+            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + extent / 2.0);
+        }
+    }
+    corners
+}

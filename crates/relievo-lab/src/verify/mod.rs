@@ -1,0 +1,75 @@
+//! Parity: every kernel against its CPU reference, on the current adapter (`relievo verify`). This is part of
+//! the product, so that users can find out whether their driver computes correctly.
+
+use relievo::Error;
+use relievo::gpu::{AdapterSummary, Gpu};
+use serde::Serialize;
+
+use crate::cases::{OPERATIONS, Operation};
+use crate::harness::compare::Comparison;
+use crate::harness::{CaseResult, Cases, Skipped, selected};
+
+mod summary;
+
+/// The results of all cases on one adapter.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// The adapter.
+    pub adapter: AdapterSummary,
+    /// relievo's version.
+    pub version: &'static str,
+    /// Whether every case holds.
+    pub holds: bool,
+    /// The results, case by case.
+    pub cases: Vec<CaseResult>,
+    /// The cases that this device cannot run.
+    pub skipped: Vec<Skipped>,
+}
+
+/// Runs the cases of every selected kernel, and calls `progress` with each result.
+///
+/// # Errors
+/// [`relievo::InputError`] when nothing is selected; errors of the device.
+pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&CaseResult)) -> Result<Report, Error> {
+    let chosen: Vec<_> = OPERATIONS.iter().filter(|operation| selected(operation.name, only)).collect();
+    if chosen.is_empty() {
+        let names = OPERATIONS.iter().map(|operation| operation.name).collect::<Vec<_>>().join(", ");
+        return Err(relievo::InputError::new(
+            "only",
+            only.unwrap_or(""),
+            format!("must be (part of) one of {names}"),
+        )
+        .into());
+    }
+    run_operations(gpu, chosen, progress)
+}
+
+/// Runs the cases of the given kernels. A kernel without results does not hold, since nothing was proven.
+///
+/// # Errors
+/// What the device reports.
+pub fn run_operations<'a>(
+    gpu: &Gpu,
+    operations: impl IntoIterator<Item = &'a Operation>,
+    progress: &mut dyn FnMut(&CaseResult),
+) -> Result<Report, Error> {
+    let (mut all, mut skipped) = (Vec::new(), Vec::new());
+    for operation in operations {
+        let mut cases =
+            Cases { gpu, stem: operation.name, results: Vec::new(), skipped: Vec::new(), progress };
+        (operation.parity)(&mut cases)?;
+        if cases.results.is_empty() {
+            cases.add("no case", Comparison::failed(0, "the kernel has no parity case".to_owned()));
+        }
+        all.append(&mut cases.results);
+        skipped.append(&mut cases.skipped);
+    }
+    let holds = !all.is_empty() && all.iter().all(|result| result.comparison.holds);
+    Ok(Report {
+        adapter: gpu.adapter().clone(),
+        version: env!("CARGO_PKG_VERSION"),
+        holds,
+        cases: all,
+        skipped,
+    })
+}

@@ -1,0 +1,300 @@
+//! The creature's motion: sine waves along and about axes, sampled into keys.
+
+use std::f64::consts::TAU;
+
+use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
+
+use super::bones::{Kind, Part, Side, turn};
+
+/// A clip of the creature.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Action {
+    Walk,
+    Idle,
+    Wave,
+}
+
+impl Action {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Walk => "walk",
+            Self::Idle => "idle",
+            Self::Wave => "wave",
+        }
+    }
+
+    /// Duration in seconds.
+    fn duration(self) -> f64 {
+        match self {
+            Self::Walk => 1.0,
+            Self::Idle => 4.0,
+            Self::Wave => 2.0,
+        }
+    }
+}
+
+/// A sine `offset + amplitude · sin(2π(cycles·t + phase))` along or about an axis, with t from 0 to 1 over the
+/// clip.
+#[derive(Clone, Copy)]
+struct Wave {
+    axis: [f64; 3],
+    offset: f64,
+    amplitude: f64,
+    cycles: f64,
+    phase: f64,
+}
+
+impl Wave {
+    fn at(&self, t: f64) -> f64 {
+        self.offset + self.amplitude * libm::sin(TAU * (self.cycles * t + self.phase))
+    }
+
+    /// The same wave with `offset` added.
+    fn shifted(self, offset: f64) -> Self {
+        Self { offset, ..self }
+    }
+
+    fn times(self, cycles: f64) -> Self {
+        Self { cycles, ..self }
+    }
+}
+
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
+
+fn wave(axis: [f64; 3], amplitude: f64, phase: f64) -> Wave {
+    Wave { axis, offset: 0.0, amplitude, cycles: 1.0, phase }
+}
+
+/// The motion of one bone in a clip: waves, each with the number of segments between keys.
+#[derive(Default)]
+struct Motion {
+    turns: Vec<Wave>,
+    turn_keys: usize,
+    moves: Vec<Wave>,
+    move_keys: usize,
+    swells: Vec<Wave>,
+    swell_keys: usize,
+    blinks: bool,
+}
+
+impl Motion {
+    fn turning(keys: usize, turns: impl Into<Vec<Wave>>) -> Self {
+        Self { turns: turns.into(), turn_keys: keys, ..Self::default() }
+    }
+
+    fn moving(self, keys: usize, moves: impl Into<Vec<Wave>>) -> Self {
+        Self { moves: moves.into(), move_keys: keys, ..self }
+    }
+
+    /// Swelling is smooth, so it uses splines.
+    fn swelling(self, keys: usize, swells: impl Into<Vec<Wave>>) -> Self {
+        Self { swells: swells.into(), swell_keys: keys, ..self }
+    }
+}
+
+/// The tracks of a bone in a clip.
+pub fn keys(action: Action, part: &Part) -> BoneKeys {
+    let motion = match action {
+        Action::Walk => walk(part.kind),
+        Action::Idle => idle(part.kind),
+        Action::Wave => greet(part.kind),
+    };
+    let duration = action.duration();
+    let [translation, scale] = [part.rest.translation, part.rest.scale].map(|rest| rest.map(f64::from));
+    BoneKeys {
+        translation: (motion.move_keys > 0)
+            .then(|| line(duration, motion.move_keys, |t| along(translation, &motion.moves, t))),
+        rotation: (motion.turn_keys > 0)
+            .then(|| line(duration, motion.turn_keys, |t| turned(part.rest.rotation, &motion.turns, t))),
+        scale: match motion.blinks {
+            true => Some(blink(duration)),
+            false => (motion.swell_keys > 0)
+                .then(|| spline(duration, motion.swell_keys, |t| along(scale, &motion.swells, t))),
+        },
+    }
+}
+
+/// Evenly spaced linear keys; the last equals the first.
+fn line(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Keys {
+    let at = |key: usize| value((key % stretches) as f64 / stretches as f64).map(|v| v as f32);
+    Keys {
+        times: (0..=stretches).map(|key| (duration * key as f64 / stretches as f64) as f32).collect(),
+        values: (0..=stretches).map(at).collect(),
+        interpolation: Interpolation::Linear,
+    }
+}
+
+/// Spline keys at growing distances, to exercise uneven times. Tangents are those of the motion.
+fn spline(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Keys {
+    let time = |key: usize| {
+        let even = key as f64 / stretches as f64;
+        even * (0.75 + 0.25 * even)
+    };
+    let mut keys = Keys { times: Vec::new(), values: Vec::new(), interpolation: Interpolation::CubicSpline };
+    for key in 0..=stretches {
+        let t = if key == stretches { 0.0 } else { time(key) };
+        let (before, after) = (value(t - 1e-4), value(t + 1e-4));
+        let tangent = std::array::from_fn(|i| ((after[i] - before[i]) / (2e-4 * duration)) as f32);
+        keys.times.push((duration * time(key)) as f32);
+        keys.values.extend([tangent, value(t).map(|v| v as f32), tangent]);
+    }
+    keys
+}
+
+/// Eyes close for a tenth of a second, in steps.
+fn blink(duration: f64) -> Keys {
+    let [open, closed] = [[1.0, 1.0, 1.0, 0.0], [1.0, 0.1, 1.0, 0.0]];
+    Keys {
+        times: [0.0, 0.61 * duration, 0.61 * duration + 0.1, duration].map(|time| time as f32).to_vec(),
+        values: vec![open, closed, open, open],
+        interpolation: Interpolation::Step,
+    }
+}
+
+fn along(rest: [f64; 3], waves: &[Wave], t: f64) -> [f64; 4] {
+    let mut value = [rest[0], rest[1], rest[2], 0.0];
+    for wave in waves {
+        let by = wave.at(t);
+        (0..3).for_each(|i| value[i] += wave.axis[i] * by);
+    }
+    value
+}
+
+/// The rest rotation followed by the waves in turn, in the parent's space.
+fn turned(rest: [f32; 4], waves: &[Wave], t: f64) -> [f64; 4] {
+    waves.iter().fold(rest.map(f64::from), |rotation, wave| product(turn(wave.axis, wave.at(t)), rotation))
+}
+
+fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    [
+        a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+        a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+        a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+        a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2],
+    ]
+}
+
+/// The sign of a leg's swing: one leg is ahead when the other is behind.
+fn step(side: Side) -> f64 {
+    if side == Side::Left { 0.0 } else { 0.5 }
+}
+
+/// One stride of both legs. Legs point down, so a negative turn about x swings them forward.
+fn walk(kind: Kind) -> Motion {
+    let small = |at: usize| 0.01 * at as f64;
+    match kind {
+        // The creature walks in place: the pelvis sways, and the root does not move.
+        Kind::Root => Motion::default(),
+        Kind::Pelvis => Motion::turning(16, [wave(Y, 0.08, 0.25), wave(Z, 0.04, 0.0)])
+            .moving(16, [wave(Y, 0.02, 0.0).times(2.0).shifted(0.01), wave(X, 0.015, 0.0)]),
+        Kind::Spine(at) => Motion::turning(
+            16,
+            [
+                wave(Y, -0.035, 0.25 - small(at)),
+                wave(Z, -0.012, -small(at)),
+                wave(X, 0.01, small(at)).times(2.0).shifted(0.01),
+            ],
+        ),
+        Kind::Crest(at) => Motion::turning(8, [wave(X, 0.08, -0.03 * at as f64).times(2.0)]),
+        Kind::Belly(at) => {
+            Motion::default().swelling(6, [wave([1.0, 0.0, 0.6], 0.03, 0.05 * at as f64).times(2.0)])
+        }
+        Kind::Neck(at) => {
+            Motion::turning(12, [wave(Y, 0.03, 0.25 - small(at)), wave(X, 0.02, 0.3).times(2.0)])
+        }
+        Kind::Head => Motion::turning(12, [wave(X, 0.03, 0.4).times(2.0), wave(Z, 0.02, 0.1)]),
+        Kind::Ear(_, at) => {
+            Motion::turning(16, [wave(X, 0.06 + 0.05 * at as f64, -0.06 * at as f64).times(2.0)])
+        }
+        Kind::Feeler(_, at) => Motion::turning(16, [wave(X, 0.08, -0.07 * at as f64).times(2.0)]),
+        Kind::Clavicle(side) => Motion::turning(8, [wave(Y, 0.05, step(side) + 0.25)]),
+        Kind::UpperArm(side) => Motion::turning(20, [wave(X, 0.45, step(side) + 0.25)]),
+        Kind::Forearm(side) => {
+            let s = side.sign();
+            Motion::turning(20, [wave(Y, -0.2 * s, step(side) + 0.75).shifted(-0.35 * s)])
+        }
+        Kind::UpperArmTwist(side) | Kind::ForearmTwist(side) => {
+            Motion::turning(8, [wave(X, 0.08, step(side))])
+        }
+        Kind::Hand(side) => Motion::turning(12, [wave(Z, 0.1, step(side) + 0.15)]),
+        Kind::Finger(side, digit, at) => {
+            let curl = -side.sign() * (0.12 + 0.02 * digit as f64) * f64::from(at > 0);
+            Motion::turning(if at == 0 { 2 } else { 6 }, [wave(Z, 0.3 * curl, step(side)).shifted(curl)])
+        }
+        Kind::Thigh(side) => {
+            Motion::turning(32, [wave(X, -0.45, step(side)).shifted(-0.08), wave(Z, 0.02, step(side))])
+        }
+        Kind::Shin(side) => Motion::turning(32, [wave(X, 0.42, step(side) - 0.2).shifted(0.47)]),
+        Kind::ThighTwist(side) => Motion::turning(8, [wave(Y, 0.05, step(side))]),
+        Kind::ShinTwist(_) => Motion::default(),
+        Kind::Foot(side) => Motion::turning(32, [wave(X, 0.3, step(side) - 0.35).shifted(-0.25)]),
+        Kind::Toe(side, _, 0) => Motion::turning(12, [wave(X, -0.2, step(side) + 0.4).shifted(-0.1)]),
+        Kind::Tail(at) => {
+            let phase = -0.06 * at as f64;
+            Motion::turning(24, [wave(Y, 0.06 + 0.006 * at as f64, phase), wave(X, 0.02, phase).times(2.0)])
+        }
+        _ => Motion::default(),
+    }
+}
+
+/// The creature breathes and looks around.
+fn idle(kind: Kind) -> Motion {
+    let breath = |amplitude: f64, phase: f64| wave(X, amplitude, phase).times(2.0);
+    match kind {
+        Kind::Pelvis => Motion::turning(8, [wave(Z, 0.015, 0.0)]).moving(8, [wave(X, 0.02, 0.0)]),
+        Kind::Spine(at) => Motion::turning(12, [breath(-0.008, 0.01 * at as f64), wave(Z, -0.006, 0.0)]),
+        Kind::Crest(at) => Motion::turning(8, [breath(0.04, -0.02 * at as f64)]),
+        Kind::Belly(at) => {
+            let out = Wave { axis: [1.0, 0.3, 1.0], ..breath(0.05, 0.02 * at as f64) };
+            Motion::default().swelling(10, [out]).moving(8, [Wave { axis: Z, ..breath(0.008, 0.0) }])
+        }
+        Kind::Neck(at) => Motion::turning(10, [wave(Y, 0.08, 0.05 * at as f64)]),
+        Kind::Head => Motion::turning(16, [wave(Y, 0.15, 0.1), breath(0.03, 0.2)]),
+        Kind::Eye(_) => Motion { blinks: true, ..Motion::turning(10, [wave(Y, 0.2, 0.0)]) },
+        Kind::Ear(side, at) => {
+            let twitch = wave(Z, 0.08 * side.sign(), 0.1 * at as f64).times(3.0);
+            Motion::turning(24, [twitch])
+        }
+        Kind::Feeler(side, at) => {
+            Motion::turning(20, [wave(Y, 0.12, 0.3 * step(side) - 0.05 * at as f64).times(2.0)])
+        }
+        Kind::Clavicle(side) => Motion::turning(8, [Wave { axis: Z, ..breath(0.02 * side.sign(), 0.0) }]),
+        Kind::UpperArm(side) => Motion::turning(8, [breath(0.02, 0.1), wave(Z, 0.02 * side.sign(), 0.3)]),
+        Kind::Forearm(side) => Motion::turning(8, [wave(Y, -0.04, 0.1).shifted(-0.2 * side.sign())]),
+        Kind::Hand(_) => Motion::turning(6, [wave(Z, 0.03, 0.2)]),
+        Kind::Finger(side, digit, at) if at > 0 => {
+            let curl = -side.sign() * 0.15;
+            Motion::turning(6, [wave(Z, 0.3 * curl, 0.1 * digit as f64).shifted(curl)])
+        }
+        Kind::Thigh(_) => Motion::turning(8, [wave(Z, -0.02, 0.0)]),
+        Kind::Foot(_) => Motion::turning(8, [wave(Z, 0.005, 0.0)]),
+        Kind::Tail(at) => Motion::turning(20, [wave(Y, 0.09, -0.05 * at as f64)]),
+        Kind::Tongue(at) => Motion::turning(6, [breath(0.03, 0.1 * at as f64)]),
+        _ => Motion::default(),
+    }
+}
+
+/// The right arm is raised, with its forearm and fingers waving; the rest breathes faster.
+fn greet(kind: Kind) -> Motion {
+    let is_right = |side: Side| side == Side::Right;
+    match kind {
+        Kind::Clavicle(side) if is_right(side) => Motion::turning(8, [wave(Z, 0.03, 0.0).shifted(-0.15)]),
+        Kind::UpperArm(side) if is_right(side) => {
+            Motion::turning(16, [wave(Z, 0.06, 0.0).times(3.0).shifted(-1.9), wave(Y, 0.05, 0.2)])
+        }
+        Kind::Forearm(side) if is_right(side) => {
+            Motion::turning(32, [wave(Z, 0.45, 0.05).times(3.0).shifted(-0.7)])
+        }
+        Kind::Hand(side) if is_right(side) => Motion::turning(32, [wave(Z, 0.3, -0.05).times(3.0)]),
+        Kind::ForearmTwist(side) if is_right(side) => Motion::turning(16, [wave(X, 0.15, 0.1).times(3.0)]),
+        Kind::Finger(side, digit, at) if is_right(side) && at > 0 => {
+            Motion::turning(24, [wave(Z, 0.12, -0.08 * at as f64 - 0.02 * digit as f64).times(3.0)])
+        }
+        Kind::Head => Motion::turning(16, [wave(Z, 0.06, 0.0), wave(Y, 0.03, 0.0).shifted(-0.15)]),
+        Kind::Jaw => Motion::turning(12, [wave(X, 0.08, 0.0).times(2.0).shifted(0.1)]),
+        Kind::Tail(at) => Motion::turning(24, [wave(Y, 0.12, -0.07 * at as f64).times(2.0)]),
+        other => idle(other),
+    }
+}

@@ -1,0 +1,55 @@
+//! Things to try relievo with, that need no file: a creature with clips, a rock, a wall, and height maps with
+//! their colours.
+
+pub use creature::creature;
+pub use maps::BuiltInMap;
+use relievo::InputError;
+use relievo::asset::Model;
+pub use shapes::{rock, wall};
+
+pub mod creature;
+pub mod maps;
+mod shapes;
+
+/// The names of the models.
+pub const MODELS: [&str; 3] = ["creature", "rock", "wall"];
+
+/// The model of a name.
+///
+/// # Errors
+/// [`InputError`] for a name that is not one of [`MODELS`].
+pub fn model(name: &str) -> Result<Model, InputError> {
+    match name {
+        "creature" => creature(),
+        "rock" => rock(),
+        "wall" => wall(),
+        _ => Err(InputError::new("model", name, format!("must be one of {}", MODELS.join(", ")))),
+    }
+}
+
+/// The samples as built-ins of scene files: the models of [`MODELS`], of which the creature has the colour of clay, and the
+/// height maps of [`BuiltInMap`] with 512 texels along an edge.
+#[cfg(feature = "gpu")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Samples;
+
+#[cfg(feature = "gpu")]
+impl relievo::scene_file::BuiltIns for Samples {
+    fn model(&self, name: &str) -> Result<Model, InputError> {
+        let mut found = model(name)?;
+        if name == "creature" {
+            // It has no material of its own. The colour is in linear light.
+            for mesh in &mut found.meshes {
+                mesh.material = Some(found.materials.len());
+            }
+            found.materials.push(relievo::asset::Material::opaque("clay", [0.6, 0.3, 0.16, 1.0]));
+        }
+        Ok(found)
+    }
+
+    fn map(&self, name: &str) -> Result<(relievo::surface::HeightMap, image::RgbaImage), InputError> {
+        const TEXELS: u32 = 512;
+        let map: BuiltInMap = name.parse()?;
+        Ok((map.height_map(TEXELS)?, map.albedo(TEXELS)?))
+    }
+}
