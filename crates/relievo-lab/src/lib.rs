@@ -1,6 +1,6 @@
 //! The laboratory of relievo: it proves and measures what the library does, on the adapter at hand.
 //!
-//! [`verify`] compares every kernel with its CPU reference (`relievo verify`), and [`bench`] measures it against a copy of
+//! [`verify`] compares every kernel with its CPU reference (`relievo verify`), and [`mod@bench`] measures it against a copy of
 //! the same bytes (`relievo bench`). [`OPERATIONS`] lists the cases of both; [`harness`] has comparators and clocks.
 //!
 //! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of

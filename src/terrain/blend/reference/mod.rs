@@ -10,9 +10,7 @@ use crate::terrain::blend::{Shading, WeightMode};
 use crate::terrain::cover::MapZone;
 use crate::terrain::cover::{Cover, ShaderZone};
 use crate::terrain::normals::reference::unit_normal;
-pub(crate) use texturing::texel_indices;
-pub(crate) use texturing::tiles_of;
-pub use texturing::{color_variation, triplanar_weights, varied};
+pub use texturing::{color_variation, texel_indices, tiles_of, triplanar_weights, varied};
 
 /// The tangent of half the angle between a unit normal and the vertical: 0 on level ground, 1 on a wall.
 pub fn steepness(normal: [f32; 3]) -> f32 {

@@ -10,7 +10,7 @@ pub fn triplanar_weights([x, y, z]: [f32; 3]) -> [f32; 3] {
 
 /// The place in 2^-22 tiles, east, up and south, of a sample so many columns and rows after the one at `place`: without whole
 /// multiples of [`TILES_PERIOD`], and rounded down by height.
-pub(crate) fn tiles_of(cover: &Cover, place: [u32; 2], [columns, rows]: [usize; 2], height: i32) -> [u32; 3] {
+pub fn tiles_of(cover: &Cover, place: [u32; 2], [columns, rows]: [usize; 2], height: i32) -> [u32; 3] {
     let [step, per_unit] = cover.steps();
     let [east, south] = [(place[0], columns), (place[1], rows)]
         .map(|(first, at)| first.wrapping_add((at as u32).wrapping_mul(step)));
@@ -18,7 +18,7 @@ pub(crate) fn tiles_of(cover: &Cover, place: [u32; 2], [columns, rows]: [usize; 
 }
 
 /// The indices of the texels of a zone at a place: one for each plane.
-pub(crate) fn texel_indices(cover: &Cover, zone: &MapZone, [east, up, south]: [u32; 3]) -> Vec<usize> {
+pub fn texel_indices(cover: &Cover, zone: &MapZone, [east, up, south]: [u32; 3]) -> Vec<usize> {
     let index = |at: [u32; 2]| {
         let edge = 1 << zone.edge_log2;
         let [x, y] = at.map(|tiles| {
