@@ -38,7 +38,7 @@ pub fn key_of(text: &str) -> [u32; 2] {
 }
 
 /// The SHA-256 of words, each as four bytes, the lowest first: 64 hexadecimal digits.
-pub(crate) fn sha256(words: &[u32]) -> String {
+pub fn sha256(words: &[u32]) -> String {
     let mut hash = Sha256::new();
     words.iter().for_each(|word| hash.update(word.to_le_bytes()));
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()

@@ -3,7 +3,7 @@
 use crate::InputError;
 
 /// Refuses a number of indices that is not a multiple of three, and indices of vertices that do not exist.
-pub(crate) fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
+pub fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
     if !indices.len().is_multiple_of(3) {
         return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));
     }

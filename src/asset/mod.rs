@@ -5,7 +5,7 @@ pub mod clip;
 pub mod gltf;
 pub(crate) mod images;
 pub mod import;
-pub(crate) mod indices;
+pub mod indices;
 pub mod influences;
 pub mod keyframe;
 pub mod light;

@@ -24,7 +24,6 @@ mod readback;
 mod readback_ring;
 pub mod shaders;
 mod shared;
-#[cfg(not(target_arch = "wasm32"))]
 mod timer;
 mod tuning;
 mod upload;
@@ -45,7 +44,6 @@ pub(crate) use kernel::{Layouts, rows_of_workgroups};
 pub use memory::Memory;
 pub(crate) use pending::PendingUploads;
 pub use readback_ring::ReadbackRing;
-#[cfg(not(target_arch = "wasm32"))]
 pub use timer::{Measurement, TimedBy, Timer};
 pub use tuning::Tuning;
 pub(crate) use upload::StagingStream;

@@ -1,5 +1,6 @@
 //! Measures how long recorded work takes on the device, by timestamps, or by wall time if the adapter has none.
 
+#[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
 
 use super::{Buffer, Gpu, GpuError};
@@ -75,6 +76,7 @@ impl Timer {
     ///
     /// # Errors
     /// Errors of the device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn measure(
         &self,
         gpu: &Gpu,

@@ -98,10 +98,7 @@ impl Gpu {
     /// # Errors
     /// Those of `work`, and of [`Gpu::wait`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn block_on<T, E: From<GpuError>>(
-        &self,
-        work: impl Future<Output = Result<T, E>>,
-    ) -> Result<T, E> {
+    pub fn block_on<T, E: From<GpuError>>(&self, work: impl Future<Output = Result<T, E>>) -> Result<T, E> {
         let mut work = std::pin::pin!(work);
         let mut context = std::task::Context::from_waker(std::task::Waker::noop());
         loop {

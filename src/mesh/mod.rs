@@ -2,13 +2,10 @@
 //! distance that it leaves.
 
 pub mod cluster;
-pub mod distance;
 pub mod nearest;
 pub mod progressive;
 pub mod ray;
-pub mod reduce;
 pub mod simplify;
 
 pub use progressive::ProgressiveMesh;
-pub use reduce::{Limits, Reduced, Reducer};
 pub use simplify::{Collapse, Cost, Options, Seams, Simplified, Stopped, Surface, simplify, simplify_within};

@@ -272,7 +272,7 @@ impl Simplified {
     }
 
     /// Whether three vertices belong to three different points.
-    pub(crate) fn are_apart(&self, vertices: [u32; 3]) -> bool {
+    pub fn are_apart(&self, vertices: [u32; 3]) -> bool {
         let [a, b, c] = vertices;
         let [a, b, c] = [self.point(a), self.point(b), self.point(c)];
         a != b && b != c && c != a
@@ -400,11 +400,15 @@ pub(crate) fn simplify_watched<B>(
 }
 
 /// The point of each vertex, numbered in the order of the points' first vertices; see [`Simplified::point`].
-pub(crate) fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
+pub fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     Points::new(poses).into_of()
 }
 
-pub(crate) fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
+/// Checks a surface: every reducer begins with it.
+///
+/// # Errors
+/// [`InputError`] that names the list and the index.
+pub fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     let Some(first) = surface.poses.first() else {
         return Err(InputError::new("poses.len", 0, "must be at least 1"));
     };

@@ -7,7 +7,7 @@ use crate::asset::{Mesh, Model};
 
 /// The factor of normals. Where normals differ at one point they are averaged, so that a larger one would keep the inside of
 /// flat faces, and cut their corners.
-pub(super) const NORMAL: f32 = 0.05;
+pub const NORMAL: f32 = 0.05;
 
 /// The edge of a square, as a fraction of a mesh's size, on which a texture that slips over the surface by some distance
 /// counts as much as a position that is off by it.
@@ -15,7 +15,7 @@ const SQUARE: f64 = 3e-2;
 
 /// The texture coordinates of a mesh that count: zeros where its material shows no texture. A mesh without a material may
 /// have any.
-pub(super) fn shown_uv(model: &Model, mesh: &Mesh) -> Vec<[f32; 2]> {
+pub fn shown_uv(model: &Model, mesh: &Mesh) -> Vec<[f32; 2]> {
     let material = mesh.material.and_then(|at| model.materials.get(at));
     let is_shown = material.is_none_or(|material| material.texture.is_some() || material.normal.is_some());
     if is_shown { mesh.uv.clone() } else { vec![[0.0; 2]; mesh.uv.len()] }
@@ -23,20 +23,20 @@ pub(super) fn shown_uv(model: &Model, mesh: &Mesh) -> Vec<[f32; 2]> {
 
 /// The areas of a mesh's triangles, in the mesh's units and in texture coordinates.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct TextureArea {
+pub struct TextureArea {
     surface: f64,
     texture: f64,
 }
 
 impl TextureArea {
     /// Adds a triangle.
-    pub(super) fn add(&mut self, [a, b, c]: [DVec3; 3], [d, e, f]: [DVec2; 3]) {
+    pub fn add(&mut self, [a, b, c]: [DVec3; 3], [d, e, f]: [DVec2; 3]) {
         self.surface += (b - a).cross(c - a).length();
         self.texture += (e - d).perp_dot(f - d).abs();
     }
 
     /// The factor of texture coordinates of a mesh of this size; 0 without texture coordinates.
-    pub(super) fn factor(&self, size: f64) -> f32 {
+    pub fn factor(&self, size: f64) -> f32 {
         let factor = ((self.surface / self.texture).sqrt() / (SQUARE * size)) as f32;
         if factor.is_finite() { factor } else { 0.0 }
     }

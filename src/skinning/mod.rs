@@ -2,7 +2,7 @@
 //! and 9).
 
 pub mod at_rest;
-mod attribute_weights;
+pub mod attribute_weights;
 #[cfg(feature = "gpu")]
 pub(crate) mod bone_path;
 pub mod bounding_sphere;
@@ -28,7 +28,6 @@ pub mod palette;
 pub mod picture;
 mod pose;
 pub mod posed;
-pub mod reduced;
 pub mod select;
 pub mod skin;
 pub mod vertex;
@@ -44,5 +43,4 @@ pub use levels::{Coarsened, MeshLevels, add_levels, add_levels_with_progress, co
 pub use merged::{Merged, merged};
 pub use pose::poses_of;
 pub use posed::{Portrait, PosedModel};
-pub use reduced::{Normals, ReducedModel, reduce_model};
 pub use vertex::{Blend, Vertex};

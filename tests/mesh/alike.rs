@@ -1,7 +1,8 @@
 //! The same sequence of collapses on every machine: hashes of meshes that are made without functions that differ. The
 //! crate of `relievo-web-scene` computes the same hashes in a browser.
 
-use relievo::mesh::{Limits, Options, Reducer, Surface, simplify, simplify_within};
+use relievo::mesh::{Options, Surface, simplify, simplify_within};
+use relievo_lab::reduce::{Limits, Reducer};
 
 /// A whole number below `most` for a place.
 fn noise(at: u32, most: u32) -> u32 {

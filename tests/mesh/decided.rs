@@ -1,7 +1,8 @@
 //! What is decided where thesis B contradicts itself on simplification (`docs/sources.md`).
 
 use glam::DVec3;
-use relievo::mesh::{Cost, Limits, Options, Reducer, Seams, Simplified};
+use relievo::mesh::{Cost, Options, Seams, Simplified};
+use relievo_lab::reduce::{Limits, Reducer};
 
 use crate::shapes::{Shape, sphere};
 

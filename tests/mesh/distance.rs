@@ -1,8 +1,8 @@
 //! Distances between surfaces, compared with dense samples.
 
 use glam::DVec3;
-use relievo::mesh::distance::{Distance, OneWay, Options, Triangles, distance};
 use relievo::mesh::{Cost, Options as Limits};
+use relievo_lab::distance::{Distance, OneWay, Options, Triangles, distance};
 
 use crate::measure;
 use crate::shapes::{Shape, bare, bumps, cube, ground, sheet, shuffled, sphere, torus};

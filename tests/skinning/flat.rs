@@ -5,8 +5,10 @@ use std::collections::HashMap;
 use glam::Vec3;
 use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::{Material, Mesh, Model};
-use relievo::mesh::{Cost, Limits, Options, Reducer, Seams, Stopped, Surface, simplify};
-use relievo::skinning::{Normals, ReducedModel, add_levels, reduce_model};
+use relievo::mesh::{Cost, Options, Seams, Stopped, Surface, simplify};
+use relievo::skinning::add_levels;
+use relievo_lab::reduce::{Limits, Reducer};
+use relievo_lab::reduce::{Normals, ReducedModel, reduce_model};
 
 /// A sphere of 20 · 4² triangles, whose points `shape` moves.
 fn ball(shape: impl Fn(Vec3) -> Vec3) -> Vec<[Vec3; 3]> {

@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 use relievo::asset::{Mesh, Model};
-use relievo::mesh::distance::Options;
-use relievo::mesh::{Limits, Reducer};
-use relievo::skinning::{Normals, ReducedModel, at_rest, reduce_model};
+use relievo::skinning::at_rest;
+use relievo_lab::distance::Options;
+use relievo_lab::reduce::{Limits, Reducer};
+use relievo_lab::reduce::{Normals, ReducedModel, reduce_model};
 use relievo_samples::creature;
 
 fn model(text: &str) -> Model {

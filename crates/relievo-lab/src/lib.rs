@@ -5,14 +5,27 @@
 //!
 //! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
 //! models, and surface mapping on height maps. [`files`] writes reports and pictures whole or not at all. [`plot`] draws
-//! charts.
+//! charts. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
+//! apart.
+//!
+//! On `wasm32` there are the parity cases ([`verify::run_async`]), reducers and plots: the rest waits for the device.
 
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(dead_code, unused_imports, reason = "benchmarks wait for the device")
+)]
+
+#[cfg(not(target_arch = "wasm32"))]
 pub mod bench;
 pub mod cases;
+pub mod distance;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod files;
 pub mod harness;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod measure;
 pub mod plot;
+pub mod reduce;
 pub mod verify;
 
 pub use cases::{OPERATIONS, Operation};

@@ -267,12 +267,12 @@ fn levels_sees_each_channel() {
 fn poison_shows_what_was_not_written_and_what_was_written_beyond() {
     let gpu = harness::gpu();
     let output = Poisoned::<i32>::new(&gpu, 100).expect("allocated");
-    let unwritten = output.check(&gpu, |actual| exact(actual, &[0; 100])).expect("read");
+    let unwritten = gpu.block_on(output.check(&gpu, |actual| exact(actual, &[0; 100]))).expect("read");
     assert!(!unwritten.holds, "poison passed for zeros");
     output.buffer.write(&gpu, &[7; 100]).expect("written");
-    assert!(output.check(&gpu, |actual| exact(actual, &[7; 100])).expect("read").holds);
+    assert!(gpu.block_on(output.check(&gpu, |actual| exact(actual, &[7; 100]))).expect("read").holds);
     output.buffer.write(&gpu, &[7; 101]).expect("written");
-    let beyond = output.check(&gpu, |actual| exact(actual, &[7; 100])).expect("read");
+    let beyond = gpu.block_on(output.check(&gpu, |actual| exact(actual, &[7; 100]))).expect("read");
     assert!(beyond.fault.expect("a fault").contains("beyond"));
 }
 

@@ -29,7 +29,11 @@ fn every_kernel_has_cases() {
 }
 
 /// An operation without cases.
-const IDLE: Operation = Operation { name: "terrain/height", parity: |_| Ok(()), benchmark: |_| Ok(()) };
+const IDLE: Operation = Operation {
+    name: "terrain/height",
+    parity: |_| Box::pin(std::future::ready(Ok(()))),
+    benchmark: |_| Ok(()),
+};
 
 /// What a kernel's benchmark lacks: a kernel and a reference in every case, and something that both are measured
 /// against.
@@ -63,7 +67,9 @@ fn every_benchmark_measures_kernel_reference_and_baseline() {
 fn a_kernel_whose_parity_cases_add_nothing_does_not_hold() {
     let copy = OPERATIONS.iter().find(|operation| operation.name == "baseline/copy").expect("an operation");
     let run = |operations: &[Operation]| {
-        verify::run_operations(&harness::gpu(), operations, &mut |_| ()).expect("the device works").holds
+        let gpu = harness::gpu();
+        let report = gpu.block_on(verify::run_operations(&gpu, operations, &mut |_| ()));
+        report.expect("the device works").holds
     };
     assert!(run(&[*copy]));
     assert!(!run(&[*copy, IDLE]));

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use relievo::mesh::cluster::Grid;
 use relievo::mesh::cluster::reference::cluster;
-use relievo::mesh::{Limits, Reducer};
+use relievo_lab::reduce::{Limits, Reducer};
 
 use super::to;
 use crate::shapes::{Shape, bumps, cube, ground, shuffled, sphere, torus};

@@ -1,6 +1,7 @@
 //! Damaged meshes give an error or a valid result.
 
-use relievo::mesh::{Reduced, Reducer, Surface};
+use relievo::mesh::Surface;
+use relievo_lab::reduce::{Reduced, Reducer};
 
 use super::{KEEPING, shape_of, to};
 use crate::measure::topology;

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use relievo::mesh::{Limits, Reduced, Reducer};
+use relievo_lab::reduce::{Limits, Reduced, Reducer};
 
 use super::{shape_of, to};
 use crate::shapes::{Shape, sphere};

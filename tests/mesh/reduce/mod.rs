@@ -8,7 +8,8 @@ mod quality;
 mod topology;
 mod turned;
 
-use relievo::mesh::{Cost, Limits, Reduced, Reducer, Seams, Surface};
+use relievo::mesh::{Cost, Seams, Surface};
+use relievo_lab::reduce::{Limits, Reduced, Reducer};
 
 use crate::shapes::Shape;
 

@@ -1,7 +1,7 @@
 //! How far reduced meshes are from the original, and that they are the same everywhere.
 
-use relievo::mesh::{Limits, Reducer};
 use relievo::terrain::export::sha256;
+use relievo_lab::reduce::{Limits, Reducer};
 
 use super::{shape_of, to};
 use crate::measure::distances_between;

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use relievo::mesh::{Reduced, Reducer, Stopped};
+use relievo::mesh::Stopped;
+use relievo_lab::reduce::{Reduced, Reducer};
 
 use super::{CHANGING, KEEPING, levels, shape_of};
 use crate::measure::topology;

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
-use relievo::mesh::{Reduced, Reducer};
+use relievo_lab::reduce::{Reduced, Reducer};
 
 use super::to;
 use crate::measure::{area, normal};
@@ -91,7 +91,7 @@ fn flat_ground_stays_flat_and_covered() {
             assert!(reduced.error > 1e-6 || (found - whole).abs() < 1e-5 * whole, "{}", reducer.name());
             assert!(normals(reduced).iter().all(|(_, _, normal)| normal.y > 0.0), "{}", reducer.name());
         }
-        let limits = relievo::mesh::Limits { triangles: 0, error: 1e-6 };
+        let limits = relievo_lab::reduce::Limits { triangles: 0, error: 1e-6 };
         let last = reducer.reduce(&shape.bare(), &limits).expect("valid");
         assert_eq!(last.triangles.len(), 2, "{}", reducer.name());
     }

@@ -208,7 +208,7 @@ fn reducers_are_compared() {
     assert_eq!(run.stdout.trim(), table.trim());
     let rows = found["reducers"].as_array().expect("a list");
     let names: Vec<_> = rows.iter().filter_map(|row| row["reducer"].as_str()).collect();
-    assert_eq!(names, relievo::mesh::Reducer::ALL.map(|(name, _)| name));
+    assert_eq!(names, relievo_lab::reduce::Reducer::ALL.map(|(name, _)| name));
     let all = found["whole"]["triangles"].as_f64().expect("a number");
     let mut lines = 1;
     for row in rows {

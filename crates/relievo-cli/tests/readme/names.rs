@@ -17,16 +17,15 @@ use relievo::surface::ReliefOptions;
 fn items() {
     use relievo::gpu::shaders::MODULES as _; // gpu::shaders::MODULES
     use relievo::mesh::ProgressiveMesh as _; // mesh::ProgressiveMesh
-    use relievo::mesh::Reducer as _; // mesh::Reducer
+    use relievo_lab::reduce::Reducer as _; // reduce::Reducer
     use relievo::mesh::Stopped as _; // mesh::Stopped
-    use relievo::mesh::distance as _; // mesh::distance
     use relievo::mesh::simplify as _; // mesh::simplify
     use relievo::skinning::Extent as _; // skinning::Extent
     use relievo::skinning::add_levels as _; // skinning::add_levels
     use relievo::skinning::collapse_bones as _; // skinning::collapse_bones
     use relievo::skinning::frame::SkinFrame as _; // skinning::frame::SkinFrame
     use relievo::skinning::paged::PagedSkin as _; // skinning::paged::PagedSkin
-    use relievo::skinning::reduce_model as _; // skinning::reduce_model
+    use relievo_lab::reduce::reduce_model as _; // reduce::reduce_model
     use relievo::surface::SurfaceTextures as _; // surface::SurfaceTextures
     use relievo::surface::tangent as _; // surface::tangent
     use relievo::terrain::ground::Ground as _; // terrain::ground::Ground
@@ -74,9 +73,9 @@ fn members() {
 fn decided() {
     let _ = relievo::animation::lod::Range::omega; // animation::lod::Range::omega
     let _ = |gate| matches!(gate, relievo::animation::Gate::SkipPeriod { .. }); // animation::Gate::SkipPeriod
-    let _ = relievo::mesh::Reducer::ALL; // mesh::Reducer::ALL
+    let _ = relievo_lab::reduce::Reducer::ALL; // reduce::Reducer::ALL
     let _ = |cost| matches!(cost, relievo::mesh::Cost::Melax { .. }); // mesh::Cost::Melax
-    let _ = relievo::skinning::Normals::Recompute; // skinning::Normals::Recompute
+    let _ = relievo_lab::reduce::Normals::Recompute; // skinning::Normals::Recompute
     let _ = relievo::surface::Method::Parallax; // surface::Method::Parallax
     let _ = |march: relievo::surface::March| march.steps; // surface::March::steps
     let _ = |material: relievo::surface::Material| material.plane; // surface::Material::plane

@@ -170,3 +170,19 @@ fn a_browser_tells_a_mistake_late_and_the_device_goes_on() {
     assert_eq!((said[0], said[2]), ("nothing", "[1, 7]"));
     assert!(said[1].contains("wgpu refused a call"), "{}", said[1]);
 }
+
+/// Kernels equal their references on the browser's device too.
+#[test]
+fn kernels_equal_their_references_in_the_browser() {
+    let said = said();
+    assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
+    let all = said["parity"].as_object().expect("an operation each");
+    assert_eq!(all.len(), 4);
+    for (operation, result) in all {
+        let lines: Vec<&str> =
+            result.as_array().expect("lines").iter().filter_map(|line| line.as_str()).collect();
+        let cases: u32 = lines[0].parse().expect("a number");
+        println!("{operation}: {cases} cases");
+        assert!(cases > 3 && lines.len() == 1, "{operation}: {lines:?}");
+    }
+}

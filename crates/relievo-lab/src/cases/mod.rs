@@ -8,6 +8,8 @@ pub mod skinning;
 pub mod surface;
 pub mod terrain;
 
+use std::pin::Pin;
+
 use relievo::Error;
 
 use crate::harness::{Bench, Cases};
@@ -18,16 +20,19 @@ pub struct Operation {
     /// The kernel's path below `kernels/`, without extension.
     pub name: &'static str,
     /// Runs its parity cases.
-    pub parity: fn(&mut Cases<'_>) -> Result<(), Error>,
+    pub parity: for<'a> fn(&'a mut Cases<'_>) -> Running<'a>,
     /// Runs its benchmark cases.
     pub benchmark: fn(&mut Bench<'_>) -> Result<(), Error>,
 }
+
+/// Cases that are running.
+pub type Running<'a> = Pin<Box<dyn Future<Output = Result<(), Error>> + 'a>>;
 
 macro_rules! operations {
     ($($domain:ident / $operation:ident,)*) => {
         &[$(Operation {
             name: concat!(stringify!($domain), "/", stringify!($operation)),
-            parity: $domain::$operation::parity,
+            parity: |cases| Box::pin($domain::$operation::parity(cases)),
             benchmark: $domain::$operation::benchmark,
         },)*]
     };

@@ -66,6 +66,7 @@ impl<'a> Contender<'a> {
         matches!(self.work, Work::Host(_))
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
     fn once(&mut self, gpu: &Gpu, timer: &Timer) -> Result<(f64, TimedBy), Error> {
         match &mut self.work {
             Work::Device(record) => {
@@ -126,12 +127,15 @@ impl<'a> Bench<'a> {
         case: impl Into<String>,
         (items, item): (usize, &'static str),
         bytes: u64,
-        mut contenders: Vec<Contender<'_>>,
+        #[cfg_attr(target_arch = "wasm32", expect(unused_mut))] mut contenders: Vec<Contender<'_>>,
     ) -> Result<(), Error> {
-        let (times, clocks) = match self.measure {
-            true => self.repeat(&mut contenders)?,
-            false => (vec![vec![0.0]; contenders.len()], vec![TimedBy::Wall; contenders.len()]),
-        };
+        // Nothing is measured in browsers, which cannot wait.
+        #[cfg(target_arch = "wasm32")]
+        let measured = None;
+        #[cfg(not(target_arch = "wasm32"))]
+        let measured = if self.measure { Some(self.repeat(&mut contenders)?) } else { None };
+        let (times, clocks) = measured
+            .unwrap_or_else(|| (vec![vec![0.0]; contenders.len()], vec![TimedBy::Wall; contenders.len()]));
         let case = case.into();
         let kernel = contenders.iter().position(|contender| contender.backend == Backend::Gpu);
         for (index, (contender, timed_by)) in contenders.iter().zip(clocks).enumerate() {
@@ -157,6 +161,7 @@ impl<'a> Bench<'a> {
     }
 
     /// The contenders' times, and the clocks that took them.
+    #[cfg(not(target_arch = "wasm32"))]
     fn repeat(&self, contenders: &mut [Contender<'_>]) -> Result<(Vec<Vec<f64>>, Vec<TimedBy>), Error> {
         let mut times = vec![Vec::new(); contenders.len()];
         let mut clocks = vec![TimedBy::Wall; contenders.len()];

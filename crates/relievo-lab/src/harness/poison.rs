@@ -44,8 +44,12 @@ impl<T: bytemuck::Pod> Poisoned<T> {
     ///
     /// # Errors
     /// What the device reports.
-    pub fn check(&self, gpu: &Gpu, compare: impl FnOnce(&[T]) -> Comparison) -> Result<Comparison, GpuError> {
-        let all = self.buffer.read_blocking(gpu)?;
+    pub async fn check(
+        &self,
+        gpu: &Gpu,
+        compare: impl FnOnce(&[T]) -> Comparison,
+    ) -> Result<Comparison, GpuError> {
+        let all = self.buffer.read(gpu).await?;
         let (output, guard) = all.split_at(self.len);
         let touched = bytemuck::cast_slice::<T, u32>(guard).iter().position(|word| *word != POISON);
         Ok(match touched {

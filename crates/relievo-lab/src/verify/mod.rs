@@ -1,8 +1,8 @@
 //! Parity: every kernel against its CPU reference, on the current adapter (`relievo verify`). This is part of
 //! the product, so that users can find out whether their driver computes correctly.
 
-use relievo::Error;
 use relievo::gpu::{AdapterSummary, Gpu};
+use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::cases::{OPERATIONS, Operation};
@@ -26,29 +26,38 @@ pub struct Report {
     pub skipped: Vec<Skipped>,
 }
 
-/// Runs the cases of every selected kernel, and calls `progress` with each result.
+/// Runs the cases of every selected kernel, and calls `progress` with each result. Blocks.
+///
+/// # Errors
+/// As [`run_async`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&CaseResult)) -> Result<Report, Error> {
+    gpu.block_on(run_async(gpu, only, progress))
+}
+
+/// Runs the cases of every kernel whose name contains `only`, or of all, and calls `progress` with each result.
 ///
 /// # Errors
 /// [`relievo::InputError`] when nothing is selected; errors of the device.
-pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&CaseResult)) -> Result<Report, Error> {
+pub async fn run_async(
+    gpu: &Gpu,
+    only: Option<&str>,
+    progress: &mut dyn FnMut(&CaseResult),
+) -> Result<Report, Error> {
     let chosen: Vec<_> = OPERATIONS.iter().filter(|operation| selected(operation.name, only)).collect();
     if chosen.is_empty() {
         let names = OPERATIONS.iter().map(|operation| operation.name).collect::<Vec<_>>().join(", ");
-        return Err(relievo::InputError::new(
-            "only",
-            only.unwrap_or(""),
-            format!("must be (part of) one of {names}"),
-        )
-        .into());
+        let bound = format!("must be (part of) one of {names}");
+        return Err(InputError::new("only", only.unwrap_or(""), bound).into());
     }
-    run_operations(gpu, chosen, progress)
+    run_operations(gpu, chosen, progress).await
 }
 
 /// Runs the cases of the given kernels. A kernel without results does not hold, since nothing was proven.
 ///
 /// # Errors
 /// What the device reports.
-pub fn run_operations<'a>(
+pub async fn run_operations<'a>(
     gpu: &Gpu,
     operations: impl IntoIterator<Item = &'a Operation>,
     progress: &mut dyn FnMut(&CaseResult),
@@ -57,7 +66,7 @@ pub fn run_operations<'a>(
     for operation in operations {
         let mut cases =
             Cases { gpu, stem: operation.name, results: Vec::new(), skipped: Vec::new(), progress };
-        (operation.parity)(&mut cases)?;
+        (operation.parity)(&mut cases).await?;
         if cases.results.is_empty() {
             cases.add("no case", Comparison::failed(0, "the kernel has no parity case".to_owned()));
         }

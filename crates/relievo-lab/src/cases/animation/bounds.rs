@@ -23,7 +23,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
@@ -35,20 +35,24 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let output = Poisoned::<Bounds>::new(gpu, count)?;
             let job =
                 BoundsPass::with_threads(gpu, threads)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let name = format!("{bones} bones × {count}, {threads:?}");
-            let comparison = output.check(gpu, |actual| {
-                compare::absolute(
-                    &relative_sizes(actual, &expected),
-                    &relative_sizes(&expected, &expected),
-                    BOUNDS_BOUND,
-                )
-            })?;
+            let comparison = output
+                .check(gpu, |actual| {
+                    compare::absolute(
+                        &relative_sizes(actual, &expected),
+                        &relative_sizes(&expected, &expected),
+                        BOUNDS_BOUND,
+                    )
+                })
+                .await?;
             cases.add(name.clone(), comparison);
-            let contained = output.check(gpu, |actual| {
-                let inside = contain(actual, &model_matrices, &bone_radii);
-                compare::exact(&inside, &vec![true; inside.len()])
-            })?;
+            let contained = output
+                .check(gpu, |actual| {
+                    let inside = contain(actual, &model_matrices, &bone_radii);
+                    compare::exact(&inside, &vec![true; inside.len()])
+                })
+                .await?;
             cases.add(format!("{name}, the exact box inside"), contained);
         }
     }

@@ -25,7 +25,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().chain([[5, 1000]]).enumerate() {
         let case = case as u32;
@@ -57,15 +57,15 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             state.clip_clocks.write(gpu, &clip_clocks)?;
             job.set(gpu, most)?;
             output.poison(gpu)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let mut expected = budget(&table, most, &lods, &clip_clocks, &mut sampled);
             // No bone is sampled ahead.
             expected.resize(2 * count * order.words(), 0);
             let name = format!("{most} of {bones} bones × {count}, frame {frame}");
-            cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
+            cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected)).await?);
         }
         let name = format!("{bones} bones × {count}, sums of motion");
-        cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled))?);
+        cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled)).await?);
     }
     Ok(())
 }

@@ -22,7 +22,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = ClipClockPass::new(gpu)?;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
@@ -67,13 +67,13 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let job = pass.prepare(gpu, &clips, &crowd, &state)?;
             let ahead = [0.0, 0.25, -0.5, 1.0, 0.125][frame];
             job.set(gpu, elapsed, ahead)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let expected = clip_clocks(&set, &instances, &layers, &lods, elapsed, ahead, &mut history);
             let comparison =
-                output.check(gpu, |actual| compare::exact(&settled(actual, &expected), &expected))?;
+                output.check(gpu, |actual| compare::exact(&settled(actual, &expected), &expected)).await?;
             cases.add(format!("{bones} bones × {count}, frame {frame}"), comparison);
         }
-        let kept = compare::exact(&state.history.read_blocking(gpu)?, &history);
+        let kept = compare::exact(&state.history.read(gpu).await?, &history);
         cases.add(format!("{bones} bones × {count}, history"), kept);
     }
     Ok(())

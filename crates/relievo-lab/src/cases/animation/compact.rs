@@ -21,7 +21,7 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let sizes = SIZES.into_iter().chain([[33, 63], [31, 129], [5, 1000]]);
     for (case, [bones, count]) in sizes.enumerate() {
         let (skeleton, set, instances) = random_crowd(case as u32, bones, count)?;
@@ -34,7 +34,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let chosen = Chosen { bits, ahead };
             let name = format!("{bones} bones × {count}, {kind}");
             for stages in [Stages::Three, Stages::One] {
-                add(cases, &format!("{name}, {stages:?}"), &order, &crowd, &chosen, stages)?;
+                add(cases, &format!("{name}, {stages:?}"), &order, &crowd, &chosen, stages).await?;
             }
         }
     }
@@ -61,7 +61,7 @@ fn random_bits(draw: &mut Draw, kind: &str, order: &Order, count: usize) -> Vec<
     bits
 }
 
-fn add(
+async fn add(
     cases: &mut Cases<'_>,
     name: &str,
     order: &Order,
@@ -85,21 +85,21 @@ fn add(
     active.pairs.pairs = pairs.buffer.clone();
     active.instances = instances.buffer.clone();
     let job = CompactPass::new(gpu)?.prepare_stages(gpu, crowd, &active, stages)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected = compact(order, chosen);
     let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;
     let listed = padded(expected_pairs, crowd.pairs());
     let shown = padded(expected_instances, crowd.len());
-    cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed))?);
-    cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown))?);
+    cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed)).await?);
+    cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown)).await?);
     let all = [chosen.words(), expected.updated_bones.clone()].concat();
-    cases.add(format!("{name}: bits"), bits.check(gpu, |actual| exact(actual, &all))?);
+    cases.add(format!("{name}: bits"), bits.check(gpu, |actual| exact(actual, &all)).await?);
     let accumulated = accumulated(&before, &expected.updated_bones);
     cases.add(
         format!("{name}: updated bones"),
-        updated_bones.check(gpu, |actual| exact(actual, &accumulated))?,
+        updated_bones.check(gpu, |actual| exact(actual, &accumulated)).await?,
     );
-    cases.add(format!("{name}: dispatches"), dispatches(gpu, order, crowd, &active, &expected)?);
+    cases.add(format!("{name}: dispatches"), dispatches(gpu, order, crowd, &active, &expected).await?);
     Ok(())
 }
 
@@ -116,7 +116,7 @@ pub(crate) fn padded(list: &[u32], room: usize) -> Vec<u32> {
 }
 
 /// The expected dispatches: workgroups of 64 for pairs, instances, the chains of each level, and cursors.
-pub(crate) fn dispatches(
+pub(crate) async fn dispatches(
     gpu: &relievo::gpu::Gpu,
     order: &Order,
     crowd: &Crowd,
@@ -136,9 +136,9 @@ pub(crate) fn dispatches(
     }));
     let cursors = crowd.cursors.len() / crowd.len();
     all.push(groups(cursors * expected.instances.len(), cursors));
-    let of_pairs = active.pairs.dispatched.read_blocking(gpu)?;
+    let of_pairs = active.pairs.dispatched.read(gpu).await?;
     let mut actual = vec![[of_pairs[0], of_pairs[1], of_pairs[2], of_pairs[3]]];
-    actual.extend(active.dispatches.read_blocking(gpu)?);
+    actual.extend(active.dispatches.read(gpu).await?);
     Ok(exact(&actual, &all))
 }
 

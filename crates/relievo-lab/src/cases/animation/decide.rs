@@ -32,7 +32,7 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().chain([[5, 400]]).enumerate() {
         let case = case as u32;
         let (skeleton, set, instances) = random_crowd(case, bones, count)?;
@@ -49,7 +49,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     pass => pass?,
                 };
                 let play = Play { case, name, order: &order, set: &set, gate: &gate, instances: &instances };
-                play.add(cases, &pass)?;
+                play.add(cases, &pass).await?;
             }
         }
     }
@@ -76,7 +76,7 @@ struct Outputs {
 }
 
 impl Play<'_> {
-    fn add(&self, cases: &mut Cases<'_>, pass: &DecidePass) -> Result<(), Error> {
+    async fn add(&self, cases: &mut Cases<'_>, pass: &DecidePass) -> Result<(), Error> {
         let (gpu, count) = (cases.gpu, self.instances.len());
         let mut draw = Draw::new(self.case ^ 0xdec1);
         let mut instances = self.instances.to_vec();
@@ -107,35 +107,37 @@ impl Play<'_> {
                 Frame { ticks: 70_000 * number as u32, frame_ticks: 1092, frame: number as u32, ahead };
             job.set(gpu, &frame, elapsed)?;
             outputs.poison(gpu)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let expected = decider.clip_clocks(&instances, &layers, &lods, elapsed, self.gate.ahead(&frame));
             let name = |what| format!("{}, frame {number}: {what}", self.name);
             let same = |actual: &[ClipClock]| exact(&clip_clock::settled(actual, &expected), &expected);
-            cases.add(name("clip_clocks"), outputs.clip_clocks.check(gpu, same)?);
-            let actual = state.clip_clocks.read_blocking(gpu)?;
+            cases.add(name("clip_clocks"), outputs.clip_clocks.check(gpu, same).await?);
+            let actual = state.clip_clocks.read(gpu).await?;
             let chosen = decider.bits(&frame, &lods, &actual[..count]);
             let work = lists(self.order, &chosen);
             let bits = [chosen.words(), work.updated_bones.clone()].concat();
-            cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits))?);
+            cases.add(name("bits"), outputs.bits.check(gpu, |actual| exact(actual, &bits)).await?);
             let pairs = compact::padded(&work.pairs, crowd.pairs());
             let listed = compact::padded(&work.instances, count);
-            cases.add(name("pairs"), outputs.pairs.check(gpu, |actual| exact(actual, &pairs))?);
-            cases.add(name("instances"), outputs.instances.check(gpu, |actual| exact(actual, &listed))?);
+            cases.add(name("pairs"), outputs.pairs.check(gpu, |actual| exact(actual, &pairs)).await?);
+            cases
+                .add(name("instances"), outputs.instances.check(gpu, |actual| exact(actual, &listed)).await?);
             // They are cleared after two frames.
             updated_bones = accumulated(&updated_bones, &work.updated_bones);
             cases.add(
                 name("updated_bones"),
-                outputs.updated_bones.check(gpu, |actual| exact(actual, &updated_bones))?,
+                outputs.updated_bones.check(gpu, |actual| exact(actual, &updated_bones)).await?,
             );
             if number == 1 {
                 updated_bones.fill(0);
                 outputs.updated_bones.buffer.write(gpu, &updated_bones)?;
             }
-            cases.add(name("dispatches"), compact::dispatches(gpu, self.order, &crowd, &active, &work)?);
+            cases
+                .add(name("dispatches"), compact::dispatches(gpu, self.order, &crowd, &active, &work).await?);
         }
-        let kept = exact(&state.history.read_blocking(gpu)?, &decider.history);
+        let kept = exact(&state.history.read(gpu).await?, &decider.history);
         cases.add(format!("{}: history", self.name), kept);
-        let kept = exact(&state.sampled.read_blocking(gpu)?, &decider.sampled);
+        let kept = exact(&state.sampled.read(gpu).await?, &decider.sampled);
         cases.add(format!("{}: sums of motion", self.name), kept);
         Ok(())
     }
@@ -213,7 +215,7 @@ fn case(bench: &mut Bench<'_>, name: &str, omega: u32, count: usize) -> Result<(
     job.set(gpu, &frame, ELAPSED)?;
     let mut decider = Decider::new(&scene.set, &gate, count);
     // In the first frame no pose is stored, so nothing can be skipped.
-    gpu.run("first", |encoder| job.record(encoder))?;
+    gpu.submit("first", |encoder| job.record(encoder))?;
     let mut decide = || {
         let clip_clocks = decider.clip_clocks(&scene.instances, &[], &lods, ELAPSED, 0.0);
         compact(&order, &decider.bits(&frame, &lods, &clip_clocks))

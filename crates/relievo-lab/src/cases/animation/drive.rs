@@ -21,7 +21,7 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = DrivePass::new(gpu)?;
     for (case, [bones, count]) in (0..).zip(SIZES) {
@@ -44,11 +44,11 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let mut active = Active::new(gpu, &order, &crowd)?;
             active.bits = bits.buffer.clone();
             let job = pass.prepare(gpu, &driven, &crowd, &state, &active)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let mut expected = before;
             let (sampled, rest) = expected.split_at_mut(words);
             drive(&driven, order.words(), &hidden, [sampled, &mut rest[..words]]);
-            let comparison = bits.check(gpu, |found| exact(found, &expected))?;
+            let comparison = bits.check(gpu, |found| exact(found, &expected)).await?;
             cases.add(format!("{bones} bones × {count}, {kind}"), comparison);
         }
     }

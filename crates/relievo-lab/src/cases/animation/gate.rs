@@ -29,14 +29,14 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let case = case as u32;
         let (skeleton, set, instances) = random_crowd(case, bones, count)?;
         let clips = random_clips(case, &skeleton, 3)?;
         let crowd = Crowd::new(cases.gpu, &set, &instances)?;
         for gate in gates(&skeleton, &set, &clips.iter().collect::<Vec<_>>())? {
-            add(cases, case, &gate, &Order::new(&skeleton), &set, &crowd)?;
+            add(cases, case, &gate, &Order::new(&skeleton), &set, &crowd).await?;
         }
     }
     Ok(())
@@ -60,7 +60,7 @@ pub(crate) fn gates(skeleton: &Skeleton, set: &ClipSet, clips: &[&Clip]) -> Resu
     ])
 }
 
-fn add(
+async fn add(
     cases: &mut Cases<'_>,
     case: u32,
     mode: &Gate,
@@ -93,13 +93,13 @@ fn add(
         };
         job.set(gpu, &frame)?;
         output.poison(gpu)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = gate(mode, &frame, &lods, &clip_clocks, &mut sampled).words();
         let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
-        cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected))?);
+        cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected)).await?);
     }
     let name = format!("{} bones × {count}, {}, sums of motion", crowd.bones, mode.name());
-    cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled))?);
+    cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled)).await?);
     Ok(())
 }
 

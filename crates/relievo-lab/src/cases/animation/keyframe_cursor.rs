@@ -26,7 +26,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = KeyframeCursorPass::new(gpu)?;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
@@ -39,7 +39,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             crowd.cursors = output.buffer.clone();
             let job = pass.prepare(gpu, &clips, &crowd)?;
             job.set(gpu, elapsed)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let mut expected = cursors(&set, &instances, elapsed);
             let used = expected.len();
             // Nothing is sampled ahead.
@@ -48,18 +48,18 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let is_used = |at: usize| {
                 at < used && at % room < set.clips()[instances[at / room].clip as usize].timelines as usize
             };
-            let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used))?;
+            let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used)).await?;
             cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
         }
     }
-    at_edges(cases, &pass)?;
-    nowhere(cases, &pass)?;
-    of_a_list(cases, &pass)
+    at_edges(cases, &pass).await?;
+    nowhere(cases, &pass).await?;
+    of_a_list(cases, &pass).await
 }
 
 /// Compares listed instances with their layers, at the times that gates saw, and at the times ahead; the
 /// cursors of others must stay unchanged.
-fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
+async fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (skeleton, set, base) = random_crowd(case as u32, bones, count)?;
@@ -77,7 +77,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
         active.instances.write(gpu, &listed)?;
         let room = set.timelines_a_clip();
         let threads = listed.len() * room * (2 + layers.len());
-        let mut dispatches = active.dispatches.read_blocking(gpu)?;
+        let mut dispatches = active.dispatches.read(gpu).await?;
         dispatches[0][3] = listed.len() as u32;
         *dispatches.last_mut().expect("two") = [threads.div_ceil(64) as u32, 1, 1, 0];
         active.dispatches.write(gpu, &dispatches)?;
@@ -93,7 +93,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
         state.history.write(gpu, &history.collect::<Vec<_>>())?;
         let job = pass.prepare_active(gpu, &clips, &crowd, &state, &active)?;
         job.set(gpu, 0.5)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let all = all_instances(&base, &layers);
         let mut expected = cursors(&set, &all, 0.5);
         let first_ahead = expected.len();
@@ -112,7 +112,7 @@ fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Err
             is_listed && at % room < set.clips()[playing.clip as usize].timelines as usize
         };
         let name = format!("every third of {count}, {bones} bones, {} layers", 1 + layers.len());
-        let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used))?;
+        let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used)).await?;
         cases.add(name, comparison);
     }
     Ok(())
@@ -138,7 +138,7 @@ fn compare_cursors(
 
 /// Loop times too large to resolve, up to infinity, give the clip's start, and clamped ones its end. Valid
 /// instances stay far below; the test writes such values to the device's buffer.
-fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
+async fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let (gpu, edges) = (cases.gpu, edges()?);
     let far = [(1e8, 1.0), (-1e8, 1.0), (1.0, 1e9), (0.0, f32::MAX), (0.0, -f32::MAX)];
     let play = |wrap: Wrap| far.map(|(start, rate)| Instance::new(0, wrap, start, rate));
@@ -148,7 +148,7 @@ fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error
     crowd.instances.write(gpu, &instances)?;
     let job = pass.prepare(gpu, &clips, &crowd)?;
     job.set(gpu, 1e9)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let (at_start, at_end) =
         (Instance::new(0, Wrap::Clamp, 0.0, 0.0), Instance::new(0, Wrap::Clamp, 1.0, 0.0));
     let of = |instance: &Instance| match (instance.wrap(), instance.start < 0.0 || instance.rate < 0.0) {
@@ -163,20 +163,20 @@ fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error
         cursors.iter().map(|cursor| cursor.key as f32 + cursor.fraction).collect()
     };
     let [actual, references, known]: [Vec<f32>; 3] =
-        [&crowd.cursors.read_blocking(gpu)?[..references.len()], &references, &known].map(clip_clocks);
+        [&crowd.cursors.read(gpu).await?[..references.len()], &references, &known].map(clip_clocks);
     let (actual, known) = ([actual, references].concat(), known.repeat(2));
     cases.add("nowhere in the clip", compare::absolute(&actual, &known, KEYFRAME_CURSOR_BOUND));
     Ok(())
 }
 
 /// Compares cursors that are known without a reference.
-fn at_edges(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
+async fn at_edges(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
     let (gpu, edges) = (cases.gpu, edges()?);
     let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &edges.instances)?);
     let job = pass.prepare(gpu, &clips, &crowd)?;
     job.set(gpu, ELAPSED)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
-    let found = crowd.cursors.read_blocking(gpu)?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
+    let found = crowd.cursors.read(gpu).await?;
     let clip_clock = |cursor: &KeyframeCursor| cursor.key as f32 + cursor.fraction;
     let (mut actual, mut expected) = (Vec::new(), Vec::new());
     for (found, known) in found.chunks(edges.set.timelines_a_clip()).zip(edges.cursors()) {

@@ -9,6 +9,7 @@ pub mod drive;
 pub mod edges;
 pub mod frame;
 pub mod gate;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod host;
 pub mod keyframe_cursor;
 pub mod local_to_model;

@@ -31,11 +31,11 @@ use relievo::baseline::gather::Reads;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (_, set, instances) = random_crowd(case as u32, bones, count)?;
         for path in [RotationPath::Slerp, RotationPath::Nlerp] {
-            add(cases, format!("{bones} bones × {count}, {path:?}"), &set, &instances, &[], path)?;
+            add(cases, format!("{bones} bones × {count}, {path:?}"), &set, &instances, &[], path).await?;
         }
     }
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
@@ -44,20 +44,20 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let layers = random_layers(case as u32, &set, count, above);
         let path = [RotationPath::Slerp, RotationPath::Nlerp][case % 2];
         let name = format!("{bones} bones × {count}, {} layers", 1 + above);
-        add(cases, name, &set, &instances, &layers, path)?;
+        add(cases, name, &set, &instances, &layers, path).await?;
     }
     // Sets without splines have kernels of their own.
     let set = evenly_keyed(&mut Draw::new(1), 153, 60)?;
     let instances = random_instances(0, &set, 40);
     for path in [RotationPath::Slerp, RotationPath::Nlerp] {
-        add(cases, format!("153 bones × 40 without splines, {path:?}"), &set, &instances, &[], path)?;
+        add(cases, format!("153 bones × 40 without splines, {path:?}"), &set, &instances, &[], path).await?;
     }
-    at_edges(cases)
+    at_edges(cases).await
 }
 
 /// Compares poses that are known without a reference, and the same under a layer with equal poses whose
 /// rotation keys are negated.
-fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
     let edges = edges()?;
     let poses: Vec<Local> = edges.poses().iter().map(packed).collect();
     let negated = edges.instances.iter().map(|instance| Instance { clip: instance.clip + 2, ..*instance });
@@ -65,13 +65,13 @@ fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (name, layers) in [("edges", vec![]), ("edges under their negatives", vec![layer])] {
         let mut bench = Case::new(cases.gpu, &edges.set, &edges.instances, &layers, RotationPath::Slerp)?;
         bench.expected.clone_from(&poses);
-        cases.add(name, bench.all()?);
+        cases.add(name, bench.all().await?);
     }
     Ok(())
 }
 
 /// Adds cases for all pairs, and for lists.
-fn add(
+async fn add(
     cases: &mut Cases<'_>,
     name: String,
     set: &ClipSet,
@@ -80,11 +80,11 @@ fn add(
     path: RotationPath,
 ) -> Result<(), Error> {
     let bench = Case::new(cases.gpu, set, base, layers, path)?;
-    cases.add(format!("{name}, all"), bench.all()?);
+    cases.add(format!("{name}, all"), bench.all().await?);
     let pairs = bench.expected.len() as u32;
     for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
         let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
-        cases.add(format!("{name}, {list}"), bench.some(&chosen)?);
+        cases.add(format!("{name}, {list}"), bench.some(&chosen).await?);
     }
     Ok(())
 }
@@ -187,28 +187,28 @@ impl<'a> Case<'a> {
         Ok(Self { gpu, pass, clips, crowd, output, expected, ahead, torn, bound })
     }
 
-    fn all(&self) -> Result<compare::Comparison, Error> {
+    async fn all(&self) -> Result<compare::Comparison, Error> {
         self.output.poison(self.gpu)?;
         let job = self.pass.prepare(self.gpu, &self.clips, &self.crowd)?;
-        self.gpu.run("verify", |encoder| job.record(encoder))?;
-        self.compare(|pair| Some(&self.expected[pair]))
+        self.gpu.submit("verify", |encoder| job.record(encoder))?;
+        self.compare(|pair| Some(&self.expected[pair])).await
     }
 
-    fn some(&self, chosen: &[u32]) -> Result<compare::Comparison, Error> {
+    async fn some(&self, chosen: &[u32]) -> Result<compare::Comparison, Error> {
         self.output.poison(self.gpu)?;
         let active = ActivePairs::new(self.gpu, &self.crowd)?;
         let is_ahead = |pair: usize| pair % 7 % 2 == 1;
         let flagged = |pair: &u32| if is_ahead(*pair as usize) { pair | PAIR_AHEAD } else { *pair };
         active.write(self.gpu, &chosen.iter().map(flagged).collect::<Vec<_>>())?;
         let job = self.pass.prepare_active(self.gpu, &self.clips, &self.crowd, &active)?;
-        self.gpu.run("verify", |encoder| job.record(encoder))?;
+        self.gpu.submit("verify", |encoder| job.record(encoder))?;
         let mut is_chosen = vec![false; self.expected.len()];
         chosen.iter().for_each(|pair| is_chosen[*pair as usize] = true);
         let of = |pair: usize| if is_ahead(pair) { &self.ahead[pair] } else { &self.expected[pair] };
-        self.compare(|pair| is_chosen[pair].then(|| of(pair)))
+        self.compare(|pair| is_chosen[pair].then(|| of(pair))).await
     }
 
-    fn compare<'b>(
+    async fn compare<'b>(
         &'b self,
         written: impl Fn(usize) -> Option<&'b Local>,
     ) -> Result<compare::Comparison, Error> {
@@ -220,9 +220,12 @@ impl<'a> Case<'a> {
         // A pair that is not listed stays unchanged, whether it is left out or not.
         let is_left_out: Vec<bool> =
             self.torn.iter().enumerate().map(|(pair, torn)| *torn && written(pair).is_some()).collect();
-        let comparison = self.output.check(self.gpu, |actual: &[Local]| {
-            compared(actual, &expected, &is_left_out, self.bound * largest)
-        });
+        let comparison = self
+            .output
+            .check(self.gpu, |actual: &[Local]| {
+                compared(actual, &expected, &is_left_out, self.bound * largest)
+            })
+            .await;
         Ok(comparison?)
     }
 }

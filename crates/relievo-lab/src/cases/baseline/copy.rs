@@ -16,7 +16,7 @@ use relievo::baseline::words::reference::words;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = CopyPass::new(gpu)?;
     for len in [4, 8, 252, 256, 260, 65_536, 1_000_004] {
@@ -25,10 +25,10 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let output = Poisoned::new(gpu, data.len())?;
         let buffers = CopyBuffers { source: &source, destination: &output.buffer };
         let job = pass.prepare(gpu, data.len(), buffers)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let mut expected = vec![0; data.len()];
         copy(&data, &mut expected);
-        cases.add(format!("{len} words"), output.check(gpu, |actual| exact(actual, &expected))?);
+        cases.add(format!("{len} words"), output.check(gpu, |actual| exact(actual, &expected)).await?);
     }
     Ok(())
 }

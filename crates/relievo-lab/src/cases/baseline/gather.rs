@@ -25,7 +25,7 @@ use relievo::baseline::gather::{GatherPass, Reads};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, ([bones, count], keys)) in SIZES.into_iter().zip([2, 3, 60].into_iter().cycle()).enumerate() {
         let mut draw = Draw::new(case as u32);
@@ -41,15 +41,17 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let output = Poisoned::<Local>::new(gpu, bones * count)?;
             crowd.locals = output.buffer.clone();
             let job = GatherPass::new(gpu, reads)?.prepare(gpu, &clips, &crowd)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let mut expected = vec![[[0; 4]; 3]; bones * count];
             match reads {
                 Reads::Everything => gather(&set, &instances, &cursors, &mut expected),
                 Reads::Keys(keys) => gather_keys(&set, keys, &cursors, &mut expected),
             }
-            let comparison = output.check(gpu, |actual| {
-                exact(bytemuck::cast_slice::<_, u32>(actual), expected.as_flattened().as_flattened())
-            })?;
+            let comparison = output
+                .check(gpu, |actual| {
+                    exact(bytemuck::cast_slice::<_, u32>(actual), expected.as_flattened().as_flattened())
+                })
+                .await?;
             cases.add(format!("{bones} bones × {count}, {keys} keys, {reads:?}"), comparison);
         }
     }

@@ -18,7 +18,7 @@ use relievo::baseline::loads::reference::loads;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = LoadsPass::new(gpu)?;
     for (case, (size, threads, count)) in
@@ -28,11 +28,11 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let textures = SurfaceTextures::new(gpu, &map, Method::Plain, Address::Wrap)?;
         let output = Poisoned::new(gpu, (threads[0] * threads[1]) as usize)?;
         let job = pass.prepare(gpu, &textures.heights, threads, count, &output.buffer)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = loads(&map, threads, count);
         // Each addition rounds by at most 2⁻²³ of a sum that is at most `count`.
         let bound = (count * count) as f32 * f32::EPSILON;
-        let comparison = output.check(gpu, |actual| absolute(actual, &expected, bound))?;
+        let comparison = output.check(gpu, |actual| absolute(actual, &expected, bound)).await?;
         cases.add(format!("{count} loads by {threads:?} of {size:?}"), comparison);
     }
     Ok(())

@@ -20,7 +20,7 @@ use relievo::baseline::texels::reference::texels;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = TexelsPass::new(gpu)?;
     for (width, count) in [(3, 1), (6, 2), (7, 3), (66, 2)] {
@@ -37,12 +37,12 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let output = Poisoned::new(gpu, windows.points(1))?;
             let buffers = BlendBuffers { windows: &windows, places: &place_buffer, pixels: &output.buffer };
             let job = pass.prepare(gpu, &cover, buffers)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let expected: Vec<u32> = (heights.chunks_exact((width * width) as usize).zip(&places))
                 .flat_map(|(window, place)| texels(window, width as usize, &cover, *place))
                 .collect();
             let name = format!("{width}×{width} × {count}, {} zones, {} texels", zones.len(), 1 << edge_log2);
-            cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+            cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
         }
     }
     Ok(())

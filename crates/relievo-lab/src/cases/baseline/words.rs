@@ -14,7 +14,7 @@ use relievo::baseline::words::reference::words;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = WordsPass::new(gpu)?;
     let keys = [[0, 0], [u32::MAX; 2], [0x1319_8a2e, 0x0370_7344]];
@@ -23,10 +23,10 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     {
         let output = Poisoned::new(gpu, (width * rows) as usize)?;
         let job = pass.prepare(gpu, key, [width, rows], &output.buffer)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = words(key, width, rows);
         let name = format!("{width} × {rows} words, key {key:x?}");
-        cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+        cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
     }
     Ok(())
 }

@@ -27,7 +27,7 @@ const MAY_TOUCH: f64 = 1.0 / 200.0;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = AssignPass::new(gpu)?;
     for (case, instances) in (0..).zip([1, 63, 64, 65, 1000]) {
@@ -48,14 +48,15 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             };
             // More threads than instances.
             let job = pass.prepare(gpu, buffers, instances)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let of_object = params.first as usize..(params.first + instances) as usize;
             let allowed: Vec<(f32, bool)> =
                 allowed[of_object.clone()].iter().copied().zip(all[of_object].iter().map(carries)).collect();
             let name = format!("{instances} instances, {levels} levels");
-            let gates = lods.check(gpu, |lods| compared_lods(&params, &allowed, lods))?;
+            let gates = lods.check(gpu, |lods| compared_lods(&params, &allowed, lods)).await?;
             cases.add(format!("{name}: gates"), gates);
-            let skins = instance_lods.check(gpu, |lods| compared_instance_lods(&params, &allowed, lods))?;
+            let skins =
+                instance_lods.check(gpu, |lods| compared_instance_lods(&params, &allowed, lods)).await?;
             cases.add(format!("{name}: skins"), skins);
         }
     }

@@ -46,7 +46,7 @@ struct Case {
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let view = frame()?[0].1;
     for (number, attached) in (0..).zip([0, 1, 63, 64, 65, 100]) {
@@ -54,7 +54,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             for frames in [None, Some([8, 7]), Some([9, 8]), Some([1, 0])] {
                 let case = Case::random(number, attached, frames);
                 let view = SelectView { cell, ..view };
-                let comparison = case.compared(gpu, &view)?;
+                let comparison = case.compared(gpu, &view).await?;
                 cases.add(format!("{attached} attached, cell {cell}, frames {frames:?}"), comparison);
             }
         }
@@ -105,7 +105,7 @@ impl Case {
         Self { params, attachments, instances, last_instances, allowed, model_matrices, kept }
     }
 
-    fn compared(&self, gpu: &Gpu, view: &SelectView) -> Result<Comparison, Error> {
+    async fn compared(&self, gpu: &Gpu, view: &SelectView) -> Result<Comparison, Error> {
         let rows = Poisoned::<[f32; 4]>::new(gpu, 6 * INSTANCES as usize)?;
         // Room for more than there are.
         let mut room = self.attachments.clone();
@@ -124,13 +124,13 @@ impl Case {
             kept: &kept,
         };
         let job = AttachPass::new(gpu)?.prepare(gpu, buffers)?;
-        gpu.run("verify", |encoder| {
+        gpu.submit("verify", |encoder| {
             job.record(encoder);
             job.record(encoder);
         })?;
-        let found = bytemuck::cast_slice(&kept.read_blocking(gpu)?).to_vec();
+        let found = bytemuck::cast_slice(&kept.read(gpu).await?).to_vec();
         match self.is_kept(&found) {
-            true => Ok(rows.check(gpu, |found| self.judged(view.cell, found))?),
+            true => Ok(rows.check(gpu, |found| self.judged(view.cell, found)).await?),
             false => Ok(Comparison::failed(2 * self.kept.len(), "kept bones are wrong".to_owned())),
         }
     }

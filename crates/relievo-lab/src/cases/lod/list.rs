@@ -25,20 +25,20 @@ const KINDS: [&str; 4] = ["none seen", "all in one list", "some in every list", 
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for threads in [Threads::Instances, Threads::Blocks] {
-        with_threads(cases, threads)?;
+        with_threads(cases, threads).await?;
     }
     Ok(())
 }
 
-fn with_threads(cases: &mut Cases<'_>, threads: Threads) -> Result<(), Error> {
+async fn with_threads(cases: &mut Cases<'_>, threads: Threads) -> Result<(), Error> {
     let pass = ListPass::with_threads(cases.gpu, threads)?;
     for (case, sizes) in (0..).zip(SIZES) {
         let blocks = Blocks::new(case, sizes);
         for kind in KINDS {
             let decisions = random_decisions(case, kind, &blocks);
-            let (ends, found) = run(cases.gpu, &pass, &blocks, &decisions)?;
+            let (ends, found) = run(cases.gpu, &pass, &blocks, &decisions).await?;
             let name =
                 format!("{} blocks, {kind}, a thread for each of {threads:?}", blocks.block_objects.len());
             ends.into_iter().for_each(|(output, end)| cases.add(format!("{name}: the end of {output}"), end));
@@ -80,7 +80,12 @@ struct Written {
 /// Whether an output's end is untouched, by its name.
 type Ends = Vec<(&'static str, Comparison)>;
 
-fn run(gpu: &Gpu, pass: &ListPass, blocks: &Blocks, decisions: &[u32]) -> Result<(Ends, Written), Error> {
+async fn run(
+    gpu: &Gpu,
+    pass: &ListPass,
+    blocks: &Blocks,
+    decisions: &[u32],
+) -> Result<(Ends, Written), Error> {
     let words = OBJECT_LISTS as usize * blocks.block_objects.len();
     let (count, list) = (Poisoned::new(gpu, words)?, Poisoned::new(gpu, blocks.list_words())?);
     let arguments = Poisoned::<SceneDraw>::new(gpu, blocks.draws())?;
@@ -95,30 +100,35 @@ fn run(gpu: &Gpu, pass: &ListPass, blocks: &Blocks, decisions: &[u32]) -> Result
     };
     let all = blocks.block_objects.len() as u32;
     let job = pass.prepare(gpu, buffers, blocks.objects.len() as u32, all)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let mut found = Written { counts: vec![], lists: vec![], arguments: vec![] };
     let same = || compare::exact(&[0], &[0]);
     let ends = vec![
         (
             "counts",
-            count.check(gpu, |all| {
-                found.counts = all.to_vec();
-                same()
-            })?,
+            count
+                .check(gpu, |all| {
+                    found.counts = all.to_vec();
+                    same()
+                })
+                .await?,
         ),
         (
             "lists",
             list.check(gpu, |all| {
                 found.lists = all.to_vec();
                 same()
-            })?,
+            })
+            .await?,
         ),
         (
             "arguments",
-            arguments.check(gpu, |all| {
-                found.arguments = bytemuck::cast_slice(all).to_vec();
-                same()
-            })?,
+            arguments
+                .check(gpu, |all| {
+                    found.arguments = bytemuck::cast_slice(all).to_vec();
+                    same()
+                })
+                .await?,
         ),
     ];
     Ok((ends, found))

@@ -58,7 +58,7 @@ impl Given {
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = SinglePass::new(gpu)?;
     for count in [1, 63, 64, 65, 500] {
@@ -73,12 +73,12 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             entries: &lists.buffer,
         };
         let job = pass.prepare(gpu, buffers, count as u32)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = given.expected();
-        let comparison = output.check(gpu, |actual| compare::exact(words(actual), words(&expected)))?;
+        let comparison = output.check(gpu, |actual| compare::exact(words(actual), words(&expected))).await?;
         cases.add(format!("{count} draws"), comparison);
         let expected = entries(&given.singles, &given.decisions);
-        let comparison = lists.check(gpu, |actual| compare::exact(actual, &expected))?;
+        let comparison = lists.check(gpu, |actual| compare::exact(actual, &expected)).await?;
         cases.add(format!("{count} lists of one"), comparison);
     }
     Ok(())

@@ -26,15 +26,15 @@ struct Case {
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = ClusterPass::new(cases.gpu)?;
     let (literal, expected) = literal();
-    check(cases, &pass, &literal, &expected)?;
+    check(cases, &pass, &literal, &expected).await?;
     for case in counts().into_iter().chain(sizes()).chain(strange()) {
         let expected = cluster(&case.positions, &case.indices, &case.grid)?;
-        check(cases, &pass, &case, &expected)?;
+        check(cases, &pass, &case, &expected).await?;
     }
-    another_grid(cases, &pass)
+    another_grid(cases, &pass).await
 }
 
 fn representative(position: [f32; 3], source: u32) -> Representative {
@@ -142,7 +142,7 @@ fn strange() -> Vec<Case> {
 }
 
 /// A job whose grid changes.
-fn another_grid(cases: &mut Cases<'_>, pass: &ClusterPass) -> Result<(), Error> {
+async fn another_grid(cases: &mut Cases<'_>, pass: &ClusterPass) -> Result<(), Error> {
     let gpu = cases.gpu;
     let (positions, indices) = soup(500, 200, 400);
     let device = Device::new(cases, &positions, &indices)?;
@@ -152,20 +152,25 @@ fn another_grid(cases: &mut Cases<'_>, pass: &ClusterPass) -> Result<(), Error> 
         let grid = Grid { cells, ..first };
         job.set(gpu, &grid)?;
         device.poison(cases)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = cluster(&positions, &indices, &grid)?;
-        device.compare(cases, &format!("the grid becomes {cells} cells"), &expected)?;
+        device.compare(cases, &format!("the grid becomes {cells} cells"), &expected).await?;
     }
     Ok(())
 }
 
-fn check(cases: &mut Cases<'_>, pass: &ClusterPass, case: &Case, expected: &Clustered) -> Result<(), Error> {
+async fn check(
+    cases: &mut Cases<'_>,
+    pass: &ClusterPass,
+    case: &Case,
+    expected: &Clustered,
+) -> Result<(), Error> {
     let gpu = cases.gpu;
     let device = Device::new(cases, &case.positions, &case.indices)?;
     let size = [case.positions.len() as u32, (case.indices.len() / 3) as u32];
     let job = pass.prepare(gpu, &case.grid, size, device.buffers())?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
-    device.compare(cases, &case.name, expected)
+    gpu.submit("verify", |encoder| job.record(encoder))?;
+    device.compare(cases, &case.name, expected).await
 }
 
 /// A mesh on the device, with poisoned outputs.
@@ -207,7 +212,7 @@ impl Device {
         Ok(self.counts.poison(cases.gpu)?)
     }
 
-    fn compare(&self, cases: &mut Cases<'_>, name: &str, expected: &Clustered) -> Result<(), Error> {
+    async fn compare(&self, cases: &mut Cases<'_>, name: &str, expected: &Clustered) -> Result<(), Error> {
         let gpu = cases.gpu;
         let padded = |mut words: Vec<u32>, room: usize| {
             words.resize(room, POISON);
@@ -223,12 +228,12 @@ impl Device {
         // Where there is no room, there is nothing to compare.
         if self.room[0] > 0 {
             let represented = padded(bits(&expected.representatives), 4 * self.room[0]);
-            let found = self.representatives.check(gpu, |found| exact(&bits(found), &represented))?;
+            let found = self.representatives.check(gpu, |found| exact(&bits(found), &represented)).await?;
             cases.add(format!("{name}: representatives"), found);
         }
         if self.room[1] > 0 {
             let indices = padded(expected.indices.clone(), self.room[1]);
-            let found = self.clustered.check(gpu, |found| exact(found, &indices))?;
+            let found = self.clustered.check(gpu, |found| exact(found, &indices)).await?;
             cases.add(format!("{name}: triangles"), found);
         }
         let counts = ClusterCounts {
@@ -239,7 +244,7 @@ impl Device {
             first_instance: 0,
             representatives: expected.representatives.len() as u32,
         };
-        let found = self.counts.check(gpu, |found| exact(found, &[counts]))?;
+        let found = self.counts.check(gpu, |found| exact(found, &[counts])).await?;
         cases.add(format!("{name}: counts"), found);
         Ok(())
     }

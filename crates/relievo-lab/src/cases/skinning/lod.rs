@@ -46,7 +46,7 @@ const MIRROR: &str = "aside, mirrored";
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = LodPass::new(gpu)?;
     for (case, count) in (0..).zip([1, 63, 64, 65, 1000]) {
@@ -80,15 +80,17 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             };
             let job = pass.prepare(gpu, &view, buffers)?;
             // Runs twice, because the number of instances must start again from 0.
-            gpu.run("verify", |encoder| (0..2).for_each(|_| job.record(encoder)))?;
-            let arguments = arguments.read_blocking(gpu)?;
+            gpu.submit("verify", |encoder| (0..2).for_each(|_| job.record(encoder)))?;
+            let arguments = arguments.read(gpu).await?;
             let (mut lists, mut found) = (Vec::new(), Vec::new());
-            let kept = drawn.check(gpu, |drawn| split(drawn, &arguments, count, &mut lists))?;
+            let kept = drawn.check(gpu, |drawn| split(drawn, &arguments, count, &mut lists)).await?;
             let mirrored = mirrored(&view, &placements, &arguments, &lists);
-            let guard = instance_lods.check(gpu, |instance_lods| {
-                found = instance_lods.to_vec();
-                compare::exact(&[0], &[0])
-            })?;
+            let guard = instance_lods
+                .check(gpu, |instance_lods| {
+                    found = instance_lods.to_vec();
+                    compare::exact(&[0], &[0])
+                })
+                .await?;
             cases.add(format!("{count} instances, {name}: the lists' ends"), kept);
             cases.add(format!("{count} instances, {name}: the instances' end"), guard);
             cases.add(format!("{count} instances, {name}: the last mirrored one"), mirrored);

@@ -24,16 +24,16 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = MorphPass::new(cases.gpu)?;
     for (case, shape) in (0..).zip(SHAPES).filter(|(_, shape)| shape.targets > 0) {
         for instances in [1, 5] {
             for (list, every) in [("all", None), ("none", Some(u32::MAX)), ("every third", Some(3))] {
-                let comparison = one(cases.gpu, &pass, (case, shape), instances, every)?;
+                let comparison = one(cases.gpu, &pass, (case, shape), instances, every).await?;
                 let name = format!("{} vertices, {} targets × {instances}", shape.vertices, shape.targets);
                 cases.add(format!("{name}, {list}"), comparison);
             }
-            let comparison = paged(cases.gpu, &pass, (case, shape), instances)?;
+            let comparison = paged(cases.gpu, &pass, (case, shape), instances).await?;
             let name = format!("{} vertices, {} targets × {instances}", shape.vertices, shape.targets);
             cases.add(format!("{name}, pages"), comparison);
         }
@@ -41,7 +41,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn one(
+async fn one(
     gpu: &Gpu,
     pass: &MorphPass,
     (case, shape): (u32, Shape),
@@ -67,10 +67,10 @@ fn one(
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         active.write(gpu, &chosen)?;
         let job = pass.prepare_active(gpu, &mesh, &crowd, &active)?;
-        gpu.run("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
+        gpu.submit("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
     } else {
         let job = pass.prepare(gpu, &mesh, &crowd)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
     }
     let mut expected = Vec::new();
     for (instance, weights) in weights.chunks(shape.targets).enumerate() {
@@ -84,11 +84,12 @@ fn one(
         }));
     }
     Ok(output
-        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))?)
+        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))
+        .await?)
 }
 
 /// All clusters into pages that lie in reverse order; every fifth cluster has none.
-fn paged(
+async fn paged(
     gpu: &Gpu,
     pass: &MorphPass,
     (case, shape): (u32, Shape),
@@ -110,7 +111,7 @@ fn paged(
     let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
     active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
     let job = pass.prepare_paged(gpu, &mesh, &crowd, &pages, &active)?;
-    gpu.run("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
+    gpu.submit("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
     let mut expected = vec![poisoned(); CLUSTER * count];
     for (instance, weights) in weights.chunks(shape.targets).enumerate() {
         let morphed = morph(&model.meshes[0], weights);
@@ -122,7 +123,8 @@ fn paged(
         }
     }
     Ok(output
-        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))?)
+        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))
+        .await?)
 }
 
 /// Measures four targets that move a quarter of the vertices.

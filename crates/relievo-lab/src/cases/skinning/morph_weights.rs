@@ -35,7 +35,7 @@ const ELAPSED: [f32; 3] = [0.0, 2.71, -1.3];
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = MorphWeightsPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES).filter(|(_, shape)| shape.targets > 0) {
@@ -63,7 +63,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             for elapsed in ELAPSED {
                 output.poison(gpu)?;
                 job.set(gpu, elapsed)?;
-                gpu.run("verify", |encoder| job.record(encoder))?;
+                gpu.submit("verify", |encoder| job.record(encoder))?;
                 let mut expected = vec![f32::from_bits(POISON); count * shape.targets];
                 morph_weights(mesh, (&set, &clips), &instances, &instance_lods, elapsed, &mut expected);
                 let jumps: Vec<bool> = instances
@@ -71,7 +71,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     .enumerate()
                     .map(|(at, instance)| is_seen(at) && is_at_a_jump(instance, &weights, elapsed))
                     .collect();
-                let comparison = output.check(gpu, |actual| compared(actual, &expected, &jumps))?;
+                let comparison = output.check(gpu, |actual| compared(actual, &expected, &jumps)).await?;
                 cases.add(format!("{} targets × {count} after {elapsed} s", shape.targets), comparison);
             }
         }

@@ -30,7 +30,7 @@ const FRAMES: [(&str, u32); 7] = [
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = PagesPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {
@@ -54,16 +54,16 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         for (name, seen) in FRAMES {
             next(&mut lods, &mut draw, (name, seen), levels.len() as u32);
             crowd.instance_lods.write(gpu, &lods)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             reference.deal(&lods, &levels);
             let name = format!("{} clusters × {instances}, {pages} pages, {name}", mesh.clusters());
-            let found = table.check(gpu, |found| compare::exact(found, &reference.table))?;
+            let found = table.check(gpu, |found| compare::exact(found, &reference.table)).await?;
             cases.add(format!("{name}: pages"), found);
-            let found = held.check(gpu, |found| compare::exact(found, &reference.held))?;
+            let found = held.check(gpu, |found| compare::exact(found, &reference.held)).await?;
             cases.add(format!("{name}: held"), found);
-            let mut found = buffers.state.read_blocking(gpu)?;
+            let mut found = buffers.state.read(gpu).await?;
             let mut expected = vec![reference.free.len() as u32, reference.short];
-            found.extend(&buffers.stack.read_blocking(gpu)?[..reference.free.len()]);
+            found.extend(&buffers.stack.read(gpu).await?[..reference.free.len()]);
             expected.extend(&reference.free);
             cases.add(format!("{name}: free"), compare::exact(&found, &expected));
         }
@@ -103,7 +103,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let count = (instances * clusters / 2) as u32 + clusters as u32;
         let pages = PageBuffers::new(gpu, &scene.mesh, &scene.crowd, count)?;
         let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, &pages)?;
-        gpu.run("first", |encoder| job.record(encoder))?;
+        gpu.submit("first", |encoder| job.record(encoder))?;
         let levels: Vec<u32> = scene.mesh.levels.iter().map(|level| level.clusters).collect();
         let mut reference = Pages::new(instances, clusters, count);
         reference.deal(&lods, &levels);

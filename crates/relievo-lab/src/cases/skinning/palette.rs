@@ -20,7 +20,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = PalettePass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {
@@ -35,7 +35,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             crowd.palette = output.buffer.clone();
             crowd.instance_lods.write_at(gpu, 1, &[InstanceLod::UNSEEN])?;
             let job = pass.prepare(gpu, &mesh, &model_matrices, &crowd)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let mut expected: Vec<[f32; 4]> = matrices
                 .chunks(shape.bones)
                 .flat_map(|model_matrices| match palette_for(skin, model_matrices, blend) {
@@ -46,11 +46,13 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let largest = expected.as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
             let each = expected.len() / instances;
             expected[each..2 * each].fill(poisoned());
-            let comparison = output.check(gpu, |actual: &[[f32; 4]]| {
-                let actual =
-                    if blend == Blend::Linear { actual.to_vec() } else { same_side(actual, &expected) };
-                compare::absolute(actual.as_flattened(), expected.as_flattened(), PALETTE_BOUND * largest)
-            })?;
+            let comparison = output
+                .check(gpu, |actual: &[[f32; 4]]| {
+                    let actual =
+                        if blend == Blend::Linear { actual.to_vec() } else { same_side(actual, &expected) };
+                    compare::absolute(actual.as_flattened(), expected.as_flattened(), PALETTE_BOUND * largest)
+                })
+                .await?;
             cases.add(
                 format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones),
                 comparison,

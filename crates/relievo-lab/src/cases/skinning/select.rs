@@ -84,7 +84,7 @@ impl Frame {
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = SelectPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {
@@ -114,26 +114,26 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             buffers.updated_bones.write(gpu, &frame.updated_bones)?;
             output.poison(gpu)?;
             let clears = number % 3 == 1;
-            gpu.run("verify", |encoder| if clears { &clearing } else { &keeping }.record(encoder))?;
+            gpu.submit("verify", |encoder| if clears { &clearing } else { &keeping }.record(encoder))?;
             let expected = select(&clusters, &frame.now(), &last);
             remember(&frame.now(), &mut last);
-            let dispatched = active.dispatched.read_blocking(gpu)?;
+            let dispatched = active.dispatched.read(gpu).await?;
             let name = format!("{} clusters × {instances}, {}", clusters.len(), given.0);
-            cases.add(name, output.check(gpu, |actual| listed(actual, &dispatched, &expected))?);
+            cases.add(name, output.check(gpu, |actual| listed(actual, &dispatched, &expected)).await?);
             let name = format!("{} clusters × {instances}, {}: updated bones", clusters.len(), given.0);
             let left: Vec<u32> =
                 frame.updated_bones.iter().map(|word| if clears { 0 } else { *word }).collect();
-            cases.add(name, updated_bones.check(gpu, |actual| compare::exact(actual, &left))?);
+            cases.add(name, updated_bones.check(gpu, |actual| compare::exact(actual, &left)).await?);
             let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), given.0);
-            cases.add(name, remembered.check(gpu, |actual| compare::exact(actual, &words_of(&last)))?);
+            cases.add(name, remembered.check(gpu, |actual| compare::exact(actual, &words_of(&last))).await?);
         }
-        keeping_cases(cases, &pass, case, (&mesh, &clusters), &crowd)?;
+        keeping_cases(cases, &pass, case, (&mesh, &clusters), &crowd).await?;
     }
     Ok(())
 }
 
 /// The same frames where last positions are kept: what moved is selected once more, and every state is compared.
-fn keeping_cases(
+async fn keeping_cases(
     cases: &mut Cases<'_>,
     pass: &SelectPass,
     case: u32,
@@ -159,16 +159,18 @@ fn keeping_cases(
         output.poison(gpu)?;
         let before = states.iter().map(|state| *state as u32);
         active.pairs.write(gpu, &vec![POISON; count].into_iter().chain(before).collect::<Vec<_>>())?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = select_keeping(clusters, &frame.now(), &last, &mut states);
         remember(&frame.now(), &mut last);
-        let dispatched = active.dispatched.read_blocking(gpu)?;
+        let dispatched = active.dispatched.read(gpu).await?;
         let words: Vec<u32> = states.iter().map(|state| *state as u32).collect();
-        let compared = output.check(gpu, |actual| {
-            let (pairs, found) = actual.split_at(count.min(actual.len()));
-            let listed = listed(pairs, &dispatched, &expected);
-            if listed.holds { compare::exact(found, &words) } else { listed }
-        })?;
+        let compared = output
+            .check(gpu, |actual| {
+                let (pairs, found) = actual.split_at(count.min(actual.len()));
+                let listed = listed(pairs, &dispatched, &expected);
+                if listed.holds { compare::exact(found, &words) } else { listed }
+            })
+            .await?;
         cases.add(format!("{} clusters × {instances}, {}: last kept", clusters.len(), given.0), compared);
     }
     Ok(())

@@ -36,7 +36,7 @@ const INSTANCES: usize = 9;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for blend in [Blend::Linear, Blend::DualQuaternion] {
         let pass = SkinPass::new(cases.gpu, blend)?;
         for (case, shape) in (0..).zip(SHAPES) {
@@ -46,17 +46,17 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let output = Poisoned::<Vertex>::new(cases.gpu, instances.len() * shape.vertices)?;
                 let (mesh, crowd) = (&scene.mesh, &scene.crowd);
                 let job = pass.prepare(cases.gpu, mesh, crowd, instances.clone(), &output.buffer)?;
-                cases.gpu.run("verify", |encoder| job.record(encoder))?;
+                cases.gpu.submit("verify", |encoder| job.record(encoder))?;
                 let expected =
                     &scene.expected[instances.start * shape.vertices..][..instances.len() * shape.vertices];
-                let comparison = output.check(cases.gpu, |actual| scene.compare(actual, expected))?;
+                let comparison = output.check(cases.gpu, |actual| scene.compare(actual, expected)).await?;
                 cases.add(format!("{name}, instances {instances:?}"), comparison);
             }
             for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
-                cases.add(format!("{name}, {list}"), scene.some(cases.gpu, &pass, every)?);
+                cases.add(format!("{name}, {list}"), scene.some(cases.gpu, &pass, every).await?);
             }
-            cases.add(format!("{name}, in pages"), scene.paged(cases.gpu, &pass)?);
-            cases.add(format!("{name}, last kept"), scene.kept(cases.gpu, &pass)?);
+            cases.add(format!("{name}, in pages"), scene.paged(cases.gpu, &pass).await?);
+            cases.add(format!("{name}, last kept"), scene.kept(cases.gpu, &pass).await?);
         }
     }
     Ok(())
@@ -115,14 +115,14 @@ impl Case {
         Ok(Self { mesh, clusters, crowd, expected })
     }
 
-    fn some(&self, gpu: &Gpu, pass: &SkinPass, every: u32) -> Result<Comparison, Error> {
+    async fn some(&self, gpu: &Gpu, pass: &SkinPass, every: u32) -> Result<Comparison, Error> {
         let output = Poisoned::<Vertex>::new(gpu, self.expected.len())?;
         let active = ActiveClusters::new(gpu, &self.mesh, &self.crowd)?;
         let pairs = (self.clusters.len() * INSTANCES) as u32;
         let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
         active.write(gpu, &chosen)?;
         let job = pass.prepare_active(gpu, &self.mesh, &self.crowd, &output.buffer, &active)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let mut expected = self.expected.clone();
         for (instance, expected) in expected.chunks_mut(self.clusters.order.len()).enumerate() {
             for (slot, vertex) in self.clusters.order.iter().enumerate() {
@@ -132,11 +132,11 @@ impl Case {
                 }
             }
         }
-        Ok(output.check(gpu, |actual| self.compare(actual, &expected))?)
+        Ok(output.check(gpu, |actual| self.compare(actual, &expected)).await?)
     }
 
     /// All clusters into pages that lie in reverse order; every fifth cluster has none.
-    fn paged(&self, gpu: &Gpu, pass: &SkinPass) -> Result<Comparison, Error> {
+    async fn paged(&self, gpu: &Gpu, pass: &SkinPass) -> Result<Comparison, Error> {
         let (clusters, vertices) = (self.clusters.len(), self.clusters.order.len());
         let count = clusters * INSTANCES;
         let output = Poisoned::<Vertex>::new(gpu, CLUSTER * count)?;
@@ -148,34 +148,36 @@ impl Case {
         pages.skinned = output.buffer.clone();
         pages.table.write(gpu, &(0..count).map(page).collect::<Vec<_>>())?;
         if self.mesh.targets > 0 {
-            pages.morphed = Buffer::from_slice(gpu, "morphed", &self.morphed_pages(gpu)?)?;
+            pages.morphed = Buffer::from_slice(gpu, "morphed", &self.morphed_pages(gpu).await?)?;
         }
         let job = pass.prepare_paged(gpu, &self.mesh, &self.crowd, &pages, &active)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
         let mut expected = self.expected.clone();
-        let comparison = output.check(gpu, |actual| {
-            let mut found = Vec::with_capacity(expected.len());
-            for (instance, expected) in expected.chunks_mut(vertices).enumerate() {
-                for (slot, vertex) in self.clusters.order.iter().enumerate() {
-                    let entry = instance * clusters + slot / CLUSTER;
-                    // Clusters without a page leave no trace; what lies in pages without a cluster is compared too.
-                    if !has_page(entry) {
-                        expected[*vertex as usize] = Expected::untouched();
+        let comparison = output
+            .check(gpu, |actual| {
+                let mut found = Vec::with_capacity(expected.len());
+                for (instance, expected) in expected.chunks_mut(vertices).enumerate() {
+                    for (slot, vertex) in self.clusters.order.iter().enumerate() {
+                        let entry = instance * clusters + slot / CLUSTER;
+                        // Clusters without a page leave no trace; what lies in pages without a cluster is compared too.
+                        if !has_page(entry) {
+                            expected[*vertex as usize] = Expected::untouched();
+                        }
+                        found.push(actual[CLUSTER * (count - 1 - entry) + slot % CLUSTER]);
                     }
-                    found.push(actual[CLUSTER * (count - 1 - entry) + slot % CLUSTER]);
                 }
-            }
-            self.compare(&found, &expected)
-        })?;
+                self.compare(&found, &expected)
+            })
+            .await?;
         Ok(comparison)
     }
 
     /// The morphed vertices in pages that lie in reverse order.
-    fn morphed_pages(&self, gpu: &Gpu) -> Result<Vec<Vertex>, Error> {
+    async fn morphed_pages(&self, gpu: &Gpu) -> Result<Vec<Vertex>, Error> {
         let (clusters, vertices) = (self.clusters.len(), self.clusters.order.len());
         let count = clusters * INSTANCES;
         let mut all = vec![poisoned(); CLUSTER * count];
-        for (at, vertex) in self.crowd.morphed.read_blocking(gpu)?.into_iter().enumerate() {
+        for (at, vertex) in self.crowd.morphed.read(gpu).await?.into_iter().enumerate() {
             let (instance, slot) = (at / vertices, at % vertices);
             let page = count - 1 - (instance * clusters + slot / CLUSTER);
             all[CLUSTER * page + slot % CLUSTER] = vertex;
@@ -185,7 +187,7 @@ impl Case {
 
     /// All clusters into pages that keep last positions: of those that moved what lay there, of the others, but for those
     /// without a page, what is written. Both are copies, to the bit.
-    fn kept(&self, gpu: &Gpu, pass: &SkinPass) -> Result<Comparison, Error> {
+    async fn kept(&self, gpu: &Gpu, pass: &SkinPass) -> Result<Comparison, Error> {
         let count = self.clusters.len() * INSTANCES;
         let mut active = ActiveClusters::keeping(gpu, &self.mesh, &self.crowd)?;
         active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
@@ -202,8 +204,8 @@ impl Case {
         let old: Vec<f32> = (0..10 * pages.skinned.len()).map(|at| at as f32).collect();
         pages.skinned = Buffer::from_slice(gpu, "pages", bytemuck::cast_slice::<_, Vertex>(&old))?;
         let job = pass.prepare_paged(gpu, &self.mesh, &self.crowd, &pages, &active)?;
-        gpu.run("verify", |encoder| job.record(encoder))?;
-        let found = pages.skinned.read_blocking(gpu)?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
+        let found = pages.skinned.read(gpu).await?;
         let found: &[f32] = bytemuck::cast_slice(&found);
         let last = 2 * pages.last as usize;
         let mut expected = old[last..][..4 * CLUSTER * count].to_vec();

@@ -18,7 +18,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let (pyramid_pass, pass) = (HeightPyramidPass::new(gpu)?, ConeMapPass::new(gpu)?);
     for (case, size) in
@@ -38,27 +38,31 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     pyramid_pass.prepare(gpu, &batch, &pyramids)?,
                     pass.prepare(gpu, &batch, &pyramids, &cones)?,
                 ];
-                gpu.run("verify", |encoder| jobs.iter().for_each(|job| job.record(encoder)))?;
+                gpu.submit("verify", |encoder| jobs.iter().for_each(|job| job.record(encoder)))?;
                 let mut expected = Vec::new();
                 for map in &maps {
                     expected.extend(cone_map(map, &height_pyramid(map, address), address));
                 }
                 let [columns, pitch] = [cones.cells[0] as usize, cones.pitch as usize];
                 let name = format!("{shape:?} {}×{} × {count}, {}", size[0], size[1], address.name());
-                let comparison = output.check(gpu, |actual| {
-                    let rows = actual.chunks_exact(pitch).flat_map(|row| &row[..columns]).flatten();
-                    let actual: Vec<f32> = rows.copied().collect();
-                    compare::relative(&actual, expected.as_flattened(), RADIUS_BOUND)
-                })?;
+                let comparison = output
+                    .check(gpu, |actual| {
+                        let rows = actual.chunks_exact(pitch).flat_map(|row| &row[..columns]).flatten();
+                        let actual: Vec<f32> = rows.copied().collect();
+                        compare::relative(&actual, expected.as_flattened(), RADIUS_BOUND)
+                    })
+                    .await?;
                 cases.add(name.clone(), comparison);
                 if columns == pitch {
                     continue;
                 }
-                let padding = output.check(gpu, |actual| {
-                    let rows = actual.chunks_exact(pitch).flat_map(|row| &row[columns..]).flatten();
-                    let words: Vec<u32> = rows.map(|word| word.to_bits()).collect();
-                    compare::exact(&words, &vec![POISON; words.len()])
-                })?;
+                let padding = output
+                    .check(gpu, |actual| {
+                        let rows = actual.chunks_exact(pitch).flat_map(|row| &row[columns..]).flatten();
+                        let words: Vec<u32> = rows.map(|word| word.to_bits()).collect();
+                        compare::exact(&words, &vec![POISON; words.len()])
+                    })
+                    .await?;
                 cases.add(format!("{name}: the rows' ends"), padding);
             }
         }

@@ -16,7 +16,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = HeightPyramidPass::new(gpu)?;
     let sizes = [
@@ -49,11 +49,13 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let output = Poisoned::new(gpu, layout.len() * maps.len())?;
             let pyramids = Pyramids { nodes: output.buffer.clone(), layout, address, count };
             let job = pass.prepare(gpu, &batch, &pyramids)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let expected: Vec<u32> = maps.iter().flat_map(|map| with_poison(map, &layout, address)).collect();
-            let comparison = output.check(gpu, |actual: &[f32]| {
-                compare::exact(bytemuck::cast_slice::<f32, u32>(actual), &expected)
-            })?;
+            let comparison = output
+                .check(gpu, |actual: &[f32]| {
+                    compare::exact(bytemuck::cast_slice::<f32, u32>(actual), &expected)
+                })
+                .await?;
             cases.add(format!("{}×{} × {count}, {}", size[0], size[1], address.name()), comparison);
         }
     }

@@ -33,7 +33,7 @@ pub(crate) const TOUCHING: f64 = 0.2;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for method in Method::ALL {
         let pass = ReliefPass::new(gpu, method)?;
@@ -48,7 +48,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let march =
                     March { address, steps: [6, 24 + case as u32], binary_steps: fewest + case as u32 };
                 let rays = random_rays(case as u32, count);
-                let comparison = compared(gpu, &pass, &map, method, &march, &rays)?;
+                let comparison = compared(gpu, &pass, &map, method, &march, &rays).await?;
                 let name = method.name();
                 cases.add(
                     format!("{name}: {shape:?} {}×{}, {}, {count} rays", size[0], size[1], address.name()),
@@ -60,7 +60,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn compared(
+async fn compared(
     gpu: &Gpu,
     pass: &ReliefPass,
     map: &HeightMap,
@@ -72,9 +72,9 @@ fn compared(
     let input = Buffer::from_slice(gpu, "rays", rays)?;
     let output = Poisoned::new(gpu, rays.len())?;
     let job = pass.prepare(gpu, &textures, march, &input, &output.buffer)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let judged = judge(map, method, march, rays, Source::Given)?;
-    Ok(output.check(gpu, |actual| hits(actual, &judged, [map.width(), map.height()]))?)
+    Ok(output.check(gpu, |actual| hits(actual, &judged, [map.width(), map.height()])).await?)
 }
 
 /// Compares hits: outcomes must be equal, numbers of loads must be equal where rounding changes no branch, and
@@ -133,15 +133,23 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     for method in Method::ALL {
         listed(bench, &map, method)?;
     }
+    #[cfg(not(target_arch = "wasm32"))]
+    pictures(bench, &map)?;
+    Ok(())
+}
+
+/// Measures pictures of every method.
+#[cfg(not(target_arch = "wasm32"))]
+fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
     let gpu = bench.gpu;
     let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
     let albedo = ColorTexture::new(gpu, &albedo, true)?;
     let target = Offscreen::new(gpu, [EDGE, EDGE], true, 1, false)?;
-    let plain = Drawing::new(gpu, &target, (&map, &albedo), Method::Plain)?;
+    let plain = Drawing::new(gpu, &target, (map, &albedo), Method::Plain)?;
     let (rays, march) = (rays(EDGE, towards()), March::default());
     for method in Method::ALL {
-        let drawing = Drawing::new(gpu, &target, (&map, &albedo), method)?;
-        let surface = Surface::new(&map, method, Address::Wrap);
+        let drawing = Drawing::new(gpu, &target, (map, &albedo), method)?;
+        let surface = Surface::new(map, method, Address::Wrap);
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| drawing.record(encoder, &target)),
             Contender::recorded(Backend::Limit, |encoder| plain.record(encoder, &target)),
@@ -190,12 +198,14 @@ fn textures(gpu: &Gpu, map: &HeightMap, method: Method) -> Result<SurfaceTexture
 }
 
 /// A scene of the square, which fills the target, recorded through a view.
+#[cfg(not(target_arch = "wasm32"))]
 struct Drawing {
     scene: Scene,
     view: View,
     renderer: Renderer,
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 impl Drawing {
     fn new(
         gpu: &Gpu,

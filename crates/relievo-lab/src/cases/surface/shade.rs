@@ -40,7 +40,7 @@ pub(crate) const AT_EYE: f64 = 0.01;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for method in Method::ALL {
         let pass = ShadePass::new(gpu, method)?;
@@ -60,10 +60,10 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let input = Buffer::from_slice(gpu, "points", &points)?;
                 let output = Poisoned::new(gpu, points.len())?;
                 let job = pass.prepare(gpu, &textures, &march, &view, &input, &output.buffer)?;
-                gpu.run("verify", |encoder| job.record(encoder))?;
+                gpu.submit("verify", |encoder| job.record(encoder))?;
                 let judged = judged(&map, method, &march, &view, &points)?;
                 for (what, part) in PARTS {
-                    let comparison = output.check(gpu, |actual| compare(actual, &judged, part))?;
+                    let comparison = output.check(gpu, |actual| compare(actual, &judged, part)).await?;
                     let (name, [width, height]) = (method.name(), size);
                     let address = address.name();
                     cases.add(

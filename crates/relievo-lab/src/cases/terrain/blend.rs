@@ -34,7 +34,7 @@ struct Ground {
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for weights in [WeightMode::Normalized, WeightMode::Additive] {
         for (zone_count, gap) in [(1, 0.0), (2, 50.0), (4, 0.0), (4, 9.0), (32, -1.0)] {
             for (width, count, order) in
@@ -45,7 +45,8 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 compare(
                     cases,
                     Ground { name, cover: Cover::random(&zones, 0), weights, width, count, order },
-                )?;
+                )
+                .await?;
             }
         }
         for (triplanar, variation) in [(false, 0.0), (true, 0.0), (false, 1.0), (true, 0.4)] {
@@ -54,14 +55,15 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let cover = Cover { triplanar, variation, ..Cover::random(&zones, edge_log2) };
                 let name =
                     format!("slopes, {} texels, {triplanar}, {variation}, {weights:?}", 1 << edge_log2);
-                compare(cases, Ground { name, cover, weights, width: 67, count: 2, order: Order::SOFTWARE })?;
+                compare(cases, Ground { name, cover, weights, width: 67, count: 2, order: Order::SOFTWARE })
+                    .await?;
             }
         }
     }
     Ok(())
 }
 
-fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
+async fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
     let gpu = cases.gpu;
     let Ground { name, cover, weights, width, count, order } = ground;
     let heights = random_heights(width, (width * width * count) as usize, 60 << 16);
@@ -74,7 +76,7 @@ fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
     let place_buffer = Buffer::from_slice(gpu, "places", &places)?;
     let buffers = BlendBuffers { windows: &windows, places: &place_buffer, pixels: &output.buffer };
     let job = BlendPass::with_order(gpu, order)?.prepare(gpu, &cover, &shading, buffers)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let maps = || heights.chunks_exact((width * width) as usize).zip(&places);
     let expected: Vec<u32> =
         maps().flat_map(|(window, place)| blend(window, width as usize, &cover, &shading, *place)).collect();
@@ -86,13 +88,15 @@ fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
     let left_out = is_left_out.iter().filter(|left_out| **left_out).count();
     let (of, name) = (expected.len(), format!("{width}×{width} × {count}, {name}"));
     let left_out = LeftOut { count: left_out, of, most: of / 20 };
-    let compared = output.check(gpu, |actual| {
-        let judged: Vec<u32> = (actual.iter().zip(&expected).zip(&is_left_out))
-            .map(|((actual, expected), left_out)| if *left_out { *expected } else { *actual })
-            .collect();
-        // What was written beyond the output is judged by `output`.
-        nearly_equal(&judged, &expected).leaving_out(left_out)
-    })?;
+    let compared = output
+        .check(gpu, |actual| {
+            let judged: Vec<u32> = (actual.iter().zip(&expected).zip(&is_left_out))
+                .map(|((actual, expected), left_out)| if *left_out { *expected } else { *actual })
+                .collect();
+            // What was written beyond the output is judged by `output`.
+            nearly_equal(&judged, &expected).leaving_out(left_out)
+        })
+        .await?;
     cases.add(name, compared);
     Ok(())
 }

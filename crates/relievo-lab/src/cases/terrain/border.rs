@@ -16,20 +16,20 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = BorderPass::new(cases.gpu)?;
     let grid: Vec<[i32; 2]> = (0..9).map(|i| [i % 3 - 1, i / 3]).collect();
     let surrounded = vec![[1, 0], [0, 1], [2, 1], [1, 2], [1, 1]];
     for (patches, most) in [(&grid, 9), (&grid, 4), (&surrounded, 5), (&surrounded, 2), (&vec![[5, 5]], 1)] {
         for (size, width) in [(3, 1), (5, 4), (33, 1), (33, 16), (33, 20), (65, 7), (129, 64)] {
-            case(cases, &pass, patches, most, [size, width])?;
+            case(cases, &pass, patches, most, [size, width]).await?;
         }
     }
     Ok(())
 }
 
 /// Compares `patches`, stored with at most `most` to a buffer.
-fn case(
+async fn case(
     cases: &mut Cases<'_>,
     pass: &BorderPass,
     patches: &[[i32; 2]],
@@ -49,7 +49,7 @@ fn case(
         outputs.push(output);
     }
     let job = pass.prepare(gpu, width, &around, &parts)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     for (index, around) in around.iter().enumerate() {
         let (earlier, rest) = expected.split_at_mut(index * points);
         let around = around.map(|at| at.map(|at| &earlier[at * points..(at + 1) * points]));
@@ -60,7 +60,7 @@ fn case(
         if outputs.len() > 1 {
             name += &format!(", buffer {part}");
         }
-        cases.add(name, output.check(gpu, |actual| exact(actual, expected))?);
+        cases.add(name, output.check(gpu, |actual| exact(actual, expected)).await?);
     }
     Ok(())
 }

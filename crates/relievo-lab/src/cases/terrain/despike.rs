@@ -16,11 +16,14 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    Columns::ALL.into_iter().try_for_each(|columns| with_columns(cases, columns))
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for columns in Columns::ALL {
+        with_columns(cases, columns).await?;
+    }
+    Ok(())
 }
 
-fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
+async fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
     for with_features in [false, true] {
         let pass = DespikePass::with_columns(cases.gpu, with_features, columns)?;
         for (case, (width, count)) in
@@ -33,14 +36,15 @@ fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
                     with_features.then_some(case as u32),
                     Despike { threshold },
                     [width, count],
-                )?;
+                )
+                .await?;
             }
         }
     }
     Ok(())
 }
 
-fn check(
+async fn check(
     cases: &mut Cases<'_>,
     (pass, columns): (&DespikePass, Columns),
     features: Option<u32>,
@@ -69,7 +73,7 @@ fn check(
     })?;
     let buffers = DespikeBuffers { windows: &windows, features: &index, cropped: &cropped };
     let job = pass.prepare(gpu, params, buffers)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> = (heights.chunks_exact(points).zip(&marks))
         .flat_map(|(window, marks)| {
             despike(window, edge, params.fixed_threshold(), |x, y| marks[y * edge + x])
@@ -81,7 +85,7 @@ fn check(
         4 * columns.quads,
         features.map_or("", |_| ", a third injected")
     );
-    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
     Ok(())
 }
 

@@ -24,7 +24,7 @@ use relievo::baseline::words::WordsPass;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for offset in ["signed", "positive", "gaussian"] {
         let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
         let pass = HeightPass::new(cases.gpu, code, None)?;
@@ -38,19 +38,19 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     "offset": offset, "coarseLevels": coarse_levels, "roughness": 0.9,
                 }))?;
                 let odd = coarse_levels as i32 * 3 - 7;
-                check(cases, &pass, &config, &Features::default(), &[[odd, 5 - odd]], 0)?;
+                check(cases, &pass, &config, &Features::default(), &[[odd, 5 - odd]], 0).await?;
             }
         }
     }
-    windows_and_batches(cases)?;
-    with_features(cases)?;
-    large(cases)?;
-    block_sizes(cases)
+    windows_and_batches(cases).await?;
+    with_features(cases).await?;
+    large(cases).await?;
+    block_sizes(cases).await
 }
 
 /// Compares large patches under everything that small ones are tested with: coarse levels, aprons, neighbours,
 /// features.
-fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (size, coarse_levels, apron, offset, mode) in [
         (513, 8, 3, Offset::Gaussian, None),
         (1025, 4, 17, Offset::Positive, None),
@@ -67,12 +67,12 @@ fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
             None => Features::default(),
         };
         let patches = if size < 2000 { &[[2, -3], [3, -4]][..] } else { &[[3, -3]] };
-        check(cases, &pass, &config, &features, patches, apron)?;
+        check(cases, &pass, &config, &features, patches, apron).await?;
     }
     Ok(())
 }
 
-fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = HeightPass::new(cases.gpu, Offset::Signed, None)?;
     for (size, coarse_levels, apron) in
         [(3, 0, 1), (5, 1, 2), (17, 2, 3), (33, 3, 40), (65, 8, 7), (129, 0, 64), (257, 0, 1)]
@@ -81,15 +81,15 @@ fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
             "patchSize": size, "scaleFactor": 12.5, "seed": "windows", "coarseLevels": coarse_levels,
         }))?;
         let patches: Vec<_> = (0..7).map(|i| [3 * i - 10, -i * i]).collect();
-        check(cases, &pass, &config, &Features::default(), &patches, apron)?;
+        check(cases, &pass, &config, &Features::default(), &patches, apron).await?;
     }
     // The last patches whose world coordinates fit `i32`.
     let config = config(&json!({"patchSize": 9, "scaleFactor": 40.0, "seed": "far"}))?;
     let far = [[524_285, -524_287], [-524_287, 524_285]];
-    check(cases, &pass, &config, &Features::default(), &far, 0)
+    check(cases, &pass, &config, &Features::default(), &far, 0).await
 }
 
-fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
     for mode in [FeatureMode::Keep, FeatureMode::Additive] {
         let pass = HeightPass::new(cases.gpu, Offset::Signed, Some(mode))?;
         for (case, (size, coarse_levels, apron)) in
@@ -102,7 +102,7 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
             }))?;
             let features = scattered(&config, [2, -3], mode, case as u32)?;
             let patches = [[2, -3], [3, -3], [2, -2], [1, -4], [9, 9]];
-            check(cases, &pass, &config, &features, &patches, apron)?;
+            check(cases, &pass, &config, &features, &patches, apron).await?;
         }
     }
     // Every point of a patch is injected, so that rows of windows end anywhere in a word.
@@ -113,12 +113,12 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
             (0..size * size).flat_map(|i| [f64::from(i % size), f64::from(i / size), f64::from(i % 7)]);
         let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: points.collect() };
         let features = Features::new(&config, &[file], FeatureMode::Additive)?;
-        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1]], apron)?;
+        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1]], apron).await?;
     }
     Ok(())
 }
 
-fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
     let one = [1, 2, 3, 4, 8, 16, 64].map(|cell_rows| Blocks { cell_rows, levels: 1 });
     let two = [1, 3, 17].map(|cell_rows| Blocks { cell_rows, levels: 2 });
     for blocks in one.into_iter().chain(two) {
@@ -130,13 +130,13 @@ fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
         for size in [3, 9, 33, 129] {
             let config =
                 config(&json!({"patchSize": size, "scaleFactor": 1.0, "seed": format!("{blocks:?}")}))?;
-            check(cases, &pass, &config, &Features::default(), &[[0, 0], [-1, 4]], 1)?;
+            check(cases, &pass, &config, &Features::default(), &[[0, 0], [-1, 4]], 1).await?;
         }
     }
     Ok(())
 }
 
-fn check(
+async fn check(
     cases: &mut Cases<'_>,
     pass: &HeightPass,
     config: &Config,
@@ -151,11 +151,11 @@ fn check(
     let capacity = features.len() * patches.len();
     let job = pass.prepare(gpu, config, [count, apron], capacity, &output.buffer, &scratch)?;
     job.set(gpu, patches, features)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> =
         patches.iter().flat_map(|&patch| height(config, features, Window { patch, apron })).collect();
     let name = case_name(config, features, patches, apron);
-    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
     Ok(())
 }
 

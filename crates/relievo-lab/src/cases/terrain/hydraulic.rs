@@ -31,7 +31,7 @@ struct Case {
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let shapes = [[1, 1], [1, 16], [2, 1], [2, 3]].map(|[cycles, rows]| Shape { cycles, rows });
     for shape in shapes.into_iter().chain([Shape::HARDWARE, Shape::SOFTWARE]) {
         let pass = HydraulicPass::with_shape(cases.gpu, shape)?;
@@ -44,7 +44,7 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     let case = Case { width, count, limit, params, terrain_scale };
                     let name =
                         format!("{width}×{width} × {count}, {iterations} cycles, kind {kind}, {shape:?}");
-                    compare(cases, (&pass, shape), &name, &case)?;
+                    compare(cases, (&pass, shape), &name, &case).await?;
                 }
             }
         }
@@ -80,7 +80,7 @@ fn kinds() -> [Hydraulic; 4] {
     [ordinary, largest, smallest, Hydraulic { rain: 0.9, capacity: 5.0, evaporation: 0.01, ..ordinary }]
 }
 
-fn compare(
+async fn compare(
     cases: &mut Cases<'_>,
     (pass, shape): (&HydraulicPass, Shape),
     name: &str,
@@ -101,14 +101,15 @@ fn compare(
         other_flows: &flows[1].buffer,
     };
     let job = pass.prepare(gpu, params, terrain_scale, buffers)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let (ground, flow) = expected(host, inner, case, shape.cycles);
     for (at, when) in [(0, "an even"), (1, "an odd")] {
-        let comparison = heights[at].check(gpu, |actual| exact(actual, &ground[at]))?;
+        let comparison = heights[at].check(gpu, |actual| exact(actual, &ground[at])).await?;
         cases.add(format!("{name}, heights after {when} number of dispatches"), comparison);
         let words = flow[at].concat();
-        let comparison =
-            flows[at].check(gpu, |actual: &[Flow]| exact(bytemuck::cast_slice(actual), words.as_slice()))?;
+        let comparison = flows[at]
+            .check(gpu, |actual: &[Flow]| exact(bytemuck::cast_slice(actual), words.as_slice()))
+            .await?;
         cases.add(format!("{name}, flow after {when} number of dispatches"), comparison);
     }
     Ok(())

@@ -14,7 +14,7 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = MorphPass::new(gpu)?;
     for len in [1, 63, 64, 65, 5000, 300_000] {
@@ -29,14 +29,14 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let params = Morph { time };
             job.set(gpu, params)?;
             heights.write(gpu, &vec![crate::harness::poison::POISON as i32; from.len()])?;
-            gpu.run("verify", |encoder| {
+            gpu.submit("verify", |encoder| {
                 job.record(encoder);
                 encoder.copy_buffer_to_buffer(heights.raw(), 0, output.buffer.raw(), 0, 4 * u64::from(len));
             })?;
             let expected = morph(&from, &to, params.fixed_time());
             cases.add(
                 format!("{len} heights at {time}"),
-                output.check(gpu, |actual| exact(actual, &expected))?,
+                output.check(gpu, |actual| exact(actual, &expected)).await?,
             );
         }
     }

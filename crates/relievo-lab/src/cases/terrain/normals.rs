@@ -15,11 +15,14 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    Columns::ALL.into_iter().try_for_each(|columns| with_columns(cases, columns))
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for columns in Columns::ALL {
+        with_columns(cases, columns).await?;
+    }
+    Ok(())
 }
 
-fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
+async fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = NormalsPass::with_columns(gpu, columns)?;
     for (width, count) in [(3, 1), (65, 3), (66, 2), (67, 2), (131, 4)] {
@@ -32,7 +35,7 @@ fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
             let points = (width - 2).pow(2) as usize * count as usize;
             let (slopes, units) = (Poisoned::new(gpu, points)?, Poisoned::new(gpu, 3 * points)?);
             let job = pass.prepare(gpu, terrain_scale, &windows, &slopes.buffer, &units.buffer)?;
-            gpu.run("verify", |encoder| job.record(encoder))?;
+            gpu.submit("verify", |encoder| job.record(encoder))?;
             let (mut expected_slopes, mut expected_units) = (Vec::new(), Vec::new());
             for window in heights.chunks_exact((width * width) as usize) {
                 let (slopes, units) = normals(window, width as usize, terrain_scale);
@@ -45,10 +48,10 @@ fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
             );
             cases.add(
                 format!("{name}: gradients"),
-                slopes.check(gpu, |actual| compare::exact(actual, &expected_slopes))?,
+                slopes.check(gpu, |actual| compare::exact(actual, &expected_slopes)).await?,
             );
             let comparison =
-                units.check(gpu, |actual| compare::absolute(actual, &expected_units, NORMAL_BOUND))?;
+                units.check(gpu, |actual| compare::absolute(actual, &expected_units, NORMAL_BOUND)).await?;
             cases.add(format!("{name}: unit normals"), comparison);
         }
     }

@@ -19,18 +19,21 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    [Order::SOFTWARE, Order::HARDWARE].into_iter().try_for_each(|order| in_order(cases, order))
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for order in [Order::SOFTWARE, Order::HARDWARE] {
+        in_order(cases, order).await?;
+    }
+    Ok(())
 }
 
-fn in_order(cases: &mut Cases<'_>, order: Order) -> Result<(), Error> {
+async fn in_order(cases: &mut Cases<'_>, order: Order) -> Result<(), Error> {
     let pass = PadPass::with_order(cases.gpu, order)?;
     let grid: Vec<[i32; 2]> = (0..9).map(|i| [i % 3, i / 3 - 2]).collect();
     let holes = vec![[0, 0], [1, 0], [2, 1], [0, 2], [1, 1]];
     for border in [json!("wrap"), json!({"blend": 1})] {
         for (patches, most) in [(&grid, 9), (&grid, 2), (&holes, 5), (&holes, 2)] {
             for shape in [[3, 0], [3, 2], [5, 4], [33, 1], [33, 32], [65, 9]] {
-                case(cases, (&pass, order), &border, (patches, most), shape)?;
+                case(cases, (&pass, order), &border, (patches, most), shape).await?;
             }
         }
     }
@@ -38,7 +41,7 @@ fn in_order(cases: &mut Cases<'_>, order: Order) -> Result<(), Error> {
 }
 
 /// Compares patches that are stored with at most `most` to a buffer.
-fn case(
+async fn case(
     cases: &mut Cases<'_>,
     (pass, order): (&PadPass, Order),
     border: &serde_json::Value,
@@ -57,7 +60,7 @@ fn case(
     }
     let output = Poisoned::new(gpu, patches.len() * ((size + 2 * apron) as usize).pow(2))?;
     let job = pass.prepare(gpu, apron, &around, &parts, &output.buffer)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let field = |index: usize| &heights[index * points..(index + 1) * points];
     let expected: Vec<i32> = (around.iter())
         .flat_map(|around| pad(size as usize, apron as usize, around.map(|tile| tile.map(field))))
@@ -67,7 +70,7 @@ fn case(
     if parts.len() > 1 {
         name += &format!(", {} buffers", parts.len());
     }
-    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
     Ok(())
 }
 

@@ -25,7 +25,7 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for offset in ["signed", "positive", "gaussian"] {
         let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
         let pass = SmoothPass::new(cases.gpu, code, None)?;
@@ -37,14 +37,14 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     "offset": offset, "coarseLevels": coarse_levels, "roughness": 0.9, "interpolation": "smooth",
                 }))?;
                 let odd = coarse_levels as i32 * 3 - 7;
-                check(cases, &pass, &config, &Features::default(), &[[odd, 5 - odd]], 0)?;
+                check(cases, &pass, &config, &Features::default(), &[[odd, 5 - odd]], 0).await?;
             }
         }
     }
-    windows_and_batches(cases)?;
-    with_features(cases)?;
-    clamped(cases)?;
-    block_sizes(cases)
+    windows_and_batches(cases).await?;
+    with_features(cases).await?;
+    clamped(cases).await?;
+    block_sizes(cases).await
 }
 
 fn plain(size: u32, seed: &str, coarse_levels: u32) -> Result<Config, Error> {
@@ -52,18 +52,19 @@ fn plain(size: u32, seed: &str, coarse_levels: u32) -> Result<Config, Error> {
     Ok(Config { coarse_levels, interpolation: Interpolation::Smooth, ..config })
 }
 
-fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn windows_and_batches(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = SmoothPass::new(cases.gpu, Offset::Signed, None)?;
     for (size, coarse_levels, apron) in
         [(3, 0, 1), (5, 1, 2), (17, 2, 3), (33, 3, 40), (65, 8, 7), (129, 0, 64), (257, 0, 1), (513, 5, 17)]
     {
         let patches: Vec<_> = (0..7).map(|i| [3 * i - 10, -i * i]).collect();
-        check(cases, &pass, &plain(size, "windows", coarse_levels)?, &Features::default(), &patches, apron)?;
+        check(cases, &pass, &plain(size, "windows", coarse_levels)?, &Features::default(), &patches, apron)
+            .await?;
     }
     Ok(())
 }
 
-fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
     for mode in [FeatureMode::Keep, FeatureMode::Additive] {
         let pass = SmoothPass::new(cases.gpu, Offset::Signed, Some(mode))?;
         for (case, (size, coarse_levels, apron)) in
@@ -75,7 +76,7 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
             let features = scattered(&config, [2, -3], mode, case as u32)?;
             // The last ones see features through the halo of their halo alone, or none.
             let patches = [[2, -3], [3, -3], [2, -2], [1, -4], [5, -1], [8, -3], [2, -9], [30, 9]];
-            check(cases, &pass, &config, &features, &patches, apron)?;
+            check(cases, &pass, &config, &features, &patches, apron).await?;
         }
     }
     // Every point of a patch is injected, so that rows of windows end anywhere in a word, and centers outside of windows see
@@ -87,13 +88,13 @@ fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
             (0..size * size).flat_map(|i| [f64::from(i % size), f64::from(i / size), f64::from(i % 7)]);
         let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: points.collect() };
         let features = Features::new(&config, &[file], FeatureMode::Additive)?;
-        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1], [0, -1], [2, 2]], apron)?;
+        check(cases, &pass, &config, &features, &[[0, 0], [1, 0], [-1, -1], [0, -1], [2, 2]], apron).await?;
     }
     Ok(())
 }
 
 /// Heights that reach the largest there are.
-fn clamped(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn clamped(cases: &mut Cases<'_>) -> Result<(), Error> {
     for mode in [None, Some(FeatureMode::Additive)] {
         let pass = SmoothPass::new(cases.gpu, Offset::Positive, mode)?;
         let steep = config(&json!({
@@ -106,12 +107,12 @@ fn clamped(cases: &mut Cases<'_>) -> Result<(), Error> {
             Some(mode) => Features::new(&steep, &[file], mode)?,
             None => Features::default(),
         };
-        check(cases, &pass, &steep, &features, &[[0, 0], [-1, 0]], 2)?;
+        check(cases, &pass, &steep, &features, &[[0, 0], [-1, 0]], 2).await?;
     }
     Ok(())
 }
 
-fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
+async fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
     let orders = [1, 2, 3, 4, 8, 16, 64]
         .into_iter()
         .flat_map(|rows| [false, true].map(|downwards| Order { rows, downwards }));
@@ -119,13 +120,13 @@ fn block_sizes(cases: &mut Cases<'_>) -> Result<(), Error> {
         let pass = SmoothPass::with_order(cases.gpu, Offset::Signed, None, order)?;
         for size in [3, 9, 33, 129] {
             let config = plain(size, &format!("{order:?}"), 0)?;
-            check(cases, &pass, &config, &Features::default(), &[[0, 0], [-1, 4]], 1)?;
+            check(cases, &pass, &config, &Features::default(), &[[0, 0], [-1, 4]], 1).await?;
         }
     }
     Ok(())
 }
 
-fn check(
+async fn check(
     cases: &mut Cases<'_>,
     pass: &SmoothPass,
     config: &Config,
@@ -140,11 +141,11 @@ fn check(
     let capacity = features.len() * patches.len();
     let job = pass.prepare(gpu, config, [count, apron], capacity, &output.buffer, &scratch)?;
     job.set(gpu, patches, features)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> =
         patches.iter().flat_map(|&patch| smooth(config, features, Window { patch, apron })).collect();
     let name = case_name(config, features, patches, apron);
-    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
     Ok(())
 }
 

@@ -16,11 +16,14 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    Columns::ALL.into_iter().try_for_each(|columns| with_columns(cases, columns))
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    for columns in Columns::ALL {
+        with_columns(cases, columns).await?;
+    }
+    Ok(())
 }
 
-fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
+async fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = ThermalPass::with_columns(gpu, columns)?;
     for (width, count) in [(3, 2), (23, 3), (66, 5), (130, 2)] {
@@ -34,7 +37,7 @@ fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
                 windows.heights.write(gpu, &fields)?;
                 let job =
                     pass.prepare(gpu, params, 1.0, ThermalBuffers { windows: &windows, other: &other })?;
-                gpu.run("verify", |encoder| job.record(encoder))?;
+                gpu.submit("verify", |encoder| job.record(encoder))?;
                 // What the iterations leave in the first part of either buffer, over its previous contents.
                 let mut expected = [fields.clone(), vec![POISON as i32; fields.len()]];
                 let mut edge = width as usize;
@@ -52,7 +55,7 @@ fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
                 );
                 let result = iterations as usize % 2;
                 for (what, at) in [("", result), (", before the last", 1 - result)] {
-                    let comparison = outputs[at].check(gpu, |actual| exact(actual, &expected[at]))?;
+                    let comparison = outputs[at].check(gpu, |actual| exact(actual, &expected[at])).await?;
                     cases.add(format!("{name}{what}"), comparison);
                 }
             }

@@ -23,13 +23,13 @@ use relievo::baseline::words::WordsPass;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    in_order(cases, Order::SOFTWARE, 12)?;
-    in_order(cases, Order::HARDWARE, 9)
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+    in_order(cases, Order::SOFTWARE, 12).await?;
+    in_order(cases, Order::HARDWARE, 9).await
 }
 
 /// The cases up to patches of 2^`most` + 1 samples.
-fn in_order(cases: &mut Cases<'_>, order: Order, most: u32) -> Result<(), Error> {
+async fn in_order(cases: &mut Cases<'_>, order: Order, most: u32) -> Result<(), Error> {
     for offset in ["signed", "positive", "gaussian"] {
         let code: Offset = serde_json::from_value(json!(offset)).unwrap_or_default();
         let pass = WrapPass::with_order(cases.gpu, code, None, order)?;
@@ -40,7 +40,7 @@ fn in_order(cases: &mut Cases<'_>, order: Order, most: u32) -> Result<(), Error>
                 "offset": offset, "corners": corners,
             }))?;
             let patches: &[_] = if exponent < 10 { &[[0, 0], [-3, 7], [4, 4]] } else { &[[-1, 2]] };
-            check(cases, (&pass, order), &config, &Features::default(), patches)?;
+            check(cases, (&pass, order), &config, &Features::default(), patches).await?;
         }
     }
     for mode in [FeatureMode::Keep, FeatureMode::Additive] {
@@ -49,13 +49,13 @@ fn in_order(cases: &mut Cases<'_>, order: Order, most: u32) -> Result<(), Error>
             let config =
                 config(&json!({"patchSize": size, "scaleFactor": 40.0, "seed": "wrap", "border": "wrap"}))?;
             let features = scattered(&config, [2, -3], mode, 50 + case as u32)?;
-            check(cases, (&pass, order), &config, &features, &[[2, -3], [3, -2], [7, 7]])?;
+            check(cases, (&pass, order), &config, &features, &[[2, -3], [3, -2], [7, 7]]).await?;
         }
     }
     Ok(())
 }
 
-fn check(
+async fn check(
     cases: &mut Cases<'_>,
     (pass, order): (&WrapPass, Order),
     config: &Config,
@@ -69,12 +69,12 @@ fn check(
     let buffers = WrapBuffers { output: &output.buffer, scratch: &scratch };
     let job = pass.prepare(gpu, config, count, features.len(), buffers)?;
     job.set(gpu, patches, features)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> = patches.iter().flat_map(|&patch| wrap(config, features, patch)).collect();
     let injection = features.injection().map_or(String::new(), |mode| format!(" {mode:?} features"));
     let name =
         format!("{0}×{0} {1:?} × {count}{injection}, {2} rows", config.patch_size, config.offset, order.rows);
-    cases.add(name, output.check(gpu, |actual| exact(actual, &expected))?);
+    cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
     Ok(())
 }
 

@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 
+use crate::distance::Options;
+use crate::reduce::Normals;
+use crate::reduce::Reducer;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use relievo::InputError;
 use relievo::asset::Model;
-use relievo::mesh::distance::Options;
-use relievo::mesh::reduce::Reducer;
 use relievo::skinning::at_rest;
-use relievo::skinning::reduced::Normals;
 use serde::Serialize;
 
 use crate::measure::progress::Listener;

@@ -4,12 +4,12 @@
 pub use compare::{ReducerComparison, ReducerLevel, ReducerRow};
 use std::time::Instant;
 
+use crate::distance::{Distance, Options};
+use crate::reduce::{Limits, Reducer};
+use crate::reduce::{Normals, ReducedModel, reduce_model};
 use relievo::InputError;
 use relievo::asset::Model;
-use relievo::mesh::distance::{Distance, Options};
-use relievo::mesh::reduce::{Limits, Reducer};
 use relievo::skinning::at_rest;
-use relievo::skinning::reduced::{Normals, ReducedModel, reduce_model};
 
 use crate::measure::progress::{Listener, Steps, during};
 

@@ -1,7 +1,7 @@
 //! The search for levels within an error.
 
+use crate::distance::Options;
 use relievo::InputError;
-use relievo::mesh::distance::Options;
 
 use crate::measure::reduction::{MeasuredLevel, Run};
 

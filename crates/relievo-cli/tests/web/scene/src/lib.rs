@@ -74,3 +74,15 @@ async fn made() -> Result<Vec<String>, relievo::Error> {
     let kept = format!("{:?}", buffer.read(&gpu).await?);
     Ok(vec![at_once, later, kept])
 }
+
+/// Runs the parity cases of the kernels whose names contain `only`: the number of cases, and then those that fail.
+#[wasm_bindgen]
+pub async fn parity(only: String) -> Result<Vec<String>, JsValue> {
+    let run = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        relievo_lab::verify::run_async(&gpu, Some(&only), &mut |_| ()).await
+    };
+    let report = run.await.map_err(|error| JsValue::from_str(&error.to_string()))?;
+    let wrong = report.cases.iter().filter(|case| !case.comparison.holds).map(|case| format!("{case:?}"));
+    Ok(std::iter::once(report.cases.len().to_string()).chain(wrong).collect())
+}

@@ -21,11 +21,11 @@ mod meshes;
 ///
 /// # Errors
 /// What the device reports.
-pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
+pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = TangentPass::new(cases.gpu)?;
     for (name, mesh, expected) in literals() {
         let expected = expected.map(|tangent| Frame { tangent, sensitivity: 1.0 });
-        check(cases, &pass, name, &mesh, &expected, None)?;
+        check(cases, &pass, name, &mesh, &expected, None).await?;
     }
     let mut meshes = Vec::new();
     for vertices in [1, 2, 63, 64, 65, 127, 128, 129, 5000] {
@@ -42,11 +42,11 @@ pub(crate) fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     meshes.push(("normals that are none".to_owned(), with_strange_normals(torus(21, 13))));
     for (name, mesh) in meshes {
         let (mesh, expected, left_out) = settled(mesh)?;
-        check(cases, &pass, &name, &mesh, &expected, Some(left_out))?;
+        check(cases, &pass, &name, &mesh, &expected, Some(left_out)).await?;
     }
     for (name, mesh) in thresholds() {
         let expected = frames(&mesh.mesh())?;
-        check(cases, &pass, name, &mesh, &expected, None)?;
+        check(cases, &pass, name, &mesh, &expected, None).await?;
     }
     Ok(())
 }
@@ -65,7 +65,7 @@ fn settled(mut mesh: Owned) -> Result<(Owned, Vec<Frame>, LeftOut), Error> {
     Ok((mesh, expected, left_out))
 }
 
-fn check(
+async fn check(
     cases: &mut Cases<'_>,
     pass: &TangentPass,
     name: &str,
@@ -77,17 +77,17 @@ fn check(
     let output = Poisoned::<[f32; 4]>::new(gpu, expected.len())?;
     let buffers = TangentBuffers::new(gpu, &mesh.mesh())?;
     let job = pass.prepare(gpu, &buffers, &output.buffer)?;
-    gpu.run("verify", |encoder| job.record(encoder))?;
-    let tangents = output.check(gpu, |actual| directions(actual, expected))?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
+    let tangents = output.check(gpu, |actual| directions(actual, expected)).await?;
     let tangents = match left_out {
         Some(left_out) => tangents.leaving_out(left_out),
         None => tangents,
     };
     cases.add(format!("{name}: tangents"), tangents);
     let handedness: Vec<f32> = expected.iter().map(|frame| frame.tangent[3]).collect();
-    let comparison = output.check(gpu, |actual| {
-        exact(&actual.iter().map(|tangent| tangent[3]).collect::<Vec<_>>(), &handedness)
-    })?;
+    let comparison = output
+        .check(gpu, |actual| exact(&actual.iter().map(|tangent| tangent[3]).collect::<Vec<_>>(), &handedness))
+        .await?;
     cases.add(format!("{name}: handedness"), comparison);
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What a reducer leaves of a mesh.
 
-use crate::mesh::simplify::{Stopped, Surface};
+use relievo::mesh::simplify::{Stopped, Surface};
 
 /// A reduced mesh, which has only the vertices that its triangles use.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Reduced {
     pub vertices: Vec<u32>,
     /// For each triangle, the triangle of the input from which it comes: its material, say, is that one's.
     pub triangles: Vec<u32>,
-    /// How far the result is from the input in units of positions, as the reducer estimates it; see [`super::Reducer`].
+    /// How far the result is from the input in units of positions, as the reducer estimates it; see [`crate::reduce::Reducer`].
     pub error: f32,
     /// Why the reducer stopped.
     pub stopped: Stopped,
@@ -44,7 +44,7 @@ impl Reduced {
             words.push(part.len() as u32);
             words.extend(part);
         }
-        crate::hash::sha256(&words)
+        relievo::hash::sha256(&words)
     }
 
     /// The mesh of triangles whose corners are vertices of the input.

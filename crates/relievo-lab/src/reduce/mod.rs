@@ -1,7 +1,7 @@
 //! All reducers behind one interface, for comparison (A sections 4 and 5): the same surface with fewer triangles, whatever the
 //! operator is.
 //!
-//! [`simplify()`](crate::mesh::simplify()) is what most programs want: it records every level in one run. Other operators
+//! [`simplify()`](relievo::mesh::simplify()) is what most programs want: it records every level in one run. Other operators
 //! place new vertices, join separate parts or remove what is small. Triangle collapse and the merging of polygons, which A
 //! describes too, are sequences of edge collapses and of vertex removals.
 //!
@@ -21,31 +21,33 @@
 //! Every reducer gives the same result on every machine: the code uses only `+ − × ÷` and square roots, in a fixed order, and
 //! ties go to the lower index.
 
+pub use model::{Normals, ReducedModel, reduce_model};
+pub use reduced::Reduced;
+
+use std::str::FromStr;
+
+use contract::{Contraction, Pairs};
+use importance::Graded;
+use relievo::InputError;
+use relievo::mesh::cluster::MAX_CELLS;
+use relievo::mesh::simplify::{Cost, Seams, Surface, validate};
+use removal::Removal;
+
 mod contract;
 mod half_edge;
 mod importance;
 mod mesh;
+mod model;
 mod plane_quadric;
 mod reduced;
 mod removal;
 mod steps;
 mod uniform;
 
-use std::str::FromStr;
-
-use contract::{Contraction, Pairs};
-use importance::Graded;
-pub use reduced::Reduced;
-use removal::Removal;
-
-use crate::InputError;
-use crate::mesh::cluster::MAX_CELLS;
-use crate::mesh::simplify::{Cost, Seams, Surface, validate};
-
 /// The operator that takes triangles away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reducer {
-    /// Merges points into their neighbours: [`simplify()`](crate::mesh::simplify()), whose legality holds. Poses count as
+    /// Merges points into their neighbours: [`simplify()`](relievo::mesh::simplify()), whose legality holds. Poses count as
     /// they do there.
     HalfEdge {
         /// The cost function of collapses.
@@ -70,7 +72,7 @@ pub enum Reducer {
         /// The largest distance of such a pair, as a fraction of the diagonal of the bounding box, from 0 to 1.
         distance: f32,
     },
-    /// Clusters vertices in the cells of a uniform grid: [`cluster`](crate::mesh::cluster::reference::cluster()), which also
+    /// Clusters vertices in the cells of a uniform grid: [`cluster`](relievo::mesh::cluster::reference::cluster()), which also
     /// runs on the device, and which says what is promised. The grid is the finest one, as bisection finds it, that leaves
     /// few enough triangles; if its error is too large, the coarsest with an error that is not.
     UniformClustering {
@@ -142,7 +144,8 @@ impl Reducer {
     /// Reduces a mesh until a limit is reached.
     ///
     /// ```
-    /// use relievo::mesh::{Limits, Reducer, Surface};
+    /// use relievo::mesh::Surface;
+    /// use relievo_lab::reduce::{Limits, Reducer};
     ///
     /// // A square of four triangles around its middle.
     /// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.0]];
@@ -165,7 +168,7 @@ impl Reducer {
     /// are stages of one sequence, it is computed once.
     ///
     /// # Errors
-    /// [`InputError`] as [`simplify()`](crate::mesh::simplify()) for the surface, for an error that is negative or NaN, for
+    /// [`InputError`] as [`simplify()`](relievo::mesh::simplify()) for the surface, for an error that is negative or NaN, for
     /// parameters outside of their bounds, and for several poses, which [`Reducer::HalfEdge`] alone takes.
     pub fn reduce_each(&self, surface: &Surface<'_>, limits: &[Limits]) -> Result<Vec<Reduced>, InputError> {
         validate(surface)?;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::tree::{Near, Tree};
+use crate::distance::tree::{Near, Tree};
 
 /// A cut leaves at least this fraction of the piece's extent across it on either side.
 const LEAST_PART: f64 = 0.05;

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Surface;
-use super::tree::Tree;
+use crate::distance::Surface;
+use crate::distance::tree::Tree;
 
 /// The number of triangles that are sampled one after another.
 const CHUNK: usize = 256;

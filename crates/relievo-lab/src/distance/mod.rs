@@ -31,16 +31,15 @@
 //!
 //! Everything is computed in double precision. Results do not depend on the number of threads.
 
+use glam::DVec3;
+use relievo::InputError;
+use relievo::asset::indices::check_triangles;
+use tree::Tree;
+
 mod bound;
 mod pieces;
 mod rms;
 mod tree;
-
-use glam::DVec3;
-
-use crate::InputError;
-use crate::asset::indices::check_triangles;
-use tree::Tree;
 
 /// Triangles of a surface.
 #[derive(Debug, Clone, Copy)]
@@ -106,7 +105,7 @@ impl Distance {
 /// Measures how far two surfaces are apart.
 ///
 /// ```
-/// use relievo::mesh::distance::{Options, Triangles, distance};
+/// use crate::distance::{Options, Triangles, distance};
 ///
 /// // Two parallel triangles; a corner of the second leans away.
 /// let low = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];

@@ -6,10 +6,10 @@ use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::DVec3;
+use relievo::mesh::simplify::{Stopped, Surface, weld};
 
-use super::mesh::Mesh;
-use super::{Limits, Reduced};
-use crate::mesh::simplify::{Stopped, Surface, weld};
+use crate::reduce::mesh::Mesh;
+use crate::reduce::{Limits, Reduced};
 
 /// Steps of the search for a radius; each halves what is left of the diagonal.
 const STEPS: usize = 20;

@@ -1,8 +1,9 @@
 //! The reducers that are [`simplify()`]: stages of its recorded sequence.
 
-use super::{Limits, Reduced};
-use crate::InputError;
-use crate::mesh::simplify::{Cost, Options, Seams, Simplified, Stopped, Surface, simplify};
+use relievo::InputError;
+use relievo::mesh::simplify::{Cost, Options, Seams, Simplified, Stopped, Surface, simplify};
+
+use crate::reduce::{Limits, Reduced};
 
 /// Simplifies once, as far as any of the limits asks for, and takes a prefix of the sequence for each of them.
 pub(super) fn reduce(

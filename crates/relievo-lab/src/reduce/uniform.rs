@@ -1,10 +1,11 @@
 //! Uniform clustering: [`cluster()`] in the finest grid that leaves few enough triangles.
 
-use super::{Limits, Reduced};
-use crate::InputError;
-use crate::mesh::cluster::Grid;
-use crate::mesh::cluster::reference::{Clustered, cluster};
-use crate::mesh::simplify::{Stopped, Surface};
+use relievo::InputError;
+use relievo::mesh::cluster::Grid;
+use relievo::mesh::cluster::reference::{Clustered, cluster};
+use relievo::mesh::simplify::{Stopped, Surface};
+
+use crate::reduce::{Limits, Reduced};
 
 /// A grid's result, with the largest distance between a vertex and its representative.
 struct Tried {

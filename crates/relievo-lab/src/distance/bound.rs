@@ -6,9 +6,9 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Surface;
-use super::pieces::{Corner, Piece};
-use super::tree::Tree;
+use crate::distance::Surface;
+use crate::distance::pieces::{Corner, Piece};
+use crate::distance::tree::Tree;
 
 /// The number of pieces that are divided at a time, the furthest first, whatever the number of threads.
 const BATCH: usize = 1024;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::mesh::reduce::mesh::Mesh;
+use crate::reduce::mesh::Mesh;
 
 /// For each point those with which it makes a pair, ascending: with each point, the nearest one of another part within a
 /// fraction of the diagonal of all places; of several the lowest. A part is what edges connect.

@@ -1,17 +1,17 @@
 //! Removal of vertices (Schroeder, Zarge and Lorensen, "Decimation of Triangle Meshes", SIGGRAPH 1992): the point that is
 //! nearest to the average plane of its triangles goes first, and the hole that it leaves is triangulated again.
 
-mod hole;
-
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use glam::DVec3;
+use relievo::mesh::simplify::{Stopped, Surface};
 
-use super::Reduced;
-use super::mesh::{Corner, Fan, Ring, normal};
-use super::steps::{Solid, Steps};
-use crate::mesh::simplify::{Stopped, Surface};
+use crate::reduce::Reduced;
+use crate::reduce::mesh::{Corner, Fan, Ring, normal};
+use crate::reduce::steps::{Solid, Steps};
+
+mod hole;
 
 /// The cosine of the angle between triangles from which their edge is a feature: 45°.
 const FEATURE: f64 = std::f64::consts::FRAC_1_SQRT_2;

@@ -1,10 +1,10 @@
 //! Reducers that go step by step: one run passes all limits.
 
 use glam::DVec3;
+use relievo::mesh::simplify::{Stopped, Surface};
 
-use super::mesh::{Frame, Mesh};
-use super::{Limits, Reduced};
-use crate::mesh::simplify::{Stopped, Surface};
+use crate::reduce::mesh::{Frame, Mesh};
+use crate::reduce::{Limits, Reduced};
 
 /// A mesh, and where its points lie in a frame.
 pub(super) struct Solid {

@@ -4,15 +4,16 @@
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, Vec3};
+use relievo::InputError;
+use relievo::asset::mesh::{smooth_normals, solved_tangents};
+use relievo::asset::{Influence, Influences, Mesh, Model};
+use relievo::mesh::simplify::{Seams, Stopped, Surface};
+use relievo::skinning::at_rest;
+use relievo::skinning::attribute_weights::{NORMAL, TextureArea, shown_uv};
 
-use super::at_rest;
-use super::attribute_weights::{NORMAL, TextureArea, shown_uv};
-use crate::InputError;
-use crate::asset::mesh::{smooth_normals, solved_tangents};
-use crate::asset::{Influence, Influences, Mesh, Model};
-use crate::mesh::distance::{self, Distance, Triangles};
-use crate::mesh::reduce::{Limits, Reduced, Reducer};
-use crate::mesh::simplify::{Seams, Stopped, Surface};
+use crate::distance;
+use crate::distance::{Distance, Triangles};
+use crate::reduce::{Limits, Reduced, Reducer};
 
 /// What normals of a reduced model are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

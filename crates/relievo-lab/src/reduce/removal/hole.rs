@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::Loop;
-use crate::mesh::reduce::mesh::{Corner, Mesh, normal};
+use crate::reduce::mesh::{Corner, Mesh, normal};
+use crate::reduce::removal::Loop;
 
 /// The triangles that fill a loop: none for two points. Each split is at the chord with the best aspect ratio: the distance
 /// of the nearest point of the loop from the plane through the chord and across the average plane, divided by the chord's

@@ -1,10 +1,10 @@
 //! How a pair of points would be contracted: which of them stays, where it goes, and what becomes of wedges.
 
-use super::{Contraction, Pairs};
+use crate::reduce::contract::{Contraction, Pairs};
 
 /// A contraction.
 #[derive(Debug, Clone)]
-pub(in crate::mesh::reduce) struct Plan {
+pub(in crate::reduce) struct Plan {
     pub(super) gone: u32,
     pub(super) keep: u32,
     /// Where the point that is kept goes, in the model's units.

@@ -1,20 +1,20 @@
 //! Contraction of pairs of points to the best place (Garland and Heckbert, "Surface Simplification Using Quadric Error
 //! Metrics", SIGGRAPH 1997): the cheapest legal pair first.
 
-mod pairs;
-mod plan;
-
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
 use glam::DVec3;
-
-use super::Reduced;
-use super::mesh::{Corner, Mesh, normal};
-use super::plane_quadric::PlaneQuadric;
-use super::steps::{Solid, Steps};
-use crate::mesh::simplify::{Stopped, Surface};
 use plan::Plan;
+use relievo::mesh::simplify::{Stopped, Surface};
+
+use crate::reduce::Reduced;
+use crate::reduce::mesh::{Corner, Mesh, normal};
+use crate::reduce::plane_quadric::PlaneQuadric;
+use crate::reduce::steps::{Solid, Steps};
+
+mod pairs;
+mod plan;
 
 /// Which pairs are contracted.
 #[derive(Debug, Clone, Copy, PartialEq)]
