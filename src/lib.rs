@@ -32,8 +32,7 @@
 //!
 //! Beside the library there are `relievo-samples` (a creature with clips, and height maps with their colours), `relievo-lab`
 //! (it compares every kernel with its reference, measures it against a copy of the same bytes, and says what level of detail
-//! costs and shows on the caller's own data), and the program `relievo-cli`. [`baseline`] has the kernels that move bytes alone,
-//! against which others are measured.
+//! costs and shows on the caller's own data), and the program `relievo-cli`.
 //!
 //! [`srgb`] converts between bytes and linear light. [`mod@hash`] draws counter-based random words. [`error`] names
 //! invalid input by path, value and bound.
@@ -95,8 +94,6 @@ extern crate self as relievo;
 
 pub mod animation;
 pub mod asset;
-#[cfg(feature = "gpu")]
-pub mod baseline;
 pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -112,6 +109,7 @@ mod samples;
 pub mod scene;
 #[cfg(feature = "gpu")]
 pub mod scene_file;
+#[doc(hidden)]
 pub mod shared;
 pub mod skinning;
 pub mod srgb;

@@ -10,7 +10,7 @@ const FLOORS: &[&[&str]] = &[
     &["asset", "gpu"],
     &["mesh"],
     &["animation", "surface", "terrain"],
-    &["baseline", "skinning"],
+    &["skinning"],
     &["lod"],
     &["scene"],
     &["render"],
@@ -381,6 +381,17 @@ const FILES: [&str; 3] = ["mod", "reference", "pass"];
 const WITHOUT_A_KERNEL: [(&str, &str); 1] =
     [("animation/frame", "records the passes of other operations one after another")];
 
+/// Kernels that only the laboratory runs, each with its folder in `crates/relievo-lab/src`.
+const OF_THE_LABORATORY: [(&str, &str); 7] = [
+    ("baseline/copy", "baseline/copy"),
+    ("baseline/gather", "baseline/gather"),
+    ("baseline/loads", "baseline/loads"),
+    ("baseline/texels", "baseline/texels"),
+    ("baseline/words", "baseline/words"),
+    ("mesh/cluster", "reduce/cluster"),
+    ("surface/shade", "shade"),
+];
+
 /// What is wrong with the folders of operations, given the files below `src/` and the kernels' paths below
 /// `kernels/` without extension: a kernel without a folder, a folder that lacks a file, a folder without a
 /// kernel, and an exception that is none.
@@ -432,7 +443,18 @@ fn kernels() -> Vec<String> {
 
 #[test]
 fn every_kernel_has_a_folder_with_all_its_files_and_every_folder_a_kernel() {
-    let (sources, kernels) = (sources(), kernels());
+    let (sources, mut kernels) = (sources(), kernels());
+    let laboratory = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/relievo-lab/src");
+    for (kernel, folder) in OF_THE_LABORATORY {
+        assert!(kernels.iter().any(|name| name == kernel), "{kernel} is no kernel");
+        for file in FILES {
+            assert!(
+                laboratory.join(folder).join(file).with_extension("rs").is_file(),
+                "{folder} lacks {file}.rs"
+            );
+        }
+    }
+    kernels.retain(|name| OF_THE_LABORATORY.iter().all(|(kernel, _)| name != kernel));
     assert!(!kernels.is_empty());
     let files: Vec<&str> = sources.iter().map(|source| source.path.as_str()).collect();
     let exceptions = WITHOUT_A_KERNEL.map(|(folder, _)| folder);

@@ -12,7 +12,7 @@ pub(crate) mod prelude {
 
 /// A storage buffer to bind, by the type of its elements.
 #[derive(Debug)]
-pub(crate) struct Slice<'a, T> {
+pub struct Slice<'a, T> {
     raw: &'a wgpu::Buffer,
     element: PhantomData<T>,
 }
@@ -27,13 +27,13 @@ impl<T> Copy for Slice<'_, T> {}
 
 impl<'a, T> Slice<'a, T> {
     /// The whole buffer.
-    pub(crate) fn resource(&self) -> wgpu::BindingResource<'a> {
+    pub fn resource(&self) -> wgpu::BindingResource<'a> {
         self.raw.as_entire_binding()
     }
 
     /// The same bytes as elements of the type that a shader sees. The size of one type must be a multiple of the
     /// other's.
-    pub(crate) fn cast<U>(self) -> Slice<'a, U>
+    pub fn cast<U>(self) -> Slice<'a, U>
     where
         T: SeenAs<U>,
     {
@@ -46,7 +46,7 @@ impl<'a, T> Slice<'a, T> {
 }
 
 /// What a shader may see as elements of `U`, which have the same bytes: rows of a matrix, say.
-pub(crate) trait SeenAs<U> {}
+pub trait SeenAs<U> {}
 
 // Rows.
 impl<const N: usize> SeenAs<[f32; 4]> for [[f32; 4]; N] {}
@@ -66,7 +66,7 @@ impl<const N: usize> SeenAs<u32> for [f32; N] {}
 
 impl<T> Buffer<T> {
     /// The buffer as a resource to bind.
-    pub(crate) fn slice(&self) -> Slice<'_, T> {
+    pub fn slice(&self) -> Slice<'_, T> {
         Slice { raw: &self.raw, element: PhantomData }
     }
 }

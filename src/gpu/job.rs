@@ -5,13 +5,13 @@ use super::{Gpu, GpuError};
 
 /// One dispatch with its pipeline and bind groups.
 #[derive(Debug, Clone)]
-pub(crate) struct Step {
+pub struct Step {
     /// The pipeline.
-    pub(crate) kernel: Kernel,
+    pub kernel: Kernel,
     /// Its bind groups, in order.
-    pub(crate) groups: Vec<Group>,
+    pub groups: Vec<Group>,
     /// Workgroups along x, y and z.
-    pub(crate) workgroups: [u32; 3],
+    pub workgroups: [u32; 3],
 }
 
 impl Step {
@@ -47,7 +47,7 @@ impl Job {
     ///
     /// # Errors
     /// [`GpuError::Limit`] when a dispatch is too large.
-    pub(crate) fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
         let available = gpu.device().limits().max_compute_workgroups_per_dimension;
         let needed = steps.iter().flat_map(|step| step.workgroups).max().unwrap_or(0);
         if needed > available {

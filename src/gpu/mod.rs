@@ -10,8 +10,10 @@
 //! says so.
 
 mod adapter;
-pub(crate) mod bind;
-pub(crate) mod bindings;
+#[doc(hidden)]
+pub mod bind;
+#[doc(hidden)]
+pub mod bindings;
 mod buffer;
 mod errors;
 mod identity;
@@ -37,8 +39,7 @@ pub use crate::error::GpuError;
 pub use adapter::adapters;
 pub use adapter::{AdapterSummary, Options};
 pub use buffer::{Buffer, Uniform};
-pub(crate) use job::Step;
-pub use job::{IndirectJob, Job, compute_pass};
+pub use job::{IndirectJob, Job, Step, compute_pass};
 pub use kernel::{Group, Kernel};
 pub(crate) use kernel::{Layouts, rows_of_workgroups};
 pub use memory::Memory;

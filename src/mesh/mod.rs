@@ -1,7 +1,6 @@
 //! Simplification of meshes: the same surface with fewer triangles (A sections 2 to 5, B sections 3.2 and 4.3), and the
 //! distance that it leaves.
 
-pub mod cluster;
 pub mod nearest;
 pub mod progressive;
 pub mod ray;

@@ -17,7 +17,6 @@ pub mod mips;
 mod options;
 pub mod picture;
 pub mod relief;
-pub mod shade;
 pub mod tangent;
 pub mod view;
 
@@ -37,5 +36,4 @@ pub use options::ReliefOptions;
 #[cfg(feature = "gpu")]
 pub use relief::textures::SurfaceTextures;
 pub use relief::{Hit, March, Method, Outcome, Ray};
-pub use shade::{Shade, ShadePoint, ShadeView};
 pub use view::SquareView;

@@ -1,7 +1,9 @@
 //! The laboratory of relievo: it proves and measures what the library does, on the adapter at hand.
 //!
 //! [`verify`] compares every kernel with its CPU reference (`relievo verify`), and [`mod@bench`] measures it against a copy of
-//! the same bytes (`relievo bench`). [`OPERATIONS`] lists the cases of both; [`harness`] has comparators and clocks.
+//! the same bytes (`relievo bench`). [`OPERATIONS`] lists the cases of both,
+//! [`baseline`] has kernels that only move bytes, against which others are measured, [`shade`] one that lists the colours that
+//! shading gives; [`harness`] has comparators and clocks.
 //!
 //! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
 //! models, and surface mapping on height maps. [`files`] writes reports and pictures whole or not at all. [`plot`] draws
@@ -15,6 +17,7 @@
     allow(dead_code, unused_imports, reason = "benchmarks wait for the device")
 )]
 
+pub mod baseline;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod bench;
 pub mod cases;
@@ -26,6 +29,7 @@ pub mod harness;
 pub mod measure;
 pub mod plot;
 pub mod reduce;
+pub mod shade;
 pub mod verify;
 
 pub use cases::{OPERATIONS, Operation};

@@ -4,12 +4,9 @@ use relievo_testing as harness;
 
 use glam::Vec4;
 use relievo::gpu::Buffer;
-use relievo::mesh::cluster::reference::cluster;
-use relievo::mesh::cluster::{ClusterBuffers, ClusterCounts, ClusterPass, Grid, Representative};
 use relievo::surface::relief::ReliefPass;
 use relievo::surface::relief::reference::Surface;
-use relievo::surface::shade::ShadePass;
-use relievo::surface::{HeightMap, Hit, March, Method, Ray, Shade, ShadePoint, ShadeView, SurfaceTextures};
+use relievo::surface::{HeightMap, Hit, March, Method, Ray, SurfaceTextures};
 use relievo::terrain::morph::{Morph, MorphBuffers, MorphPass};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::relief::hits;
@@ -20,6 +17,10 @@ use relievo_lab::harness::CaseResult;
 use relievo_lab::harness::compare::LeftOut;
 use relievo_lab::harness::compare::{absolute, exact, levels, relative, ulps};
 use relievo_lab::harness::poison::{POISON, Poisoned};
+use relievo_lab::reduce::cluster::reference::cluster;
+use relievo_lab::reduce::cluster::{ClusterBuffers, ClusterCounts, ClusterPass, Grid, Representative};
+use relievo_lab::shade::ShadePass;
+use relievo_lab::shade::{Shade, ShadePoint, ShadeView};
 use relievo_lab::{OPERATIONS, verify};
 
 #[test]

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use relievo::mesh::cluster::Grid;
-use relievo::mesh::cluster::reference::cluster;
+use relievo_lab::reduce::cluster::Grid;
+use relievo_lab::reduce::cluster::reference::cluster;
 use relievo_lab::reduce::{Limits, Reducer};
 
 use super::to;

@@ -75,7 +75,7 @@ fn decided() {
     let _ = |gate| matches!(gate, relievo::animation::Gate::SkipPeriod { .. }); // animation::Gate::SkipPeriod
     let _ = relievo_lab::reduce::Reducer::ALL; // reduce::Reducer::ALL
     let _ = |cost| matches!(cost, relievo::mesh::Cost::Melax { .. }); // mesh::Cost::Melax
-    let _ = relievo_lab::reduce::Normals::Recompute; // skinning::Normals::Recompute
+    let _ = relievo_lab::reduce::Normals::Recompute; // reduce::Normals::Recompute
     let _ = relievo::surface::Method::Parallax; // surface::Method::Parallax
     let _ = |march: relievo::surface::March| march.steps; // surface::March::steps
     let _ = |material: relievo::surface::Material| material.plane; // surface::Material::plane

@@ -26,13 +26,14 @@ pub use reduced::Reduced;
 
 use std::str::FromStr;
 
+use crate::reduce::cluster::MAX_CELLS;
 use contract::{Contraction, Pairs};
 use importance::Graded;
 use relievo::InputError;
-use relievo::mesh::cluster::MAX_CELLS;
 use relievo::mesh::simplify::{Cost, Seams, Surface, validate};
 use removal::Removal;
 
+pub mod cluster;
 mod contract;
 mod half_edge;
 mod importance;
@@ -72,7 +73,7 @@ pub enum Reducer {
         /// The largest distance of such a pair, as a fraction of the diagonal of the bounding box, from 0 to 1.
         distance: f32,
     },
-    /// Clusters vertices in the cells of a uniform grid: [`cluster`](relievo::mesh::cluster::reference::cluster()), which also
+    /// Clusters vertices in the cells of a uniform grid: [`cluster`](crate::reduce::cluster::reference::cluster()), which also
     /// runs on the device, and which says what is promised. The grid is the finest one, as bisection finds it, that leaves
     /// few enough triangles; if its error is too large, the coarsest with an error that is not.
     UniformClustering {

@@ -1,8 +1,8 @@
 //! Uniform clustering: [`cluster()`] in the finest grid that leaves few enough triangles.
 
+use crate::reduce::cluster::Grid;
+use crate::reduce::cluster::reference::{Clustered, cluster};
 use relievo::InputError;
-use relievo::mesh::cluster::Grid;
-use relievo::mesh::cluster::reference::{Clustered, cluster};
 use relievo::mesh::simplify::{Stopped, Surface};
 
 use crate::reduce::{Limits, Reduced};

@@ -13,9 +13,9 @@ use relievo::asset::keyframe::{KeyframeCursor, RotationPath};
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 use relievo::gpu::{Gpu, Job};
 
+use crate::baseline::gather::Reads;
 use crate::cases::animation::plain_soa::PlainSoa;
 use crate::cases::animation::scene::{ELAPSED, Scene};
-use relievo::baseline::gather::Reads;
 
 /// A frame computed by the kernels.
 pub(crate) struct DeviceFrame {

@@ -15,6 +15,7 @@ use relievo::asset::keyframe::{KeyframeCursor, RotationPath};
 use relievo::asset::transform::Transform;
 use relievo::gpu::Gpu;
 
+use crate::baseline::gather::Reads;
 use crate::cases::animation::edges::{ELAPSED, edges};
 use crate::cases::animation::plain_soa::PlainSoa;
 use crate::cases::animation::scene::{CROWDS, KEYS, Scene};
@@ -24,7 +25,6 @@ use crate::cases::terrain::copy_of;
 use crate::harness::compare::LeftOut;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Backend, Bench, Cases, Contender, compare};
-use relievo::baseline::gather::Reads;
 
 /// The cases cover every interpolation, at the reference's cursors: every pair, and lists of some pairs, of
 /// none and of all; crowds of one layer and of several. Pairs that are not listed must stay unchanged.

@@ -15,8 +15,8 @@ use relievo::asset::skeleton::Skeleton;
 use relievo::gpu::{Gpu, Job};
 use relievo_samples::creature;
 
+use crate::baseline::gather::{GatherPass, Reads};
 use crate::cases::terrain::copy_of;
-use relievo::baseline::gather::{GatherPass, Reads};
 
 /// Numbers of instances of the cases.
 pub(crate) const CROWDS: [usize; 3] = [100, 1000, 10_000];

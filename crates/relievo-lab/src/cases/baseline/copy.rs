@@ -5,12 +5,12 @@
 use relievo::Error;
 use relievo::gpu::Buffer;
 
+use crate::baseline::copy::reference::copy;
+use crate::baseline::copy::{CopyBuffers, CopyPass};
+use crate::baseline::words::reference::words;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::copy::reference::copy;
-use relievo::baseline::copy::{CopyBuffers, CopyPass};
-use relievo::baseline::words::reference::words;
 
 /// The cases cover lengths around workgroup boundaries.
 ///

@@ -11,14 +11,14 @@ use relievo::animation::instance::{Instance, Wrap};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::KeyframeCursor;
 
+use crate::baseline::gather::reference::{gather, gather_keys};
+use crate::baseline::gather::{GatherPass, Reads};
 use crate::cases::animation::scene::{KEYS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_skeleton};
 use crate::cases::terrain::copy_of;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::gather::reference::{gather, gather_keys};
-use relievo::baseline::gather::{GatherPass, Reads};
 
 /// The cases cover numbers of bones and instances around workgroup boundaries, few keys and many, two clips,
 /// and the keys of the first clip alone.

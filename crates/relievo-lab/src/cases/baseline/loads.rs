@@ -6,13 +6,13 @@ use relievo::surface::map::Address;
 use relievo::surface::relief::Method;
 use relievo::surface::relief::textures::SurfaceTextures;
 
+use crate::baseline::copy::{CopyBuffers, CopyPass};
+use crate::baseline::loads::LoadsPass;
+use crate::baseline::loads::reference::loads;
 use crate::cases::surface::{Shape, random_map};
 use crate::harness::compare::absolute;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::copy::{CopyBuffers, CopyPass};
-use relievo::baseline::loads::LoadsPass;
-use relievo::baseline::loads::reference::loads;
 
 /// The cases cover sizes around the workgroup's, more threads than texels, and no loads at all.
 ///

@@ -8,12 +8,12 @@ use relievo::terrain::cover::Cover;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::texture::Texture;
 
+use crate::baseline::texels::TexelsPass;
+use crate::baseline::texels::reference::texels;
 use crate::cases::terrain::{copy_of, random_heights, some_windows};
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::texels::TexelsPass;
-use relievo::baseline::texels::reference::texels;
 
 /// The cases cover sizes around the four pixels of a thread and around blocks of rows, one zone and several, both numbers of
 /// planes, and textures of two sizes that repeat.

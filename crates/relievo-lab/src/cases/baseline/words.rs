@@ -3,12 +3,12 @@
 use relievo::Error;
 use relievo::gpu::Buffer;
 
+use crate::baseline::copy::{CopyBuffers, CopyPass};
+use crate::baseline::words::WordsPass;
+use crate::baseline::words::reference::words;
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::copy::{CopyBuffers, CopyPass};
-use relievo::baseline::words::WordsPass;
-use relievo::baseline::words::reference::words;
 
 /// The cases cover sizes around workgroup boundaries, and keys of all kinds.
 ///

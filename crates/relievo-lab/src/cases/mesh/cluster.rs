@@ -1,9 +1,9 @@
 //! Parity and benchmark cases of `kernels/mesh/cluster.wgsl`.
 
+use crate::reduce::cluster::reference::{Clustered, cluster};
+use crate::reduce::cluster::{ClusterBuffers, ClusterCounts, ClusterPass, Grid, Representative};
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::mesh::cluster::reference::{Clustered, cluster};
-use relievo::mesh::cluster::{ClusterBuffers, ClusterCounts, ClusterPass, Grid, Representative};
 
 use crate::cases::surface::tangent::torus;
 use crate::cases::terrain::{copy_of, random_words};

@@ -16,8 +16,8 @@ use relievo::surface::relief::Ray;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::{Error, InputError};
 
+use crate::baseline::loads::LoadsPass;
 use crate::cases::terrain::random_words;
-use relievo::baseline::loads::LoadsPass;
 
 /// The shapes of random maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

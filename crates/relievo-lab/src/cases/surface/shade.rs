@@ -2,6 +2,8 @@
 //!
 //! bare texel loads.
 
+use crate::shade::reference::shade_all;
+use crate::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 use glam::{Mat4, Vec3, Vec4, camera};
 use relievo::gpu::Buffer;
 use relievo::surface::Material;
@@ -11,8 +13,6 @@ use relievo::surface::relief::reference::height::BILINEAR;
 use relievo::surface::relief::reference::shadow::light_ray;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::relief::{March, Method, Ray};
-use relievo::surface::shade::reference::shade_all;
-use relievo::surface::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 use relievo::{Error, InputError};
 use relievo_samples::BuiltInMap;
 

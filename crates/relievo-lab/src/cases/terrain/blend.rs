@@ -10,11 +10,11 @@ use relievo::terrain::cover::Cover;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::texture::Texture;
 
+use crate::baseline::texels::TexelsPass;
 use crate::cases::terrain::{copy_of, random_heights, some_windows};
 use crate::harness::compare::{Comparison, LeftOut, levels};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::texels::TexelsPass;
 
 /// One pixel in this many may differ: rounding changes 1 in 50, and a curve that is 1/20 of a level wrong 1 in 10.
 const MOST_DIFFER: usize = 20;

@@ -13,11 +13,11 @@ use relievo::terrain::height::{Blocks, HeightBatch, HeightJob, HeightPass, Heigh
 use relievo::terrain::window::Window;
 use serde_json::json;
 
+use crate::baseline::words::WordsPass;
 use crate::cases::terrain::{case_name, config, copy_of, scattered};
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::words::WordsPass;
 
 /// The cases cover every size, distribution and number of coarse levels; windows of every
 /// alignment; features; batches; block sizes.

@@ -20,7 +20,7 @@ use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::{Error, InputError};
 
-use relievo::baseline::copy::{CopyBuffers, CopyPass};
+use crate::baseline::copy::{CopyBuffers, CopyPass};
 
 /// The random words of a test case, the same on every machine.
 pub fn random_words(case: u32, count: usize) -> Vec<u32> {

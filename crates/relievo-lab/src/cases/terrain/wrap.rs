@@ -13,11 +13,11 @@ use relievo::terrain::wrap::reference::wrap;
 use relievo::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
 use serde_json::json;
 
+use crate::baseline::words::WordsPass;
 use crate::cases::terrain::{config, copy_of, scattered};
 use crate::harness::compare::exact;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
-use relievo::baseline::words::WordsPass;
 
 /// The cases cover every size and distribution, equal and unequal corners, features.
 ///

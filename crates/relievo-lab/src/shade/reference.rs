@@ -2,11 +2,11 @@
 //! `wgsl/surface/shade.wgsl`.
 
 use rayon::prelude::*;
+use relievo::surface::relief::reference::Surface;
+use relievo::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
+use relievo::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
 
-use crate::surface::relief::reference::Surface;
-use crate::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
-use crate::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
-use crate::surface::shade::{Shade, ShadePoint, ShadeView};
+use crate::shade::{Shade, ShadePoint, ShadeView};
 
 /// The distance of a hit behind the polygon along the eye's ray, in uv units. `scale` is the relief's depth in
 /// uv units.
@@ -71,7 +71,7 @@ pub fn shade_all(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::relief::Outcome;
+    use relievo::surface::relief::Outcome;
 
     /// In a parallel view straight from above, a hit is as deep as the relief is there.
     #[test]

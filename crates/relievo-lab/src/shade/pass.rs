@@ -1,12 +1,13 @@
 //! The GPU pass of `kernels/surface/shade.wgsl`.
 
-use super::{Shade, ShadePoint, ShadeView};
-use crate::gpu::bindings::surface::shade as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::surface::ray::SurfaceMarch;
-use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::relief::{March, Method};
-use crate::{Error, InputError};
+use relievo::gpu::bindings::surface::shade as bindings;
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::shared::surface::ray::SurfaceMarch;
+use relievo::surface::relief::textures::SurfaceTextures;
+use relievo::surface::relief::{March, Method};
+use relievo::{Error, InputError};
+
+use crate::shade::{Shade, ShadePoint, ShadeView};
 
 /// Shades lists of points. Hard shadows trace the light's rays with one method.
 #[derive(Debug, Clone)]

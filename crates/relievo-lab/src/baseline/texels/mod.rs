@@ -1,6 +1,6 @@
 //! The texel loads of colour maps (`kernels/baseline/texels.wgsl`).
 
+pub use pass::TexelsPass;
+
 mod pass;
 pub mod reference;
-
-pub use pass::TexelsPass;

@@ -1,9 +1,9 @@
 //! The memory traffic of sampling without its arithmetic (`kernels/baseline/gather.wgsl`).
 
+pub use pass::GatherPass;
+
 mod pass;
 pub mod reference;
-
-pub use pass::GatherPass;
 
 /// The data that the kernel reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,11 +1,12 @@
 //! The GPU pass of `kernels/baseline/gather.wgsl`: moves the bytes that sampling moves.
 
-use crate::animation::crowd::{ClipBuffers, Crowd};
+use relievo::animation::crowd::{ClipBuffers, Crowd};
+use relievo::gpu::bindings::baseline::gather as bindings;
+use relievo::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::shared::baseline::gather::GatherParams;
+use relievo::{Error, InputError};
+
 use crate::baseline::gather::Reads;
-use crate::gpu::bindings::baseline::gather as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::baseline::gather::GatherParams;
-use crate::{Error, InputError};
 
 /// Moves the bytes of sampling: for each bone of each instance it reads the two keys of three tracks around the
 /// instance's cursor, where instances share the tracks of a clip, and writes a local transform (12 words).

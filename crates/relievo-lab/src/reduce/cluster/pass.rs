@@ -1,15 +1,15 @@
 //! The GPU pass of `kernels/mesh/cluster.wgsl`.
 
 use glam::{IVec3, UVec3};
-
-use super::{ClusterCounts, Grid, MAX_VERTICES, Representative};
-use crate::gpu::bind::SeenAs;
-use crate::gpu::bindings::mesh::cluster as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::mesh::cluster::{
+use relievo::gpu::bind::SeenAs;
+use relievo::gpu::bindings::mesh::cluster as bindings;
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::shared::mesh::cluster::{
     BLOCK, BLOCK_WORDS, CONNECT, ClusterParams, INSERT, MEAN, NEAREST, RECORD, REPRESENT, SCAN, SOURCE, SUM,
 };
-use crate::{Error, InputError};
+use relievo::{Error, InputError};
+
+use crate::reduce::cluster::{ClusterCounts, Grid, MAX_VERTICES, Representative};
 
 impl SeenAs<[u32; 4]> for Representative {}
 

@@ -1,6 +1,6 @@
 //! Texel loads (`kernels/baseline/loads.wgsl`).
 
+pub use pass::LoadsPass;
+
 mod pass;
 pub mod reference;
-
-pub use pass::LoadsPass;

@@ -1,11 +1,10 @@
 //! The GPU pass of `kernels/baseline/words.wgsl`: draws random words and stores them.
 
 use glam::UVec2;
-
-use crate::gpu::bindings::baseline::words as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::baseline::words::WordsParams;
-use crate::{Error, InputError};
+use relievo::gpu::bindings::baseline::words as bindings;
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::shared::baseline::words::WordsParams;
+use relievo::{Error, InputError};
 
 /// Draws the random words of counters (x, y), row by row.
 #[derive(Debug, Clone)]

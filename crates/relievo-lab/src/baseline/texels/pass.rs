@@ -1,12 +1,12 @@
 //! The GPU pass of `kernels/baseline/texels.wgsl`: loads the texels of colour maps.
 
-use crate::Error;
-use crate::gpu::bindings::baseline::texels as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::baseline::texels::TexelsParams;
-use crate::terrain::blend::BlendBuffers;
-use crate::terrain::blocks::{Columns, Order};
-use crate::terrain::cover::{Cover, planes};
+use relievo::Error;
+use relievo::gpu::bindings::baseline::texels as bindings;
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::shared::baseline::texels::TexelsParams;
+use relievo::terrain::blend::BlendBuffers;
+use relievo::terrain::blocks::{Columns, Order};
+use relievo::terrain::cover::{Cover, planes};
 
 /// Loads the texels of colour maps.
 #[derive(Debug, Clone)]
@@ -31,7 +31,7 @@ impl TexelsPass {
     /// Prepares the loads of the colour maps of a cover; each pixel becomes a word.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a cover out of bounds, for windows with nothing inside the outermost ring, and for places or an
+    /// [`relievo::InputError`] for a cover out of bounds, for windows with nothing inside the outermost ring, and for places or an
     /// output that are too short; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, cover: &Cover, buffers: BlendBuffers<'_>) -> Result<Job, Error> {
         let BlendBuffers { windows, places, pixels } = buffers;

@@ -1,11 +1,10 @@
 //! The GPU pass of `kernels/baseline/loads.wgsl`: loads texels and adds them up.
 
 use glam::UVec2;
-
-use crate::gpu::bindings::baseline::loads as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::baseline::loads::LoadsParams;
-use crate::{Error, InputError};
+use relievo::gpu::bindings::baseline::loads as bindings;
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::shared::baseline::loads::LoadsParams;
+use relievo::{Error, InputError};
 
 /// Loads texels along rows and adds them up.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! Random words, drawn and stored (`kernels/baseline/words.wgsl`).
 
+pub use pass::WordsPass;
+
 mod pass;
 pub mod reference;
-
-pub use pass::WordsPass;

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::{Grid, MAX_VERTICES, Quantized, Representative, power_of_two, quantum};
-use crate::InputError;
+use relievo::InputError;
+
+use crate::reduce::cluster::{Grid, MAX_VERTICES, Quantized, Representative, power_of_two, quantum};
 
 /// A clustered mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,7 +30,7 @@ pub fn cluster(positions: &[[f32; 3]], indices: &[u32], grid: &Grid) -> Result<C
         let bound = format!("must be at most {MAX_VERTICES}");
         return Err(InputError::new("positions.len", positions.len(), bound));
     }
-    crate::asset::indices::check_triangles("indices", indices, positions.len())?;
+    relievo::asset::indices::check_triangles("indices", indices, positions.len())?;
     let grid = grid.quantized();
     let offsets: Vec<[u32; 3]> = positions.iter().map(|position| offset(&grid, position)).collect();
     let (remap, sums) = sums(&grid, &offsets);

@@ -4,25 +4,25 @@
 //! Material shaders import the functions from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
 //! kernel of this folder runs them on lists of points.
 
+pub use pass::ShadePass;
+pub use relievo::shared::surface::shade::{Shade, ShadePoint, ShadeView};
+
+use glam::{Mat4, Vec4};
+use relievo::InputError;
+use relievo::surface::relief::MAX_STEPS;
+
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::ShadePass;
-
-use glam::{Mat4, Vec4};
-
-use crate::InputError;
-pub use crate::shared::surface::shade::{Shade, ShadePoint, ShadeView};
-use crate::surface::relief::MAX_STEPS;
 
 impl Default for ShadeView {
     /// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
-    /// [`Material`](super::Material)'s default.
+    /// [`Material`](relievo::surface::Material)'s default.
     fn default() -> Self {
         let clip_from_world = Mat4::from_scale(glam::Vec3::new(1.0, 1.0, -1.0));
-        let material = super::Material::default();
+        let material = relievo::surface::Material::default();
         Self {
             clip_from_world,
             eye: Vec4::Z,

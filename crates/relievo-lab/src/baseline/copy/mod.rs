@@ -1,6 +1,6 @@
 //! A copy of bytes (`kernels/baseline/copy.wgsl`).
 
+pub use pass::{CopyBuffers, CopyPass};
+
 mod pass;
 pub mod reference;
-
-pub use pass::{CopyBuffers, CopyPass};

@@ -18,16 +18,16 @@
 //! triangles may meet at an edge, two triangles may have the same corners, and triangles may turn around. Seams of
 //! attributes inside a cell are lost.
 
-use crate::InputError;
+pub use pass::{ClusterBuffers, ClusterJob, ClusterPass};
+pub use relievo::shared::mesh::cluster::ClusterCounts;
+
+use relievo::InputError;
 
 #[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::{ClusterBuffers, ClusterJob, ClusterPass};
-
-pub use crate::shared::mesh::cluster::ClusterCounts;
 
 /// The largest number of cells along an edge of a grid.
 pub const MAX_CELLS: u32 = 1024;

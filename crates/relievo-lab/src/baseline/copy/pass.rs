@@ -1,9 +1,9 @@
 //! The GPU pass of `kernels/baseline/copy.wgsl`: copies words.
 
-use crate::gpu::bindings::baseline::copy as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::baseline::copy::CopyParams;
-use crate::{Error, InputError};
+use relievo::gpu::bindings::baseline::copy as bindings;
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::shared::baseline::copy::CopyParams;
+use relievo::{Error, InputError};
 
 /// What a copy reads and writes.
 #[derive(Debug, Clone, Copy)]

@@ -1,1 +1,0 @@
-//! Parity of `kernels/baseline/`.
