@@ -23,7 +23,7 @@ pub struct SetTrack {
 #[cfg(feature = "gpu")]
 impl SetTrack {
     /// The track as kernels read it, in 8 bytes.
-    pub(crate) fn packed(&self) -> packed::SetTrack {
+    pub fn packed(&self) -> packed::SetTrack {
         let timeline = self.timeline.unwrap_or(packed::CONSTANT);
         let interpolation = self.interpolation as u32;
         packed::SetTrack { words: [interpolation << packed::TIMELINE_BITS | timeline, self.first_value] }

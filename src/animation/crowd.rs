@@ -35,7 +35,7 @@ pub struct ClipBuffers {
     /// One per clip.
     pub clips: Buffer<ClipEntry>,
     /// Three per bone and clip.
-    pub(crate) tracks: Buffer<PackedTrack>,
+    pub tracks: Buffer<PackedTrack>,
     /// Timelines, clip by clip.
     pub timelines: Buffer<Timeline>,
     /// Key times in seconds.

@@ -157,7 +157,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     ///
     /// # Errors
     /// [`InputError`] that names `field`.
-    pub(crate) fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
+    pub fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
         if self.len >= needed {
             return Ok(());
         }

@@ -66,12 +66,12 @@ impl Kernel {
     }
 
     /// Workgroups for `invocations` in one row, spread over x and y if they exceed the limit of one dimension.
-    pub(crate) fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
+    pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
 
     /// Invocations of a workgroup along x, y and z.
-    pub(crate) fn workgroup_size(&self) -> [u32; 3] {
+    pub fn workgroup_size(&self) -> [u32; 3] {
         self.shader.entry_points.first().map_or([1; 3], |entry| entry.workgroup_size)
     }
 
@@ -83,7 +83,7 @@ impl Kernel {
 
 /// The bind group layouts of a shader, one for every group up to the last that it uses.
 #[derive(Debug, Clone)]
-pub(crate) struct Layouts {
+pub struct Layouts {
     shader: &'static Shader,
     pub(crate) groups: Vec<wgpu::BindGroupLayout>,
 }

@@ -399,7 +399,7 @@ pub(crate) fn simplify_watched<B>(
     Ok(reducer::reduce(surface, options, distances, bodies, watch))
 }
 
-/// The point of each vertex, numbered in the order of the points' first vertices; see [`Simplified::point`].
+/// The point of each vertex, a place that vertices share, numbered in the order of the points' first vertices.
 pub fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     Points::new(poses).into_of()
 }

@@ -31,7 +31,7 @@ impl Order {
     pub const HARDWARE: Self = Self { rows: ROWS_HARDWARE, downwards: false };
 
     /// What suits a device.
-    pub(crate) fn of(tuning: Tuning) -> Self {
+    pub fn of(tuning: Tuning) -> Self {
         if tuning.wants_long_threads() { Self::SOFTWARE } else { Self::HARDWARE }
     }
 }
@@ -58,7 +58,7 @@ impl Columns {
     pub const ALL: [Self; 2] = [Self::SOFTWARE, Self::HARDWARE];
 
     /// The blocks of windows that lose their outermost ring.
-    pub(crate) fn blocks(self, windows: &Fields) -> Blocks {
+    pub fn blocks(self, windows: &Fields) -> Blocks {
         Blocks::of_squares(windows.cropped(1).width, 4 * self.quads, self.order.rows, windows.count)
     }
 
@@ -89,7 +89,7 @@ impl Blocks {
     }
 
     /// The workgroups that give each block a thread.
-    pub(crate) fn workgroups(&self, gpu: &Gpu, kernel: &Kernel) -> [u32; 3] {
+    pub fn workgroups(&self, gpu: &Gpu, kernel: &Kernel) -> [u32; 3] {
         kernel.spread(gpu, self.count)
     }
 }

@@ -165,7 +165,7 @@ impl Cover {
 
     /// The zones as kernels read them.
     #[cfg(feature = "gpu")]
-    pub(crate) fn packed_zones(&self) -> [PackedZone; MAX_ZONES] {
+    pub fn packed_zones(&self) -> [PackedZone; MAX_ZONES] {
         let mut packed =
             [PackedZone { heights: Vec4::ZERO, slopes: Vec4::ZERO, texels: UVec4::ZERO }; MAX_ZONES];
         for (packed, MapZone { zone, first, edge_log2 }) in packed.iter_mut().zip(&self.zones) {
@@ -179,7 +179,7 @@ impl Cover {
 
     /// The texels as the colour map reads them: red and green in the halves of a word, blue and height in those of another.
     #[cfg(feature = "gpu")]
-    pub(crate) fn packed_texels(&self) -> Vec<[u32; 2]> {
+    pub fn packed_texels(&self) -> Vec<[u32; 2]> {
         let packed = |texel: &[u16; 4]| {
             let [red, green, blue, height] = texel.map(u32::from);
             [red | green << 16, blue | height << 16]
@@ -188,7 +188,7 @@ impl Cover {
     }
 
     /// Tiles per sample and per unit of height, in 2^-22 tiles.
-    pub(crate) fn steps(&self) -> [u32; 2] {
+    pub fn steps(&self) -> [u32; 2] {
         [self.terrain_scale / self.tile, 1.0 / self.tile].map(|tiles| (tiles * TILE_ONE).round() as u32)
     }
 
@@ -204,7 +204,7 @@ impl Cover {
 
 /// The number of planes from which textures lie on the ground.
 #[cfg(feature = "gpu")]
-pub(crate) fn planes(triplanar: bool) -> u32 {
+pub fn planes(triplanar: bool) -> u32 {
     if triplanar { TRIPLANAR_PLANES } else { 1 }
 }
 

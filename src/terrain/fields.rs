@@ -117,7 +117,7 @@ impl Fields {
     ///
     /// # Errors
     /// [`InputError`] that names `field`.
-    pub(crate) fn check(&self, field: &str, crop: u32) -> Result<(), InputError> {
+    pub fn check(&self, field: &str, crop: u32) -> Result<(), InputError> {
         if self.inner_width(crop) == 0 {
             let bound = format!("must exceed {}, a rim of {crop} samples", crop.saturating_mul(2));
             return Err(InputError::new(format!("{field}.width"), self.width, bound));

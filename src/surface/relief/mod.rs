@@ -186,7 +186,7 @@ impl Default for Hit {
 
 impl Hit {
     /// The result at a point of the ray.
-    pub(crate) fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
+    pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self {
             uv: ray.at(parameter),
             height: 1.0 - parameter,

@@ -37,13 +37,13 @@ impl SurfaceTextures {
     }
 
     /// Views of the heights and of the acceleration map, to bind.
-    pub(crate) fn views(&self) -> [wgpu::TextureView; 2] {
+    pub fn views(&self) -> [wgpu::TextureView; 2] {
         [&self.heights, &self.acceleration]
             .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
     /// Refuses a method or an address mode for which the textures were not computed.
-    pub(crate) fn check(&self, method: Method, march: &March) -> Result<(), InputError> {
+    pub fn check(&self, method: Method, march: &March) -> Result<(), InputError> {
         if self.method != method {
             let bound = format!("must be {}, which its maps were made for", self.method.name());
             return Err(InputError::new("method", method.name(), bound));

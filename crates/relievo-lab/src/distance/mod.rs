@@ -105,7 +105,7 @@ impl Distance {
 /// Measures how far two surfaces are apart.
 ///
 /// ```
-/// use crate::distance::{Options, Triangles, distance};
+/// use relievo_lab::distance::{Options, Triangles, distance};
 ///
 /// // Two parallel triangles; a corner of the second leans away.
 /// let low = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];

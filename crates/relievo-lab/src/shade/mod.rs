@@ -7,53 +7,46 @@
 pub use pass::ShadePass;
 pub use relievo::shared::surface::shade::{Shade, ShadePoint, ShadeView};
 
-use glam::{Mat4, Vec4};
+use glam::{Mat4, Vec3, Vec4};
 use relievo::InputError;
+use relievo::surface::Material;
 use relievo::surface::relief::MAX_STEPS;
 
-#[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 
-#[cfg(feature = "gpu")]
-
-impl Default for ShadeView {
-    /// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
-    /// [`Material`](relievo::surface::Material)'s default.
-    fn default() -> Self {
-        let clip_from_world = Mat4::from_scale(glam::Vec3::new(1.0, 1.0, -1.0));
-        let material = relievo::surface::Material::default();
-        Self {
-            clip_from_world,
-            eye: Vec4::Z,
-            shadow_steps: material.shadow_steps,
-            softness: material.softness,
-        }
+/// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
+/// [`Material`]'s default.
+pub fn from_above() -> ShadeView {
+    let material = Material::default();
+    ShadeView {
+        clip_from_world: Mat4::from_scale(Vec3::new(1.0, 1.0, -1.0)),
+        eye: Vec4::Z,
+        shadow_steps: material.shadow_steps,
+        softness: material.softness,
     }
 }
 
-impl ShadeView {
-    /// Refuses values out of bounds.
-    ///
-    /// # Errors
-    /// [`InputError`].
-    pub fn validate(&self) -> Result<(), InputError> {
-        if !self.clip_from_world.is_finite() {
-            let value = format!("{:?}", self.clip_from_world.to_cols_array());
-            return Err(InputError::new("clip_from_world", value, "must be finite"));
-        }
-        if !self.eye.is_finite() {
-            return Err(InputError::new("eye", self.eye, "must be finite"));
-        }
-        if !(1..=MAX_STEPS).contains(&self.shadow_steps) {
-            let bound = format!("must be in 1..={MAX_STEPS}");
-            return Err(InputError::new("shadow_steps", self.shadow_steps, bound));
-        }
-        if !(1e-3..=1e3).contains(&self.softness) {
-            return Err(InputError::new("softness", self.softness, "must be in 0.001..=1000"));
-        }
-        Ok(())
+/// Refuses values out of bounds.
+///
+/// # Errors
+/// [`InputError`].
+pub fn validate(view: &ShadeView) -> Result<(), InputError> {
+    if !view.clip_from_world.is_finite() {
+        let value = format!("{:?}", view.clip_from_world.to_cols_array());
+        return Err(InputError::new("clip_from_world", value, "must be finite"));
     }
+    if !view.eye.is_finite() {
+        return Err(InputError::new("eye", view.eye, "must be finite"));
+    }
+    if !(1..=MAX_STEPS).contains(&view.shadow_steps) {
+        let bound = format!("must be in 1..={MAX_STEPS}");
+        return Err(InputError::new("shadow_steps", view.shadow_steps, bound));
+    }
+    if !(1e-3..=1e3).contains(&view.softness) {
+        return Err(InputError::new("softness", view.softness, "must be in 0.001..=1000"));
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -62,8 +55,8 @@ mod tests {
 
     #[test]
     fn views_out_of_bounds_are_refused() {
-        let good = ShadeView::default();
-        let field = |view: ShadeView| view.validate().expect_err("refused").path;
+        let good = from_above();
+        let field = |view: ShadeView| validate(&view).expect_err("refused").path;
         assert_eq!(field(ShadeView { clip_from_world: Mat4::NAN, ..good }), "clip_from_world");
         assert_eq!(field(ShadeView { eye: Vec4::INFINITY, ..good }), "eye");
         for shadow_steps in [0, MAX_STEPS + 1] {
@@ -72,6 +65,6 @@ mod tests {
         for softness in [0.0, 2e3, f32::NAN] {
             assert_eq!(field(ShadeView { softness, ..good }), "softness");
         }
-        assert_eq!(good.validate(), Ok(()));
+        assert_eq!(validate(&good), Ok(()));
     }
 }

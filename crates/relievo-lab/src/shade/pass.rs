@@ -40,7 +40,7 @@ impl ShadePass {
         points: &Buffer<ShadePoint>,
         shades: &Buffer<Shade>,
     ) -> Result<Job, Error> {
-        view.validate()?;
+        crate::shade::validate(view)?;
         march.validate()?;
         textures.check(self.method, march)?;
         if shades.len() < points.len() {

@@ -81,7 +81,7 @@ mod tests {
             let hit = Hit::of(&ray, 1.0 - height, 0, Outcome::Hit);
             let behind = distance(&ray, &hit, 0.2) * 3.0;
             assert!((behind - (0.75 - height) * 0.6).abs() < 1e-6, "{height}: {behind}");
-            let view = ShadeView::default();
+            let view = crate::shade::from_above();
             let towards = towards(view.eye.to_array(), [7.0, -3.0, -0.5]);
             let depth = depth(view.clip_from_world.to_cols_array_2d(), [7.0, -3.0, -0.5], towards, behind);
             assert!((depth - 0.5 - behind).abs() < 1e-6, "{height}: {depth}");

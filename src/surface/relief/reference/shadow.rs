@@ -18,12 +18,12 @@ pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
 }
 
 /// Whether the light's ray ended above the point at which it was aimed.
-pub(crate) fn shaded(first: &Hit, hit: &Hit) -> bool {
+pub fn shaded(first: &Hit, hit: &Hit) -> bool {
     first.parameter < 1.0 - hit.height - BIAS
 }
 
 /// The light that reaches a point, 0 in full shadow to 1 in full light.
-pub(crate) fn soft_shadow(
+pub fn soft_shadow(
     map: &HeightMap,
     hit: &Hit,
     light: [f32; 3],

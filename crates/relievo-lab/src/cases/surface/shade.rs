@@ -82,7 +82,7 @@ pub fn perspective() -> ShadeView {
     let eye = Vec3::new(1.5, -2.0, 4.0);
     let view = camera::rh::view::look_at_mat4(eye, Vec3::ZERO, Vec3::Y);
     let projection = camera::rh::proj::directx::perspective(0.8, 1.25, 0.5, 12.0);
-    ShadeView { clip_from_world: projection * view, eye: eye.extend(1.0), ..ShadeView::default() }
+    ShadeView { clip_from_world: projection * view, eye: eye.extend(1.0), ..crate::shade::from_above() }
 }
 
 /// The same view in parallel projection.
@@ -91,7 +91,7 @@ pub(crate) fn parallel() -> ShadeView {
     let depth = -0.1 * towards;
     let rows = [Vec4::X, Vec4::Y, depth.extend(0.5), Vec4::W];
     let clip_from_world = Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
-    ShadeView { clip_from_world, eye: towards.extend(0.0), ..ShadeView::default() }
+    ShadeView { clip_from_world, eye: towards.extend(0.0), ..crate::shade::from_above() }
 }
 
 /// Hits of random rays, with the light overhead, at grazing angles, straight down, and from below.
@@ -241,7 +241,7 @@ const EDGE: u32 = 512;
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let map = BuiltInMap::Cobbles.height_map(512)?;
-    let (march, view) = (March::default(), ShadeView::default());
+    let (march, view) = (March::default(), crate::shade::from_above());
     for method in [Method::Quadtree, Method::Relief] {
         let surface = Surface::new(&map, method, Address::Wrap);
         let points = points(&surface, method, &march);

@@ -23,11 +23,8 @@ pub use relievo::shared::mesh::cluster::ClusterCounts;
 
 use relievo::InputError;
 
-#[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
-
-#[cfg(feature = "gpu")]
 
 /// The largest number of cells along an edge of a grid.
 pub const MAX_CELLS: u32 = 1024;
@@ -124,8 +121,7 @@ pub(crate) fn power_of_two(exponent: i32) -> f64 {
 }
 
 /// The vertex that stands for all vertices of a cell.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Representative {
     /// The mean of the cell's vertices.
