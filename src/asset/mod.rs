@@ -5,6 +5,7 @@ pub mod clip;
 pub mod gltf;
 pub(crate) mod images;
 pub mod import;
+#[doc(hidden)]
 pub mod indices;
 pub mod influences;
 pub mod keyframe;

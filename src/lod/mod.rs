@@ -19,6 +19,7 @@ pub mod attach;
 mod camera;
 mod instance;
 pub mod list;
+#[doc(hidden)]
 pub mod object;
 pub mod select;
 pub mod single;

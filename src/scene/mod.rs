@@ -30,6 +30,7 @@ mod materials;
 mod matrices;
 #[cfg(not(target_arch = "wasm32"))]
 mod measured;
+#[doc(hidden)]
 pub mod mesh;
 pub(crate) mod object;
 mod objects;
@@ -42,6 +43,7 @@ mod placement;
 mod playing;
 mod poses;
 mod quality;
+#[doc(hidden)]
 pub mod query;
 mod ray;
 mod rebuild;

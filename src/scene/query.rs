@@ -114,6 +114,8 @@ mod drawn {
         pub rows: Affine,
     }
 
+    /// For the laboratory, which measures what was drawn.
+    #[doc(hidden)]
     impl Scene {
         /// Whether the instances of an object are animated.
         pub fn is_character(&self, object: ObjectId) -> Result<bool, InputError> {

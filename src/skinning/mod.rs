@@ -2,6 +2,7 @@
 //! and 9).
 
 pub mod at_rest;
+#[doc(hidden)]
 pub mod attribute_weights;
 #[cfg(feature = "gpu")]
 pub(crate) mod bone_path;

@@ -2,6 +2,7 @@
 //! (B sections 3.1 and 4.2).
 
 #[cfg(feature = "gpu")]
+#[doc(hidden)]
 pub mod color;
 pub mod cone_map;
 pub mod exact;

@@ -5,6 +5,7 @@
 
 pub mod blend;
 #[cfg(feature = "gpu")]
+#[doc(hidden)]
 pub mod blocks;
 pub mod border;
 pub mod color_maps;

@@ -6,6 +6,7 @@
 //! thread came first. The totals are the numbers of instances of the object's draws.
 
 #[cfg(feature = "gpu")]
+#[doc(hidden)]
 pub mod pass;
 pub mod reference;
 

@@ -5,6 +5,7 @@ use crate::InputError;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
 
 #[cfg(feature = "gpu")]
+#[doc(hidden)]
 pub mod pass;
 pub mod reference;
 
