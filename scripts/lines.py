@@ -27,7 +27,7 @@ def without_comments(text: str) -> str:
 
 
 def rust(path: Path, tests: set[Path]) -> int:
-    """Lines of a Rust file; files of its test modules go to `tests`."""
+    """Lines of a Rust file; files and folders of its test modules go to `tests`."""
     lines = without_comments(path.read_text()).split("\n")
     count, at = 0, 0
     folder = path.parent if path.name in ("mod.rs", "lib.rs", "main.rs") else path.with_suffix("")
@@ -38,7 +38,7 @@ def rust(path: Path, tests: set[Path]) -> int:
                 head += 1
             module = MODULE.match(lines[head])
             if module and module[2] == ";":
-                tests.update([folder / f"{module[1]}.rs", folder / module[1] / "mod.rs"])
+                tests.update([folder / f"{module[1]}.rs", folder / module[1]])
                 at = head + 1
                 continue
             if module:
@@ -74,11 +74,10 @@ def main() -> None:
         for file in sources
         if file.suffix == ".rs" and ("src" in file.parts or file.parts[0].startswith("build"))
     }
-    in_tests = {file for file in counts if any(test == root / file or test.parent in (root / file).parents
-                                               and test.name == "mod.rs" for test in tests)}
     code: Counter[tuple[str, str]] = Counter()
     for file, count in counts.items():
-        if file not in in_tests:
+        path = root / file
+        if tests.isdisjoint([path, *path.parents]):
             code[crate_of(file), "Rust"] += count
     for file in sources:
         if file.suffix == ".wgsl":

@@ -89,6 +89,7 @@
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
+// The samples, which unit tests have as a module, name this crate as their dependency.
 #[cfg(test)]
 extern crate self as relievo;
 

@@ -27,10 +27,14 @@ pub struct NoBuiltIns;
 
 impl BuiltIns for NoBuiltIns {
     fn model(&self, name: &str) -> Result<Model, InputError> {
-        Err(InputError::new("builtin", name, "must be a file: nothing is built in"))
+        Err(nothing(name))
     }
 
     fn map(&self, name: &str) -> Result<(HeightMap, RgbaImage), InputError> {
-        Err(InputError::new("builtin", name, "must be a file: nothing is built in"))
+        Err(nothing(name))
     }
+}
+
+fn nothing(name: &str) -> InputError {
+    InputError::new("builtin", name, "must be a file: nothing is built in")
 }

@@ -4,12 +4,7 @@
 #[path = "readme/blocks.rs"]
 mod blocks;
 #[path = "program/mod.rs"]
-mod program;
-
-mod harness {
-    pub use crate::program::*;
-    pub use relievo_testing::*;
-}
+mod harness;
 #[path = "readme/names.rs"]
 mod names;
 

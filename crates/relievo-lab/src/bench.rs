@@ -1,12 +1,12 @@
 //! Benchmarks: every kernel against its CPU reference and a copy of the same bytes, in one run on the current
 //! adapter (`relievo bench`). Results are ratios, since absolute times mean little across machines.
 
+use relievo::Error;
 use relievo::gpu::Gpu;
-use relievo::{Error, InputError};
 use serde::Serialize;
 
-use crate::cases::{OPERATIONS, Operation};
-use crate::harness::{Bench, Row, selected};
+use crate::cases::{Operation, selected};
+use crate::harness::{Bench, Row};
 
 /// The results of a run.
 #[derive(Debug, Clone, Serialize)]
@@ -37,17 +37,10 @@ pub fn unmeasured(gpu: &Gpu, operation: &Operation) -> Result<Vec<Row>, Error> {
 /// Runs the benchmarks of every selected kernel, and calls `progress` with each row.
 ///
 /// # Errors
-/// [`InputError`] when nothing is selected; errors of the device.
+/// [`relievo::InputError`] when nothing is selected; errors of the device.
 pub fn run(gpu: &Gpu, only: Option<&str>, progress: &mut dyn FnMut(&Row)) -> Result<Summary, Error> {
-    let chosen: Vec<_> = OPERATIONS.iter().filter(|operation| selected(operation.name, only)).collect();
-    if chosen.is_empty() {
-        let names = OPERATIONS.iter().map(|operation| operation.name).collect::<Vec<_>>().join(", ");
-        return Err(
-            InputError::new("only", only.unwrap_or(""), format!("must be (part of) one of {names}")).into()
-        );
-    }
     let mut rows = Vec::new();
-    for operation in chosen {
+    for operation in selected(only)? {
         let mut bench = Bench::new(gpu, operation.name, progress)?;
         (operation.benchmark)(&mut bench)?;
         rows.extend(bench.into_rows());

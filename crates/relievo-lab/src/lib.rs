@@ -1,9 +1,8 @@
 //! The laboratory of relievo: it proves and measures what the library does, on the adapter at hand.
 //!
 //! [`verify`] compares every kernel with its CPU reference (`relievo verify`), and [`mod@bench`] measures it against a copy of
-//! the same bytes (`relievo bench`). [`OPERATIONS`] lists the cases of both,
-//! [`baseline`] has kernels that only move bytes, against which others are measured, [`shade`] one that lists the colours that
-//! shading gives; [`harness`] has comparators and clocks.
+//! the same bytes (`relievo bench`). [`OPERATIONS`] lists the cases of both, and [`harness`] has comparators and clocks. Two
+//! kinds of kernels serve this alone: those of [`baseline`] only move bytes, and that of [`shade`] lists the colours of points.
 //!
 //! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
 //! models, and surface mapping on height maps. [`files`] writes reports and pictures whole or not at all. [`plot`] draws

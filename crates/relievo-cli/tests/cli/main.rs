@@ -1,12 +1,7 @@
 //! The command line as a user runs it.
 
 #[path = "../program/mod.rs"]
-mod program;
-
-mod harness {
-    pub use crate::program::*;
-    pub use relievo_testing::*;
-}
+mod harness;
 
 mod bad_input;
 mod collapse;

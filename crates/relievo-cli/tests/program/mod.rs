@@ -1,7 +1,9 @@
-//! The program, run as a user runs it.
+//! The program, run as a user runs it, beside the helpers of all tests.
+#![allow(dead_code, unused_imports, reason = "each test program uses its own part")]
+
+pub use relievo_testing::*;
 
 /// A run of the program.
-#[allow(dead_code, reason = "each test program uses its own part")]
 pub struct Run {
     pub code: Option<i32>,
     pub stdout: String,

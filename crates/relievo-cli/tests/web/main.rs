@@ -2,12 +2,7 @@
 //! limits, and draws a scene.
 
 #[path = "../program/mod.rs"]
-mod program;
-
-mod harness {
-    pub use crate::program::*;
-    pub use relievo_testing::*;
-}
+mod harness;
 
 #[path = "../../../../tests/mesh/alike.rs"]
 mod alike;

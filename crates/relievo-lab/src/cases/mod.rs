@@ -10,7 +10,7 @@ pub mod terrain;
 
 use std::pin::Pin;
 
-use relievo::Error;
+use relievo::{Error, InputError};
 
 use crate::harness::{Bench, Cases};
 
@@ -86,3 +86,18 @@ pub static OPERATIONS: &[Operation] = operations![
     // Its benchmark draws pictures, and comes last: lavapipe's timestamps are too short afterwards (see its cases).
     surface / relief,
 ];
+
+/// The operations whose names contain `only`, or all.
+///
+/// # Errors
+/// [`InputError`] when there is none, with all names.
+pub(crate) fn selected(only: Option<&str>) -> Result<Vec<&'static Operation>, InputError> {
+    let is_selected = |operation: &&Operation| only.is_none_or(|only| operation.name.contains(only));
+    let found: Vec<_> = OPERATIONS.iter().filter(is_selected).collect();
+    if found.is_empty() {
+        let names = OPERATIONS.iter().map(|operation| operation.name).collect::<Vec<_>>().join(", ");
+        let bound = format!("must be (part of) one of {names}");
+        return Err(InputError::new("only", only.unwrap_or(""), bound));
+    }
+    Ok(found)
+}

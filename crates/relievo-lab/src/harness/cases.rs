@@ -51,8 +51,3 @@ impl Cases<'_> {
         self.results.push(result);
     }
 }
-
-/// Whether `stem` is selected: `only` is its name or a part of it; `None` selects everything.
-pub(crate) fn selected(stem: &str, only: Option<&str>) -> bool {
-    only.is_none_or(|only| stem.contains(only))
-}

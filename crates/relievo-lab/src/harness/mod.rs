@@ -1,7 +1,6 @@
 //! Tools that verify and measure operations, independent of any operation: comparators, poisoned buffers and
 //! parity cases; repetition, clocks and tables.
 
-pub(crate) use cases::selected;
 pub use cases::{CaseResult, Cases, Skipped};
 pub use measure::{Bench, Contender};
 pub use row::{Backend, Row};

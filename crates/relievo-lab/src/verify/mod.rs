@@ -1,13 +1,13 @@
 //! Parity: every kernel against its CPU reference, on the current adapter (`relievo verify`). This is part of
 //! the product, so that users can find out whether their driver computes correctly.
 
+use relievo::Error;
 use relievo::gpu::{AdapterSummary, Gpu};
-use relievo::{Error, InputError};
 use serde::Serialize;
 
-use crate::cases::{OPERATIONS, Operation};
+use crate::cases::{Operation, selected};
 use crate::harness::compare::Comparison;
-use crate::harness::{CaseResult, Cases, Skipped, selected};
+use crate::harness::{CaseResult, Cases, Skipped};
 
 mod summary;
 
@@ -44,13 +44,7 @@ pub async fn run_async(
     only: Option<&str>,
     progress: &mut dyn FnMut(&CaseResult),
 ) -> Result<Report, Error> {
-    let chosen: Vec<_> = OPERATIONS.iter().filter(|operation| selected(operation.name, only)).collect();
-    if chosen.is_empty() {
-        let names = OPERATIONS.iter().map(|operation| operation.name).collect::<Vec<_>>().join(", ");
-        let bound = format!("must be (part of) one of {names}");
-        return Err(InputError::new("only", only.unwrap_or(""), bound).into());
-    }
-    run_operations(gpu, chosen, progress).await
+    run_operations(gpu, selected(only)?, progress).await
 }
 
 /// Runs the cases of the given kernels. A kernel without results does not hold, since nothing was proven.

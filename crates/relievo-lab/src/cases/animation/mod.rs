@@ -1,4 +1,4 @@
-//! What the parity cases of `kernels/animation/` share.
+//! Helpers of the parity and benchmark cases of `kernels/animation/`.
 
 pub mod bounds;
 pub mod budget;

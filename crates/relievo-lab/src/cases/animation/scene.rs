@@ -1,4 +1,4 @@
-//! What the benchmarks of `kernels/animation/` share: crowds of the creature, with 153 bones, that play a clip
+//! The crowds of the benchmarks of `kernels/animation/`: instances of the creature, with 153 bones, that play a clip
 //! with 60 keys for each part of each bone, every instance at a time of its own.
 
 use relievo::Error;

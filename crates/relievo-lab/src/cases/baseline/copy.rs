@@ -1,6 +1,6 @@
 //! Parity and benchmark cases of `kernels/baseline/copy.wgsl`.
 //!
-//! `copy_buffer_to_buffer`.
+//! In the benchmark, `limit` is the device's own `copy_buffer_to_buffer`.
 
 use relievo::Error;
 use relievo::gpu::Buffer;

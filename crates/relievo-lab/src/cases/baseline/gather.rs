@@ -1,6 +1,7 @@
 //! Parity and benchmark cases of `kernels/baseline/gather.wgsl`.
 //!
-//! same number of bytes, with each read and written once.
+//! The benchmark says how fast the bytes of sampling can be moved. `copy` moves the same number of bytes, with each read and
+//! written once.
 
 use std::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! What the parity cases and benchmarks of `kernels/lod/` share: scenes of random instances.
+//! Helpers of the parity and benchmark cases of `kernels/lod/`: scenes of random instances.
 
 pub mod assign;
 pub mod attach;

@@ -1,4 +1,4 @@
-//! What the parity cases of `kernels/skinning/` share.
+//! Helpers of the parity and benchmark cases of `kernels/skinning/`.
 
 pub mod lod;
 pub mod morph;

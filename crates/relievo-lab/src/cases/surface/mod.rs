@@ -1,4 +1,4 @@
-//! What the parity cases of `kernels/surface/` share.
+//! Helpers of the parity and benchmark cases of `kernels/surface/`.
 
 pub mod bounds;
 pub mod cone_map;

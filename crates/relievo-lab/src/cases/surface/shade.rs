@@ -1,6 +1,6 @@
 //! Parity and benchmark cases of `kernels/surface/shade.wgsl`: hard and soft shadow, and the depth of the relief.
 //!
-//! bare texel loads.
+//! The benchmark measures lists of points against the same number of bare texel loads.
 
 use crate::shade::reference::shade_all;
 use crate::shade::{Shade, ShadePass, ShadePoint, ShadeView};

@@ -1,4 +1,6 @@
 //! Parity and benchmark cases of `kernels/terrain/blend.wgsl`, and with it of zones and of how textures lie on the ground.
+//!
+//! In the benchmark, `limit` loads the same texels and makes nothing of them.
 
 use relievo::Error;
 use relievo::gpu::Buffer;

@@ -1,6 +1,7 @@
 //! Parity and benchmark cases of `kernels/terrain/height.wgsl`.
 //!
-//! and stores the same number of random words; `copy` moves 4 bytes per point.
+//! The benchmark has the sizes of B table 5.2, one patch and batches of 64. `limit` draws and stores the same number of random
+//! words; `copy` moves 4 bytes per point.
 
 use rayon::prelude::*;
 use relievo::Error;

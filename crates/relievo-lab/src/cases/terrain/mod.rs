@@ -1,4 +1,4 @@
-//! What the parity cases of `kernels/terrain/` share.
+//! Helpers of the parity and benchmark cases of `kernels/terrain/`.
 
 pub mod blend;
 pub mod border;

@@ -1,6 +1,7 @@
 //! Parity and benchmark cases of `kernels/terrain/smooth.wgsl`.
 //!
-//! means of four; `copy` moves 4 bytes per point.
+//! In the benchmark, `limit` is `terrain/height`, which makes as many heights from means of four; `copy` moves 4 bytes per
+//! point.
 
 use rayon::prelude::*;
 use relievo::Error;

@@ -1,6 +1,6 @@
 //! Parity and benchmark cases of `kernels/terrain/wrap.wgsl`.
 //!
-//! words; `copy` moves 4 bytes per point.
+//! In the benchmark, `limit` draws and stores the same number of random words; `copy` moves 4 bytes per point.
 
 use rayon::prelude::*;
 use relievo::Error;
