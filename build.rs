@@ -7,6 +7,8 @@
 mod limits;
 #[path = "build/modules.rs"]
 mod modules;
+#[path = "build/packed.rs"]
+mod packed;
 
 #[path = "build/bindings.rs"]
 mod bindings;
@@ -29,7 +31,7 @@ mod shaders {
     use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
 
     use crate::bindings::Bindings;
-    use crate::{limits, modules, prefix};
+    use crate::{limits, modules, packed, prefix};
 
     pub fn build() {
         let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
@@ -142,8 +144,7 @@ mod shaders {
     /// Composes a file with what it imports.
     fn flatten(root: &Path, file: &Path, keep: Keep, mangler: wesl::ManglerKind) -> String {
         let relative = file.strip_prefix(root).expect("below the root");
-        let path = format!("package::{}", relative.with_extension("").display()).replace('/', "::");
-        let mut compiler = wesl::Wesl::new(root);
+        let mut compiler = wesl::Wesl::new(root).set_custom_resolver(sources(root));
         // Eager: an unused import must exist too.
         compiler.set_options(wesl::CompileOptions {
             lazy: false,
@@ -153,10 +154,29 @@ mod shaders {
         });
         compiler.set_mangler(mangler);
         compiler.set_missing_feature_behavior(wesl::Feature::Error);
-        match compiler.compile(&path.parse().expect("a module path")) {
+        match compiler.compile(&module_path(relative)) {
             Ok(result) => result.to_string(),
             Err(error) => refuse(relative, &error.to_string()),
         }
+    }
+
+    /// All files of WGSL, with their packed words.
+    fn sources(root: &Path) -> wesl::VirtualResolver<'static> {
+        let mut resolver = wesl::VirtualResolver::new();
+        for file in ["kernels", "wgsl"].iter().flat_map(|folder| shader_files(&root.join(folder))) {
+            let relative = file.strip_prefix(root).expect("below the root");
+            let text =
+                std::fs::read_to_string(&file).unwrap_or_else(|error| refuse(relative, &error.to_string()));
+            let text = packed::expanded(text).unwrap_or_else(|why| refuse(relative, &why));
+            resolver.add_module(module_path(relative), text.into());
+        }
+        resolver
+    }
+
+    /// `package::wgsl::lod::object` of `wgsl/lod/object.wgsl`.
+    fn module_path(relative: &Path) -> wesl::ModulePath {
+        let path = format!("package::{}", relative.with_extension("").display()).replace('/', "::");
+        path.parse().expect("a module path")
     }
 
     /// Names of the bindings that a file itself declares.

@@ -4,7 +4,7 @@
 //! `shared.rs` needs no graphics library. It has one module per WGSL file, with the constants of that file and
 //! its structs that lie in buffers. `bindings.rs` needs the feature `gpu` and has one module per shader.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -31,6 +31,11 @@ impl Bindings {
         let sources = Sources::of(root, file);
         let bindings = ShaderBindings { root, file, shader, sources: &sources };
         bindings.constants(&mut self.shared);
+        for (path, file, words) in sources.packed(root) {
+            for word in words.unwrap_or_else(|why| refuse(file, &why)) {
+                self.shared.entry(path.clone()).or_default().extend(word.rust());
+            }
+        }
         let text = bindings.module(&mut self.shared);
         self.shaders.insert(shader.name.clone(), text);
     }
@@ -105,6 +110,7 @@ impl ShaderBindings<'_> {
     fn module(&self, shared: &mut BTreeMap<String, Items>) -> String {
         let mut text = String::from("use crate::gpu::bind::prelude::*;\n\n");
         text += &self.overrides();
+        text += &self.lengths();
         let module = &self.shader.module;
         let mut groups: BTreeMap<u32, BTreeMap<u32, Handle<naga::GlobalVariable>>> = BTreeMap::new();
         for (handle, variable) in module.global_variables.iter() {
@@ -176,6 +182,7 @@ impl ShaderBindings<'_> {
         self.shader.module.entry_points.iter().any(|entry| entry.stage == naga::ShaderStage::Compute)
     }
 
+    /// Resources of a bind group: `Group`, or `Buffers` where lengths are checked, which leaves `params` to the pass.
     fn group(
         &self,
         group: u32,
@@ -183,27 +190,110 @@ impl ShaderBindings<'_> {
         shared: &mut BTreeMap<String, Items>,
     ) -> String {
         let shader = self.shader;
-        let mut fields = String::new();
-        let mut resources = String::new();
+        let is_checked = !self.length_counts().is_empty();
+        let (mut fields, mut resources, mut checks) = (String::new(), String::new(), String::new());
+        let mut arguments = String::new();
         for (binding, handle) in variables {
             let variable = &shader.module.global_variables[*handle];
             let name = variable.name.clone().unwrap_or_default();
-            let (ty, resource) = self.bound(variable, shared);
-            let comment = self.sources.binding_comment(&name);
+            let (mut ty, mut resource) = self.bound(variable, shared);
+            if is_checked && matches!(variable.space, AddressSpace::Storage { .. }) {
+                ty = ty.replace("Slice<'a, ", "&'a Buffer<");
+                resource = format!("self.{name}.slice().resource()");
+            }
+            if is_checked && name == "params" {
+                arguments += &format!(", params: {}", ty.replace("&'a ", "&"));
+                writeln!(resources, "            ({binding}, {}),", resource.replace("self.", ""))
+                    .expect("a string");
+                continue;
+            }
+            let (comment, length) = self.sources.binding_comment(&name);
             fields += &doc("    ", &comment, &format!("`{name}` of the shader."));
             writeln!(fields, "    pub {name}: {ty},").expect("a string");
             writeln!(resources, "            ({binding}, {resource}),").expect("a string");
+            if let Some(length) = length {
+                let (path, count) = (length.path.unwrap_or(&name), self.count(length.count).0);
+                writeln!(checks, "        self.{name}.check_holds({path:?}, {count})?;").expect("a string");
+            }
         }
-        let of = if group == 0 { "Group".to_owned() } else { format!("Group{group}") };
+        let of = match group {
+            0 if is_checked => "Buffers".to_owned(),
+            0 => "Group".to_owned(),
+            group => format!("Group{group}"),
+        };
         let (name, constant) = (&shader.name, shader.constant());
         let target = if self.is_kernel() { "kernel: &Kernel" } else { "layouts: &Layouts" };
         let binds = target.split(':').next().unwrap_or_default();
+        let bound =
+            format!("{binds}.bind_group(gpu, &shaders::{constant}, {group}, &[\n{resources}        ])");
+        let (errors, error, body) = match is_checked {
+            true => {
+                arguments += ", lengths: &Lengths";
+                let counts = self.length_counts().into_iter().collect::<Vec<_>>().join(", ");
+                let body = format!("let Lengths {{ {counts} }} = *lengths;\n{checks}        Ok({bound}?)");
+                ("[`InputError`](crate::InputError) for a buffer that is too short; ", "crate::Error", body)
+            }
+            false => ("", "GpuError", bound),
+        };
         format!(
             "/// Resources of bind group {group} of `{name}`.\n#[derive(Debug, Clone, Copy)]\npub struct {of}<'a> {{\n{fields}}}\n\n\
-             impl {of}<'_> {{\n    /// Binds them.\n    ///\n    /// # Errors\n    /// [`GpuError::Validation`] where the device refuses one.\n    \
-             pub fn bind(&self, gpu: &Gpu, {target}) -> Result<BindGroup, GpuError> {{\n        \
-             {binds}.bind_group(gpu, &shaders::{constant}, {group}, &[\n{resources}        ])\n    }}\n}}\n\n"
+             impl {of}<'_> {{\n    /// Binds them.\n    ///\n    /// # Errors\n    /// {errors}[`GpuError::Validation`] where the device refuses one.\n    \
+             pub fn bind(&self, gpu: &Gpu, {target}{arguments}) -> Result<BindGroup, {error}> {{\n        {body}\n    }}\n}}\n\n"
         )
+    }
+
+    /// The counts that give the least lengths of the shader's buffers, as a struct.
+    fn lengths(&self) -> String {
+        let counts = self.length_counts();
+        if counts.is_empty() {
+            return String::new();
+        }
+        let fields: String = counts
+            .iter()
+            .map(|count| format!("    /// Number of {}.\n    pub {count}: usize,\n", count.replace('_', " ")))
+            .collect();
+        format!(
+            "/// Counts that give the least lengths of the buffers of `{}`.\n#[derive(Debug, Clone, Copy)]\npub struct Lengths {{\n{fields}}}\n\n",
+            self.shader.name
+        )
+    }
+
+    /// The names of all counts in the shader's `// length` comments.
+    fn length_counts(&self) -> BTreeSet<String> {
+        let module = &self.shader.module;
+        let names = (module.global_variables.iter()).filter_map(|(_, variable)| variable.name.as_deref());
+        let lengths = names.filter_map(|name| self.sources.binding_comment(name).1);
+        lengths.flat_map(|length| self.count(length.count).1).collect()
+    }
+
+    /// A `// length` comment as Rust, and the counts that it names.
+    fn count(&self, text: &str) -> (String, BTreeSet<String>) {
+        let mut counts = BTreeSet::new();
+        let words = text.split(' ').map(|word| {
+            let is_name = |c: char| c.is_alphanumeric() || c == '_';
+            match word.chars().next() {
+                Some('0'..='9' | '+' | '*') => word.to_owned(),
+                Some('a'..='z') if word.chars().all(is_name) => {
+                    counts.insert(word.to_owned());
+                    word.to_owned()
+                }
+                Some('A'..='Z') if word.chars().all(is_name) => self.constant_path(word),
+                _ => self
+                    .refuse(&format!("length: {text}: `{word}` is no count, constant, number, `+` or `*`")),
+            }
+        });
+        (words.collect::<Vec<_>>().join(" "), counts)
+    }
+
+    fn constant_path(&self, name: &str) -> String {
+        let is_kept =
+            self.shader.module.constants.iter().any(|(_, constant)| constant.name.as_deref() == Some(name));
+        match self.sources.declaring("const", name).filter(|_| is_kept) {
+            Some(found) => {
+                format!("crate::shared::{}::{name} as usize", found.module(self.root).replace('/', "::"))
+            }
+            None => self.refuse(&format!("length: the shader uses no constant {name}")),
+        }
     }
 
     /// The type of a binding's field, and how the field is bound.

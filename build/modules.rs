@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::packed::expanded;
+
 /// The text of a module: its root, then what it imports, each file once.
 pub fn joined(root: &Path, file: &Path) -> String {
     let mut files = vec![file.to_owned()];
@@ -10,7 +12,8 @@ pub fn joined(root: &Path, file: &Path) -> String {
     let mut next = 0;
     while next < files.len() {
         let file = files[next].clone();
-        let source = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        let source = std::fs::read_to_string(&file).map_err(|error| error.to_string()).and_then(expanded);
+        let source = source.unwrap_or_else(|why| panic!("{}: {why}", file.display()));
         let relative = file.strip_prefix(root).unwrap_or(&file);
         text += &format!("// From relievo's {}.\n", relative.display());
         for line in source.lines() {

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::packed::{Packed, packed};
+
 /// The files of which a shader is composed, its own first.
 pub struct Sources(Vec<(PathBuf, String)>);
 
@@ -55,8 +57,13 @@ impl Sources {
         })
     }
 
-    /// The comment above the binding of that name.
-    pub fn binding_comment(&self, name: &str) -> Vec<&str> {
+    /// The packed words of each file, with the path of its module.
+    pub fn packed(&self, root: &Path) -> Vec<(String, &Path, Result<Vec<Packed<'_>>, String>)> {
+        self.0.iter().map(|(file, text)| (module_of(root, file), &**file, packed(text))).collect()
+    }
+
+    /// The comment above the binding of that name, and its `// length…: …` line.
+    pub fn binding_comment(&self, name: &str) -> (Vec<&str>, Option<Length<'_>>) {
         let marks = [format!("> {name}:"), format!(" {name}:")];
         for (_, text) in &self.0 {
             let mut comment = Vec::new();
@@ -64,7 +71,9 @@ impl Sources {
                 if line.starts_with("@group") && marks.iter().any(|mark| line.contains(mark.as_str())) {
                     // Other bindings, of modules, have their numbers in comments.
                     comment.retain(|words: &&str| !words.starts_with("Binding "));
-                    return comment;
+                    let length = comment.iter().find_map(|words| Length::parse(words));
+                    comment.retain(|words| Length::parse(words).is_none());
+                    return (comment, length);
                 }
                 match line.strip_prefix("//") {
                     Some(words) => comment.push(words.trim_start_matches('/').trim()),
@@ -72,8 +81,32 @@ impl Sources {
                 }
             }
         }
-        Vec::new()
+        (Vec::new(), None)
     }
+}
+
+/// The least length of a storage buffer, from `// length: 3 * instances` or, where the caller knows the buffer by another
+/// name, `// length of crowd.weights: instances * targets`.
+pub struct Length<'a> {
+    /// What errors call the buffer, if not by the binding's name.
+    pub path: Option<&'a str>,
+    /// Number of elements: products and sums of counts (lower case) and constants of the shader (upper case).
+    pub count: &'a str,
+}
+
+impl<'a> Length<'a> {
+    fn parse(comment: &'a str) -> Option<Self> {
+        let (head, count) = comment.strip_prefix("length")?.split_once(": ")?;
+        let path = if head.is_empty() { None } else { Some(head.strip_prefix(" of ")?) };
+        Some(Self { path, count })
+    }
+}
+
+/// `domain/file`, or `file`.
+fn module_of(root: &Path, file: &Path) -> String {
+    let relative = file.strip_prefix(root).expect("below the root").with_extension("");
+    let path = relative.display().to_string();
+    path.split_once('/').map_or(path.clone(), |(_, rest)| rest.to_owned())
 }
 
 /// Where a struct or a constant is declared.
@@ -87,9 +120,7 @@ pub struct Declaration<'a> {
 impl Declaration<'_> {
     /// `domain/file`, or `file`.
     pub fn module(&self, root: &Path) -> String {
-        let relative = self.file.strip_prefix(root).expect("below the root").with_extension("");
-        let path = relative.display().to_string();
-        path.split_once('/').map_or(path.clone(), |(_, rest)| rest.to_owned())
+        module_of(root, self.file)
     }
 
     /// Whether a member is aligned to 16 bytes by an attribute, of which the host's layout must know.

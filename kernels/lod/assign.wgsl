@@ -34,13 +34,18 @@ struct AssignParams {
 }
 
 @group(0) @binding(0) var<uniform> params: AssignParams;
-// The displacement that the frame's views allow, in the model's units; negative if none sees the instance.
+// For each instance of the scene the displacement that the frame's views allow, in the model's units; negative if none
+// sees it.
+// length: instances
 @group(0) @binding(1) var<storage, read> allowed: array<f32>;
-// What gates use of the object's instances.
+// Written, one for each instance of the object: what gates use.
+// length: instances
 @group(0) @binding(2) var<storage, read_write> lods: array<Lod>;
-// What skinning uses of them.
+// Written, one for each instance of the object: what skinning uses.
+// length: instances
 @group(0) @binding(3) var<storage, read_write> instance_lods: array<InstanceLod>;
 // All instances of the scene.
+// length: instances
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
 
 // The coarsest level whose error is within its fraction.

@@ -51,20 +51,26 @@ struct KeptBone {
 }
 
 @group(0) @binding(0) var<uniform> params: AttachParams;
+// The view.
 @group(0) @binding(1) var<uniform> view: SelectView;
+// The attached meshes, of which only the first `AttachParams::attached` count.
 @group(0) @binding(2) var<storage, read> attachments: array<Attachment>;
 // Three rows per bone of each instance of the character.
 @group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
 // All instances of the scene.
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
-// For each instance of the scene what the views of the frame allow; negative if none sees it.
+// For each instance of the scene the displacement that the views of the frame allow; negative if none sees it.
+// length: instances
 @group(0) @binding(5) var<storage, read> allowed: array<f32>;
-// For each instance of the scene three rows: the transform from the model's space to the corner of the view's cell; from
-// `last_rows` on the same for the last frame, relative to the same cell.
+// Written for the attached meshes, three for each instance of the scene: the rows of the transform from the model's space
+// to the corner of the view's cell; from `last_rows` on the same for the last frame, relative to the same cell.
+// length: rows
 @group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
-// All instances of the scene as they were in the last frame.
+// All instances of the scene as they were in the last frame; the same buffer as `instances` if it is not kept.
+// length: instances
 @group(0) @binding(7) var<storage, read> last_instances: array<SceneInstance>;
-// Two for each attachment: that of even frames, and that of odd ones.
+// Two for each attachment, zeros at first: the bone in even frames, and in odd ones.
+// length: 2 * attachments
 @group(0) @binding(8) var<storage, read_write> kept: array<KeptBone>;
 
 // A row of the product of two transforms, from a row of the first and all of the second.

@@ -2,7 +2,7 @@
 // workgroup for each object turns the counts of its blocks into the places at which their instances begin, and writes the
 // numbers of instances of its draws; then a thread for each instance writes its index into its list, or a thread for each
 // block those of its instances, one after the other.
-import package::wgsl::lod::object::{BLOCK, DECISION_LIST, DECISION_MORPH_SHIFT, LIST_MORPH_SHIFT, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw};
+import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw, decision_list, decision_morph, list_entry_word};
 
 // One of the constants below.
 override STAGE: u32 = 0u;
@@ -30,14 +30,12 @@ struct ListParams {
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
 // The index of the object that each block of instances belongs to, `NO_OBJECT` for none.
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
-// For each instance 0 if it is not seen, else 1 + its list in the bits of `DECISION_LIST`, and above how far its level has
-// moved to the next one.
+// The decision word of each instance of the blocks.
 @group(0) @binding(3) var<storage, read> decisions: array<u32>;
 // For each block and list the number of instances, which becomes the number of instances in the blocks before it; with WALK
 // in the end that of the instances up to the end of the block.
 @group(0) @binding(4) var<storage, read_write> counts: array<u32>;
-// The lists of all objects: indices of instances, relative to the object's first one, and from bit `LIST_MORPH_SHIFT` on how
-// far their levels have moved.
+// The lists of all objects, of list entries.
 @group(0) @binding(5) var<storage, read_write> lists: array<u32>;
 // For each part of each object `OBJECT_LISTS` draws.
 @group(0) @binding(6) var<storage, read_write> arguments: array<SceneDraw>;
@@ -81,7 +79,7 @@ fn sum(object: LodObject, lane: u32) {
 
 // What a list has for an instance.
 fn entry_of(index: u32, decision: u32) -> u32 {
-    return index | ((decision >> DECISION_MORPH_SHIFT) << LIST_MORPH_SHIFT);
+    return list_entry_word(index, decision_morph(decision));
 }
 
 // Writes the index of an instance into its list.
@@ -101,7 +99,7 @@ fn place(block: u32, lane: u32) {
     }
     let bit = lane % 32u;
     let word = lane % BLOCK / 32u;
-    let list = max(decision & DECISION_LIST, 1u) - 1u;
+    let list = max(decision_list(decision), 1u) - 1u;
     let own = 2u * (OBJECT_LISTS * (lane / BLOCK) + list);
     if decision > 0u {
         atomicOr(&members[own + word], 1u << bit);
@@ -133,7 +131,7 @@ fn walk(block: u32) {
     for (var at = 0u; at < BLOCK; at++) {
         let decision = decisions[BLOCK * block + at];
         if decision > 0u {
-            let list = (decision & DECISION_LIST) - 1u;
+            let list = decision_list(decision) - 1u;
             let count = counts[OBJECT_LISTS * block + list];
             counts[OBJECT_LISTS * block + list] = count + 1u;
             lists[begin + list * length + count] = entry_of(first + at, decision);

@@ -1,7 +1,7 @@
 // Decides for each instance of a scene whether a view sees it, and with which level of detail. A workgroup takes a block of
 // instances, a thread one of them.
-import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, Axes, SceneInstance, instance_axes, instance_position};
-import package::wgsl::lod::object::{BLOCK, DECISION_LIST, DECISION_MORPH_SHIFT, LodObject, MORPH_SHIFT, MORPH_STEPS, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, OBJECT_MORPHS, OBJECT_SHOWN};
+import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, Axes, SceneInstance, instance_axes, instance_flags_mask, instance_position};
+import package::wgsl::lod::object::{BLOCK, LodObject, MORPH_STEPS, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, OBJECT_MORPHS, OBJECT_SHOWN, decision_list, decision_morph, decision_word, morph_steps, morph_word};
 import package::wgsl::lod::view::{LodCamera, POSITION_SLACK, SelectView, VIEW_CAMERAS, camera_allows};
 
 // Of an instance that no view has seen in the frame.
@@ -11,21 +11,32 @@ const MAX_ALLOWED: f32 = 1e9;
 // The least scale by which a displacement is divided.
 const LEAST_SCALE: f32 = 1e-9;
 
+// The view. Its `blocks` may be fewer than `block_objects` has.
 @group(0) @binding(0) var<uniform> view: SelectView;
+// The objects.
+// length: 1
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
-// The index of the object that each block of instances belongs to, `NO_OBJECT` for none.
+// The index of the object that each block of instances belongs to; `NO_OBJECT` for none, whose instances are left alone.
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
+// The instances of all blocks.
+// length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> instances: array<SceneInstance>;
-// For each instance the smallest displacement that a view of the frame which sees it allows, in the model's units;
-// `UNSEEN_ALLOWED` if none sees it.
+// Written, one for each instance: the smallest displacement that a view of the frame which sees it allows, in the model's
+// units; `UNSEEN_ALLOWED` if none sees it.
+// length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
-// For each instance 0 if the view does not see it, else 1 + its list, 1 + 2 · level + mirrored, and from bit
-// `DECISION_MORPH_SHIFT` on how far the level has moved to the next one.
+// Written, one for each instance: 0 if the view does not see it, else a decision word for list
+// 2 · level + mirrored. The decisions of the last frame must be kept where
+// `SelectView::last_levels` is not 0.
+// length: BLOCK * blocks
 @group(0) @binding(5) var<storage, read_write> decisions: array<u32>;
-// Three rows for each instance that is seen: the transform from the model's space to the corner of the view's cell. From
-// `SelectView.last_levels` on, an element for each instance: what `level_told` makes of its decision in the last frame.
+// Written, three for each instance that is seen: the rows of the transform from the model's space to the corner of the
+// view's cell. Where `SelectView::last_levels` is not 0, an element for each instance from it on: the level of the last
+// frame, as `level_told` packs it.
+// length: 3 * BLOCK * blocks
 @group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
-// For each block the number of its instances in each of `OBJECT_LISTS` lists.
+// Written, for each block the number of its instances in each of `OBJECT_LISTS` lists.
+// length: OBJECT_LISTS * blocks
 @group(0) @binding(7) var<storage, read_write> counts: array<u32>;
 
 var<workgroup> tally: array<atomic<u32>, 16>;
@@ -34,7 +45,7 @@ var<workgroup> tally: array<atomic<u32>, 16>;
 fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
     let is_alive = (object.shown & OBJECT_SHOWN) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
     let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
-    return is_alive && casts && ((instance.flags >> INSTANCE_MASK_SHIFT) & view.mask) != 0u;
+    return is_alive && casts && (instance_flags_mask(instance.flags) & view.mask) != 0u;
 }
 
 // Whether a sphere reaches into the view volume.
@@ -74,7 +85,7 @@ fn level_within(object: LodObject, within: f32) -> u32 {
     return level;
 }
 
-// How far a level has moved to the next coarser one, with the level: the bits above a list in a decision.
+// The morph word of a level.
 fn morph_within(object: LodObject, level: u32, within: f32) -> u32 {
     if (object.shown & OBJECT_MORPHS) == 0u || level + 1u >= min(object.levels, OBJECT_LEVELS) {
         return 0u;
@@ -86,14 +97,14 @@ fn morph_within(object: LodObject, level: u32, within: f32) -> u32 {
     // The next level's error is above `within`.
     let way = min((within - begin) / (error_of(object, level + 1u) - begin), 1.0);
     let steps = u32(f32(MORPH_STEPS) * way + 0.5);
-    return select(0u, level | (steps << MORPH_SHIFT), steps > 0u);
+    return select(0u, morph_word(level, steps), steps > 0u);
 }
 
 // The decision for an instance that the view sees.
 fn decision_within(object: LodObject, scale: vec3<f32>, within: f32) -> u32 {
     let level = level_within(object, within);
     let is_mirrored = ((scale.x < 0.0) != (scale.y < 0.0)) != (scale.z < 0.0);
-    return (1u + 2u * level + u32(is_mirrored)) | (morph_within(object, level, within) << DECISION_MORPH_SHIFT);
+    return decision_word(1u + 2u * level + u32(is_mirrored), morph_within(object, level, within));
 }
 
 // The decision for an instance. Writes its rows and its allowed displacement.
@@ -124,8 +135,8 @@ fn decide(index: u32, object: LodObject) -> u32 {
 // What a decision tells of an instance's level: 1 + the level, or 0 if the instance is not seen, and the steps that the level
 // has moved to the next one.
 fn level_told(decision: u32) -> vec4<f32> {
-    let level = (max(decision & DECISION_LIST, 1u) - 1u) >> 1u;
-    let steps = decision >> (DECISION_MORPH_SHIFT + MORPH_SHIFT);
+    let level = (max(decision_list(decision), 1u) - 1u) >> 1u;
+    let steps = morph_steps(decision_morph(decision));
     return select(vec4<f32>(f32(1u + level), f32(steps), 0.0, 0.0), vec4<f32>(0.0), decision == 0u);
 }
 
@@ -154,7 +165,7 @@ fn main(
     }
     decisions[index] = decision;
     if decision > 0u {
-        atomicAdd(&tally[(decision & DECISION_LIST) - 1u], 1u);
+        atomicAdd(&tally[decision_list(decision) - 1u], 1u);
     }
     workgroupBarrier();
     if lane < OBJECT_LISTS {

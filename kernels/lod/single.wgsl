@@ -1,6 +1,6 @@
 // Draws of single instances, for objects that are drawn instance by instance: a thread writes the draw of a part of an
 // instance, of the level of detail at which the view sees it, and the list of that draw.
-import package::wgsl::lod::object::{DECISION_LIST, DECISION_MORPH_SHIFT, LIST_MORPH_SHIFT, SceneDraw};
+import package::wgsl::lod::object::{SceneDraw, decision_list, decision_morph, list_entry_word};
 
 // A part of an instance.
 struct Single {
@@ -18,15 +18,18 @@ struct SingleParams {
 }
 
 @group(0) @binding(0) var<uniform> params: SingleParams;
+// The parts of instances. Their instances and draws must lie inside `decisions` and `arguments`.
+// length: singles
 @group(0) @binding(1) var<storage, read> singles: array<Single>;
-// For each instance 0 if it is not seen, else 1 + its list in the bits of `DECISION_LIST`, and above how far its level has
-// moved to the next one.
+// The decision word of each instance of the scene.
 @group(0) @binding(2) var<storage, read> decisions: array<u32>;
 // For each part of each object a draw for each list.
 @group(0) @binding(3) var<storage, read> arguments: array<SceneDraw>;
-// One for each of `singles`.
+// Written: one for each of `singles`.
+// length: singles
 @group(0) @binding(4) var<storage, read_write> draws: array<SceneDraw>;
-// The list of each draw, with one entry: the slot, and from bit `LIST_MORPH_SHIFT` on how far the level has moved.
+// Written, for each draw the one entry of its list.
+// length: singles
 @group(0) @binding(5) var<storage, read_write> entries: array<u32>;
 
 @compute @workgroup_size(64)
@@ -41,11 +44,11 @@ fn main(
     }
     let single = singles[index];
     let decision = decisions[single.instance];
-    entries[index] = single.slot | ((decision >> DECISION_MORPH_SHIFT) << LIST_MORPH_SHIFT);
+    entries[index] = list_entry_word(single.slot, decision_morph(decision));
     if decision == 0u {
         draws[index] = SceneDraw(0u, 0u, 0u, 0u, 0u);
         return;
     }
-    let draw = arguments[single.first_draw + (decision & DECISION_LIST) - 1u];
+    let draw = arguments[single.first_draw + decision_list(decision) - 1u];
     draws[index] = SceneDraw(draw.indices, 1u, draw.first_index, draw.base_vertex, 0u);
 }

@@ -26,7 +26,7 @@ impl SetTrack {
     pub fn packed(&self) -> packed::SetTrack {
         let timeline = self.timeline.unwrap_or(packed::CONSTANT);
         let interpolation = self.interpolation as u32;
-        packed::SetTrack { words: [interpolation << packed::TIMELINE_BITS | timeline, self.first_value] }
+        packed::SetTrack { words: [packed::track_word(timeline, interpolation), self.first_value] }
     }
 }
 

@@ -7,7 +7,9 @@ use super::Buffer;
 /// The names that generated code uses.
 pub(crate) mod prelude {
     pub(crate) use super::Slice;
-    pub(crate) use crate::gpu::{Gpu, GpuError, Group as BindGroup, Kernel, Layouts, Uniform, shaders};
+    pub(crate) use crate::gpu::{
+        Buffer, Gpu, GpuError, Group as BindGroup, Kernel, Layouts, Uniform, shaders,
+    };
 }
 
 /// A storage buffer to bind, by the type of its elements.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use encase::internal::WriteInto;
 use encase::{ShaderSize, UniformBuffer};
 
+use super::bind::SeenAs;
 use super::memory::Held;
 use super::readback::Readback;
 use super::{Gpu, GpuError};
@@ -151,6 +152,16 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// Whether it has no elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
+    }
+
+    /// The same buffer with elements of the type that a shader sees, as [`Slice::cast`](super::bind::Slice::cast).
+    pub fn cast<U>(&self) -> Buffer<U>
+    where
+        T: SeenAs<U>,
+    {
+        self.slice().cast::<U>();
+        let len = self.len * size_of::<T>() / size_of::<U>();
+        Buffer { raw: self.raw.clone(), _held: self._held.clone(), len, element: PhantomData }
     }
 
     /// Checks that the buffer holds at least `needed` elements.

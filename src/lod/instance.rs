@@ -2,7 +2,7 @@
 
 use glam::{IVec3, Quat, Vec3};
 
-use super::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, SceneInstance};
+use super::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, SceneInstance, instance_flags_word};
 
 impl SceneInstance {
     /// An instance at the corner of cell 0, of the model's size, that casts shadows and that every view may see.
@@ -10,7 +10,7 @@ impl SceneInstance {
     pub fn new(bounding_sphere: [f32; 4]) -> Self {
         Self {
             cell: [0; 3],
-            flags: INSTANCE_ALIVE | INSTANCE_CASTS | 0xffff << INSTANCE_MASK_SHIFT,
+            flags: instance_flags_word(INSTANCE_ALIVE | INSTANCE_CASTS, 0xffff),
             offset: [0.0; 3],
             word: 0,
             rotation: Quat::IDENTITY.to_array(),

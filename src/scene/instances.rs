@@ -3,7 +3,7 @@
 use crate::asset::transform::Transform;
 use crate::scene::placement::Placement;
 use crate::shared::lod::instance::{
-    INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, INSTANCE_MASK_SHIFT, SceneInstance,
+    INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, SceneInstance, instance_flags_word,
 };
 use crate::shared::lod::object::BLOCK;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -179,7 +179,7 @@ pub(super) fn set_visibility(instance: &mut SceneInstance, mask: u16, casts: boo
 
 /// The flags of an instance that exists.
 fn flags(mask: u16, casts: bool) -> u32 {
-    INSTANCE_ALIVE | if casts { INSTANCE_CASTS } else { 0 } | u32::from(mask) << INSTANCE_MASK_SHIFT
+    instance_flags_word(INSTANCE_ALIVE | if casts { INSTANCE_CASTS } else { 0 }, mask.into())
 }
 
 /// Sets the position, rotation and scale of an instance. The placement must be checked.

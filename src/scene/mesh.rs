@@ -7,7 +7,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::scene::pieces::{Most, indices_of_levels, pieces};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
-use crate::shared::render::scene_vertex::{MeshParams, PARTNER_LEVEL_SHIFT};
+use crate::shared::render::scene_vertex::{MeshParams, partner_word};
 use crate::skinning::at_rest::at_rest;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::buffers::MeshBuffers;
@@ -188,7 +188,7 @@ fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
     let (coarsest, slots) = (coarsest_levels(mesh, errors), clusters.slots());
     let word = |vertex: &u32| {
         let vertex = *vertex as usize;
-        slots[mesh.partners[vertex] as usize] | coarsest[vertex] << PARTNER_LEVEL_SHIFT
+        partner_word(slots[mesh.partners[vertex] as usize], coarsest[vertex])
     };
     clusters.order.iter().map(word).collect()
 }

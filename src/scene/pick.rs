@@ -8,7 +8,7 @@ use crate::scene::handles::InstanceId;
 use crate::scene::matrices::placed_model;
 use crate::scene::object::{Kind, Object};
 use crate::scene::ray::{Hit, Ray, Surface, SurfaceHit};
-use crate::shared::lod::instance::{INSTANCE_ALIVE, INSTANCE_MASK_SHIFT};
+use crate::shared::lod::instance::{INSTANCE_ALIVE, instance_flags_mask};
 
 /// By how much a box or a sphere is enlarged, relative to what it is computed from: rounding moves what is drawn, in `f32`,
 /// by less.
@@ -76,7 +76,7 @@ impl Scene {
             for [index, generation] in entry.instances.each() {
                 let instance = &entry.instances.all()[index as usize];
                 if instance.flags & INSTANCE_ALIVE == 0
-                    || instance.flags >> INSTANCE_MASK_SHIFT & u32::from(ray.mask) == 0
+                    || instance_flags_mask(instance.flags) & u32::from(ray.mask) == 0
                 {
                     continue;
                 }

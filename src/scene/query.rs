@@ -91,7 +91,7 @@ mod drawn {
     use crate::scene::View;
     use crate::scene::drawable::{Drawable, MeshDrawable};
     use crate::scene::view::lists::ViewLists;
-    use crate::shared::lod::object::{LIST_INSTANCE, LIST_MORPH_SHIFT, MORPH_SHIFT, MORPH_STEPS};
+    use crate::shared::lod::object::{MORPH_STEPS, list_entry_instance, list_entry_morph, morph_steps};
     use crate::skinning::vertex::Vertex;
 
     /// An instance that a view may show, as the view's last frame drew it.
@@ -136,8 +136,8 @@ mod drawn {
                 for list in 0..2 * entry.errors.len() {
                     let count = draws[range.first_draw as usize + list].instances as usize;
                     for entry in &lists[range.first_list as usize + list * room..][..count] {
-                        let index = entry & LIST_INSTANCE;
-                        let steps = entry >> (LIST_MORPH_SHIFT + MORPH_SHIFT);
+                        let index = list_entry_instance(*entry);
+                        let steps = morph_steps(list_entry_morph(*entry));
                         let way = f64::from(steps) / f64::from(MORPH_STEPS);
                         let first = 3 * (range.first + index) as usize;
                         let rows: Affine = [0, 1, 2].map(|row| rows[first + row]);

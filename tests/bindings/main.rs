@@ -1,10 +1,24 @@
 //! What generated bindings refuse: a buffer that is forgotten, and one of another element type, do not compile.
 //!
 //! The bindings are private, so they are compiled here as a crate of their own: the files that `build.rs` wrote and
-//! `src/gpu/bind.rs`, with empty types in place of the device's and of wgpu's and glam's.
+//! `src/gpu/bind.rs`, with empty types in place of the device's and of wgpu's and glam's. And what they check on a device:
+//! lengths, and the widths of packed words.
+
+#[path = "../../build/packed.rs"]
+#[allow(dead_code, reason = "the build uses the rest")]
+mod packed;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use packed::packed;
+use relievo::Error;
+use relievo::gpu::Buffer;
+use relievo::lod::single::{SingleBuffers, SinglePass};
+use relievo::shared::lod::object::{
+    decision_list, decision_morph, decision_word, list_entry_instance, list_entry_morph, list_entry_word,
+    morph_level, morph_steps, morph_word,
+};
 
 const OUT_DIR: &str = env!("OUT_DIR");
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
@@ -114,4 +128,50 @@ fn a_cast_to_elements_that_the_bytes_are_not_does_not_compile() {
     let said = bound(&RIGHT.replace("hits: hits.slice()", "hits: rays.slice().cast()")).expect_err("refused");
     assert!(said.contains("error[E0277]") && said.contains("`SurfaceRay: SeenAs<"), "{said}");
     assert_eq!(said.matches("error[").count(), 1, "{said}");
+}
+
+/// Every buffer of a pass that states its lengths is refused by its name when it is one element short.
+#[test]
+fn short_buffers_are_refused_by_name() {
+    let gpu = relievo_testing::gpu();
+    let pass = SinglePass::new(&gpu).expect("compiled");
+    for (short, lens) in [("singles", [2, 3, 3]), ("draws", [3, 2, 3]), ("entries", [3, 3, 2])] {
+        let [singles, draws, entries] = lens;
+        let buffers = SingleBuffers {
+            singles: &Buffer::new(&gpu, "singles", singles).expect("allocated"),
+            decisions: &Buffer::new(&gpu, "decisions", 1).expect("allocated"),
+            arguments: &Buffer::new(&gpu, "arguments", 1).expect("allocated"),
+            draws: &Buffer::new(&gpu, "draws", draws).expect("allocated"),
+            entries: &Buffer::new(&gpu, "entries", entries).expect("allocated"),
+        };
+        pass.prepare(&gpu, buffers, 2).expect("long enough");
+        let Err(Error::Input(error)) = pass.prepare(&gpu, buffers, 3) else { panic!("{short} was accepted") };
+        let said = (&*error.path, &*error.value, &*error.bound);
+        assert_eq!(said, (short, "[2 elements]", "must hold at least 3"));
+    }
+}
+
+#[test]
+fn packed_words_give_back_their_fields() {
+    let word = decision_word(16, morph_word(7, 511));
+    assert_eq!((word, decision_list(word)), (0xfff10, 16));
+    assert_eq!((morph_level(decision_morph(word)), morph_steps(decision_morph(word))), (7, 511));
+    // The last field has the highest bit.
+    assert_eq!(list_entry_word(0xf_ffff, 0xfff), u32::MAX);
+    assert_eq!((list_entry_instance(u32::MAX), list_entry_morph(u32::MAX)), (0xf_ffff, 0xfff));
+}
+
+#[test]
+#[should_panic(expected = "a value exceeds its bits: Decision: list 8, morph 12")]
+fn a_value_beyond_its_field_is_refused() {
+    decision_word(256, 0);
+}
+
+#[test]
+fn fields_that_a_word_has_no_room_for_are_refused() {
+    let refused = |comment: &str| packed(&format!("// packed {comment}")).err().expect("refused");
+    assert_eq!(refused("Word: a 20, b 13"), "packed Word: a 20, b 13: has 33 bits, and must have at most 32");
+    assert!(refused("Word: a 0").contains("a width is a number from 1 to 32"));
+    assert!(refused("Word: a").contains("a field needs a width"));
+    assert!(refused("a 3").contains("needs a name"));
 }

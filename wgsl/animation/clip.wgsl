@@ -37,25 +37,25 @@ fn cursor_of_words(words: vec2<u32>) -> KeyframeCursor {
 // A track of a set, in two words that one memory operation loads; see timeline_of, interpolation_of and
 // first_value_of.
 struct SetTrack {
-    // In the lower TIMELINE_BITS bits of x the timeline, counted from the clip's first, or CONSTANT; above them
-    // INTERPOLATION_STEP, INTERPOLATION_LINEAR or INTERPOLATION_SPLINE. In y the index of the first value; for a
+    // In x a track word. In y the index of the first value; for a
     // constant spline, of the middle one of its three.
     words: vec2<u32>,
 }
 
-// Number of bits of a track's timeline.
-const TIMELINE_BITS: u32 = 30u;
-// The timeline of a track whose value never changes: all of these bits.
-const CONSTANT: u32 = (1u << TIMELINE_BITS) - 1u;
+// The timeline, counted from the clip's first, or CONSTANT; and INTERPOLATION_STEP, INTERPOLATION_LINEAR or
+// INTERPOLATION_SPLINE.
+// packed Track: timeline 30, interpolation 2
+// The timeline of a track whose value never changes.
+const CONSTANT: u32 = 0x3fffffffu;
 
 // The timeline of a track, counted from the clip's first, or CONSTANT.
 fn timeline_of(track: SetTrack) -> u32 {
-    return track.words.x & CONSTANT;
+    return track_timeline(track.words.x);
 }
 
 // How a track's values go from one key to the next: INTERPOLATION_STEP or another.
 fn interpolation_of(track: SetTrack) -> u32 {
-    return track.words.x >> TIMELINE_BITS;
+    return track_interpolation(track.words.x);
 }
 
 // The index of a track's first value; for a constant spline, of the middle one of its three.

@@ -2,7 +2,7 @@
 // update its pose. Gates decide by these.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
-import package::wgsl::animation::gate_state::{FRACTION_BITS, FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock};
+import package::wgsl::animation::gate_state::{FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, progress_word};
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::keyframe_cursor;
 
@@ -79,6 +79,6 @@ fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
         }
         history[index] = known;
     }
-    let own = (reason << FRACTION_BITS) | whole_fraction(found);
+    let own = progress_word(whole_fraction(found), reason);
     return ClipClock(clip.first_row + found.key, own, instance.clip, clip.first_row + ahead.key, whole_fraction(ahead));
 }

@@ -38,8 +38,8 @@ struct ClipClock {
     ahead_fraction: u32,
 }
 
-// Number of bits of the fraction in ClipClock::fraction_and_reason.
-const FRACTION_BITS: u32 = 20u;
+// ClipClock::fraction_and_reason: the fraction of the whole way to the next row, and the update reason.
+// packed Progress: fraction 20, reason 12
 // The fraction of the whole way from one row to the next.
 const FRACTION_ONE: u32 = 65536u;
 
@@ -51,7 +51,7 @@ const UPDATE_REASON_BLENDED: u32 = 3u;
 
 // The update reason: one of the constants above.
 fn update_reason_of(clip_clock: ClipClock) -> u32 {
-    return clip_clock.fraction_and_reason >> FRACTION_BITS;
+    return progress_reason(clip_clock.fraction_and_reason);
 }
 
 // Whether bones that are sampled ahead get a different pose.
@@ -61,7 +61,7 @@ fn is_ahead(clip_clock: ClipClock) -> bool {
 
 // The fraction of the way to the next row, 0 to FRACTION_ONE.
 fn fraction_of(clip_clock: ClipClock) -> u32 {
-    return clip_clock.fraction_and_reason & ((1u << FRACTION_BITS) - 1u);
+    return progress_fraction(clip_clock.fraction_and_reason);
 }
 
 // Marks a pair of instance and bone that is sampled ahead.

@@ -12,14 +12,14 @@ const INSTANCE_CASTS = 2u;
 const INSTANCE_CARRIES = 4u;
 // The instance is a mesh that is attached to a bone: only its rows in a view tell where it is.
 const INSTANCE_FOLLOWS = 8u;
-// The first bit of the visibility mask, which takes the upper half of `flags`.
-const INSTANCE_MASK_SHIFT = 16u;
+// `SceneInstance.flags`: the bits above, and the visibility mask.
+// packed InstanceFlags: bits 16, mask 16
 
 // An instance of an object.
 struct SceneInstance {
     // The cell that holds its position.
     cell: vec3<i32>,
-    // `INSTANCE_ALIVE`, `INSTANCE_CASTS`, `INSTANCE_CARRIES`, `INSTANCE_FOLLOWS`, and from bit `INSTANCE_MASK_SHIFT` on the 16 bits of its visibility mask.
+    // `INSTANCE_ALIVE`, `INSTANCE_CASTS`, `INSTANCE_CARRIES`, `INSTANCE_FOLLOWS`, and in the upper 16 bits its visibility mask.
     flags: u32,
     // Its position in the cell, in world units.
     offset: vec3<f32>,

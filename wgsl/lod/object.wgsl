@@ -13,20 +13,14 @@ const NO_OBJECT = 0xffffffffu;
 const OBJECT_SHOWN = 1u;
 // A bit of `LodObject.shown`: its levels of detail move into each other.
 const OBJECT_MORPHS = 2u;
-// The bits of a decision that have 1 + its list.
-const DECISION_LIST = 255u;
-// The first bit of a decision that tells how far its level of detail has moved to the next coarser one.
-const DECISION_MORPH_SHIFT = 8u;
-// The bits of a list's entry that have the index of the instance.
-const LIST_INSTANCE = 1048575u;
-// The first bit of a list's entry that tells how far the level has moved.
-const LIST_MORPH_SHIFT = 20u;
-// Of what tells how far a level has moved, the bits that have the level; all are 0 where it has not moved.
-const MORPH_LEVEL = 7u;
-// The first bit that has the steps that it has moved.
-const MORPH_SHIFT = 3u;
+// How far an instance has moved from its level to the next coarser one: the level and the steps. 0: no morph.
+// packed Morph: level 3, steps 9
 // Number of steps from a level to the next one.
 const MORPH_STEPS = 511u;
+// A view's decision for an instance: 1 + its list, and its morph word. 0: not seen.
+// packed Decision: list 8, morph 12
+// An entry of a list: the instance, counted from the object's first one, and its morph word.
+// packed ListEntry: instance 20, morph 12
 
 // How the instances of an object are selected and listed.
 struct LodObject {

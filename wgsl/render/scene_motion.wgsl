@@ -1,7 +1,7 @@
 // Where the instances of a scene were in the last frame, and how far their surfaces moved on the screen since.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::object::{OBJECT_LEVELS};
-import package::wgsl::render::scene_vertex::{MORPHED, PARTNER_INDEX, PARTNER_LEVEL_SHIFT, VertexMorph, entry_instance, instances, material_of, mesh, morphed, rows, vertex_index_of, vertex_morph, vertices, way_of};
+import package::wgsl::render::scene_vertex::{MORPHED, VertexMorph, entry_instance, instances, material_of, mesh, morphed, partner_index, partner_level, rows, vertex_index_of, vertex_morph, vertices, way_of};
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_position};
 import package::wgsl::skinning::vertex::vertex_position;
@@ -52,14 +52,14 @@ fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     let level = u32(known.x) - 1u;
     var standing = vertex;
     var word = material_of[mesh.partners + standing];
-    for (var step = 0u; step < OBJECT_LEVELS && (word >> PARTNER_LEVEL_SHIFT) < level; step++) {
-        standing = word & PARTNER_INDEX;
+    for (var step = 0u; step < OBJECT_LEVELS && partner_level(word) < level; step++) {
+        standing = partner_index(word);
         word = material_of[mesh.partners + standing];
     }
-    if (word >> PARTNER_LEVEL_SHIFT) != level {
+    if partner_level(word) != level {
         return LastMorph(standing, VertexMorph(standing, 0.0));
     }
-    return LastMorph(standing, VertexMorph(word & PARTNER_INDEX, way_of(u32(known.y))));
+    return LastMorph(standing, VertexMorph(partner_index(word), way_of(u32(known.y))));
 }
 
 // Where a vertex of an instance, given by the entry of its list, was, relative to the corner of the view's cell.

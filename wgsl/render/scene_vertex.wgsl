@@ -1,6 +1,6 @@
 // Vertices of the meshes of a scene, static or skinned, at the placement of an instance.
 import package::wgsl::lod::instance::SceneInstance;
-import package::wgsl::lod::object::{LIST_INSTANCE, LIST_MORPH_SHIFT, MORPH_LEVEL, MORPH_SHIFT, MORPH_STEPS};
+import package::wgsl::lod::object::{MORPH_STEPS, list_entry_instance, list_entry_morph, morph_level, morph_steps};
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_tangent};
@@ -8,9 +8,8 @@ import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_
 // Whether levels of detail of the mesh move into each other.
 override MORPHED: bool = false;
 
-// Of a vertex's partner, the bits that have its index; those above have the coarsest level of detail that has the vertex itself.
-const PARTNER_INDEX: u32 = 16777215u;
-const PARTNER_LEVEL_SHIFT: u32 = 24u;
+// A vertex's partner: its index, and the coarsest level of detail that has the vertex itself.
+// packed Partner: index 24, level 8
 
 // Where the instances and the vertices of a mesh lie.
 struct MeshParams {
@@ -75,7 +74,7 @@ fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
 
 // The instance of a list's entry, counted in the object.
 fn entry_instance(entry: u32) -> u32 {
-    return entry & LIST_INSTANCE;
+    return list_entry_instance(entry);
 }
 
 // Where a vertex goes in the next coarser level, and how far it has moved there, 0 to 1.
@@ -87,12 +86,12 @@ struct VertexMorph {
 // The vertices that the next coarser level has too stay, and so do all if the entry's level has not moved.
 fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
     let word = material_of[mesh.partners + vertex];
-    let moved = entry >> LIST_MORPH_SHIFT;
-    let steps = moved >> MORPH_SHIFT;
-    if steps == 0u || mesh.partners == 0u || (word >> PARTNER_LEVEL_SHIFT) != (moved & MORPH_LEVEL) {
+    let morph = list_entry_morph(entry);
+    let steps = morph_steps(morph);
+    if steps == 0u || mesh.partners == 0u || partner_level(word) != morph_level(morph) {
         return VertexMorph(vertex, 0.0);
     }
-    return VertexMorph(word & PARTNER_INDEX, way_of(steps));
+    return VertexMorph(partner_index(word), way_of(steps));
 }
 
 // The way of so many steps. Division may round: all of them are 1.

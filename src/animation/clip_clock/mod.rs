@@ -41,7 +41,7 @@ impl UpdateReason {
 impl ClipClock {
     /// A clip clock from its parts, without sampling ahead.
     pub fn new(row: u32, fraction: u32, reason: UpdateReason, clip: u32) -> Self {
-        let fraction_and_reason = (reason as u32) << gate_state::FRACTION_BITS | fraction;
+        let fraction_and_reason = gate_state::progress_word(fraction, reason as u32);
         Self { row, fraction_and_reason, clip, ahead_row: row, ahead_fraction: fraction }
     }
 
@@ -52,12 +52,12 @@ impl ClipClock {
 
     /// The fraction of the way to the next row, 0 to 65536.
     pub fn fraction(&self) -> u32 {
-        self.fraction_and_reason & ((1 << gate_state::FRACTION_BITS) - 1)
+        gate_state::progress_fraction(self.fraction_and_reason)
     }
 
     /// The reason, other than time, to update the pose.
     pub fn reason(&self) -> UpdateReason {
-        match self.fraction_and_reason >> gate_state::FRACTION_BITS {
+        match gate_state::progress_reason(self.fraction_and_reason) {
             gate_state::UPDATE_REASON_FREE => UpdateReason::Free,
             gate_state::UPDATE_REASON_HIDDEN => UpdateReason::Hidden,
             gate_state::UPDATE_REASON_FORCED => UpdateReason::Forced,

@@ -2,26 +2,12 @@
 
 use super::AssignParams;
 use crate::Error;
-use crate::animation::lod::PackedLod;
 use crate::gpu::bindings::lod::assign as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::lod::SceneInstance;
-use crate::skinning::instance_lod::InstanceLod;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 
 /// What an assignment reads and writes.
-#[derive(Debug, Clone, Copy)]
-pub struct AssignBuffers<'a> {
-    /// The object and its fractions.
-    pub params: &'a Uniform<AssignParams>,
-    /// For each instance of the scene the displacement that is allowed, in the model's units, negative if none sees it.
-    pub allowed: &'a Buffer<f32>,
-    /// All instances of the scene.
-    pub instances: &'a Buffer<SceneInstance>,
-    /// Written, one for each instance of the object: what gates use.
-    pub lods: &'a Buffer<PackedLod>,
-    /// Written, one for each instance of the object: what skinning uses.
-    pub instance_lods: &'a Buffer<InstanceLod>,
-}
+#[doc(inline)]
+pub use bindings::Buffers as AssignBuffers;
 
 /// Assigns allowed displacements to gates and skinning.
 #[derive(Debug, Clone)]
@@ -38,24 +24,20 @@ impl AssignPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the assignment to at most `instances` instances; the uniform's `instances` says how many there are.
+    /// Prepares the assignment to at most `instances` instances; [`AssignParams::instances`] says how many there are.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers that hold less; [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, buffers: AssignBuffers<'_>, instances: u32) -> Result<Job, Error> {
-        buffers.allowed.check_holds("allowed", instances as usize)?;
-        buffers.instances.check_holds("instances", instances as usize)?;
-        buffers.lods.check_holds("lods", instances as usize)?;
-        buffers.instance_lods.check_holds("instance_lods", instances as usize)?;
-        let group = bindings::Group {
-            params: buffers.params,
-            allowed: buffers.allowed.slice(),
-            instances: buffers.instances.slice(),
-            lods: buffers.lods.slice(),
-            instance_lods: buffers.instance_lods.slice(),
-        };
+    pub fn prepare(
+        &self,
+        gpu: &Gpu,
+        params: &Uniform<AssignParams>,
+        buffers: AssignBuffers<'_>,
+        instances: u32,
+    ) -> Result<Job, Error> {
+        let lengths = bindings::Lengths { instances: instances as usize };
         let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
+            groups: vec![buffers.bind(gpu, &self.kernel, params, &lengths)?],
             workgroups: self.kernel.spread(gpu, instances),
             kernel: self.kernel.clone(),
         };

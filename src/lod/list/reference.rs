@@ -1,10 +1,9 @@
 //! Lists of instances: the CPU reference of `kernels/lod/list.wgsl`.
 
 use crate::lod::{LodObject, OBJECT_LISTS};
-use crate::shared::lod::object::{DECISION_LIST, DECISION_MORPH_SHIFT, LIST_MORPH_SHIFT};
+use crate::shared::lod::object::{decision_list, decision_morph, list_entry_word};
 
-/// The lists of an object from the decisions of its instances: indices relative to the object's first instance, ascending, and
-/// in the bits from `LIST_MORPH_SHIFT` on how far levels have moved to the next ones.
+/// The lists of an object from the decisions of its instances: list entries, ascending by instance.
 ///
 /// # Panics
 /// If the object's instances are not all in `decisions`.
@@ -12,8 +11,8 @@ pub fn lists(object: &LodObject, decisions: &[u32]) -> [Vec<u32>; OBJECT_LISTS a
     let mut lists: [Vec<u32>; OBJECT_LISTS as usize] = std::array::from_fn(|_| Vec::new());
     let own = &decisions[object.first as usize..][..object.instances as usize];
     for (instance, decision) in (0..).zip(own).filter(|(_, decision)| **decision > 0) {
-        let moved = (decision >> DECISION_MORPH_SHIFT) << LIST_MORPH_SHIFT;
-        lists[(decision & DECISION_LIST) as usize - 1].push(instance | moved);
+        let entry = list_entry_word(instance, decision_morph(*decision));
+        lists[decision_list(*decision) as usize - 1].push(entry);
     }
     lists
 }

@@ -4,11 +4,12 @@ use glam::{IVec3, Vec3};
 
 use crate::lod::object::level_within;
 use crate::lod::{
-    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, LodObject, OBJECT_LEVELS, SceneInstance,
-    SelectView,
+    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodObject, OBJECT_LEVELS, SceneInstance, SelectView,
+    instance_flags_mask,
 };
 use crate::shared::lod::object::{
-    DECISION_LIST, DECISION_MORPH_SHIFT, MORPH_SHIFT, MORPH_STEPS, OBJECT_MORPHS, OBJECT_SHOWN,
+    MORPH_STEPS, OBJECT_MORPHS, OBJECT_SHOWN, decision_list, decision_morph, decision_word, morph_steps,
+    morph_word,
 };
 use crate::shared::lod::select::{LEAST_SCALE, MAX_ALLOWED, UNSEEN_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
@@ -16,7 +17,7 @@ use crate::shared::lod::view::POSITION_SLACK;
 /// What a view makes of an instance that it sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selected {
-    /// 1 + 2 · level + mirrored, and from bit `DECISION_MORPH_SHIFT` on [`morph_within`].
+    /// The decision word: 1 + 2 · level + mirrored, and [`morph_within`].
     pub decision: u32,
     /// The displacement that the view allows, in the model's units.
     pub allowed: f32,
@@ -37,7 +38,7 @@ pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
 pub fn is_shown(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> bool {
     let is_alive = object.shown & OBJECT_SHOWN != 0 && instance.flags & INSTANCE_ALIVE != 0;
     let casts = view.casters == 0 || instance.flags & INSTANCE_CASTS != 0;
-    is_alive && casts && (instance.flags >> INSTANCE_MASK_SHIFT) & view.mask != 0
+    is_alive && casts && instance_flags_mask(instance.flags) & view.mask != 0
 }
 
 /// How far a sphere reaches into the view volume; negative if it is outside.
@@ -71,11 +72,11 @@ pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -
     let allowed = view_allows(view, center, radius, instance.largest_scale());
     let within = object.mesh_fraction * allowed;
     let level = level_within(object.levels, &object.errors, within);
-    let moved = morph_within(object, level, within) << DECISION_MORPH_SHIFT;
+    let morph = morph_within(object, level, within);
     let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
     let rows = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
     let list = 2 * level + u32::from(instance.is_mirrored());
-    Some(Selected { decision: (1 + list) | moved, allowed, rows })
+    Some(Selected { decision: decision_word(1 + list, morph), allowed, rows })
 }
 
 /// What a decision tells of an instance's level: 1 + the level, or 0 if the instance is not seen, and the steps that the
@@ -84,12 +85,11 @@ pub fn level_told(decision: u32) -> [f32; 4] {
     if decision == 0 {
         return [0.0; 4];
     }
-    let level = ((decision & DECISION_LIST).max(1) - 1) >> 1;
-    [(1 + level) as f32, (decision >> (DECISION_MORPH_SHIFT + MORPH_SHIFT)) as f32, 0.0, 0.0]
+    let level = (decision_list(decision).max(1) - 1) >> 1;
+    [(1 + level) as f32, morph_steps(decision_morph(decision)) as f32, 0.0, 0.0]
 }
 
-/// How far a level of an object has moved to the next coarser one: the level, and from bit `MORPH_SHIFT` on how many of
-/// `MORPH_STEPS`; 0 where it has not moved. `within` is the displacement that levels may use.
+/// The morph word of a level of an object: the level and how many of [`MORPH_STEPS`]; 0 where it has not moved. `within` is the displacement that levels may use.
 pub fn morph_within(object: &LodObject, level: u32, within: f32) -> u32 {
     let errors = object.errors.as_flattened();
     let begin = errors[level as usize];
@@ -98,7 +98,7 @@ pub fn morph_within(object: &LodObject, level: u32, within: f32) -> u32 {
     }
     let way = ((within - begin) / (errors[level as usize + 1] - begin)).min(1.0);
     let steps = (MORPH_STEPS as f32 * way + 0.5) as u32;
-    if steps > 0 { level | steps << MORPH_SHIFT } else { 0 }
+    if steps > 0 { morph_word(level, steps) } else { 0 }
 }
 
 /// The displacement that is allowed an instance after another view of the frame. `before` is what the views before it
@@ -120,7 +120,7 @@ pub fn counts(decisions: &[u32]) -> Vec<u32> {
         block
             .iter()
             .filter(|decision| **decision > 0)
-            .for_each(|decision| tally[(*decision & DECISION_LIST) as usize - 1] += 1);
+            .for_each(|decision| tally[decision_list(*decision) as usize - 1] += 1);
         counts.extend(tally);
     }
     counts

@@ -2,7 +2,7 @@
 
 use super::Single;
 use crate::lod::SceneDraw;
-use crate::shared::lod::object::{DECISION_LIST, DECISION_MORPH_SHIFT, LIST_MORPH_SHIFT};
+use crate::shared::lod::object::{decision_list, decision_morph, list_entry_word};
 
 /// The draw of each of `singles`, from the decisions of all instances and the draws of all lists.
 ///
@@ -12,7 +12,7 @@ pub fn draws(singles: &[Single], decisions: &[u32], arguments: &[SceneDraw]) -> 
     let draw = |single: &Single| match decisions[single.instance as usize] {
         0 => SceneDraw { indices: 0, instances: 0, first_index: 0, base_vertex: 0, first_instance: 0 },
         decision => {
-            let draw = arguments[(single.first_draw + (decision & DECISION_LIST) - 1) as usize];
+            let draw = arguments[(single.first_draw + decision_list(decision) - 1) as usize];
             SceneDraw { instances: 1, first_instance: 0, ..draw }
         }
     };
@@ -24,6 +24,6 @@ pub fn draws(singles: &[Single], decisions: &[u32], arguments: &[SceneDraw]) -> 
 /// # Panics
 /// For an instance without a decision.
 pub fn entries(singles: &[Single], decisions: &[u32]) -> Vec<u32> {
-    let moved = |single: &Single| decisions[single.instance as usize] >> DECISION_MORPH_SHIFT;
-    singles.iter().map(|single| single.slot | moved(single) << LIST_MORPH_SHIFT).collect()
+    let morph = |single: &Single| decision_morph(decisions[single.instance as usize]);
+    singles.iter().map(|single| list_entry_word(single.slot, morph(single))).collect()
 }

@@ -159,13 +159,12 @@ impl Runtime {
         for skin in &self.skins {
             let uniform = Uniform::new(gpu, "assign", &params)?;
             let buffers = AssignBuffers {
-                params: &uniform,
                 allowed: &layout.allowed,
                 instances: &layout.instances,
                 lods: &self.frame.state.lods,
                 instance_lods: &skin.crowd.instance_lods,
             };
-            let job = pass.prepare(gpu, buffers, params.instances)?;
+            let job = pass.prepare(gpu, &uniform, buffers, params.instances)?;
             self.assign.push((uniform, params, job));
         }
         self.version = layout.version;

@@ -36,17 +36,16 @@ impl View {
             let Kind::Character(character) = &object.kind else { continue };
             let Some(model_matrices) = character.matrices(chunk) else { continue };
             let buffers = AttachBuffers {
-                params: &list.params,
                 view: &self.select,
                 attachments: &list.attachments,
-                model_matrices,
+                model_matrices: &model_matrices.buffer().cast(),
                 instances: &layout.instances,
                 allowed: &layout.allowed,
                 rows: &lists.rows,
                 last_instances: &layout.last_instances,
                 kept: &list.kept,
             };
-            jobs.push(pass.prepare(gpu, buffers)?);
+            jobs.push(pass.prepare(gpu, &list.params, buffers)?);
         }
         lists.attached = AttachedJobs { version: attachments.version, jobs };
         Ok(())

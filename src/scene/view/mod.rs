@@ -15,7 +15,7 @@ use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::lod::single::SinglePass;
 #[cfg(not(target_arch = "wasm32"))]
-use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT};
+use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, instance_flags_mask};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
 use crate::scene::camera::{Camera, Depth};
 use crate::scene::handles::SceneNumber;
@@ -208,7 +208,7 @@ impl View {
     /// Whether the view shows an instance with these flags if it is inside the view volume.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn may_show(&self, flags: u32) -> bool {
-        let is_in_mask = flags >> INSTANCE_MASK_SHIFT & u32::from(self.mask) != 0;
+        let is_in_mask = instance_flags_mask(flags) & u32::from(self.mask) != 0;
         flags & INSTANCE_ALIVE != 0 && is_in_mask && (!self.casters || flags & INSTANCE_CASTS != 0)
     }
 

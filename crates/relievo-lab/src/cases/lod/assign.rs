@@ -40,14 +40,13 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 Poisoned::new(gpu, instances as usize)?,
             );
             let buffers = AssignBuffers {
-                params: &Uniform::new(gpu, "params", &params)?,
                 allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
                 instances: &Buffer::from_slice(gpu, "instances", &all)?,
                 lods: &lods.buffer,
                 instance_lods: &instance_lods.buffer,
             };
             // More threads than instances.
-            let job = pass.prepare(gpu, buffers, instances)?;
+            let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers, instances)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
             let of_object = params.first as usize..(params.first + instances) as usize;
             let allowed: Vec<(f32, bool)> =
@@ -177,13 +176,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let allowed: Vec<f32> =
             (0..count).map(|at| if at % 4 == 0 { -1.0 } else { 1e-3 * (at % 1024) as f32 }).collect();
         let buffers = AssignBuffers {
-            params: &Uniform::new(gpu, "params", &params)?,
             allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
             instances: &Buffer::from_slice(gpu, "instances", &random_instances(1, count))?,
             lods: &Buffer::new(gpu, "lods", count)?,
             instance_lods: &Buffer::new(gpu, "instance_lods", count)?,
         };
-        let job = pass.prepare(gpu, buffers, count as u32)?;
+        let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers, count as u32)?;
         // The kernel reads two words and writes a Lod and an InstanceLod.
         let words = 9 * count;
         let copied = copy_of(gpu, words / 2)?;

@@ -113,17 +113,16 @@ impl Case {
         let matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &self.model_matrices)?);
         let kept = Buffer::from_slice(gpu, "kept", self.kept.as_flattened())?;
         let buffers = AttachBuffers {
-            params: &Uniform::new(gpu, "params", &self.params)?,
             view: &Uniform::new(gpu, "view", view)?,
             attachments: &Buffer::from_slice(gpu, "attachments", &room)?,
-            model_matrices: &matrices,
+            model_matrices: &matrices.buffer().cast(),
             instances: &Buffer::from_slice(gpu, "instances", &self.instances)?,
             allowed: &Buffer::from_slice(gpu, "allowed", &self.allowed)?,
             rows: &rows.buffer,
             last_instances: &Buffer::from_slice(gpu, "last instances", &self.last_instances)?,
             kept: &kept,
         };
-        let job = AttachPass::new(gpu)?.prepare(gpu, buffers)?;
+        let job = AttachPass::new(gpu)?.prepare(gpu, &Uniform::new(gpu, "params", &self.params)?, buffers)?;
         gpu.submit("verify", |encoder| {
             job.record(encoder);
             job.record(encoder);
@@ -268,17 +267,16 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
         let of_scene = Buffer::from_slice(gpu, "instances", &instances)?;
         let buffers = AttachBuffers {
-            params: &Uniform::new(gpu, "params", &params)?,
             view: &Uniform::new(gpu, "view", &view)?,
             attachments: &Buffer::from_slice(gpu, "attachments", &attachments)?,
-            model_matrices: &model_matrices,
+            model_matrices: &model_matrices.buffer().cast(),
             instances: &of_scene,
             last_instances: &of_scene,
             kept: &Buffer::new(gpu, "kept", 2 * attachments.len())?,
             allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
             rows: &Buffer::new(gpu, "rows", 3 * instances.len())?,
         };
-        let job = pass.prepare(gpu, buffers)?;
+        let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers)?;
         // The kernel reads an attachment, a bone, an instance and what it is allowed, and writes three rows.
         let words = (16 + 12 + 24 + 1 + 12) * count as usize;
         let copied = copy_of(gpu, words / 2)?;

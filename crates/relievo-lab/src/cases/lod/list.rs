@@ -7,7 +7,7 @@ use relievo::lod::list::reference::{before_blocks, lists};
 use relievo::lod::list::{ListBuffers, ListPass};
 use relievo::lod::select::reference::counts;
 use relievo::lod::{BLOCK, OBJECT_LISTS, SceneDraw};
-use relievo::shared::lod::object::DECISION_MORPH_SHIFT;
+use relievo::shared::lod::object::decision_word;
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::{Blocks, SIZES};
@@ -57,7 +57,7 @@ fn random_decisions(case: u32, kind: &str, blocks: &Blocks) -> Vec<u32> {
     // Lists keep what is above, of every other instance.
     let moved = |index: usize, decision: u32| match decision {
         0 => 0,
-        decision => decision | if index.is_multiple_of(2) { 0x5a3 << DECISION_MORPH_SHIFT } else { 0 },
+        decision => decision_word(decision, if index.is_multiple_of(2) { 0x5a3 } else { 0 }),
     };
     let mut decision = |index: usize| match kind {
         _ if blocks.object_of(index).is_none() => 1 + draw.word() % OBJECT_LISTS,

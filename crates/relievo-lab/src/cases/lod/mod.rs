@@ -9,8 +9,8 @@ pub mod single;
 use glam::{IVec3, Mat4, Quat, Vec3};
 use relievo::InputError;
 use relievo::lod::{
-    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, INSTANCE_MASK_SHIFT, LodCamera, LodObject, NO_OBJECT,
-    OBJECT_LEVELS, OBJECT_LISTS, SceneInstance, SelectView, VIEW_CAMERAS, planes,
+    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS,
+    SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
 };
 use relievo::shared::lod::object::OBJECT_MORPHS;
 
@@ -102,7 +102,7 @@ pub(crate) fn random_instances(case: u32, count: usize) -> Vec<SceneInstance> {
         let near = IVec3::new((draw.word() % 3) as i32 - 1, 0, (draw.word() % 3) as i32 - 1);
         SceneInstance {
             cell: (CELL + near).to_array(),
-            flags: flags | (draw.word() & 0xffff) << INSTANCE_MASK_SHIFT,
+            flags: instance_flags_word(flags, draw.word() & 0xffff),
             offset: [256.0, 40.0, 256.0].map(|size| size * draw.signed().abs()),
             rotation: Quat::from_array(draw.rotation()).normalize().to_array(),
             scale: [0; 3].map(|_| factor(draw)),

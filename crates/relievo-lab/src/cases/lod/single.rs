@@ -5,7 +5,7 @@ use relievo::gpu::Buffer;
 use relievo::lod::single::reference::{draws, entries};
 use relievo::lod::single::{Single, SingleBuffers, SinglePass};
 use relievo::lod::{OBJECT_LISTS, SceneDraw};
-use relievo::shared::lod::object::{DECISION_MORPH_SHIFT, LIST_INSTANCE};
+use relievo::shared::lod::object::{decision_word, list_entry_instance};
 
 use crate::cases::animation::Draw;
 use crate::cases::terrain::copy_of;
@@ -27,7 +27,7 @@ impl Given {
         let single = |draw: &mut Draw| Single {
             instance: draw.word() % count.max(1) as u32,
             first_draw: 3 + OBJECT_LISTS * (draw.word() % parts),
-            slot: draw.word() & LIST_INSTANCE,
+            slot: list_entry_instance(draw.word()),
         };
         let argument = |draw: &mut Draw| SceneDraw {
             indices: draw.word() % 1000,
@@ -41,7 +41,7 @@ impl Given {
             decisions: (0..count)
                 .map(|_| match (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2) {
                     0 => 0,
-                    list => list | (draw.word() & 0xfff) << DECISION_MORPH_SHIFT,
+                    list => decision_word(list, draw.word() & 0xfff),
                 })
                 .collect(),
             arguments: (0..3 + OBJECT_LISTS * parts).map(|_| argument(&mut draw)).collect(),

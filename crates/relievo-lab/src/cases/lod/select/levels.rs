@@ -2,7 +2,7 @@
 
 use relievo::lod::select::reference::level_told;
 use relievo::lod::{OBJECT_LISTS, SelectView};
-use relievo::shared::lod::object::{DECISION_MORPH_SHIFT, MORPH_SHIFT, MORPH_STEPS};
+use relievo::shared::lod::object::{MORPH_STEPS, decision_word, morph_word};
 
 use crate::cases::lod::select::{Found, Scene};
 use crate::harness::compare;
@@ -31,7 +31,7 @@ fn bits(values: &[[f32; 4]]) -> &[u32] {
 pub(super) fn before(count: usize) -> Vec<u32> {
     let decision = |at: u32| match at % (OBJECT_LISTS + 1) {
         0 => 0,
-        list => list | (at.wrapping_mul(37) % (MORPH_STEPS + 1)) << (DECISION_MORPH_SHIFT + MORPH_SHIFT),
+        list => decision_word(list, morph_word(0, at.wrapping_mul(37) % (MORPH_STEPS + 1))),
     };
     (0..count as u32).map(decision).collect()
 }

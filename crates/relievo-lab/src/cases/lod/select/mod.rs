@@ -10,7 +10,7 @@ use relievo::lod::select::reference::{
 use relievo::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
 use relievo::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
 use relievo::shared::lod::object::{
-    DECISION_LIST, DECISION_MORPH_SHIFT, MORPH_LEVEL, MORPH_SHIFT, MORPH_STEPS,
+    MORPH_STEPS, decision_list, decision_morph, decision_word, morph_level, morph_steps,
 };
 use relievo::shared::lod::view::POSITION_SLACK;
 
@@ -198,7 +198,7 @@ impl Range {
         let allowed = [less * (1.0 - FORMULA), more * (1.0 + FORMULA)];
         let within = allowed.map(|allowed| object.mesh_fraction * allowed);
         let levels = within.map(|within| level_within(object.levels, &object.errors, within));
-        let steps = [0, 1].map(|at| morph_within(object, levels[at], within[at]) >> MORPH_SHIFT);
+        let steps = [0, 1].map(|at| morph_steps(morph_within(object, levels[at], within[at])));
         let is_shown = is_shown(view, object, instance);
         Self {
             may_be_seen: is_shown && depth_inside(view, center, radius + slack) >= 0.0,
@@ -216,21 +216,23 @@ impl Range {
 
     /// Whether a decision is one of those that are right.
     fn permits(&self, decision: u32, instance: &SceneInstance) -> bool {
-        let Some(list) = (decision & DECISION_LIST).checked_sub(1) else {
+        let Some(list) = decision_list(decision).checked_sub(1) else {
             return self.may_be_unseen && decision == 0;
         };
         let is_right = list % 2 == u32::from(instance.is_mirrored());
         let level = list / 2;
         let is_right = is_right && (self.levels[0]..=self.levels[1]).contains(&level);
-        self.may_be_seen && is_right && self.permits_morph(level, decision >> DECISION_MORPH_SHIFT)
+        let morph = decision_morph(decision);
+        let is_right = is_right && decision == decision_word(1 + list, morph);
+        self.may_be_seen && is_right && self.permits_morph(level, morph)
     }
 
     /// Whether a level may have moved so far. Steps are judged by an interval, and none counts as one that touches.
     fn permits_morph(&self, level: u32, morph: u32) -> bool {
-        let steps = morph >> MORPH_SHIFT;
+        let steps = morph_steps(morph);
         let least = if level == self.levels[0] { self.steps[0] } else { 0 };
         let most = if level == self.levels[1] { self.steps[1] } else { MORPH_STEPS };
-        let is_named = morph & MORPH_LEVEL == if steps > 0 { level } else { 0 };
+        let is_named = morph_level(morph) == if steps > 0 { level } else { 0 };
         is_named && (least..=most).contains(&steps)
     }
 }
@@ -281,7 +283,7 @@ impl Found {
         let mut expected = Vec::with_capacity(self.counts.len());
         for (block, decisions) in self.decisions.chunks(BLOCK as usize).enumerate() {
             match scene.object_of(view, block * BLOCK as usize) {
-                Some(_) if decisions.iter().all(|decision| decision & DECISION_LIST <= OBJECT_LISTS) => {
+                Some(_) if decisions.iter().all(|decision| decision_list(*decision) <= OBJECT_LISTS) => {
                     expected.extend(counts(decisions))
                 }
                 _ => expected.extend([POISON; OBJECT_LISTS as usize]),

@@ -1,0 +1,126 @@
+//! Words of several fields, from comments such as `// packed Decision: list 8, morph 12`: the lowest field first, with its
+//! width in bits. WGSL and Rust get `decision_word(list, morph)`, which packs, and `decision_list(word)` and
+//! `decision_morph(word)`. Widths beyond 32 bits are refused, and so are, on the host, values beyond their field.
+
+use std::fmt::Write as _;
+
+/// A word and its fields: name, first bit, width.
+pub struct Packed<'a> {
+    pub name: String,
+    comment: &'a str,
+    fields: Vec<Field<'a>>,
+}
+
+struct Field<'a> {
+    name: &'a str,
+    first: u32,
+    width: u32,
+}
+
+impl Field<'_> {
+    fn most(&self) -> u32 {
+        u32::MAX >> (32 - self.width)
+    }
+}
+
+/// The words of a WGSL file.
+///
+/// # Errors
+/// Why a comment is refused.
+pub fn packed(text: &str) -> Result<Vec<Packed<'_>>, String> {
+    text.lines().filter_map(|line| line.strip_prefix("// packed ")).map(Packed::parse).collect()
+}
+
+/// The text with the WGSL of its packed words at its end, so that lines keep their numbers.
+///
+/// # Errors
+/// As [`packed`].
+pub fn expanded(text: String) -> Result<String, String> {
+    let words: String = packed(&text)?.iter().map(Packed::wgsl).collect();
+    Ok(text + &words)
+}
+
+impl<'a> Packed<'a> {
+    fn parse(comment: &'a str) -> Result<Self, String> {
+        let refused = |why: &str| format!("packed {comment}: {why}");
+        let (name, list) =
+            comment.split_once(": ").ok_or_else(|| refused("needs a name, `: ` and fields"))?;
+        let (mut fields, mut first) = (Vec::new(), 0);
+        for field in list.split(", ") {
+            let (name, width) = field.split_once(' ').ok_or_else(|| refused("a field needs a width"))?;
+            let width = width.parse().ok().filter(|width| (1..=32).contains(width));
+            let width = width.ok_or_else(|| refused("a width is a number from 1 to 32"))?;
+            fields.push(Field { name, first, width });
+            first += width;
+        }
+        if first > 32 {
+            return Err(refused(&format!("has {first} bits, and must have at most 32")));
+        }
+        Ok(Self { name: snake(name), comment, fields })
+    }
+
+    fn wgsl(&self) -> String {
+        let name = &self.name;
+        let arguments = self.list(", ", |field| format!("{}: u32", field.name));
+        let packed = self.list(" | ", |field| match field.first {
+            0 => field.name.to_owned(),
+            first => format!("({} << {first}u)", field.name),
+        });
+        let mut text = format!("\nfn {name}_word({arguments}) -> u32 {{\n    return {packed};\n}}\n");
+        for field in &self.fields {
+            let value = match field.first {
+                0 => "word".to_owned(),
+                first => format!("(word >> {first}u)"),
+            };
+            let masked = match field.first + field.width {
+                32 => value,
+                _ => format!("{value} & {}u", field.most()),
+            };
+            write!(text, "\nfn {name}_{}(word: u32) -> u32 {{\n    return {masked};\n}}\n", field.name)
+                .expect("a string");
+        }
+        text
+    }
+
+    /// The functions in Rust, by name.
+    pub fn rust(&self) -> Vec<(String, String)> {
+        let (name, comment) = (&self.name, self.comment);
+        let arguments = self.list(", ", |field| format!("{}: u32", field.name));
+        let fits = self.list(" && ", |field| format!("{} <= {:#x}", field.name, field.most()));
+        let packed = self.list(" | ", |field| format!("{} << {}", field.name, field.first));
+        let mut functions = vec![(
+            format!("{name}_word"),
+            format!(
+                "/// Packs a word: {comment} bits, the lowest first.\npub const fn {name}_word({arguments}) -> u32 {{\n    \
+                 assert!({fits}, \"a value exceeds its bits: {comment}\");\n    {packed}\n}}\n"
+            ),
+        )];
+        for Field { name: field, first, width } in &self.fields {
+            let most = u32::MAX >> (32 - width);
+            functions.push((
+                format!("{name}_{field}"),
+                format!(
+                    "/// The {width} bits of a {name} word from bit {first} on.\npub const fn {name}_{field}(word: u32) -> u32 {{\n    \
+                     word >> {first} & {most:#x}\n}}\n"
+                ),
+            ));
+        }
+        functions
+    }
+
+    fn list(&self, separator: &str, text: impl Fn(&Field<'_>) -> String) -> String {
+        self.fields.iter().map(text).collect::<Vec<_>>().join(separator)
+    }
+}
+
+/// `ListEntry` as `list_entry`.
+fn snake(name: &str) -> String {
+    let mut text = String::new();
+    for (at, letter) in name.char_indices() {
+        if letter.is_uppercase() && at > 0 {
+            text.push('_');
+        }
+        text.extend(letter.to_lowercase());
+    }
+    text
+}
