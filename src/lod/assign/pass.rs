@@ -4,7 +4,7 @@ use super::AssignParams;
 use crate::Error;
 use crate::animation::lod::PackedLod;
 use crate::gpu::bindings::lod::assign as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::lod::SceneInstance;
 use crate::skinning::instance_lod::InstanceLod;
 
@@ -54,11 +54,7 @@ impl AssignPass {
             lods: buffers.lods.slice(),
             instance_lods: buffers.instance_lods.slice(),
         };
-        let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, instances),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "lod/assign", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "lod/assign", (&self.kernel, group), instances)?)
     }
 }

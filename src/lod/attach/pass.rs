@@ -4,7 +4,7 @@ use super::{AttachParams, Attachment, KeptBone};
 use crate::Error;
 use crate::animation::ModelMatrices;
 use crate::gpu::bindings::lod::attach as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::lod::{SceneInstance, SelectView};
 
 /// What attaching reads and writes.
@@ -70,11 +70,7 @@ impl AttachPass {
             last_instances: buffers.last_instances.slice(),
             kept: buffers.kept.slice(),
         };
-        let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, buffers.attachments.len() as u32),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "lod/attach", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "lod/attach", (&self.kernel, group), buffers.attachments.len() as u32)?)
     }
 }

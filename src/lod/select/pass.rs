@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::gpu::bindings::lod::select as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
 
 /// What a selection reads and writes.
@@ -69,11 +69,7 @@ impl SelectPass {
             rows: buffers.rows.slice(),
             counts: buffers.counts.slice(),
         };
-        let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, instances as u32),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "lod/select", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "lod/select", (&self.kernel, group), instances as u32)?)
     }
 }

@@ -3,7 +3,7 @@
 use super::Single;
 use crate::Error;
 use crate::gpu::bindings::lod::single as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::lod::SceneDraw;
 use crate::shared::lod::single::SingleParams;
 
@@ -54,9 +54,7 @@ impl SinglePass {
             draws: buffers.draws.slice(),
             entries: buffers.entries.slice(),
         };
-        let kernel = self.kernel.clone();
-        let workgroups = kernel.spread(gpu, count);
-        let step = Step { groups: vec![group.bind(gpu, &kernel)?], workgroups, kernel };
-        Ok(Job::new(gpu, "lod/single", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "lod/single", (&self.kernel, group), count)?)
     }
 }

@@ -11,10 +11,10 @@ use relievo::skinning::instance_lod::InstanceLod;
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::random_instances;
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// How far rounding may move the quotients: products round by 2⁻²³, divisions by 5 · 2⁻²⁴.
 const QUOTIENT: f32 = 1e-6;
@@ -53,11 +53,14 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let allowed: Vec<(f32, bool)> =
                 allowed[of_object.clone()].iter().copied().zip(all[of_object].iter().map(carries)).collect();
             let name = format!("{instances} instances, {levels} levels");
-            let gates = lods.check(gpu, |lods| compared_lods(&params, &allowed, lods)).await?;
-            cases.add(format!("{name}: gates"), gates);
-            let skins =
-                instance_lods.check(gpu, |lods| compared_instance_lods(&params, &allowed, lods)).await?;
-            cases.add(format!("{name}: skins"), skins);
+            cases
+                .check(format!("{name}: gates"), &lods, |lods| compared_lods(&params, &allowed, lods))
+                .await?;
+            cases
+                .check(format!("{name}: skins"), &instance_lods, |lods| {
+                    compared_instance_lods(&params, &allowed, lods)
+                })
+                .await?;
         }
     }
     Ok(())
@@ -186,16 +189,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, buffers, count as u32)?;
         // The kernel reads two words and writes a Lod and an InstanceLod.
         let words = 9 * count;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let all = allowed.iter().map(|allowed| assign(&params, *allowed, false));
-                drop(std::hint::black_box(all.collect::<Vec<_>>()));
-            }),
-        ];
-        bench.case(format!("{count} instances"), (count, "instance"), 4 * words as u64, contenders)?;
+        let name = format!("{count} instances");
+        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
+        measure(bench, name, (count, "instance"), words, record, || {
+            let all = allowed.iter().map(|allowed| assign(&params, *allowed, false));
+            drop(std::hint::black_box(all.collect::<Vec<_>>()));
+        })?;
     }
     Ok(())
 }

@@ -14,10 +14,10 @@ use relievo::lod::{SceneInstance, SelectView};
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::{CELL, frame, random_instances};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// Bones of the characters.
 const BONES: u32 = 5;
@@ -281,18 +281,14 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, buffers)?;
         // The kernel reads an attachment, a bone, an instance and what it is allowed, and writes three rows.
         let words = (16 + 12 + 24 + 1 + 12) * count as usize;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let scene = (&instances[..], &allowed[..]);
-                let of = |of| attached(&params, of, view.cell, scene, &local(&params, of, &matrices));
-                let all = attachments.iter().map(of);
-                drop(std::hint::black_box(all.collect::<Vec<_>>()));
-            }),
-        ];
-        bench.case(format!("{count} meshes"), (count as usize, "mesh"), 4 * words as u64, contenders)?;
+        let name = format!("{count} meshes");
+        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
+        measure(bench, name, (count as usize, "mesh"), words, record, || {
+            let scene = (&instances[..], &allowed[..]);
+            let of = |of| attached(&params, of, view.cell, scene, &local(&params, of, &matrices));
+            let all = attachments.iter().map(of);
+            drop(std::hint::black_box(all.collect::<Vec<_>>()));
+        })?;
     }
     Ok(())
 }

@@ -8,9 +8,9 @@ use relievo::lod::{OBJECT_LISTS, SceneDraw};
 use relievo::shared::lod::object::{DECISION_MORPH_SHIFT, LIST_INSTANCE};
 
 use crate::cases::animation::Draw;
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// Random singles with decisions of which a part sees nothing, and random draws.
 pub(crate) struct Given {
@@ -75,11 +75,13 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, buffers, count as u32)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = given.expected();
-        let comparison = output.check(gpu, |actual| compare::exact(words(actual), words(&expected))).await?;
-        cases.add(format!("{count} draws"), comparison);
+        cases
+            .check(format!("{count} draws"), &output, |actual| {
+                compare::exact(words(actual), words(&expected))
+            })
+            .await?;
         let expected = entries(&given.singles, &given.decisions);
-        let comparison = lists.check(gpu, |actual| compare::exact(actual, &expected)).await?;
-        cases.add(format!("{count} lists of one"), comparison);
+        cases.exact(format!("{count} lists of one"), &lists, &expected).await?;
     }
     Ok(())
 }
@@ -107,16 +109,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, buffers, count as u32)?;
         // Three words and a decision are read, a draw of five is read and written, and an entry written.
         let words = 15 * count;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                drop(std::hint::black_box(draws(&given.singles, &given.decisions, &given.arguments)));
-                drop(std::hint::black_box(entries(&given.singles, &given.decisions)));
-            }),
-        ];
-        bench.case(format!("{count} draws"), (count, "draw"), 4 * words as u64, contenders)?;
+        let name = format!("{count} draws");
+        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
+        measure(bench, name, (count, "draw"), words, record, || {
+            drop(std::hint::black_box(draws(&given.singles, &given.decisions, &given.arguments)));
+            drop(std::hint::black_box(entries(&given.singles, &given.decisions)));
+        })?;
     }
     Ok(())
 }

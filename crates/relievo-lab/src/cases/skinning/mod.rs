@@ -1,6 +1,5 @@
 //! Helpers of the parity and benchmark cases of `kernels/skinning/`.
 
-pub mod lod;
 pub mod morph;
 pub mod morph_weights;
 pub mod pages;

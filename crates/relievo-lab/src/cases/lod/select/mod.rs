@@ -15,10 +15,10 @@ use relievo::shared::lod::object::{
 use relievo::shared::lod::view::POSITION_SLACK;
 
 use crate::cases::lod::{Blocks, SIZES, frame, random_instances};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 mod levels;
 
@@ -53,13 +53,11 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let last_levels = if at == 0 { 0 } else { 3 * count };
             let blocks = all - u32::from(all > 2);
             let view = SelectView { blocks, last_levels, is_next: u32::from(at != 2), ..view };
-            let (ends, found) = outputs.run(cases.gpu, &scene, &view).await?;
-            let comparisons = found.compared(&scene, &view, &mut state);
             let name = format!("{} blocks, {name}", view.blocks);
-            ends.into_iter().for_each(|(output, end)| cases.add(format!("{name}: the end of {output}"), end));
-            comparisons
-                .into_iter()
-                .for_each(|(what, comparison)| cases.add(format!("{name}: {what}"), comparison));
+            let found = outputs.run(cases, &name, &scene, &view).await?;
+            for (what, comparison) in found.compared(&scene, &view, &mut state) {
+                cases.add(format!("{name}: {what}"), comparison);
+            }
         }
     }
     Ok(())
@@ -103,9 +101,6 @@ struct Found {
     counts: Vec<u32>,
 }
 
-/// Whether an output's end is untouched, by its name.
-type Ends = Vec<(&'static str, Comparison)>;
-
 impl Outputs {
     fn new(gpu: &Gpu, instances: usize) -> Result<Self, GpuError> {
         Ok(Self {
@@ -117,7 +112,14 @@ impl Outputs {
     }
 
     /// Runs the kernel, with the allowed displacements of the views before.
-    async fn run(&self, gpu: &Gpu, scene: &Scene, view: &SelectView) -> Result<(Ends, Found), Error> {
+    async fn run(
+        &self,
+        cases: &mut Cases<'_>,
+        name: &str,
+        scene: &Scene,
+        view: &SelectView,
+    ) -> Result<Found, Error> {
+        let gpu = cases.gpu;
         self.decisions.poison(gpu)?;
         if view.last_levels != 0 {
             self.decisions.buffer.write(gpu, &before(scene.instances.len()))?;
@@ -136,30 +138,17 @@ impl Outputs {
         };
         let job = SelectPass::new(gpu)?.prepare(gpu, buffers)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
-        let mut found = Found::default();
-        let ends = vec![
-            ("allowed", read(gpu, &self.allowed, &mut found.allowed).await?),
-            ("decisions", read(gpu, &self.decisions, &mut found.decisions).await?),
-            ("rows", read(gpu, &self.rows, &mut found.rows).await?),
-            ("counts", read(gpu, &self.counts, &mut found.counts).await?),
-        ];
-        found.levels = found.rows.split_off(3 * scene.instances.len());
-        Ok((ends, found))
-    }
-}
-
-/// Reads an output, and compares nothing but its end.
-async fn read<T: bytemuck::Pod>(
-    gpu: &Gpu,
-    output: &Poisoned<T>,
-    to: &mut Vec<T>,
-) -> Result<Comparison, GpuError> {
-    output
-        .check(gpu, |values| {
-            to.extend_from_slice(values);
-            compare::exact(&[0], &[0])
+        let end = |output| format!("{name}: the end of {output}");
+        let mut rows = cases.values(end("rows"), &self.rows).await?;
+        let levels = rows.split_off(3 * scene.instances.len());
+        Ok(Found {
+            allowed: cases.values(end("allowed"), &self.allowed).await?,
+            decisions: cases.values(end("decisions"), &self.decisions).await?,
+            rows,
+            levels,
+            counts: cases.values(end("counts"), &self.counts).await?,
         })
-        .await
+    }
 }
 
 /// What is known of an instance's allowed displacement.
@@ -370,17 +359,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let seen = instances.iter().filter(|instance| select(&view, &objects[0], instance).is_some()).count();
         // The kernel reads 18 of an instance's words and writes two, and the rows of those that are seen.
         let words = 20 * count + 12 * seen;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let selected = instances.iter().map(|instance| select(&view, &objects[0], instance));
-                drop(std::hint::black_box(selected.collect::<Vec<_>>()));
-            }),
-        ];
         let case = format!("{count} instances, {seen} seen");
-        bench.case(case, (count, "instance"), 4 * words as u64, contenders)?;
+        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
+        measure(bench, case, (count, "instance"), words, record, || {
+            let selected = instances.iter().map(|instance| select(&view, &objects[0], instance));
+            drop(std::hint::black_box(selected.collect::<Vec<_>>()));
+        })?;
     }
     Ok(())
 }
