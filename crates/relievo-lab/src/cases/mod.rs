@@ -3,7 +3,6 @@
 pub mod animation;
 pub mod baseline;
 pub mod lod;
-pub mod mesh;
 pub mod skinning;
 pub mod surface;
 pub mod terrain;
@@ -61,7 +60,6 @@ pub static OPERATIONS: &[Operation] = operations![
     surface / cone_map,
     surface / shade,
     surface / tangent,
-    mesh / cluster,
     animation / keyframe_cursor,
     animation / clip_clock,
     animation / gate,
