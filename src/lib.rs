@@ -102,6 +102,7 @@ pub mod hash;
 pub mod lod;
 pub mod mesh;
 #[cfg(test)]
+#[allow(dead_code, reason = "the laboratory uses the rest")]
 #[path = "../crates/relievo-lab/src/portrait/picture/mod.rs"]
 mod picture;
 #[cfg(feature = "gpu")]

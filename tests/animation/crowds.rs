@@ -109,7 +109,8 @@ fn layered_crowds_are_concatenated() {
     let (gpu, (model, set)) = (gpu(), scene());
     let layers = [Layer::new(plays(1, 5), vec![0.5; 5]), Layer::new(plays(2, 5), vec![0.25; 5])];
     let crowd = Crowd::layered(&gpu, &set, &plays(0, 5), &layers).expect("fits");
-    overwrite(&gpu, &crowd, &vec![[[f32::NAN; 4]; 3]; crowd.pairs()]);
+    let stale = vec![[f32::NAN; 12]; crowd.pairs()];
+    gpu.queue().write_buffer(crowd.model_matrices().raw(), 0, bytemuck::cast_slice(&stale));
     let locals = sampled(&gpu, &set, &crowd, 0.3);
     let expected: Vec<f32> = locals
         .chunks(153)
