@@ -100,20 +100,20 @@ pub(crate) fn selected(only: Option<&str>) -> Result<Vec<&'static Operation>, In
 }
 
 /// Measures a kernel that reads and writes `words` words for `count` of a unit, its reference, and a copy of as many words.
-pub(crate) fn measure(
+pub(crate) fn measure<R>(
     bench: &mut Bench<'_>,
     name: impl Into<String>,
     (count, unit): (usize, &'static str),
     words: usize,
-    record: impl Fn(&mut wgpu::CommandEncoder),
-    reference: impl FnMut(),
+    record: &dyn Fn(&mut wgpu::CommandEncoder),
+    mut reference: impl FnMut() -> R,
 ) -> Result<(), Error> {
     // A copy reads half of the words that it moves, and writes the other half.
     let copied = copy_of(bench.gpu, words / 2)?;
     let contenders = vec![
         Contender::recorded(Backend::Gpu, record),
         Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, reference),
+        Contender::host(Backend::Reference, || drop(std::hint::black_box(reference()))),
     ];
     bench.case(name, (count, unit), 4 * words as u64, contenders)
 }

@@ -144,11 +144,10 @@ pub(crate) fn random_state(
 /// # Errors
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
-    let makers = [Scene::uniform, Scene::random, Scene::skip_period, Scene::bounded];
-    for maker in makers {
-        for count in CROWDS {
-            let scene = Scene::new(bench.gpu, count)?;
-            case(bench, &scene, &maker(&scene)?)?;
+    for count in CROWDS {
+        let scene = Scene::new(bench.gpu, count)?;
+        for mode in &gates(&scene.skeleton, &scene.set, &[&scene.clip])?[1..] {
+            case(bench, &scene, mode)?;
         }
     }
     Ok(())
@@ -184,35 +183,8 @@ fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> 
         }
         job.record(encoder);
     };
-    measure(bench, name, (pairs, "bone"), 2 * words.max(1), record, || {
+    measure(bench, name, (pairs, "bone"), 2 * words.max(1), &record, || {
         sampled.fill(0);
-        drop(std::hint::black_box(gate(mode, &frame, &lods, &clip_clocks, &mut sampled)));
+        gate(mode, &frame, &lods, &clip_clocks, &mut sampled)
     })
-}
-
-impl Scene {
-    fn animated_bones(&self) -> Result<AnimatedBones, Error> {
-        Ok(AnimatedBones::new(&self.order(), &self.set, &[&self.clip])?)
-    }
-
-    /// The uniform gate, which samples all bones of an instance together.
-    pub(crate) fn uniform(&self) -> Result<Gate, Error> {
-        Ok(Gate::Uniform(self.animated_bones()?))
-    }
-
-    fn random(&self) -> Result<Gate, Error> {
-        Ok(Gate::Random(self.animated_bones()?))
-    }
-
-    fn skip_period(&self) -> Result<Gate, Error> {
-        let priorities = [self.priorities()?];
-        let table = PriorityTable::new(&self.order(), &self.set, &[&self.clip], &priorities)?;
-        Ok(Gate::SkipPeriod { table, period: 65536 })
-    }
-
-    fn bounded(&self) -> Result<Gate, Error> {
-        let (clips, bone_radii) = ([&self.clip], vec![0.1; self.skeleton.len()]);
-        let path = RotationPath::Slerp;
-        Ok(Gate::Bounded(BoundTable::new(&self.skeleton, &self.set, &clips, &bone_radii, path)?))
-    }
 }

@@ -48,11 +48,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let is_used = |at: usize| {
                 at < used && at % room < set.clips()[instances[at / room].clip as usize].timelines as usize
             };
-            cases
-                .check(format!("{bones} bones × {count} after {elapsed} s"), &output, |actual| {
-                    compare_cursors(actual, &expected, is_used)
-                })
-                .await?;
+            let name = format!("{bones} bones × {count} after {elapsed} s");
+            cases.check(name, &output, |actual| compare_cursors(actual, &expected, is_used)).await?;
         }
     }
     at_edges(cases, &pass).await?;
@@ -203,8 +200,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads an instance and four times, and writes a cursor: 10 words.
         let mut cursors = vec![KeyframeCursor::default(); count];
         let name = format!("{count} instances");
-        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
-        measure(bench, name, (count, "instance"), 10 * count, record, || {
+        measure(bench, name, (count, "instance"), 10 * count, &|encoder| job.record(encoder), || {
             cursors_into(&scene.set, &scene.instances, MEASURED, black_box(&mut cursors));
         })?;
     }

@@ -65,20 +65,24 @@ async fn add(
     crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
     let expected: Vec<Affine> =
         locals.chunks(bones).flat_map(|locals| local_to_model(skeleton, locals)).collect();
-    let flat = |model_matrices: &[Affine]| model_matrices.as_flattened().as_flattened().to_vec();
-    let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
-    let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
-    let bound = LOCAL_TO_MODEL_BOUND * deepest as f32 * largest;
+    let bound = bound(skeleton, &expected);
     let output = Poisoned::<Affine>::new(gpu, bones * count)?;
     crowd.model_matrices = ModelMatrices::new(&output.buffer);
     let job = LocalToModelPass::new(gpu)?.prepare(gpu, skeleton, &crowd)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
-    cases
-        .check(format!("{name}, {bones} bones × {count}"), &output, |actual| {
-            compare::absolute(&flat(actual), &flat(&expected), bound)
-        })
-        .await?;
-    Ok(())
+    let near = |actual: &[Affine]| compare::absolute(flat(actual), flat(&expected), bound);
+    cases.check(format!("{name}, {bones} bones × {count}"), &output, near).await
+}
+
+fn flat(model_matrices: &[Affine]) -> &[f32] {
+    model_matrices.as_flattened().as_flattened()
+}
+
+/// How far matrices may be from the expected ones.
+fn bound(skeleton: &Skeleton, expected: &[Affine]) -> f32 {
+    let largest = flat(expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+    let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
+    LOCAL_TO_MODEL_BOUND * deepest as f32 * largest
 }
 
 async fn add_updated(
@@ -111,9 +115,6 @@ async fn add_updated(
     {
         local_to_model_updated(&order, updated_bones, locals, model_matrices);
     }
-    let flat = |model_matrices: &[Affine]| model_matrices.as_flattened().as_flattened().to_vec();
-    let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
-    let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
     let is_kept = |pair: usize, actual: &[Affine]| {
         let slot =
             order.slots.iter().position(|slot| slot.bone as usize == pair % bones).expect("every bone");
@@ -135,18 +136,12 @@ async fn add_updated(
         lists.record(encoder);
         job.record(encoder);
     })?;
-    let bound = LOCAL_TO_MODEL_BOUND * deepest as f32 * largest;
-    cases
-        .check(format!("updated bones, {bones} bones × {count}"), &output, |actual| {
-            match (0..stale.len()).find(|pair| !is_kept(*pair, actual)) {
-                Some(pair) => {
-                    compare::Comparison::failed(stale.len(), format!("pair {pair} is clean, and changed"))
-                }
-                None => compare::absolute(&flat(actual), &flat(&expected), bound),
-            }
-        })
-        .await?;
-    Ok(())
+    let bound = bound(skeleton, &expected);
+    let near = |actual: &[Affine]| match (0..stale.len()).find(|pair| !is_kept(*pair, actual)) {
+        Some(pair) => compare::Comparison::failed(stale.len(), format!("pair {pair} is clean, and changed")),
+        None => compare::absolute(flat(actual), flat(&expected), bound),
+    };
+    cases.check(format!("updated bones, {bones} bones × {count}"), &output, near).await
 }
 
 /// Scales are close to 1, so that long chains stay in range.

@@ -220,13 +220,8 @@ impl<'a> Case<'a> {
         // A pair that is not listed stays unchanged, whether it is left out or not.
         let is_left_out: Vec<bool> =
             self.torn.iter().enumerate().map(|(pair, torn)| *torn && written(pair).is_some()).collect();
-        let comparison = self
-            .output
-            .check(self.gpu, |actual: &[Local]| {
-                compared(actual, &expected, &is_left_out, self.bound * largest)
-            })
-            .await;
-        Ok(comparison?)
+        let near = |actual: &[Local]| compared(actual, &expected, &is_left_out, self.bound * largest);
+        Ok(self.output.check(self.gpu, near).await?)
     }
 }
 
@@ -277,10 +272,14 @@ fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
     let job = pass.prepare_active(gpu, &scene.clips, &scene.crowd, &active)?;
     let cursors = &scene.cursors[..scene.cursors.len() / 4];
     let mut locals = vec![Transform::IDENTITY; cursors.len() * scene.set.bones()];
-    let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
-    measure(bench, "a quarter of 1000 × 153", (chosen.len(), "bone"), 32 * chosen.len(), record, || {
-        reference(&scene, cursors, black_box(&mut locals))
-    })
+    measure(
+        bench,
+        "a quarter of 1000 × 153",
+        (chosen.len(), "bone"),
+        32 * chosen.len(),
+        &|encoder| job.record(encoder),
+        || reference(&scene, cursors, black_box(&mut locals)),
+    )
 }
 
 /// Two layers on all bones; the upper one is 0.3 s later and has half the weight.
@@ -295,12 +294,14 @@ fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pairs = crowd.pairs();
     let job = SamplePass::layered(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &crowd)?;
     // The kernel reads four keys of 10 words and writes 10 words.
-    let reference = || {
-        let (set, base) = (&scene.set, &scene.instances);
-        drop(std::hint::black_box(sample_layers(set, base, &layers, &found, RotationPath::Slerp)));
-    };
-    let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
-    measure(bench, "two clips blended, 1000 × 153", (pairs, "bone"), 50 * pairs, record, reference)
+    measure(
+        bench,
+        "two clips blended, 1000 × 153",
+        (pairs, "bone"),
+        50 * pairs,
+        &|encoder| job.record(encoder),
+        || sample_layers(&scene.set, &scene.instances, &layers, &found, RotationPath::Slerp),
+    )
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Parity and benchmark cases of `kernels/skinning/morph.wgsl`.
 
 use relievo::Error;
+use relievo::asset::Model;
 use relievo::gpu::Gpu;
 use relievo::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use relievo::skinning::clusters::CLUSTER;
+use relievo::skinning::clusters::{CLUSTER, Clusters};
 use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::morph::{MORPH_BOUND, MorphPass};
@@ -25,101 +26,100 @@ use crate::harness::{Bench, Cases, compare};
 /// # Errors
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let pass = MorphPass::new(cases.gpu)?;
+    let gpu = cases.gpu;
+    let pass = MorphPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES).filter(|(_, shape)| shape.targets > 0) {
         for instances in [1, 5] {
-            for (list, every) in [("all", 1), ("none", u32::MAX), ("every third", 3)] {
-                let comparison = one(cases.gpu, &pass, (case, shape), instances, every).await?;
-                let name = format!("{} vertices, {} targets × {instances}", shape.vertices, shape.targets);
-                cases.add(format!("{name}, {list}"), comparison);
-            }
-            let comparison = paged(cases.gpu, &pass, (case, shape), instances).await?;
+            let scene = Case::new(gpu, case, shape, instances)?;
             let name = format!("{} vertices, {} targets × {instances}", shape.vertices, shape.targets);
-            cases.add(format!("{name}, pages"), comparison);
+            for (list, every) in [("all", 1), ("none", u32::MAX), ("every third", 3)] {
+                cases.add(format!("{name}, {list}"), scene.listed(gpu, &pass, every).await?);
+            }
+            cases.add(format!("{name}, pages"), scene.paged(gpu, &pass).await?);
         }
     }
     Ok(())
 }
 
-async fn one(
-    gpu: &Gpu,
-    pass: &MorphPass,
-    (case, shape): (u32, Shape),
+/// A mesh on the device, and the weights of its targets for some instances.
+struct Case {
+    model: Model,
+    mesh: MeshBuffers,
+    clusters: Clusters,
     instances: usize,
-    every: u32,
-) -> Result<Comparison, Error> {
-    let model = random_model(case, shape)?;
-    let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
-    let mut draw = Draw::new(case ^ 0x0f0f);
-    let weight = |at| if at % 4 == 3 { 0.0 } else { 1.5 * draw.signed() };
-    let weights: Vec<f32> = (0..instances * shape.targets).map(weight).collect();
-    let mut crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
-    let output = Poisoned::<Vertex>::new(gpu, crowd.morphed.len())?;
-    crowd.morphed = output.buffer.clone();
-    crowd.weights.write(gpu, &weights)?;
-    if instances > 3 {
-        let (coarsest, coarse) = (InstanceLod::level(15)?, InstanceLod::level(1)?);
-        crowd.instance_lods.write_at(gpu, 1, &[coarsest, coarse, InstanceLod::UNSEEN])?;
-    }
-    let pairs = (clusters.len() * instances) as u32;
-    let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
-    let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
-    active.write(gpu, &chosen)?;
-    let job = pass.prepare_active(gpu, &mesh, &crowd, &active)?;
-    gpu.submit("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
-    let mut expected = Vec::new();
-    for (instance, weights) in weights.chunks(shape.targets).enumerate() {
-        let morphed = morph(&model.meshes[0], weights);
-        expected.extend(clusters.order.iter().enumerate().map(|(slot, vertex)| {
-            let pair = slot / CLUSTER * instances + instance;
-            let level = clusters.level([0, 15, 1, 0, 0][instance]);
-            let is_kept = instance == 3 || slot / CLUSTER >= level.clusters as usize;
-            let is_morphed = !is_kept && chosen.contains(&(pair as u32));
-            if is_morphed { morphed[*vertex as usize] } else { poisoned() }
-        }));
-    }
-    Ok(output
-        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))
-        .await?)
+    weights: Vec<f32>,
 }
 
-/// All clusters into pages that lie in reverse order; every fifth cluster has none.
-async fn paged(
-    gpu: &Gpu,
-    pass: &MorphPass,
-    (case, shape): (u32, Shape),
-    instances: usize,
-) -> Result<Comparison, Error> {
-    let model = random_model(case, shape)?;
-    let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
-    let mut draw = Draw::new(case ^ 0x0f0f);
-    let weights: Vec<f32> = (0..instances * shape.targets).map(|_| 1.5 * draw.signed()).collect();
-    let crowd = SkinnedCrowd::paged(gpu, &mesh, instances, Blend::Linear)?;
-    crowd.weights.write(gpu, &weights)?;
-    let count = clusters.len() * instances;
-    let has_page = |entry: usize| entry % 5 != 4;
-    let page = |entry: usize| if has_page(entry) { (count - 1 - entry) as u32 } else { NO_PAGE };
-    let output = Poisoned::<Vertex>::new(gpu, CLUSTER * count)?;
-    let mut pages = PageBuffers::new(gpu, &mesh, &crowd, 0)?;
-    pages.morphed = output.buffer.clone();
-    pages.table.write(gpu, &(0..count).map(page).collect::<Vec<_>>())?;
-    let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
-    active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
-    let job = pass.prepare_paged(gpu, &mesh, &crowd, &pages, &active)?;
-    gpu.submit("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
-    let mut expected = vec![poisoned(); CLUSTER * count];
-    for (instance, weights) in weights.chunks(shape.targets).enumerate() {
-        let morphed = morph(&model.meshes[0], weights);
-        for (slot, vertex) in clusters.order.iter().enumerate() {
-            let entry = instance * clusters.len() + slot / CLUSTER;
-            if has_page(entry) {
-                expected[CLUSTER * (count - 1 - entry) + slot % CLUSTER] = morphed[*vertex as usize];
+impl Case {
+    fn new(gpu: &Gpu, case: u32, shape: Shape, instances: usize) -> Result<Self, Error> {
+        let model = random_model(case, shape)?;
+        let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+        let mut draw = Draw::new(case ^ 0x0f0f);
+        let weight = |at| if at % 4 == 3 { 0.0 } else { 1.5 * draw.signed() };
+        let weights = (0..instances * shape.targets).map(weight).collect();
+        Ok(Self { model, mesh, clusters, instances, weights })
+    }
+
+    async fn listed(&self, gpu: &Gpu, pass: &MorphPass, every: u32) -> Result<Comparison, Error> {
+        let mut crowd = SkinnedCrowd::new(gpu, &self.mesh, self.instances, Blend::Linear)?;
+        let output = Poisoned::<Vertex>::new(gpu, crowd.morphed.len())?;
+        crowd.morphed = output.buffer.clone();
+        crowd.weights.write(gpu, &self.weights)?;
+        if self.instances > 3 {
+            let (coarsest, coarse) = (InstanceLod::level(15)?, InstanceLod::level(1)?);
+            crowd.instance_lods.write_at(gpu, 1, &[coarsest, coarse, InstanceLod::UNSEEN])?;
+        }
+        let pairs = (self.clusters.len() * self.instances) as u32;
+        let chosen: Vec<u32> = (0..pairs).rev().filter(|pair| (pair + 1) % every == 0).collect();
+        let active = ActiveClusters::new(gpu, &self.mesh, &crowd)?;
+        active.write(gpu, &chosen)?;
+        let job = pass.prepare_active(gpu, &self.mesh, &crowd, &active)?;
+        gpu.submit("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
+        let mut expected = Vec::new();
+        for (instance, weights) in self.weights.chunks(self.mesh.targets).enumerate() {
+            let morphed = morph(&self.model.meshes[0], weights);
+            let level = self.clusters.level([0, 15, 1, 0, 0][instance]);
+            expected.extend(self.clusters.order.iter().enumerate().map(|(slot, vertex)| {
+                let pair = slot / CLUSTER * self.instances + instance;
+                let is_kept = instance == 3 || slot / CLUSTER >= level.clusters as usize;
+                let is_morphed = !is_kept && chosen.contains(&(pair as u32));
+                if is_morphed { morphed[*vertex as usize] } else { poisoned() }
+            }));
+        }
+        Ok(output.check(gpu, |actual| compared(actual, &expected)).await?)
+    }
+
+    /// All clusters into pages that lie in reverse order; every fifth cluster has none.
+    async fn paged(&self, gpu: &Gpu, pass: &MorphPass) -> Result<Comparison, Error> {
+        let crowd = SkinnedCrowd::paged(gpu, &self.mesh, self.instances, Blend::Linear)?;
+        crowd.weights.write(gpu, &self.weights)?;
+        let count = self.clusters.len() * self.instances;
+        let has_page = |entry: usize| entry % 5 != 4;
+        let page = |entry: usize| if has_page(entry) { (count - 1 - entry) as u32 } else { NO_PAGE };
+        let output = Poisoned::<Vertex>::new(gpu, CLUSTER * count)?;
+        let mut pages = PageBuffers::new(gpu, &self.mesh, &crowd, 0)?;
+        pages.morphed = output.buffer.clone();
+        pages.table.write(gpu, &(0..count).map(page).collect::<Vec<_>>())?;
+        let active = ActiveClusters::new(gpu, &self.mesh, &crowd)?;
+        active.write(gpu, &(0..count as u32).collect::<Vec<_>>())?;
+        let job = pass.prepare_paged(gpu, &self.mesh, &crowd, &pages, &active)?;
+        gpu.submit("verify", |encoder| job.iter().for_each(|job| job.record(encoder)))?;
+        let mut expected = vec![poisoned(); CLUSTER * count];
+        for (instance, weights) in self.weights.chunks(self.mesh.targets).enumerate() {
+            let morphed = morph(&self.model.meshes[0], weights);
+            for (slot, vertex) in self.clusters.order.iter().enumerate() {
+                let entry = instance * self.clusters.len() + slot / CLUSTER;
+                if has_page(entry) {
+                    expected[CLUSTER * (count - 1 - entry) + slot % CLUSTER] = morphed[*vertex as usize];
+                }
             }
         }
+        Ok(output.check(gpu, |actual| compared(actual, &expected)).await?)
     }
-    Ok(output
-        .check(gpu, |actual: &[Vertex]| compare::absolute(&flat(actual), &flat(&expected), MORPH_BOUND))
-        .await?)
+}
+
+fn compared(actual: &[Vertex], expected: &[Vertex]) -> Comparison {
+    compare::absolute(&flat(actual), &flat(expected), MORPH_BOUND)
 }
 
 /// Measures four targets that move a quarter of the vertices.
@@ -145,7 +145,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         };
         let name = format!("4 targets, 10k × {instances}");
         let record = |encoder: &mut wgpu::CommandEncoder| job.iter().for_each(|job| job.record(encoder));
-        measure(bench, name, (all, "vertex"), words * all, record, reference)?;
+        measure(bench, name, (all, "vertex"), words * all, &record, reference)?;
     }
     Ok(())
 }

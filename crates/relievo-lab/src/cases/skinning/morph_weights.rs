@@ -71,13 +71,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     .enumerate()
                     .map(|(at, instance)| is_seen(at) && is_at_a_jump(instance, &weights, elapsed))
                     .collect();
-                cases
-                    .check(
-                        format!("{} targets × {count} after {elapsed} s", shape.targets),
-                        &output,
-                        |actual| compared(actual, &expected, &jumps),
-                    )
-                    .await?;
+                let name = format!("{} targets × {count} after {elapsed} s", shape.targets);
+                cases.check(name, &output, |actual| compared(actual, &expected, &jumps)).await?;
             }
         }
     }
@@ -172,8 +167,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let (all, words) = (count * TARGETS, 4 + 2 + 4 + 2 + 1);
         let mut weights = vec![0.0; all];
         let name = format!("4 targets × {count}");
-        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
-        measure(bench, name, (all, "weight"), words * all, record, || {
+        measure(bench, name, (all, "weight"), words * all, &|encoder| job.record(encoder), || {
             let weights = std::hint::black_box(&mut weights);
             morph_weights(mesh, (&set, &[0]), &instances, &instance_lods, 0.5, weights);
         })?;

@@ -46,24 +46,13 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let largest = expected.as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
             let each = expected.len() / instances;
             expected[each..2 * each].fill(poisoned());
-            cases
-                .check(
-                    format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones),
-                    &output,
-                    |actual: &[[f32; 4]]| {
-                        let actual = if blend == Blend::Linear {
-                            actual.to_vec()
-                        } else {
-                            same_side(actual, &expected)
-                        };
-                        compare::absolute(
-                            actual.as_flattened(),
-                            expected.as_flattened(),
-                            PALETTE_BOUND * largest,
-                        )
-                    },
-                )
-                .await?;
+            let name = format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones);
+            let near = |actual: &[[f32; 4]]| {
+                let turned = (blend != Blend::Linear).then(|| same_side(actual, &expected));
+                let actual = turned.as_deref().unwrap_or(actual);
+                compare::absolute(actual.as_flattened(), expected.as_flattened(), PALETTE_BOUND * largest)
+            };
+            cases.check(name, &output, near).await?;
         }
     }
     Ok(())
@@ -100,8 +89,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             }
         };
         let name = format!("{BONES} bones × {instances}");
-        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
-        measure(bench, name, (pairs, "bone"), 37 * pairs, record, reference)?;
+        measure(bench, name, (pairs, "bone"), 37 * pairs, &|encoder| job.record(encoder), reference)?;
     }
     Ok(())
 }

@@ -163,17 +163,13 @@ async fn keeping_cases(
         remember(&frame.now(), &mut last);
         let dispatched = active.dispatched.read(gpu).await?;
         let words: Vec<u32> = states.iter().map(|state| *state as u32).collect();
-        cases
-            .check(
-                format!("{} clusters × {instances}, {}: last kept", clusters.len(), given.0),
-                &output,
-                |actual| {
-                    let (pairs, found) = actual.split_at(count.min(actual.len()));
-                    let listed = listed(pairs, &dispatched, &expected);
-                    if listed.holds { compare::exact(found, &words) } else { listed }
-                },
-            )
-            .await?;
+        let same = |actual: &[u32]| {
+            let (pairs, found) = actual.split_at(count.min(actual.len()));
+            let listed = listed(pairs, &dispatched, &expected);
+            if listed.holds { compare::exact(found, &words) } else { listed }
+        };
+        let name = format!("{} clusters × {instances}, {}: last kept", clusters.len(), given.0);
+        cases.check(name, &output, same).await?;
     }
     Ok(())
 }
@@ -243,10 +239,9 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let read = 2 + SKINNED_WORDS + 2 * words / seen;
         let name = if seen == 1 { "" } else { ", a quarter seen" };
         let case = format!("157 clusters × {instances}{name}");
-        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
-        measure(bench, case, (pairs, "cluster"), read * pairs, record, || {
+        measure(bench, case, (pairs, "cluster"), read * pairs, &|encoder| job.record(encoder), || {
             let now = Now { updated_bones: &updated_bones, instance_lods: &instance_lods, weights: &[] };
-            drop(std::hint::black_box(select(&scene.clusters, &now, &last)));
+            select(&scene.clusters, &now, &last)
         })?;
     }
     Ok(())

@@ -1,11 +1,10 @@
 //! Parity and benchmark cases of `kernels/lod/select.wgsl`.
 
-use levels::{before, untouched};
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
 use relievo::lod::object::level_within;
 use relievo::lod::select::reference::{
-    counts, depth_inside, is_shown, morph_within, placed_sphere, select, view_allows,
+    counts, depth_inside, is_shown, level_told, morph_within, placed_sphere, select, view_allows,
 };
 use relievo::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
 use relievo::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
@@ -19,8 +18,6 @@ use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Bench, Cases, compare};
-
-mod levels;
 
 /// How far rounding may move a level or an allowed displacement beyond what it does to positions: kernel and reference
 /// round some 40 times each, by at most 2⁻²³.
@@ -225,11 +222,7 @@ impl Range {
 }
 
 fn judgement(is_right: bool, touches: bool) -> Judgement {
-    Judgement {
-        ratio: if is_right { 0.0 } else { f64::INFINITY },
-        error: f64::from(u8::from(!is_right)),
-        touches,
-    }
+    Judgement::exact(is_right, f64::from(u8::from(!is_right)), touches)
 }
 
 impl Found {
@@ -304,6 +297,19 @@ impl Found {
         each(&judgements, "units", MAY_TOUCH, |at| format!("{:?} of instance {}", self.rows[at / 4], at / 12))
     }
 
+    fn compared_levels(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let poison = [f32::from_bits(POISON); 4];
+        let before = before(self.levels.len());
+        let expected = |(index, before): (usize, &u32)| match scene.object_of(view, index) {
+            Some(_) if view.last_levels != 0 && view.is_next != 0 => level_told(*before),
+            Some(_) if view.last_levels != 0 => level_told(0),
+            _ => poison,
+        };
+        let expected: Vec<[f32; 4]> = before.iter().enumerate().map(expected).collect();
+        let bits = bytemuck::cast_slice::<[f32; 4], u32>;
+        compare::exact(bits(&self.levels), bits(&expected))
+    }
+
     fn compared_allowed(&self, scene: &Scene, view: &SelectView, state: &mut [State]) -> Comparison {
         let mut judgements = Vec::with_capacity(self.allowed.len());
         for (index, allowed) in self.allowed.iter().enumerate() {
@@ -326,6 +332,20 @@ impl Found {
             format!("{} instead of {:?} of instance {at}", self.allowed[at], state[at])
         })
     }
+}
+
+/// The decisions of a frame before: all lists, some instances that were not seen, and all numbers of steps.
+fn before(count: usize) -> Vec<u32> {
+    let decision = |at: u32| match at % (OBJECT_LISTS + 1) {
+        0 => 0,
+        list => list | (at.wrapping_mul(37) % (MORPH_STEPS + 1)) << (DECISION_MORPH_SHIFT + MORPH_SHIFT),
+    };
+    (0..count as u32).map(decision).collect()
+}
+
+/// What a decision is that a view does not write.
+fn untouched(view: &SelectView, count: usize, index: usize) -> u32 {
+    if view.last_levels == 0 { POISON } else { before(count)[index] }
 }
 
 #[cfg(test)]
@@ -360,10 +380,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads 18 of an instance's words and writes two, and the rows of those that are seen.
         let words = 20 * count + 12 * seen;
         let case = format!("{count} instances, {seen} seen");
-        let record = |encoder: &mut wgpu::CommandEncoder| job.record(encoder);
-        measure(bench, case, (count, "instance"), words, record, || {
-            let selected = instances.iter().map(|instance| select(&view, &objects[0], instance));
-            drop(std::hint::black_box(selected.collect::<Vec<_>>()));
+        measure(bench, case, (count, "instance"), words, &|encoder| job.record(encoder), || {
+            instances.iter().map(|instance| select(&view, &objects[0], instance)).collect::<Vec<_>>()
         })?;
     }
     Ok(())
