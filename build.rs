@@ -3,8 +3,6 @@
 //! modules for shaders outside the crate. An unknown import, an unused binding or an invalid shader fails the
 //! build with file and line.
 
-#[path = "build/limits.rs"]
-mod limits;
 #[path = "build/modules.rs"]
 mod modules;
 #[path = "build/packed.rs"]
@@ -31,7 +29,7 @@ mod shaders {
     use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
 
     use crate::bindings::Bindings;
-    use crate::{limits, modules, packed, prefix};
+    use crate::{modules, packed, prefix};
 
     pub fn build() {
         let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
@@ -290,16 +288,12 @@ mod shaders {
             let mut bindings = self.bindings();
             bindings.sort();
             let bindings: String = bindings.into_iter().map(|(_, _, text)| text).collect();
-            let limits = (limits::beyond_defaults(&self.module, &self.info).into_iter())
-                .map(|(name, needed)| format!("Limit {{ name: {name:?}, needed: {needed} }}"))
-                .collect::<Vec<_>>()
-                .join(", ");
             writeln!(
                 manifest,
                 "/// `{name}`\npub static {constant}: Shader = Shader {{\n    name: {name:?},\n    \
                  source: include_str!({path:?}),\n    entry_points: &[\n{entries}    ],\n    \
                  bindings: &[\n{bindings}    ],\n    overrides: &[\n{overrides}    ],\n    \
-                 limits: &[{limits}],\n    structs: &[\n{structs}    ],\n}};",
+                 structs: &[\n{structs}    ],\n}};",
                 name = self.name,
                 constant = self.constant(),
                 entries = self.entry_points(),

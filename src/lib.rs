@@ -89,7 +89,7 @@
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
-// The samples, which unit tests have as a module, name this crate as their dependency.
+// The samples and the laboratory's pictures, which unit tests have as modules, name this crate as their dependency.
 #[cfg(test)]
 extern crate self as relievo;
 
@@ -101,6 +101,10 @@ pub mod gpu;
 pub mod hash;
 pub mod lod;
 pub mod mesh;
+#[cfg(test)]
+#[allow(dead_code, reason = "the laboratory uses the rest")]
+#[path = "../crates/relievo-lab/src/portrait/picture/mod.rs"]
+mod picture;
 #[cfg(feature = "gpu")]
 pub mod render;
 #[cfg(test)]

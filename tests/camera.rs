@@ -1,7 +1,8 @@
 //! Properties of cameras, against projections in `f64`.
 
+use glam::camera::rh::{proj::directx, view::look_at_mat4};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
-use relievo::lod::{LodCamera, planes};
+use relievo::lod::{LodCamera, is_mirrored, planes};
 use relievo_lab::cases::animation::Draw;
 use relievo_lab::cases::lod::{look, parallel, perspective};
 
@@ -260,4 +261,24 @@ fn planes_without_a_direction_exclude_nothing() {
     assert_eq!(lost(perspective(0.5, 1.0, 0.1, true, 0.0)), [false, false, false, false, true, false]);
     assert_eq!(lost(parallel(10.0, 1e5)), [false; 6]);
     assert_eq!(planes(Mat4::NAN), [Vec4::W; 6]);
+}
+
+#[test]
+fn mirror_images_are_told_from_pictures() {
+    let look = look_at_mat4(Vec3::new(3.0, 4.0, 5.0), Vec3::new(0.0, 1.0, -2.0), Vec3::Y);
+    for projection in [
+        directx::perspective(0.8, 1.5, 0.1, 90.0),
+        directx::perspective_infinite_reverse(0.8, 1.5, 0.1),
+        directx::frustum(0.3, 0.9, -0.2, 0.1, 0.5, 40.0),
+        directx::orthographic(-3.0, 2.0, -1.0, 4.0, -10.0, 50.0),
+    ] {
+        for turn in
+            [Mat4::IDENTITY, Mat4::from_rotation_x(2.0), Mat4::from_scale(Vec3::new(-1e-13, -1e-13, 2e-13))]
+        {
+            assert!(!is_mirrored(&(projection * look * turn)), "{projection} {turn}");
+            let mirror = Mat4::from_scale(Vec3::new(1.0, 1.0, -3.0));
+            assert!(is_mirrored(&(projection * look * turn * mirror)), "{projection} {turn}");
+            assert!(is_mirrored(&(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * projection * look * turn)));
+        }
+    }
 }

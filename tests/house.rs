@@ -382,13 +382,12 @@ const WITHOUT_A_KERNEL: [(&str, &str); 1] =
     [("animation/frame", "records the passes of other operations one after another")];
 
 /// Kernels that only the laboratory runs, each with its folder in `crates/relievo-lab/src`.
-const OF_THE_LABORATORY: [(&str, &str); 7] = [
+const OF_THE_LABORATORY: [(&str, &str); 6] = [
     ("baseline/copy", "baseline/copy"),
     ("baseline/gather", "baseline/gather"),
     ("baseline/loads", "baseline/loads"),
     ("baseline/texels", "baseline/texels"),
     ("baseline/words", "baseline/words"),
-    ("mesh/cluster", "reduce/cluster"),
     ("surface/shade", "shade"),
 ];
 

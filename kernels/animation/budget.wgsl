@@ -247,16 +247,12 @@ fn settle(index: u32) {
 }
 
 @compute @workgroup_size(WIDTH)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * WIDTH + lane;
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.y * groups.x * WIDTH + id.x;
     if STAGE == CHOOSE {
-        choose(lane);
+        choose(index);
     } else if STAGE == SUM {
-        sum_ties(lane);
+        sum_ties(index);
     } else if index < params.instances * params.words {
         if STAGE == RANK {
             rank(index);

@@ -1,17 +1,94 @@
 // The integer position of each instance on the common timeline of its clip, and the reason, other than time, to
 // update its pose. Gates decide by these. A thread handles one instance.
-import package::wgsl::animation::gated::lods::lods;
-import package::wgsl::animation::gated::clip_clocks::clip_clocks;
-import package::wgsl::animation::clip_clock::{clip_clock_of, clip_clock_params};
+import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
+import package::wgsl::animation::clock::inside_clip;
+import package::wgsl::animation::gate_state::{FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, Lod, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, progress_word};
+import package::wgsl::animation::instance::AnimationInstance;
+import package::wgsl::animation::timeline::keyframe_cursor;
+
+struct ClipClockParams {
+    instances: u32,
+    // Seconds since the starts of the instances.
+    elapsed: f32,
+    // Number of layers above the base.
+    layers: u32,
+    // Seconds by which bones may be sampled ahead.
+    ahead: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: ClipClockParams;
+@group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
+@group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
+@group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
+// Binding 4 holds the key times. One level of detail per instance.
+@group(0) @binding(5) var<storage, read> lods: array<Lod>;
+// Weights of the layers above the base, layer by layer.
+@group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
+// Per instance: the last clip + 1, with BLENDED if layers were above it, or 0 if no pose is stored; a hash of
+// what these layers played; and, as bits, the time inside the clip and the time ahead.
+@group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
+// One per instance.
+@group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;
+
+const BLENDED: u32 = 0x80000000u;
+// The factor of the hash of clips above the base.
+const CLIP_HASH_FACTOR: u32 = 31u;
+
+// No instance plays this clip.
+const NO_CLIP: u32 = 0xffffffffu;
+
+// A hash of the clips that play above the base, which is clip `base`; 0 if there are none. (No instance has NO_CLIP, but
+// where uniforms alone decide loops and branches, lavapipe compiles the kernel anew in each submission.)
+fn clips_above(instance: u32, base: u32) -> u32 {
+    var clips = 0u;
+    for (var layer = 0u; layer < select(params.layers, 0u, base == NO_CLIP); layer++) {
+        let is_heard = layer_weights[layer * params.instances + instance] > 0.0;
+        let clip = instances[(layer + 1u) * params.instances + instance].clip;
+        clips = CLIP_HASH_FACTOR * clips + select(0u, clip + 1u, is_heard);
+    }
+    return clips;
+}
+
+// The fraction of a cursor, in FRACTION_ONE-ths.
+fn whole_fraction(cursor: KeyframeCursor) -> u32 {
+    return u32(clamp(cursor.fraction, 0.0, 1.0) * f32(FRACTION_ONE));
+}
+
+// The clip clock of an instance with the flags of its level of detail; updates its history.
+fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
+    let instance = instances[index];
+    let clip = clips[instance.clip];
+    let time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * params.elapsed);
+    let timeline = timelines[clip.first_timeline];
+    let found = keyframe_cursor(timeline, time);
+    let seconds = params.elapsed + params.ahead;
+    let then = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * seconds);
+    let later = select(time, then, params.ahead != 0.0);
+    let ahead = keyframe_cursor(timeline, later);
+    let above = clips_above(index, instance.clip);
+    let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
+    let known = vec4<u32>(base, above, bitcast<u32>(time), bitcast<u32>(later));
+    let last = history[index];
+    var reason = UPDATE_REASON_FREE;
+    if (flags & LOD_HIDDEN) != 0u {
+        reason = UPDATE_REASON_HIDDEN;
+        history[index] = vec4<u32>(0u);
+    } else {
+        if (flags & LOD_FORCED) != 0u || last.x != known.x || last.y != known.y {
+            reason = UPDATE_REASON_FORCED;
+        } else if above != 0u {
+            reason = UPDATE_REASON_BLENDED;
+        }
+        history[index] = known;
+    }
+    let own = progress_word(whole_fraction(found), reason);
+    return ClipClock(clip.first_row + found.key, own, instance.clip, clip.first_row + ahead.key, whole_fraction(ahead));
+}
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
-    if index < clip_clock_params.instances {
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.y * groups.x * 64u + id.x;
+    if index < params.instances {
         clip_clocks[index] = clip_clock_of(index, lods[index].flags);
     }
 }

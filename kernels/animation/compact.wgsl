@@ -1,9 +1,10 @@
 // Turns bits into lists: the active pairs of instance and bone, the slots that must be updated because a bone
 // at or above them is active, the instances that have any, and the arguments of the indirect dispatches. Lists
 // keep the order of instances and, within an instance, of its slots, on every device. There are three stages,
-// one dispatch each, or all in one.
-
-import package::wgsl::animation::compact::{WIDTH, compact_params, instances_of, list_instance, scan, scatter, spread};
+// one dispatch each.
+import package::wgsl::animation::gate_state::PAIR_AHEAD;
+import package::wgsl::animation::order::Slot;
+import package::wgsl::dispatch::rows_of_workgroups;
 
 // One of the constants below.
 override STAGE: u32 = 0;
@@ -14,32 +15,144 @@ const SPREAD = 0u;
 const SCAN = 1u;
 // A thread lists the pairs of one word.
 const SCATTER = 2u;
-// One workgroup does everything, for small crowds where a dispatch costs more than further processors gain.
-const ALL = 3u;
+
+const WIDTH = 64u;
+
+struct CompactParams {
+    instances: u32,
+    bones: u32,
+    // Words of bits per instance.
+    words: u32,
+    // Number of dispatches, after the first, that handle updated instances.
+    served: u32,
+    // The largest number of workgroups along x.
+    most_groups: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: CompactParams;
+// One bit per slot of each instance: the bones that are sampled; then, in the same layout, those of them that
+// are sampled ahead; and those whose model matrices this frame updates.
+@group(0) @binding(1) var<storage, read_write> bits: array<u32>;
+@group(0) @binding(2) var<storage, read> slots: array<Slot>;
+// The updated bones of this frame and of those before, until readers have followed all of them.
+@group(0) @binding(3) var<storage, read_write> updated_bones: array<u32>;
+// The number of active pairs of each instance; after the scan, of all instances before it.
+@group(0) @binding(4) var<storage, read_write> counts: array<u32>;
+// instance * bones + bone, with PAIR_AHEAD if it is sampled ahead.
+@group(0) @binding(5) var<storage, read_write> pairs: array<u32>;
+// Workgroups along x, y and z for one thread per pair, and the number of pairs.
+@group(0) @binding(6) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
+@group(0) @binding(7) var<storage, read_write> updated_instances: array<u32>;
+// The same for one thread per updated instance; then dispatches with several threads per updated instance, as
+// many as w said before.
+@group(0) @binding(8) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
+
+var<workgroup> sums: array<vec2<u32>, WIDTH>;
+
+// A mask of the bits from `start` to below `end`, both within 0..=32.
+fn run(start: u32, end: u32) -> u32 {
+    let below = select(0xffffffffu, (1u << (end & 31u)) - 1u, end < 32u);
+    return below & (0xffffffffu << start);
+}
+
+// (No subtree ends beyond the last bone. Where uniforms alone decide a loop's end, lavapipe compiles the kernel anew in each
+// submission; hence the second condition of this loop and of that in `scan`.)
+fn spread(instance: u32) {
+    let first_word = instance * params.words;
+    let all_words = params.instances * params.words;
+    var count = 0u;
+    // The slot after the last updated one.
+    var end = 0u;
+    for (var word = 0u; word < params.words && end <= params.bones; word++) {
+        let chosen = bits[first_word + word];
+        let first = 32u * word;
+        var below = 0u;
+        if end > first {
+            below = run(0u, min(end - first, 32u));
+        }
+        var rest = chosen & ~below;
+        while rest != 0u {
+            let bit = firstTrailingBit(rest);
+            end = first + bit + slots[first + bit].subtree;
+            below |= run(bit, min(end - first, 32u));
+            rest &= ~below;
+        }
+        bits[2u * all_words + first_word + word] = below;
+        if below != 0u {
+            updated_bones[first_word + word] |= below;
+        }
+        count += countOneBits(chosen);
+    }
+    counts[instance] = count;
+}
+
+fn dispatch_of(threads: u32) -> vec3<u32> {
+    return rows_of_workgroups(threads / WIDTH + u32(threads % WIDTH > 0u), params.most_groups);
+}
+
+fn scan(lane: u32) {
+    let chunk = (params.instances + WIDTH - 1u) / WIDTH;
+    let first = min(lane * chunk, params.instances);
+    let end = min(first + chunk, params.instances);
+    var sum = vec2<u32>(0u);
+    for (var instance = first; instance < end; instance++) {
+        let count = counts[instance];
+        sum += vec2<u32>(count, u32(count > 0u));
+    }
+    sums[lane] = sum;
+    workgroupBarrier();
+    var before = vec2<u32>(0u);
+    for (var other = 0u; other < lane; other++) {
+        before += sums[other];
+    }
+    for (var instance = first; instance < end; instance++) {
+        let count = counts[instance];
+        counts[instance] = before.x;
+        if count > 0u {
+            updated_instances[before.y] = instance;
+        }
+        before += vec2<u32>(count, u32(count > 0u));
+    }
+    if lane == WIDTH - 1u {
+        pair_dispatch[0] = vec4<u32>(dispatch_of(before.x), before.x);
+        instance_dispatches[0] = vec4<u32>(dispatch_of(before.y), before.y);
+        for (var at = 1u; at <= params.served && before.y <= params.instances; at++) {
+            let each = instance_dispatches[at].w;
+            instance_dispatches[at] = vec4<u32>(dispatch_of(before.y * each), each);
+        }
+    }
+}
+
+fn scatter(index: u32) {
+    let instance = index / params.words;
+    if instance >= params.instances {
+        return;
+    }
+    let first_word = instance * params.words;
+    var at = counts[instance];
+    for (var word = first_word; word < index; word++) {
+        at += countOneBits(bits[word]);
+    }
+    let first_slot = 32u * (index - first_word);
+    let ahead = bits[params.instances * params.words + index];
+    var rest = bits[index];
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        let pair = instance * params.bones + slots[first_slot + bit].bone;
+        pairs[at] = select(pair, pair | PAIR_AHEAD, (ahead & (1u << bit)) != 0u);
+        rest &= rest - 1u;
+        at++;
+    }
+}
 
 @compute @workgroup_size(WIDTH)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * WIDTH + lane;
-    if STAGE == SPREAD {
-        if index < compact_params.instances {
-            spread(index);
-        }
-    } else if STAGE == SCAN {
-        scan(lane, WIDTH);
-    } else if STAGE == ALL {
-        let own = instances_of(lane, WIDTH);
-        for (var instance = own.x; instance < own.y; instance++) {
-            spread(instance);
-        }
-        scan(lane, WIDTH);
-        for (var instance = own.x; instance < own.y; instance++) {
-            list_instance(instance);
-        }
-    } else {
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.y * groups.x * WIDTH + id.x;
+    if STAGE == SCAN {
+        scan(index);
+    } else if STAGE == SCATTER {
         scatter(index);
+    } else if index < params.instances {
+        spread(index);
     }
 }

@@ -1,28 +1,247 @@
-// Decides which bones of which instances are sampled this frame. A thread decides for up to 32 bones of one
-// instance; with BOUNDED, for all of them, because parents pass what they leave of the error budget to their
-// children.
-import package::wgsl::animation::gate::{BOUNDED, MODE, gate_params, gate_word, store_word};
-import package::wgsl::animation::gated::lods::lods;
-import package::wgsl::animation::gated::clip_clocks::clip_clocks;
+// Decides which bones of which instances are sampled this frame, one bit each. All arithmetic is on integers, so that every
+// device decides alike. A thread decides for up to 32 bones of one instance; with BOUNDED, for all of them, because parents
+// pass what they leave of the error budget to their children.
+import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
+import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
+import package::wgsl::animation::order::NO_PARENT;
+
+// One of the constants below.
+override MODE: u32 = 0;
+
+const OFF = 0u;
+const SKIP_PERIOD = 1u;
+const UNIFORM = 2u;
+const RANDOM = 3u;
+const BOUNDED = 4u;
+
+struct GateParams {
+    instances: u32,
+    bones: u32,
+    // Words of bits per instance.
+    words: u32,
+    // Entries per row of the table.
+    stride: u32,
+    // Ticks since the start, and since the last frame.
+    ticks: u32,
+    frame_ticks: u32,
+    // Ticks of the longest period.
+    period: u32,
+    // Frames since the start.
+    frame: u32,
+    // The row of the table that gives, for each slot, the nearest slot above it that the first clip moves; rows
+    // for the other clips follow.
+    first_above: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: GateParams;
+@group(0) @binding(1) var<storage, read> lods: array<Lod>;
+@group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
+// For each clip, the row of its periods, then one bit for each bone that moves in it.
+@group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
+// Either priorities, four per vector; or for each bone the sum of motion and its rise to the next row. In a
+// clip's last row, the latter are the sum over the whole clip and the bone's error budget.
+@group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
+// For each bone, the sum of motion when it was last sampled.
+@group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
+// For each bone that has children other than the next bone, what it leaves of the error budget.
+@group(0) @binding(6) var<storage, read_write> remaining: array<u32>;
+// One bit per slot of each instance: the bones that are sampled; then, in the same layout, those of them that are sampled
+// ahead; and those whose model matrices this frame updates.
+@group(0) @binding(7) var<storage, read_write> bits: array<u32>;
+
+// The factors of the hash below.
+const SCRAMBLE_FIRST: u32 = 0x21f0aaadu;
+const SCRAMBLE_SECOND: u32 = 0x735a2d97u;
+
+// One round of a multiplicative hash (Wellons' "lowbias32").
+fn scramble(word: u32) -> u32 {
+    var mixed = (word ^ (word >> 16u)) * SCRAMBLE_FIRST;
+    mixed = (mixed ^ (mixed >> 15u)) * SCRAMBLE_SECOND;
+    return mixed ^ (mixed >> 15u);
+}
+
+// A's rule skips one update per period: in every frame if a period is no longer than a frame, otherwise in a
+// frame in which the clock passes a multiple of the period.
+fn is_skipped(period: u32, ticks: u32) -> bool {
+    return period <= params.frame_ticks || ticks % period < params.frame_ticks;
+}
+
+fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_clock: ClipClock) -> u32 {
+    // The offset keeps instances from skipping in step.
+    let ticks = params.ticks + (scramble(instance) & 0xffffu);
+    var chosen = candidates;
+    var rest = candidates;
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        let slot = first + bit;
+        let four = table[clip_clock.row * params.stride + slot / 4u];
+        let two = select(four.x, four.y, (slot & 2u) != 0u);
+        let priority = (two >> (16u * (slot & 1u))) & 0xffffu;
+        // The priority times Ω, in 65536ths, and the period that belongs to it.
+        let level = (priority * omega) >> 16u;
+        let whole = (params.period >> 16u) * level;
+        let period = whole + (((params.period & 0xffffu) * level) >> 16u);
+        if is_skipped(period, ticks) {
+            chosen &= ~(1u << bit);
+        }
+    }
+    return chosen;
+}
+
+fn all_or_none(instance: u32, candidates: u32, omega: u32) -> u32 {
+    let frame = (params.frame + scramble(instance)) & 0xffffu;
+    let is_due = (frame * omega) >> 16u != ((frame + 1u) * omega) >> 16u;
+    return select(0u, candidates, is_due);
+}
+
+fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
+    var chosen = 0u;
+    var rest = candidates;
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        let word = scramble(scramble(params.frame) + instance * params.bones + first + bit);
+        if (word >> 16u) < omega {
+            chosen |= 1u << bit;
+        }
+    }
+    return chosen;
+}
+
+// More than is ever permitted.
+const EVERYTHING: u32 = 1u << 30u;
+
+// The encoding of a bone's error budget. From this bit on lies its fraction of what is left, in FRACTION_ONE-ths.
+const BUDGET_FRACTION_SHIFT: u32 = 8u;
+// The bits of the exponent of the rounding error that must be added: 2^(exponent − 1), or 0.
+const BUDGET_SLACK_MASK: u32 = 31u;
+// Set if the bone above is not the previous one in the order.
+const STARTS: u32 = 32u;
+// Set if what the bone leaves is needed later.
+const REMAINING: u32 = 64u;
+
+fn quantization_slack_of(granted: u32) -> u32 {
+    return (1u << (granted & BUDGET_SLACK_MASK)) >> 1u;
+}
+
+// One bit per bone: the bones that are sampled, and those of them that are sampled ahead.
+struct Chosen {
+    bits: u32,
+    ahead: u32,
+}
+
+// The motion state of one instance.
+struct AccumulatedMotion {
+    allowed: u32,
+    clip_clock: ClipClock,
+    // The last row of the clip.
+    last_row: u32,
+}
+
+// Decides for bones in order, parents first. A bone that missed no more than its fraction of the remaining
+// budget is not sampled, and passes the rest on to the bones below it. A bone that missed more is sampled, and
+// passes on all of it; or it is sampled ahead if its motion until then is within its fraction too: it is then
+// off by as much now, and can stay for twice as long. Bones in `asked` are sampled whatever they missed, and so
+// are all bones if nothing may be missed. `left` is what the previous bone left.
+fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated: AccumulatedMotion, left: ptr<function, u32>) -> Chosen {
+    let forced = asked | select(0u, candidates, accumulated.allowed == 0u);
+    let row = accumulated.clip_clock.row * params.stride + first;
+    let ahead_row = accumulated.clip_clock.ahead_row * params.stride + first;
+    let may_lead = is_ahead(accumulated.clip_clock);
+    let last = accumulated.last_row * params.stride + first;
+    let own = instance * params.bones;
+    var chosen = Chosen(forced, 0u);
+    var rest = candidates | forced;
+    while rest != 0u {
+        let bit = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        let whole = table[last + bit];
+        if (whole.y & STARTS) != 0u {
+            let above = table[(params.first_above + accumulated.clip_clock.clip) * params.stride + first + bit].x;
+            if above == NO_PARENT {
+                *left = accumulated.allowed;
+            } else {
+                *left = remaining[own + above];
+            }
+        }
+        let at = own + first + bit;
+        let quantization_slack = quantization_slack_of(whole.y);
+        let own_budget = scale_by_fraction(*left, whole.y >> BUDGET_FRACTION_SHIFT);
+        let now = motion_at(table[row + bit], fraction_of(accumulated.clip_clock));
+        let missed = motion_between(now, sampled[at], whole.x) + quantization_slack;
+        let is_forced = (forced & (1u << bit)) != 0u;
+        if is_forced || missed > own_budget {
+            chosen.bits |= 1u << bit;
+            var stored = now;
+            if may_lead && !is_forced {
+                let later = motion_at(table[ahead_row + bit], accumulated.clip_clock.ahead_fraction);
+                let early = motion_between(later, now, whole.x) + quantization_slack;
+                if early <= own_budget {
+                    chosen.ahead |= 1u << bit;
+                    stored = later;
+                    *left -= early;
+                }
+            }
+            sampled[at] = stored;
+        } else {
+            *left -= missed;
+        }
+        if (whole.y & REMAINING) != 0u {
+            remaining[at] = *left;
+        }
+    }
+    return chosen;
+}
+
+// Decides for up to 32 bones of one instance. BOUNDED handles the words in order: `left` is what the previous
+// word left.
+fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: ptr<function, u32>) -> Chosen {
+    let first = 32u * word;
+    let reason = update_reason_of(clip_clock);
+    if reason == UPDATE_REASON_HIDDEN {
+        return Chosen(0u, 0u);
+    }
+    let record = clip_clock.clip * (params.words + 1u);
+    let all = 0xffffffffu >> (32u - min(params.bones - first, 32u));
+    let candidates = select(animated_bones[record + 1u + word], all, reason == UPDATE_REASON_BLENDED);
+    // Sums of motion describe a single clip, so they cannot be used for other reasons to update.
+    let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
+    if MODE == BOUNDED {
+        let accumulated = AccumulatedMotion(min(lod.allowed, EVERYTHING - 1u), clip_clock, animated_bones[record]);
+        return by_motion(instance, first, candidates, forced, accumulated, left);
+    }
+    var chosen = candidates;
+    if reason == UPDATE_REASON_FORCED {
+        chosen = all;
+    } else if lod.omega >= OMEGA_ONE {
+        chosen = candidates;
+    } else if MODE == SKIP_PERIOD {
+        chosen = by_priority(instance, first, candidates, lod.omega, clip_clock);
+    } else if MODE == UNIFORM {
+        chosen = all_or_none(instance, candidates, lod.omega);
+    } else if MODE == RANDOM {
+        chosen = at_random(instance, first, candidates, lod.omega);
+    }
+    return Chosen(chosen, 0u);
+}
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
-    let each = select(1u, gate_params.words, MODE == BOUNDED);
-    let threads = gate_params.words / each;
-    let instance = index / threads;
-    if instance >= gate_params.instances {
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.y * groups.x * 64u + id.x;
+    let each = select(1u, params.words, MODE == BOUNDED);
+    let instance = index * each / params.words;
+    if instance >= params.instances {
         return;
     }
     let lod = lods[instance];
     let clip_clock = clip_clocks[instance];
-    let first = (index - instance * threads) * each;
+    let first = index * each - instance * params.words;
     var left = 0u;
     for (var word = first; word < first + each; word++) {
-        store_word(instance, word, gate_word(instance, word, lod, clip_clock, &left));
+        let chosen = gate_word(instance, word, lod, clip_clock, &left);
+        let at = instance * params.words + word;
+        bits[at] = chosen.bits;
+        bits[params.instances * params.words + at] = chosen.ahead;
     }
 }

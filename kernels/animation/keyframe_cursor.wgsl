@@ -33,12 +33,8 @@ struct KeyframeCursorParams {
 @group(0) @binding(8) var<storage, read> history: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.y * groups.x * 64u + id.x;
     let at = index / params.timelines;
     var entry = at;
     if COMPACTED {

@@ -1,10 +1,9 @@
 // Concatenates local transforms into the model's space. A thread walks one chain of one instance and keeps the
-// parent's matrix in registers; a dispatch handles the chains of one level, whose parents are done. With WHOLE,
-// a thread walks all chains of its instance. With COMPACTED, only listed instances are walked, and of them only
-// updated slots, which always include all bones below an updated one.
+// parent's matrix in registers; a dispatch handles the chains of one level, whose parents are done. With COMPACTED,
+// only listed instances are walked, and of them only updated slots, which always include all bones below an updated one.
+import package::wgsl::affine::product_row;
 import package::wgsl::animation::order::{CONTINUES, Chain, NO_PARENT, Slot};
 
-override WHOLE: bool = false;
 override COMPACTED: bool = false;
 
 struct LocalToModelParams {
@@ -35,11 +34,6 @@ struct Rows {
     x: vec4<f32>,
     y: vec4<f32>,
     z: vec4<f32>,
-}
-
-fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
-    let linear = row.x * x + row.y * y + row.z * z;
-    return vec4<f32>(linear.xyz, linear.w + row.w);
 }
 
 // Computes and stores the rows of a bone in the model's space, given those of its parent.
@@ -98,34 +92,6 @@ fn next_updated(instance: u32, start: u32, end: u32) -> u32 {
     return 32u * word + firstTrailingBit(bits);
 }
 
-fn walk_whole(instance: u32) {
-    let base = instance * params.bones;
-    var slot = 0u;
-    // Slots before `end` need only the previous slot's rows, or stored ones.
-    var end = 0u;
-    var rows: Rows;
-    loop {
-        var parent = CONTINUES;
-        if slot == end {
-            if COMPACTED {
-                slot = next_updated(instance, slot, params.bones);
-            }
-            if slot >= params.bones {
-                break;
-            }
-            end = slot + slots[slot].subtree;
-            parent = bone_above(slot);
-        } else {
-            parent = slots[slot].parent;
-        }
-        if parent != CONTINUES {
-            rows = stored_rows(base, parent);
-        }
-        rows = joined(rows, 3u * (base + slots[slot].bone));
-        slot++;
-    }
-}
-
 fn walk_chain(instance: u32, chain: Chain) {
     let base = instance * params.bones;
     let end = chain.first + chain.count;
@@ -143,13 +109,9 @@ fn walk_chain(instance: u32, chain: Chain) {
 }
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
-    let place = select(index / params.chains, index, WHOLE);
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.y * groups.x * 64u + id.x;
+    let place = index / params.chains;
     var instance = place;
     if COMPACTED {
         if place >= dispatches[0].w {
@@ -157,12 +119,7 @@ fn main(
         }
         instance = updated_instances[place];
     }
-    if instance >= params.instances {
-        return;
-    }
-    if WHOLE {
-        walk_whole(instance);
-    } else {
+    if instance < params.instances {
         walk_chain(instance, chains[params.first_chain + index - place * params.chains]);
     }
 }

@@ -160,12 +160,8 @@ fn blend(below: Local, over: Local, weight: f32) -> Local {
 }
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    var pair = (group.y * groups.x + group.x) * 64u + lane;
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    var pair = id.y * groups.x * 64u + id.x;
     var is_ahead = false;
     if COMPACTED {
         if pair >= dispatched.w {

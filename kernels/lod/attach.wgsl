@@ -2,6 +2,7 @@
 // with that of the bone and its own offset. Where no view of the frame sees the character, its bones are those of an earlier
 // frame, and the mesh becomes a point, which draws nothing. If the scene keeps its last frame, the thread also gives the
 // transform that the mesh had then.
+import package::wgsl::affine::product_row;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
 
@@ -73,12 +74,6 @@ struct KeptBone {
 // length: 2 * attachments
 @group(0) @binding(8) var<storage, read_write> kept: array<KeptBone>;
 
-// A row of the product of two transforms, from a row of the first and all of the second.
-fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
-    let linear = row.x * x + row.y * y + row.z * z;
-    return vec4<f32>(linear.xyz, linear.w + row.w);
-}
-
 // The rows of an instance's placement, followed from the right by those of a transform in its space.
 fn write_placed(instance: SceneInstance, local: array<vec4<f32>, 3>, first: u32, is_seen: bool) {
     let axes = instance_axes(instance);
@@ -91,12 +86,8 @@ fn write_placed(instance: SceneInstance, local: array<vec4<f32>, 3>, first: u32,
 }
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.y * groups.x * 64u + id.x;
     if index >= params.attached || attachments[index].mesh == NO_MESH {
         return;
     }

@@ -1,7 +1,6 @@
 // Lists of the instances that a view sees, for each level of detail and either orientation, in ascending order. First a
 // workgroup for each object turns the counts of its blocks into the places at which their instances begin, and writes the
-// numbers of instances of its draws; then a thread for each instance writes its index into its list, or a thread for each
-// block those of its instances, one after the other.
+// numbers of instances of its draws; then a thread for each instance writes its index into its list.
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw, decision_list, decision_morph, list_entry_word};
 
 // One of the constants below.
@@ -11,8 +10,6 @@ override STAGE: u32 = 0u;
 const SUM: u32 = 0u;
 // A thread for each instance, with barriers between those of a block.
 const PLACE: u32 = 1u;
-// A thread for each block.
-const WALK: u32 = 2u;
 
 // Runs of an object's blocks that are summed side by side, each by a thread for each list.
 const RUNS: u32 = 16u;
@@ -32,8 +29,7 @@ struct ListParams {
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
 // The decision word of each instance of the blocks.
 @group(0) @binding(3) var<storage, read> decisions: array<u32>;
-// For each block and list the number of instances, which becomes the number of instances in the blocks before it; with WALK
-// in the end that of the instances up to the end of the block.
+// For each block and list the number of instances, which becomes the number of instances in the blocks before it.
 @group(0) @binding(4) var<storage, read_write> counts: array<u32>;
 // The lists of all objects, of list entries.
 @group(0) @binding(5) var<storage, read_write> lists: array<u32>;
@@ -116,29 +112,6 @@ fn place(block: u32, lane: u32) {
     }
 }
 
-// Writes the indices of the instances of a block into their lists. Its counts are the places of the next ones.
-fn walk(block: u32) {
-    if block >= params.blocks {
-        return;
-    }
-    let owner = block_objects[block];
-    if owner == NO_OBJECT {
-        return;
-    }
-    let begin = objects[owner].first_list;
-    let length = objects[owner].instances;
-    let first = BLOCK * block - objects[owner].first;
-    for (var at = 0u; at < BLOCK; at++) {
-        let decision = decisions[BLOCK * block + at];
-        if decision > 0u {
-            let list = decision_list(decision) - 1u;
-            let count = counts[OBJECT_LISTS * block + list];
-            counts[OBJECT_LISTS * block + list] = count + 1u;
-            lists[begin + list * length + count] = entry_of(first + at, decision);
-        }
-    }
-}
-
 @compute @workgroup_size(256)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -146,9 +119,7 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let item = group.y * groups.x + group.x;
-    if STAGE == WALK {
-        walk(256u * item + lane);
-    } else if STAGE == PLACE {
+    if STAGE == PLACE {
         place(PLACED_BLOCKS * item + lane / BLOCK, lane);
     } else if item < params.objects {
         sum(objects[item], lane);

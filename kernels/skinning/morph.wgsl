@@ -1,11 +1,9 @@
 // Morph targets: adds the weighted deltas of the targets to vertices, before skinning. A workgroup morphs a
-// cluster of vertices of one instance that is seen, at its level of detail: every such cluster, or with
-// COMPACTED those of a list.
+// cluster of a list, of vertices of one instance, if that is seen, at its level of detail.
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::instance_lod::MAX_LEVELS;
 import package::wgsl::skinning::page::NO_PAGE;
 
-override COMPACTED: bool = false;
 // Whether the output lies in pages. Clusters without a page are skipped.
 override PAGED: bool = false;
 
@@ -54,13 +52,11 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    var pair = group.y * groups.x + group.x;
-    if COMPACTED {
-        if pair >= dispatched.w {
-            return;
-        }
-        pair = pairs[pair];
+    let listed = group.y * groups.x + group.x;
+    if listed >= dispatched.w {
+        return;
     }
+    let pair = pairs[listed];
     let cluster = pair / params.instances;
     let instance = pair - cluster * params.instances;
     let vertex = CLUSTER * cluster + lane;

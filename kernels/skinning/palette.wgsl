@@ -2,7 +2,8 @@
 // the model's space. With DUAL the matrix is decomposed into a stretch and a rigid motion after it. A thread
 // computes one bone; instances that are not seen are skipped.
 import package::wgsl::skinning::instance_lod::InstanceLod;
-import package::wgsl::skinning::rows::LEAST_LENGTH;
+import package::wgsl::affine::product_row;
+import package::wgsl::skinning::rows::{LEAST_LENGTH, unit_or};
 
 override DUAL: bool = false;
 
@@ -25,20 +26,6 @@ struct PaletteParams {
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
 // Three rows per bone; with DUAL the rotation, the dual part, the diagonal, and the elements above it.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
-
-fn product_row(row: vec4<f32>, x: vec4<f32>, y: vec4<f32>, z: vec4<f32>) -> vec4<f32> {
-    let linear = row.x * x + row.y * y + row.z * z;
-    return vec4<f32>(linear.xyz, linear.w + row.w);
-}
-
-fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
-    let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
-    if size < LEAST_LENGTH {
-        return other;
-    }
-    let scaled = vector / size;
-    return scaled * inverseSqrt(dot(scaled, scaled));
-}
 
 // A unit vector at a right angle to a unit vector (Duff et al. 2017).
 fn upright(v: vec3<f32>) -> vec3<f32> {
@@ -86,12 +73,8 @@ fn write_dual(at: u32, rows: array<vec4<f32>, 3>) {
 }
 
 @compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let pair = (group.y * groups.x + group.x) * 64u + lane;
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let pair = id.y * groups.x * 64u + id.x;
     if pair >= params.pairs {
         return;
     }

@@ -1,21 +1,19 @@
 // Skinning (A section 8.4): transforms vertices by their bones, with as many influences as each instance's
 // InstanceLod leaves. Instances that are not seen, and vertices beyond an instance's level of detail, are
-// skipped. A workgroup skins a cluster of vertices of one instance: every such cluster, or with COMPACTED
-// those of a list. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
+// skipped. A workgroup skins a cluster of a list, of vertices of one instance. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
 import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 import package::wgsl::skinning::page::NO_PAGE;
-import package::wgsl::skinning::rows::{LEAST_LENGTH, Rows, rows_of_dual};
+import package::wgsl::skinning::rows::{Rows, rows_of_dual, unit_or};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
-override COMPACTED: bool = false;
 // Whether the palette holds dual quaternions and not matrices.
 override DUAL: bool = false;
 // Whether each instance has vertices of its own (morphed), which lie as the output does, and does not use the mesh's.
 override MORPHED: bool = false;
 // Whether the output lies in pages. Clusters without a page are skipped.
 override PAGED: bool = false;
-// With COMPACTED and PAGED, whether the positions of the frame before are kept.
+// With PAGED, whether the positions of the frame before are kept.
 override KEEP: bool = false;
 
 struct SkinParams {
@@ -24,9 +22,7 @@ struct SkinParams {
     pairs: u32,
     // Number of bones of the skin.
     bones: u32,
-    // Number of instances in the output; in the other buffers they start at `first_instance`.
     instances: u32,
-    first_instance: u32,
     // With KEEP, the index in `skinned` of the last positions, two pairs per vertex.
     last: u32,
     // Number of clusters at each level of detail.
@@ -125,38 +121,29 @@ fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) 
     return matrix_of(added(sum, strongest, left, left));
 }
 
-fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
-    let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
-    let scaled = vector / max(size, LEAST_LENGTH);
-    return select(scaled * inverseSqrt(max(dot(scaled, scaled), 0.5)), other, size < LEAST_LENGTH);
-}
-
 @compute @workgroup_size(CLUSTER)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    var pair = group.y * groups.x + group.x;
-    if COMPACTED {
-        if pair >= dispatched.w {
-            return;
-        }
-        pair = pairs[pair];
+    let listed = group.y * groups.x + group.x;
+    if listed >= dispatched.w {
+        return;
     }
+    let pair = pairs[listed];
     let cluster = pair / params.instances;
-    let number = pair - cluster * params.instances;
+    let instance = pair - cluster * params.instances;
     let vertex = CLUSTER * cluster + lane;
     if pair >= params.pairs || vertex >= params.vertices {
         return;
     }
-    let instance = params.first_instance + number;
     let instance_lod = instance_lods[instance];
     let level = min(instance_lod.mesh_lod, MAX_LEVELS - 1u);
     if instance_lod.max_influences == 0u || cluster >= params.levels[level >> 2u][level & 3u] {
         return;
     }
-    var to = 5u * (number * params.vertices + vertex);
+    var to = 5u * (instance * params.vertices + vertex);
     if PAGED {
         let page = page_table[instance * ((params.vertices + CLUSTER - 1u) / CLUSTER) + cluster];
         if page == NO_PAGE {
@@ -166,12 +153,7 @@ fn main(
     }
     let rows = blended(
         influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, instance_lod);
-    var first = 5u * vertex;
-    if MORPHED && PAGED {
-        first = to;
-    } else if MORPHED {
-        first += 5u * params.vertices * instance;
-    }
+    let first = select(5u * vertex, to, MORPHED);
     let a = vertices[first];
     let b = vertices[first + 1u];
     let c = vertices[first + 2u];

@@ -84,9 +84,6 @@ pub struct Crowd {
     pub locals: Buffer<Local>,
     /// The matrices that [`crate::animation::local_to_model::LocalToModelPass`] writes.
     pub model_matrices: ModelMatrices,
-    /// The model matrices of the frame before, for motion vectors, if they are kept; see
-    /// [`Crowd::with_previous`].
-    pub previous: Option<ModelMatrices>,
     /// Number of bones of the skeleton.
     pub bones: usize,
     /// Number of layers, the base included: 1 if each instance plays one clip.
@@ -134,7 +131,6 @@ impl Crowd {
             layer_weights: Buffer::from_slice(gpu, "layer_weights", &all_layer_weights(layers, bones))?,
             locals: Buffer::new(gpu, "locals", pairs)?,
             model_matrices: ModelMatrices::new(&Buffer::new(gpu, "model matrices", pairs)?),
-            previous: None,
             bones,
             layers: 1 + layers.len(),
             clips: set.clips().len(),
@@ -158,26 +154,6 @@ impl Crowd {
     /// [`crate::animation::local_to_model::LocalToModelPass`] writes.
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
-    }
-
-    /// The same crowd, which also keeps the model matrices of the frame before in `previous`, 48 bytes per
-    /// bone. They are zero until [`Crowd::record_previous`] has run.
-    ///
-    /// # Errors
-    /// [`GpuError`].
-    pub fn with_previous(self, gpu: &Gpu) -> Result<Self, GpuError> {
-        let previous = Buffer::new(gpu, "previous model matrices", self.pairs())?;
-        Ok(Self { previous: Some(self.model_matrices.beside(previous)), ..self })
-    }
-
-    /// Records the copy of the model matrices into `previous`. Record it before concatenation, which changes
-    /// them in place and in part. In the first frame, and for teleported instances, record it after
-    /// concatenation too, so that nothing appears to move. Does nothing if `previous` is not kept.
-    pub fn record_previous(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some(previous) = &self.previous {
-            let bytes = previous.buffer().bytes();
-            encoder.copy_buffer_to_buffer(self.model_matrices.raw(), 0, previous.raw(), 0, bytes);
-        }
     }
 
     /// Replaces the weights of a layer, one per instance; layers above the base are numbered from 1.

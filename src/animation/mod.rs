@@ -4,14 +4,11 @@
 pub mod active;
 pub mod bounds;
 pub mod budget;
-#[cfg(feature = "gpu")]
-pub mod chosen;
 pub mod clip_clock;
 pub mod clip_set;
 pub mod compact;
 #[cfg(feature = "gpu")]
 pub mod crowd;
-pub mod decide;
 pub mod drive;
 pub mod frame;
 pub mod gate;

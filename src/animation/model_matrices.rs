@@ -32,11 +32,6 @@ impl ModelMatrices {
         Self { updated_bones: Some(updated.clone()), ..self.clone() }
     }
 
-    /// Another buffer of the same crowd, which shares the record of what was prepared.
-    pub(crate) fn beside(&self, matrices: Buffer<Affine>) -> Self {
-        Self { matrices, updated_bones: None, consumer: self.consumer.clone() }
-    }
-
     /// The matrices that frames updated since skinning last followed them. If `None`, any matrix may have changed.
     pub fn updated_bones(&self) -> Option<&UpdatedBones> {
         self.updated_bones.as_ref()

@@ -80,7 +80,7 @@ impl UpdatedBones {
     }
 
     /// The bits, to bind. Whoever records work that sets bits calls [`UpdatedBones::update`] then;
-    /// [`DecideJob`](super::decide::DecideJob) does it by itself.
+    /// [`CompactJob`](super::compact::CompactJob) does it by itself.
     pub fn bits(&self) -> &Buffer<u32> {
         &self.bits
     }

@@ -45,6 +45,6 @@ impl Light {
 
 /// The fraction of its albedo that a matt surface sends to the eye, after Lambert: `direct`, 0 to 1, is the cosine at
 /// which the light falls on it, less where it lies in shadow; `ambient`, 0 to 1, is what it gets without.
-pub(crate) fn lambert(ambient: f32, direct: f32) -> f32 {
+pub fn lambert(ambient: f32, direct: f32) -> f32 {
     ambient + (1.0 - ambient) * direct
 }

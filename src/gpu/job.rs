@@ -15,6 +15,11 @@ pub struct Step {
 }
 
 impl Step {
+    /// A dispatch of `invocations` threads, numbered across all workgroups ([`Kernel::spread`]).
+    pub fn spread(gpu: &Gpu, kernel: &Kernel, groups: Vec<Group>, invocations: u32) -> Self {
+        Self { kernel: kernel.clone(), groups, workgroups: kernel.spread(gpu, invocations) }
+    }
+
     fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.kernel.pipeline);
         for (index, group) in self.groups.iter().enumerate() {
@@ -60,6 +65,19 @@ impl Job {
             });
         }
         Ok(Self { label, steps })
+    }
+
+    /// A single dispatch with one bind group, as [`Step::spread`].
+    ///
+    /// # Errors
+    /// As [`Job::new`].
+    pub fn spread(
+        gpu: &Gpu,
+        label: &'static str,
+        (kernel, group): (&Kernel, Group),
+        invocations: u32,
+    ) -> Result<Self, GpuError> {
+        Self::new(gpu, label, vec![Step::spread(gpu, kernel, vec![group], invocations)])
     }
 
     /// Records one compute pass with all steps, in order.

@@ -198,18 +198,15 @@ pub(crate) fn foreign(path: &str) -> InputError {
     InputError::new(path, "of another wgpu::Instance", bound)
 }
 
-/// WebGPU's default limits, with the adapter's own limits for the size and number of storage bindings: some
-/// buffers cannot be split, and some kernels replace several others where a shader may bind enough buffers.
+/// WebGPU's default limits, with the adapter's own limit for the size of storage bindings: some buffers cannot be split.
 fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
     let default = wgpu::Limits::default();
     // Shaders count words in u32 with room to spare.
     let most = u64::from(u32::MAX) / 4 * 4;
     let binding = offered.max_storage_buffer_binding_size.min(offered.max_buffer_size).min(most);
-    let buffers = offered.max_storage_buffers_per_shader_stage;
     wgpu::Limits {
         max_storage_buffer_binding_size: default.max_storage_buffer_binding_size.max(binding),
         max_buffer_size: default.max_buffer_size.max(binding),
-        max_storage_buffers_per_shader_stage: default.max_storage_buffers_per_shader_stage.max(buffers),
         ..default
     }
 }

@@ -114,15 +114,6 @@ pub struct Override {
     pub default: f64,
 }
 
-/// A device limit that a shader needs raised above WebGPU's default.
-#[derive(Debug, Clone, Copy, serde::Serialize)]
-pub struct Limit {
-    /// WebGPU's name of the limit: `maxStorageBuffersPerShaderStage`.
-    pub name: &'static str,
-    /// The smallest sufficient value.
-    pub needed: u32,
-}
-
 /// A flat WGSL shader.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Shader {
@@ -137,9 +128,6 @@ pub struct Shader {
     pub bindings: &'static [Binding],
     /// Its pipeline-overridable constants.
     pub overrides: &'static [Override],
-    /// The limits that it needs raised above WebGPU's defaults. Empty for every shader but `animation/decide`,
-    /// which [`DecidePass`](crate::animation::decide::DecidePass) uses only where a device permits it.
-    pub limits: &'static [Limit],
     /// The structs that its bindings and functions use.
     pub structs: &'static [Struct],
 }

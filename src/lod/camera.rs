@@ -188,3 +188,13 @@ fn up(number: f64) -> f32 {
     let rounded = number as f32;
     if f64::from(rounded) < number { rounded.next_up() } else { rounded }
 }
+
+/// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space,
+/// seen from outside, then run clockwise on the screen. For a parallel view, whose depth must grow with
+/// distance, the sign of the determinant of all three axes decides.
+pub fn is_mirrored(clip: &Mat4) -> bool {
+    // In f64, because the product of three small scales may underflow f32.
+    let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());
+    let ahead = if ahead == DVec3::ZERO { depth } else { ahead };
+    right.cross(up).dot(ahead) > 0.0
+}

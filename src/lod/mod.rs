@@ -30,4 +30,4 @@ pub use crate::shared::lod::instance::{
 };
 pub use crate::shared::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 pub use crate::shared::lod::view::{LodCamera, SelectView, VIEW_CAMERAS};
-pub use camera::planes;
+pub use camera::{is_mirrored, planes};

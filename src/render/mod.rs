@@ -9,8 +9,6 @@ mod contents;
 mod format;
 mod layer;
 mod offscreen;
-#[cfg(not(target_arch = "wasm32"))]
-mod portrait;
 mod renderer;
 mod shading;
 mod sun_shadow;
@@ -20,8 +18,6 @@ pub use contents::Contents;
 pub use format::{DepthFormat, TargetFormat};
 pub use layer::Layer;
 pub use offscreen::Offscreen;
-#[cfg(not(target_arch = "wasm32"))]
-pub use portrait::{portrait, portraits};
 pub use renderer::{Renderer, ScenePass};
 pub use sun_shadow::SunShadow;
 

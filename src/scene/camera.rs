@@ -6,8 +6,8 @@ use glam::camera::rh::proj::directx;
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
 use crate::InputError;
+use crate::lod::is_mirrored;
 use crate::scene::placement::{Placement, check_world};
-use crate::skinning::picture::is_mirrored;
 
 /// The direction of depth in clip space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -3,8 +3,9 @@
 use crate::animation::crowd::{Local, packed};
 use crate::asset::Transform;
 use crate::gpu::{Gpu, GpuError, StagingRing, StagingStream};
+use crate::scene::character::Character;
 use crate::scene::handles::{InstanceId, Slots, missing, no_character};
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::Object;
 use crate::scene::poses::PoseBuffers;
 use crate::scene::view::View;
 use crate::scene::{RECORDINGS, Scene};
@@ -22,11 +23,8 @@ pub struct Poses<'a> {
 
 impl<'a> Poses<'a> {
     pub(super) fn new(gpu: &'a Gpu, objects: &'a mut Slots<Object>, staging: &'a mut StagingRing) -> Self {
-        let driven = objects.iter().map(|object| match &object.kind {
-            Kind::Character(character) => character.driven_bones(),
-            _ => 0,
-        });
-        let room = driven.sum::<usize>() * size_of::<Local>();
+        let characters = objects.iter().filter_map(|object| object.kind.character());
+        let room = characters.map(Character::driven_bones).sum::<usize>() * size_of::<Local>();
         Self { gpu, objects, stream: staging.stream(gpu, room), failure: None }
     }
 
@@ -37,10 +35,7 @@ impl<'a> Poses<'a> {
     pub fn of(&self, instance: InstanceId) -> Result<PoseBuffers<'_>, InputError> {
         let scene = self.objects.scene();
         let object = self.objects.existing(instance).ok_or_else(|| missing(scene, instance))?;
-        let found = match &object.kind {
-            Kind::Character(character) => character.pose_buffers(instance.index),
-            _ => None,
-        };
+        let found = object.kind.character().and_then(|character| character.pose_buffers(instance.index));
         found.ok_or_else(no_character)
     }
 
@@ -67,7 +62,7 @@ impl<'a> Poses<'a> {
         self.gpu.check_encoder(encoder)?;
         let (scene, index) = (self.objects.scene(), instance.index);
         let object = self.objects.existing_mut(instance).ok_or_else(|| missing(scene, instance))?;
-        let Kind::Character(character) = &mut object.kind else { return Err(no_character()) };
+        let character = object.kind.character_mut().ok_or_else(no_character)?;
         let Some(stream) = &mut self.stream else {
             return Err(InputError::new("recordings", RECORDINGS, format!("must be below {RECORDINGS}")));
         };
@@ -93,11 +88,8 @@ impl<'a> Poses<'a> {
 impl Scene {
     /// Forgets what the host wrote to bones in the last frame.
     pub(super) fn forget_written(&mut self) {
-        for object in self.objects.iter_mut() {
-            if let Kind::Character(character) = &mut object.kind {
-                character.forget_written();
-            }
-        }
+        let characters = self.objects.iter_mut().filter_map(|object| object.kind.character_mut());
+        characters.for_each(Character::forget_written);
     }
 
     /// Says which bones of an instance the caller drives, each by its name or its index in digits, from the next frame on; none of them
@@ -113,11 +105,7 @@ impl Scene {
     pub fn drive(&mut self, instance: InstanceId, bones: &[&str]) -> Result<(), InputError> {
         let bones = bones.iter().map(|bone| Ok(self.bone(instance, bone)? as u32));
         let bones = bones.collect::<Result<Vec<_>, InputError>>()?;
-        let object = self.instance_mut(instance)?;
-        let Kind::Character(character) = &mut object.kind else {
-            return Err(no_character());
-        };
-        character.drive(instance.index, bones);
+        self.character_mut(instance)?.drive(instance.index, bones);
         Ok(())
     }
 

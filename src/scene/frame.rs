@@ -182,11 +182,8 @@ impl Scene {
         if stage == Stage::Select {
             views.iter().for_each(|view| view.dispatch(pass));
         }
-        for object in self.objects.iter() {
-            if let Kind::Character(character) = &object.kind {
-                character.dispatch(stage, pass);
-            }
-        }
+        let characters = self.objects.iter().filter_map(|object| object.kind.character());
+        characters.for_each(|character| character.dispatch(stage, pass));
         if stage == Stage::LocalToModel {
             views.iter().for_each(|view| view.dispatch_attached(pass));
         }

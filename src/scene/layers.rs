@@ -5,7 +5,6 @@ use crate::asset::Transform;
 use crate::scene::Scene;
 use crate::scene::character::Character;
 use crate::scene::handles::{InstanceId, no_character};
-use crate::scene::object::Kind;
 use crate::scene::placement::Play;
 
 impl Scene {
@@ -79,23 +78,17 @@ impl Scene {
     /// [`InputError`] for an instance that does not exist any more, is no character, or keeps its motion, and for times that are
     /// not finite.
     pub fn root_motion(&self, instance: InstanceId, from: f64, to: f64) -> Result<Transform, InputError> {
-        match &self.object_of(instance)?.kind {
-            Kind::Character(character) => character.root_motion(instance.index, from, to),
-            _ => Err(no_character()),
-        }
+        let character = self.object_of(instance)?.kind.character().ok_or_else(no_character)?;
+        character.root_motion(instance.index, from, to)
     }
 
-    fn character_mut(&mut self, instance: InstanceId) -> Result<&mut Character, InputError> {
-        match &mut self.instance_mut(instance)?.kind {
-            Kind::Character(character) => Ok(character),
-            _ => Err(no_character()),
-        }
+    pub(super) fn character_mut(&mut self, instance: InstanceId) -> Result<&mut Character, InputError> {
+        self.instance_mut(instance)?.kind.character_mut().ok_or_else(no_character)
     }
 
     /// Sets the sphere of an instance that plays something else.
     fn bound_again(&mut self, instance: InstanceId) -> Result<(), InputError> {
-        let object = self.instance_mut(instance)?;
-        object.bound_again(instance.index);
+        self.instance_mut(instance)?.bound_again(instance.index);
         self.carry(instance)
     }
 }

@@ -90,7 +90,7 @@ use attach::Attachments;
 use handles::Slots;
 use layout::Layout;
 use layouts::SceneLayouts;
-use object::{Kind, Object};
+use object::Object;
 use statistics::{SceneCounts, StageTimer};
 use watch::Watch;
 
@@ -280,10 +280,8 @@ impl Scene {
     pub fn set_shares(&mut self, shares: Shares) -> Result<(), InputError> {
         shares.validate()?;
         self.shares = shares;
-        for object in self.objects.iter_mut() {
-            if let Kind::Character(_) = object.kind {
-                object.mesh_fraction = shares.mesh;
-            }
+        for object in self.objects.iter_mut().filter(|object| object.kind.character().is_some()) {
+            object.mesh_fraction = shares.mesh;
         }
         self.layout = None;
         Ok(())

@@ -118,9 +118,8 @@ impl Object {
     /// The center and the radius of a sphere around an instance, which `placed` leads from its model's space. Bones that were
     /// written may leave the sphere of the clip, so their box decides then.
     fn sphere_around(&self, index: u32, now: f64, placed: DAffine3) -> Result<(DVec3, f64), InputError> {
-        if let Kind::Character(character) = &self.kind
-            && character.is_written(index)
-        {
+        let written = self.kind.character().filter(|character| character.is_written(index));
+        if let Some(character) = written {
             let [low, high] = character.bounds(&character.pose(index, now)?, placed);
             return Ok(((low + high) / 2.0, low.distance(high) / 2.0));
         }

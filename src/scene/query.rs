@@ -70,10 +70,8 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn clip_time(&self, instance: InstanceId) -> Result<Option<ClipTime>, InputError> {
-        match &self.object_of(instance)?.kind {
-            Kind::Character(character) => character.clip_time(instance.index, self.now).map(Some),
-            Kind::Mesh(_) | Kind::Terrain(_) => Ok(None),
-        }
+        let character = self.object_of(instance)?.kind.character();
+        character.map(|character| character.clip_time(instance.index, self.now)).transpose()
     }
 
     /// The object of an instance that exists.
@@ -119,7 +117,7 @@ mod drawn {
     impl Scene {
         /// Whether the instances of an object are animated.
         pub fn is_character(&self, object: ObjectId) -> Result<bool, InputError> {
-            Ok(matches!(self.object_at(object)?.kind, Kind::Character(_)))
+            Ok(self.object_at(object)?.kind.character().is_some())
         }
 
         /// The instances of an object that a view may show, as its last frame, which must be submitted, drew them. Waits

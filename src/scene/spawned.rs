@@ -34,7 +34,7 @@ impl Scene {
         let Some([index, generation]) = spawned else {
             return Err(InputError::new("object.capacity", entry.capacity(), "must have room").into());
         };
-        if let Kind::Character(character) = &mut entry.kind {
+        if let Some(character) = entry.kind.character_mut() {
             let sphere = character.play_first(index);
             entry.instances.change(index, |instance| instances::bound(instance, &sphere));
         }
@@ -52,7 +52,7 @@ impl Scene {
         self.spawned_mut(instance)?;
         self.let_go(instance)?;
         let object = self.instance_mut(instance)?;
-        if let Kind::Character(character) = &mut object.kind {
+        if let Some(character) = object.kind.character_mut() {
             character.let_go(instance.index);
         }
         object.instances.despawn(instance.index);
@@ -83,9 +83,7 @@ impl Scene {
     /// not have, and as [`Play::validate`].
     pub fn play(&mut self, instance: InstanceId, play: &Play<'_>) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
-        let Kind::Character(character) = &mut object.kind else {
-            return Err(no_character());
-        };
+        let character = object.kind.character_mut().ok_or_else(no_character)?;
         let sphere = character.play(instance.index, play)?;
         object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
         self.carry(instance)

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, Slots, no_character};
 use crate::scene::layout::Layout;
 use crate::scene::matrices::{affine_of, placed_model, rows_of};
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::Object;
 use crate::scene::placement::Placement;
 use crate::shared::lod::instance::SceneInstance;
 use crate::{Error, InputError};
@@ -104,10 +104,7 @@ impl Scene {
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does not
     /// have.
     pub fn bone(&self, instance: InstanceId, name_or_index: &str) -> Result<usize, InputError> {
-        match &self.object_of(instance)?.kind {
-            Kind::Character(character) => character.bone(name_or_index),
-            _ => Err(no_character()),
-        }
+        self.object_of(instance)?.kind.character().ok_or_else(no_character)?.bone(name_or_index)
     }
 }
 
@@ -140,8 +137,7 @@ impl Watch {
         self.ring.record(encoder, About { frame, time, bones }, |encoder, to| {
             let copies = chosen.iter().filter_map(|(instance, bone)| {
                 let object = objects.existing(*instance)?;
-                let Kind::Character(character) = &object.kind else { return None };
-                let (matrices, own) = character.model_matrices(instance.index)?;
+                let (matrices, own) = object.kind.character()?.model_matrices(instance.index)?;
                 Some((matrices, own, *bone, object.place(instance.index)?))
             });
             for (at, (matrices, instance, bone, place)) in (0..).zip(copies) {

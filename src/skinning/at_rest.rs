@@ -2,8 +2,7 @@
 //! drawing them needs no skinning.
 
 use super::pose::{Moment, Pose};
-use super::posed::check_range;
-use super::vertex::Vertex;
+use super::vertex::{Vertex, check_range};
 use crate::InputError;
 use crate::asset::skeleton::Bone;
 use crate::asset::{Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};

@@ -27,6 +27,7 @@ mod tracks;
 
 use crate::InputError;
 use crate::asset::{Bone, Model, Skeleton};
+use crate::skinning::pose::{Moment, moments_in, poses_of};
 use choice::{Choice, Remap};
 use rest::Rest;
 
@@ -126,6 +127,15 @@ pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collap
     };
     let error = measure::error(model, &collapsed, &remap)?;
     Ok(Collapsed { model: collapsed, remap: remap.indices(), error })
+}
+
+/// Moments of every clip, 60 a second, but at most `most` of each.
+fn looked_at(model: &Model, most: usize) -> Result<Vec<Moment>, InputError> {
+    let mut moments = Vec::new();
+    for (at, clip) in model.clips.iter().enumerate() {
+        moments.extend(moments_in(at, poses_of(clip)?.min(most)));
+    }
+    Ok(moments)
 }
 
 fn validate(model: &Model) -> Result<(), InputError> {

@@ -49,8 +49,7 @@ impl Extent {
     }
 
     /// The extent of all meshes of a model, which share their levels and their fade. The
-    /// sphere's center is that of [`BoundingSphere::in_clips`], from which [`lod`](super::lod) measures distances; the
-    /// sphere contains the vertices of all meshes, and `stray` is the largest of all. Otherwise as
+    /// sphere's center is that of [`BoundingSphere::in_clips`]; the sphere contains the vertices of all meshes, and `stray` is the largest of all. Otherwise as
     /// [`Extent::new`].
     ///
     /// # Errors
@@ -69,14 +68,7 @@ impl Extent {
         Ok(all)
     }
 
-    /// The extent of instances that are scaled by `scale`.
-    #[must_use]
-    pub fn scaled(self, scale: f32) -> Self {
-        Self { center: scale * self.center, radius: scale * self.radius, stray: scale * self.stray }
-    }
-
-    /// The projected distances at which a crowd may begin to fade and may be rigid
-    /// ([`LodView::fade_range`](super::lod::LodView::fade_range)), so that no vertex is drawn more than `pixels` from
+    /// The projected distances at which a crowd may begin to fade and may be rigid, so that no vertex is drawn more than `pixels` from
     /// its position, wherever it is in the picture. Placements must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
     ///
     /// Other errors add up: a gate's error of ε′ pixels and a fade of ε together show at most ε + ε′.
@@ -86,8 +78,7 @@ impl Extent {
     }
 
     /// The projected distances from which on levels with these `errors`
-    /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used
-    /// ([`LevelRanges`](super::lod::LevelRanges)), so that no point of a level is drawn more than `pixels` from
+    /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used, so that no point of a level is drawn more than `pixels` from
     /// the mesh's surface, and no point of that surface from the level, as far as the errors hold at the point.
     /// Placements must not scale. If 0 pixels are permitted, levels with an error begin at the largest number.
     /// `docs/pixel-bounds.md` has the derivation.
@@ -175,7 +166,6 @@ fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skinning::lod::LevelRanges;
 
     #[test]
     fn strays_are_the_largest_of_all_fades() {
@@ -219,11 +209,6 @@ mod tests {
         let farthest = farthest.fold(0.0, f32::max);
         assert!((0.9 * all.radius..=all.radius).contains(&farthest), "{farthest} of {}", all.radius);
         assert!(all.radius > one.radius + 1.0);
-        let twice = all.scaled(2.0);
-        assert_eq!(
-            (twice.center, twice.radius, twice.stray),
-            (2.0 * all.center, 2.0 * all.radius, 2.0 * all.stray)
-        );
         model.meshes.clear();
         assert_eq!(Extent::of_model(&model, &[0], 9).expect_err("refused").path, "model.meshes.len");
     }
@@ -255,7 +240,7 @@ mod tests {
         let errors = [0.0, 0.02, 0.02, 0.5];
         let begins = ranges(1.0, &errors);
         assert_eq!((begins[0], begins[1]), (1.5, extent.fade_range(&projection, 1.0).end));
-        assert!(begins.is_sorted() && LevelRanges::new(&begins).is_ok());
+        assert!(begins.is_sorted() && begins.iter().all(|begin| begin.is_finite()));
         assert_eq!(ranges(0.0, &errors), [1.5, f32::MAX, f32::MAX, f32::MAX]);
         assert!(ranges(1.0, &[]).is_empty());
 

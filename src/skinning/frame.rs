@@ -37,10 +37,8 @@ pub struct SkinFrame {
     palette: Job,
     /// The selection that keeps the updated bones, and the one that clears them.
     selections: [Job; 2],
-    /// The jobs of morph targets and of vertices.
-    all: [Job; 2],
-    /// The same jobs for selected clusters.
-    some: Vec<IndirectJob>,
+    /// The jobs of morph targets, if there are any, and of vertices.
+    jobs: Vec<IndirectJob>,
     reader: Arc<UpdatedBonesReader>,
 }
 
@@ -77,22 +75,13 @@ impl SkinFrame {
         let reader = Arc::new(updated.reader());
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
-        let morph = MorphPass::new(gpu)?;
-        let selections = SelectPass::new(gpu)?.prepare_both(gpu, &mesh, &crowd, &select, &active)?;
-        let pass = SkinPass::new(gpu, blend)?;
-        let all =
-            [morph.prepare(gpu, &mesh, &crowd)?, pass.prepare(gpu, &mesh, &crowd, 0..instances, &skinned)?];
-        let skin = pass.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
-        let some = morph.prepare_active(gpu, &mesh, &crowd, &active)?.into_iter().chain([skin]).collect();
+        let selections = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
+        let skin = SkinPass::new(gpu, blend)?.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
+        let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
+        let jobs = morph.into_iter().chain([skin]).collect();
         // This comes last: it claims the matrices for its kind of blending, which a refused frame must not do.
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
-        Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selections, all, some, reader })
-    }
-
-    /// Records the skinning of every vertex of the instances that are seen, at their level of detail. Updated bones
-    /// stay updated, since instances that are not seen did not follow them.
-    pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder) {
-        [&self.palette].into_iter().chain(&self.all).for_each(|job| job.record(encoder));
+        Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selections, jobs, reader })
     }
 
     /// Records the skinning of instances that are seen, at their level of detail, for these clusters: those with a
@@ -110,7 +99,7 @@ impl SkinFrame {
         self.palette.dispatch(pass);
         let [keeping, clearing] = &self.selections;
         if self.reader.read() { clearing } else { keeping }.dispatch(pass);
-        self.some.iter().for_each(|job| job.dispatch(pass));
+        self.jobs.iter().for_each(|job| job.dispatch(pass));
     }
 
     /// Reads the vertices of an instance, in the mesh's own order; those beyond its level of detail are out of

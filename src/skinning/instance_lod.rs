@@ -5,8 +5,9 @@ use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 pub use crate::shared::skinning::instance_lod::InstanceLod;
 
-/// The distances between which the influences of an instance fade, in world units as
-/// [`LodView::projected_distance`](super::lod::LodView::projected_distance) measures them.
+/// The projected distances between which the influences of an instance fade, in world units. The projected distance of a point
+/// at depth z and distance d from the eye is z²/d, because a small displacement there moves the point on screen by at most
+/// focal · displacement · d/z² pixels; in a parallel view it is d.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FadeRange {
     /// Up to this distance every influence counts.
@@ -16,9 +17,6 @@ pub struct FadeRange {
 }
 
 impl FadeRange {
-    /// The range of instances that never fade: the first step of the fade is farther than any instance.
-    pub const NEVER: Self = Self { start: 0.0, end: f32::MAX };
-
     /// Checks the distances.
     ///
     /// # Errors

@@ -2,7 +2,6 @@
 //! level is measured (A sections 9.3 and 9.4: all poses of the animation count). Meshes of a model that share borders are
 //! simplified as one, so that no gap opens between them (B section 5.2).
 
-use std::convert::Infallible;
 use std::iter::successors;
 use std::ops::ControlFlow;
 
@@ -82,9 +81,8 @@ impl MeshLevels {
         let moments = moments(model, mesh, clips, poses)?;
         let task =
             Task { model, moments: &moments, bodies: &Bodies::new(model, &[mesh], &looked_at(&moments)) };
-        let mut watch = |_| ControlFlow::<Infallible>::Continue(());
-        let ControlFlow::Continue(mut all) = task.run(&[vec![mesh]], &Shared::new(), &mut watch)?;
-        Ok(all.remove(0).1)
+        let all = task.run(&[vec![mesh]], &Shared::new(), &mut unwatched)?;
+        Ok(all.unwrap_or_default().remove(0).1)
     }
 
     /// The point on level `level + 1` of the mesh that is nearest to `wanted`, the correct position of a vertex
@@ -110,13 +108,13 @@ struct Task<'a> {
 
 impl Task<'_> {
     /// The levels of all meshes of these groups, each with its mesh; those of a group are simplified as one, and have equally
-    /// many levels with the same errors. `watch` gets fractions from 0 to 1 that do not decrease, and may break.
-    fn run<B>(
+    /// many levels with the same errors. `watch` gets fractions from 0 to 1 that do not decrease; if it breaks, there are none.
+    fn run(
         &self,
         groups: &[Vec<usize>],
         borders: &Shared,
-        watch: &mut dyn FnMut(f32) -> ControlFlow<B>,
-    ) -> Result<ControlFlow<B, Vec<(usize, MeshLevels)>>, InputError> {
+        watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<Option<Vec<(usize, MeshLevels)>>, InputError> {
         let wholes: Vec<Whole<'_>> =
             groups.iter().map(|group| Whole::new(self.model, group, borders)).collect();
         let all = wholes.iter().map(|whole| whole.indices.len()).sum::<usize>().max(1) as f64;
@@ -125,10 +123,10 @@ impl Task<'_> {
         for whole in &wholes {
             let part = whole.indices.len() as f64 / all;
             let mut removed = |fraction: f64| watch((SIMPLIFICATION * (begun + part * fraction)) as f32);
-            match Group::new(whole, self.moments, self.bodies, &mut removed)? {
-                ControlFlow::Continue(group) => groups.push(group),
-                ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
-            }
+            let Some(group) = Group::new(whole, self.moments, self.bodies, &mut removed)? else {
+                return Ok(None);
+            };
+            groups.push(group);
             begun += part;
         }
         let mut looked = |moments: usize| {
@@ -136,15 +134,10 @@ impl Task<'_> {
             watch((SIMPLIFICATION + (1.0 - SIMPLIFICATION) * fraction) as f32)
         };
         let suspects: Vec<_> = groups.iter().map(|group| (group.whole, &group.suspects)).collect();
-        let errors = match errors(self.model, &suspects, self.moments, &mut looked) {
-            ControlFlow::Continue(errors) => errors,
-            ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
-        };
-        if let ControlFlow::Break(broken) = watch(1.0) {
-            return Ok(ControlFlow::Break(broken));
-        }
+        let errors = errors(self.model, &suspects, self.moments, &mut looked).continue_value();
+        let Some(errors) = errors.filter(|_| watch(1.0).is_continue()) else { return Ok(None) };
         let found = groups.iter().zip(&errors).flat_map(|(group, errors)| group.levels(errors));
-        Ok(ControlFlow::Continue(found.collect()))
+        Ok(Some(found.collect()))
     }
 }
 
@@ -159,19 +152,16 @@ struct Group<'a> {
 }
 
 impl<'a> Group<'a> {
-    fn new<B>(
+    fn new(
         whole: &'a Whole<'a>,
         moments: &[Moment],
         bodies: &Bodies,
-        watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
-    ) -> Result<ControlFlow<B, Self>, InputError> {
+        watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Option<Self>, InputError> {
         let keys = Keys::new(whole, moments);
         let welded = Welded::new(whole, &keys.poses);
         let of: Vec<u32> = whole.meshes.iter().flat_map(|mesh| bodies.of(*mesh)).copied().collect();
-        let simplified = match simplified(whole, &welded, &keys, &of, watch)? {
-            ControlFlow::Continue(simplified) => simplified,
-            ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
-        };
+        let Some(simplified) = simplified(whole, &welded, &keys, &of, watch)? else { return Ok(None) };
         let levels = found(whole, &welded, &keys, &simplified);
         let unit = keys.unit;
         let poses: Vec<Vec<Vec3>> =
@@ -179,7 +169,7 @@ impl<'a> Group<'a> {
         let sides: Vec<Sides> =
             levels.par_iter().map(|level| Sides::new(whole, &simplified, level, &poses, &of)).collect();
         let suspects = Suspects::new(whole, &sides, &poses[0], &of, [unit, bodies.rounding / unit]);
-        Ok(ControlFlow::Continue(Self { whole, unit, simplified, levels, sides, suspects }))
+        Ok(Some(Self { whole, unit, simplified, levels, sides, suspects }))
     }
 
     /// The levels of each mesh; `errors` has the largest distance of each level, in units.
@@ -232,9 +222,8 @@ fn looked_at(moments: &[Moment]) -> Vec<Moment> {
 /// # Errors
 /// [`InputError`] as [`MeshLevels::new`].
 pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Vec<MeshLevels>, InputError> {
-    let mut watch = |_| ControlFlow::<Infallible>::Continue(());
-    let ControlFlow::Continue(found) = watched(model, Looks { clips, poses, is_at_rest: false }, &mut watch)?;
-    Ok(found)
+    let looks = Looks { clips, poses, is_at_rest: false };
+    Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
 }
 
 /// As [`add_levels`], where levels keep their errors at rest too.
@@ -247,9 +236,8 @@ pub(crate) fn add_levels_and_at_rest(
     clips: &[usize],
     poses: usize,
 ) -> Result<Vec<MeshLevels>, InputError> {
-    let mut watch = |_| ControlFlow::<Infallible>::Continue(());
-    let ControlFlow::Continue(found) = watched(model, Looks { clips, poses, is_at_rest: true }, &mut watch)?;
-    Ok(found)
+    let looks = Looks { clips, poses, is_at_rest: true };
+    Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
 }
 
 /// As [`add_levels`], and tells `watch` which fraction of the work is done: 0 first, 1 last, never less than before. It is
@@ -277,7 +265,12 @@ pub fn add_levels_with_progress(
     poses: usize,
     watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<Option<Vec<MeshLevels>>, InputError> {
-    Ok(watched(model, Looks { clips, poses, is_at_rest: false }, watch)?.continue_value())
+    watched(model, Looks { clips, poses, is_at_rest: false }, watch)
+}
+
+/// Never breaks.
+fn unwatched<T>(_: T) -> ControlFlow<()> {
+    ControlFlow::Continue(())
 }
 
 /// The moments at which a model is looked at.
@@ -289,18 +282,18 @@ struct Looks<'a> {
     is_at_rest: bool,
 }
 
-fn watched<B>(
+fn watched(
     model: &mut Model,
     looks: Looks<'_>,
-    watch: &mut dyn FnMut(f32) -> ControlFlow<B>,
-) -> Result<ControlFlow<B, Vec<MeshLevels>>, InputError> {
+    watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
+) -> Result<Option<Vec<MeshLevels>>, InputError> {
     let Looks { clips, poses, is_at_rest } = looks;
     let each = (0..model.meshes.len()).map(|mesh| moments(model, mesh, clips, poses));
-    if let ControlFlow::Break(broken) = watch(0.0) {
-        return Ok(ControlFlow::Break(broken));
+    if watch(0.0).is_break() {
+        return Ok(None);
     }
     let Some(mut moments) = each.collect::<Result<Vec<_>, _>>()?.into_iter().next() else {
-        return Ok(watch(1.0).map_continue(|()| Vec::new()));
+        return Ok(watch(1.0).is_continue().then(Vec::new));
     };
     if is_at_rest && !clips.is_empty() {
         moments.push(Moment::Rest);
@@ -309,27 +302,24 @@ fn watched<B>(
     let meshes: Vec<usize> = (0..model.meshes.len()).collect();
     let bodies = Bodies::new(model, &meshes, &looked_at(&moments));
     let task = Task { model, moments: &moments, bodies: &bodies };
-    let mut all = match task.run(&groups, &borders, watch)? {
-        ControlFlow::Continue(all) => all,
-        ControlFlow::Break(broken) => return Ok(ControlFlow::Break(broken)),
-    };
+    let Some(mut all) = task.run(&groups, &borders, watch)? else { return Ok(None) };
     all.sort_by_key(|(mesh, _)| *mesh);
     let all: Vec<MeshLevels> = all.into_iter().map(|(_, found)| found).collect();
     for (mesh, found) in model.meshes.iter_mut().zip(&all) {
         mesh.levels.clone_from(&found.levels);
         mesh.partners.clone_from(&found.partners);
     }
-    Ok(ControlFlow::Continue(all))
+    Ok(Some(all))
 }
 
 /// `bodies` has the rigid body of each vertex, and `watch` gets the fraction of triangles that is removed.
-fn simplified<B>(
+fn simplified(
     whole: &Whole<'_>,
     welded: &Welded,
     keys: &Keys,
     bodies: &[u32],
-    watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
-) -> Result<ControlFlow<B, Simplified>, InputError> {
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Option<Simplified>, InputError> {
     let texture = keys.texture_factors(whole);
     let (normals, indices) = (welded.normals(&keys.normals), welded.indices(whole));
     let attributes: Vec<f32> = (normals.iter().zip(&whole.uv).zip(&whole.member))
@@ -341,7 +331,7 @@ fn simplified<B>(
     let surface = Surface { poses: &keys.poses, indices: &indices, attributes: &attributes, stride: 5 };
     let distances: Vec<f32> =
         successors(Some(FIRST * keys.size), |last| Some(STEP * last)).take(MAX_LEVELS - 1).collect();
-    simplify_watched(&surface, &Options::default(), &distances, bodies, watch)
+    Ok(simplify_watched(&surface, &Options::default(), &distances, bodies, watch)?.continue_value())
 }
 
 /// A level under construction.
@@ -392,9 +382,8 @@ mod tests {
             let whole = Whole::new(&model, &[0], &Shared::new());
             let keys = Keys::new(&whole, &[Moment::In(0, 0.0)]);
             let welded = Welded::new(&whole, &keys.poses);
-            let mut watch = |_| ControlFlow::<Infallible>::Continue(());
-            let ControlFlow::Continue(simplified) =
-                simplified(&whole, &welded, &keys, &[], &mut watch).expect("valid");
+            let simplified = simplified(&whole, &welded, &keys, &[], &mut unwatched);
+            let simplified = simplified.expect("valid").expect("not broken");
             let mut distances: Vec<f32> = simplified.collapses().iter().map(|one| one.distance).collect();
             distances.dedup();
             let levels = super::found(&whole, &welded, &keys, &simplified);

@@ -56,7 +56,7 @@ impl Paging {
         let allocated = if active.keeps_last { PageBuffers::keeping } else { PageBuffers::new };
         let pages = allocated(gpu, mesh, crowd, pages)?;
         let deal = PagesPass::new(gpu)?.prepare(gpu, mesh, crowd, &pages)?;
-        let selections = SelectPass::new(gpu)?.prepare_both(gpu, mesh, crowd, &select, active)?;
+        let selections = SelectPass::new(gpu)?.prepare(gpu, mesh, crowd, &select, active)?;
         let morph = MorphPass::new(gpu)?.prepare_paged(gpu, mesh, crowd, &pages, active)?;
         let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(gpu, mesh, crowd, &pages, active)?;
         let after = morph.into_iter().chain([skin]).collect();

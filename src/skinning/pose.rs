@@ -87,8 +87,12 @@ pub(super) fn moments(
     if clips.is_empty() {
         return Ok(vec![Moment::Rest]);
     }
-    let fraction = |at: usize| at as f32 / (poses - 1).max(1) as f32;
-    Ok(clips.iter().flat_map(|clip| (0..poses).map(move |at| Moment::In(*clip, fraction(at)))).collect())
+    Ok(clips.iter().flat_map(|clip| moments_in(*clip, poses)).collect())
+}
+
+/// `poses` moments of a clip, evenly spaced from start to end.
+pub(super) fn moments_in(clip: usize, poses: usize) -> impl Iterator<Item = Moment> {
+    (0..poses).map(move |at| Moment::In(clip, at as f32 / (poses - 1).max(1) as f32))
 }
 
 /// The model matrices of all bones at a moment.
@@ -104,7 +108,7 @@ pub(super) fn bones_at(model: &Model, moment: Moment) -> Vec<Affine> {
 }
 
 /// The weights of a mesh's morph targets at a moment.
-fn weights_at(model: &Model, mesh: &Mesh, moment: Moment) -> Vec<f32> {
+pub(super) fn weights_at(model: &Model, mesh: &Mesh, moment: Moment) -> Vec<f32> {
     match moment {
         Moment::Rest => mesh.weights.clone(),
         Moment::In(clip, fraction) => mesh.weights_at(clip, fraction * model.clips[clip].duration()),

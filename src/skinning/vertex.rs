@@ -1,6 +1,8 @@
 //! The vertex that skinning reads and writes, and the kinds of blending.
 
+use crate::InputError;
 use crate::asset::Mesh;
+use crate::asset::mesh::COORDINATE_LIMIT;
 
 /// A vertex as skinning reads and writes it: 40 bytes, in the layout of vertex buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -38,4 +40,20 @@ pub fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
         tangent: mesh.tangents[vertex],
     };
     (0..mesh.vertices()).map(vertex).collect()
+}
+
+/// Refuses vertices of a mesh outside the range of coordinates, as large scales produce.
+///
+/// # Errors
+/// [`InputError`] that names the mesh by its number, and the first such vertex.
+pub fn check_range(mesh: usize, vertices: &[Vertex]) -> Result<(), InputError> {
+    let is_good = |value: &f32| value.abs() <= COORDINATE_LIMIT;
+    match vertices.iter().position(|vertex| !vertex.position.iter().all(is_good)) {
+        None => Ok(()),
+        Some(at) => {
+            let bound = format!("must be within ±{COORDINATE_LIMIT:e}: scales or weights are too large");
+            let value = format!("{:?}", vertices[at].position);
+            Err(InputError::new(format!("meshes[{mesh}].positions[{at}]"), value, bound))
+        }
+    }
 }

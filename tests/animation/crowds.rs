@@ -2,7 +2,6 @@
 
 use relievo::Error;
 use relievo::animation::bounds::{BoundsPass, bone_radii};
-use relievo::animation::chosen::ChosenBones;
 use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
@@ -110,7 +109,8 @@ fn layered_crowds_are_concatenated() {
     let (gpu, (model, set)) = (gpu(), scene());
     let layers = [Layer::new(plays(1, 5), vec![0.5; 5]), Layer::new(plays(2, 5), vec![0.25; 5])];
     let crowd = Crowd::layered(&gpu, &set, &plays(0, 5), &layers).expect("fits");
-    overwrite(&gpu, &crowd, &vec![[[f32::NAN; 4]; 3]; crowd.pairs()]);
+    let stale = vec![[f32::NAN; 12]; crowd.pairs()];
+    gpu.queue().write_buffer(crowd.model_matrices().raw(), 0, bytemuck::cast_slice(&stale));
     let locals = sampled(&gpu, &set, &crowd, 0.3);
     let expected: Vec<f32> = locals
         .chunks(153)
@@ -125,74 +125,6 @@ fn layered_crowds_are_concatenated() {
     let actual = crowd.model_matrices().read_blocking(&gpu).expect("read");
     let found = absolute(&flat(&actual), &expected, 20.0 * LOCAL_TO_MODEL_BOUND * 3.0);
     assert!(found.holds, "{found:?}");
-}
-
-/// Overwrites the first model matrices of a crowd, as another shader might.
-fn overwrite(gpu: &Gpu, crowd: &Crowd, matrices: &[Affine]) {
-    gpu.queue().write_buffer(crowd.model_matrices().raw(), 0, bytemuck::cast_slice(matrices));
-}
-
-/// A matrix that encodes its position.
-fn numbered(count: usize, frame: usize) -> Vec<Affine> {
-    (0..count).map(|at| [[at as f32, frame as f32, 0.0, 1.0]; 3]).collect()
-}
-
-#[test]
-fn the_palettes_of_the_frame_before_are_kept() {
-    let (gpu, (_, set)) = (gpu(), scene());
-    let crowd = Crowd::new(&gpu, &set, &plays(0, 3)).expect("fits");
-    assert!(crowd.previous.is_none());
-    gpu.run("test", |encoder| crowd.record_previous(encoder)).expect("nothing is recorded");
-    let crowd = crowd.with_previous(&gpu).expect("allocated");
-    for frame in 1..4 {
-        gpu.run("test", |encoder| crowd.record_previous(encoder)).expect("run");
-        // Partial concatenation: what it leaves unchanged is the same in both.
-        overwrite(&gpu, &crowd, &numbered(100, frame));
-        let previous = crowd.previous.as_ref().expect("remaining").read_blocking(&gpu).expect("read");
-        let before = if frame == 1 { vec![[[0.0; 4]; 3]; 100] } else { numbered(100, frame - 1) };
-        assert_eq!((previous.len(), &previous[..100]), (3 * 153, &before[..]));
-        assert!(previous[100..].iter().all(|model| *model == [[0.0; 4]; 3]));
-        assert_eq!(crowd.model_matrices().read_blocking(&gpu).expect("read")[..100], numbered(100, frame));
-    }
-}
-
-#[test]
-fn chosen_bones_are_those_of_the_whole() {
-    let (gpu, (_, set)) = (gpu(), scene());
-    let crowd = Crowd::new(&gpu, &set, &plays(0, 4)).expect("fits");
-    let all = numbered(4 * 153, 7);
-    overwrite(&gpu, &crowd, &all);
-    let at = |[instance, bone]: &[u32; 2]| all[(instance * 153 + bone) as usize];
-    // In a row, across instances, backwards, twice, the first and the last.
-    let first = [[0, 0], [1, 4], [1, 5], [1, 6], [1, 152], [2, 0], [3, 9], [3, 8], [3, 8], [3, 152]];
-    let mut chosen = ChosenBones::new(&gpu, &crowd, &first).expect("they are there");
-    let read = |chosen: &ChosenBones| {
-        gpu.run("test", |encoder| chosen.record(encoder)).expect("run");
-        let found = chosen.read_blocking(&gpu).expect("read");
-        // The asynchronous way gives the same.
-        let mut reading = std::pin::pin!(chosen.read(&gpu));
-        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
-        let again = loop {
-            match reading.as_mut().poll(&mut context) {
-                std::task::Poll::Ready(found) => break found.expect("read"),
-                std::task::Poll::Pending => gpu.wait().expect("the device works"),
-            }
-        };
-        assert_eq!(found, again);
-        found
-    };
-    assert_eq!(read(&chosen), first.iter().map(at).collect::<Vec<_>>());
-    let other = [[2, 100], [0, 3]];
-    chosen.choose(&other).expect("fewer");
-    assert_eq!(read(&chosen), other.iter().map(at).collect::<Vec<_>>());
-    // A refused choice changes nothing.
-    let refused = |error: relievo::InputError| error.path;
-    assert_eq!(refused(chosen.choose(&[[0, 0], [4, 0]]).expect_err("refused")), "chosen[1].instance");
-    assert_eq!(refused(chosen.choose(&[[0, 153]]).expect_err("refused")), "chosen[0].bone");
-    assert_eq!(refused(chosen.choose(&[[0, 0]; 11]).expect_err("refused")), "chosen.len");
-    assert_eq!(read(&chosen), other.iter().map(at).collect::<Vec<_>>());
-    assert_eq!(field(ChosenBones::new(&gpu, &crowd, &[[9, 9]]).expect_err("refused")), "chosen[0].instance");
-    assert!(read(&ChosenBones::new(&gpu, &crowd, &[]).expect("none")).is_empty());
 }
 
 #[test]

@@ -4,7 +4,6 @@
 use relievo::Error;
 use relievo::animation::active::Active;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::decide::DecidePass;
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::gate::GatePass;
 use relievo::animation::instance::{Instance, Wrap};
@@ -59,8 +58,7 @@ impl Rig {
 
     fn crowd(&self) -> Crowd {
         let plays = [Instance::new(0, Wrap::Loop, 0.0, 1.0)];
-        let crowd = Crowd::new(&self.gpu, &self.set, &plays).expect("fits");
-        crowd.with_previous(&self.gpu).expect("allocated")
+        Crowd::new(&self.gpu, &self.set, &plays).expect("fits")
     }
 
     fn active(&self, crowd: &Crowd) -> Active {
@@ -82,11 +80,7 @@ impl Rig {
         Some(match way {
             0 => self.framed(crowd, bounded).map(drop),
             1 => self.gate.prepare(gpu, crowd, &state, &active).map(drop),
-            2 => {
-                let decide = DecidePass::new(gpu, bounded, crowd).expect("compiled");
-                decide.prepare(gpu, &self.clips, crowd, &state, &active).map(drop)
-            }
-            3 => self.framed(&crowd.clone(), bounded).map(drop),
+            2 => self.framed(&crowd.clone(), bounded).map(drop),
             _ => return None,
         })
     }
@@ -99,8 +93,7 @@ impl Rig {
             0 => self.skinned(own, blend),
             1 => self.skinned(&updated, blend),
             2 => self.blended(own, blend),
-            3 => self.blended(crowd.previous.as_ref().expect("remaining"), blend),
-            4 => self.blended(crowd.clone().model_matrices(), blend),
+            3 => self.blended(crowd.clone().model_matrices(), blend),
             _ => return None,
         })
     }
@@ -147,7 +140,7 @@ fn bounded_and_dual_quaternions_exclude_each_other_in_any_order() {
         }
         gates += 1;
     }
-    assert_eq!((gates, skins), (4, 5));
+    assert_eq!((gates, skins), (3, 4));
 }
 
 /// Other gates give no guarantee, the bound holds for linear blending, and the caller's own matrices belong to

@@ -4,7 +4,8 @@ use image::{Rgba, RgbaImage};
 use relievo::asset::material::{Alpha, Sampling, Texture};
 use relievo::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
 use relievo::asset::{Interpolation, Material, Model};
-use relievo::skinning::{Blend, InstanceLod, Portrait, PosedModel, add_levels};
+use relievo::skinning::{Blend, InstanceLod, add_levels};
+use relievo_lab::portrait::{Portrait, PosedModel};
 use serde_json::{Value, json};
 
 /// The creature with levels of detail, a morph target, and a material with an image.

@@ -9,10 +9,10 @@ use relievo::scene::{Placement, Play, Quality, Scene};
 use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::picture::texture::Surface;
-use relievo::skinning::picture::{self, Part, framing_camera};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::{Blend, Vertex};
+use relievo_lab::portrait::picture::texture::Surface;
+use relievo_lab::portrait::picture::{self, Part, framing_camera};
 
 use crate::figure::figure;
 use crate::harness::{Difference, Tolerance, check_golden, gpu};

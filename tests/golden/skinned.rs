@@ -94,7 +94,7 @@ fn limbs(lower: Mat4) -> RgbaImage {
         let frame = SkinFrame::new(&gpu, &model, 0, &matrices, 3, blend).expect("prepared");
         let fades = [0.0, 0.5, 1.0].map(|fade| InstanceLod::fade(fade).expect("in range"));
         frame.crowd.instance_lods.write(&gpu, &fades).expect("written");
-        gpu.run("skin", |encoder| frame.record_all(encoder)).expect("run");
+        gpu.run("skin", |encoder| frame.record_updated_bones(encoder)).expect("run");
         let mut scene = Scene::new(&gpu).expect("compiled");
         for (at, x) in [-2.2, 0.0, 2.2].into_iter().enumerate() {
             let vertices = frame.read(&gpu, at).expect("read");

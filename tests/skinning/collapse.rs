@@ -392,7 +392,7 @@ fn a_crowd_of_it_is_skinned_on_the_device() {
         place.record(encoder);
         sampled.record(encoder);
         concatenated.record(encoder);
-        frame.record_all(encoder);
+        frame.record_updated_bones(encoder);
     })
     .expect("run");
     let models = crowd.model_matrices().read_blocking(&gpu).expect("read");

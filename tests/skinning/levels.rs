@@ -3,11 +3,9 @@
 
 use std::ops::ControlFlow;
 
-use glam::{Vec3, Vec4, camera};
+use glam::{Vec3, Vec4};
 use relievo::animation::Projection;
-use relievo::asset::{Influence, Influences, Model};
-use relievo::skinning::lod::reference::lod;
-use relievo::skinning::lod::{LevelRanges, LodView, placed};
+use relievo::asset::{Affine, Influence, Influences, Model};
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::Palette;
 use relievo::skinning::palette::reference::palette;
@@ -60,16 +58,7 @@ fn each_mesh_changes_where_its_own_error_allows() {
     let projection = Projection::new(1080, 1.0, 0.1);
     let begins = extent.level_ranges(&projection, PIXELS, errors.iter().copied());
     let screen = |place: Vec3| place.truncate() / place.z * projection.focal_pixels;
-    let view = LodView {
-        clip_from_world: camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 1e5),
-        eye: Vec3::ZERO,
-        fade_range: extent.fade_range(&projection, PIXELS),
-        steps: 64,
-        max_influences: 8,
-        center: extent.center,
-        radius: extent.radius,
-        levels: LevelRanges::new(&begins).expect("ascending"),
-    };
+    let fade_range = extent.fade_range(&projection, PIXELS);
     let mut largest = 0.0_f32;
     for (at, begin) in begins.iter().enumerate() {
         // The view is straight ahead or to a side, just beyond the distance at which the level begins, where
@@ -77,11 +66,12 @@ fn each_mesh_changes_where_its_own_error_allows() {
         let side = [Vec3::NEG_Z, Vec3::new(0.3, -0.35, -1.0).normalize()][at % 2];
         let projected_distance = 1.0001 * begin / (side.z * side.z);
         let turn = 2.4 * at as f32;
-        let turned = placed(Vec3::ZERO, turn, 1.0);
+        let turned = placed(Vec3::ZERO, turn);
         let middle = Vec3::from(turned.map(|row| Vec3::from_slice(&row).dot(extent.center)));
-        let placement = placed(projected_distance * side - middle, turn, 1.0);
-        let instance_lod = lod(&view, &placement);
-        assert_eq!((instance_lod.max_influences, instance_lod.mesh_lod), (8, view.levels.at(1.0001 * begin)));
+        let placement = placed(projected_distance * side - middle, turn);
+        let mesh_lod = begins.iter().take_while(|begins| 1.0001 * begin >= **begins).count() as u32;
+        let fade = InstanceLod::at_distance(1.0001 * begin, fade_range).expect("a distance");
+        let instance_lod = InstanceLod { mesh_lod, ..fade };
         let time = model.clips[0].duration() * (0.618 * at as f32).fract();
         for (mesh, (own, found)) in model.meshes.iter().zip(own.iter().zip(&found)) {
             let bones = Palette::Linear(palette(&model.skins[0], &models(&model, "walk", time)));
@@ -105,6 +95,12 @@ fn each_mesh_changes_where_its_own_error_allows() {
         }
     }
     assert!(largest > 0.5 * PIXELS, "far too careful: {largest} pixels");
+}
+
+/// A placement: rotated about +Y by `turn` radians, then translated.
+fn placed(at: Vec3, turn: f32) -> Affine {
+    let (sine, cosine) = (libm::sinf(turn), libm::cosf(turn));
+    [[cosine, 0.0, sine, at.x], [0.0, 1.0, 0.0, at.y], [-sine, 0.0, cosine, at.z]]
 }
 
 /// The fractions ascend from 0 to 1, and a program that cancels keeps its model.

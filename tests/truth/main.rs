@@ -16,11 +16,10 @@ use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::skinning::morph::reference::morph;
 use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::picture::framing;
-use relievo::skinning::picture::texture::Surface;
-use relievo::skinning::picture::{Part, Scene};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, InstanceLod, Vertex, add_levels};
+use relievo_lab::portrait::picture::texture::Surface;
+use relievo_lab::portrait::picture::{Part, Scene, framing};
 
 /// The largest distance between a vertex or joint and its position in three.js, relative to the size of its
 /// mesh or skeleton: positions, keys and matrices are `f32` in files, and both programs multiply about ten of

@@ -27,7 +27,7 @@ const FULL_WEIGHT: u32 = 65535u;
 struct ClipClock {
     // Row of the gate's table: the clip's first row plus the key before the current time.
     row: u32,
-    // In the lower FRACTION_BITS bits the fraction of the way to the next row, 0 to FRACTION_ONE; above them the
+    // In a progress word the fraction of the way to the next row, 0 to FRACTION_ONE; above them the
     // [`UpdateReason`].
     fraction_and_reason: u32,
     // Index of the clip.

@@ -22,7 +22,7 @@ pub fn run(context: &Context) -> Result<ExitCode, Error> {
     };
     say(format_args!("timing: {timing}"))?;
     let limits = gpu.device().limits();
-    say("limits (WebGPU's defaults suffice for every pass that is not optional):")?;
+    say("limits (WebGPU's defaults suffice for every pass):")?;
     for (name, value) in [
         ("maxStorageBufferBindingSize", limits.max_storage_buffer_binding_size),
         ("maxBufferSize", limits.max_buffer_size),
@@ -38,10 +38,7 @@ pub fn run(context: &Context) -> Result<ExitCode, Error> {
         let entries: Vec<_> = shader.entry_points.iter().map(|entry| entry.name).collect();
         let names: Vec<_> = shader.overrides.iter().map(|constant| constant.name).collect();
         let overrides = if names.is_empty() { String::new() } else { format!("  [{}]", names.join(", ")) };
-        let needs: String = (shader.limits.iter())
-            .map(|limit| format!("  (optional: {} = {})", limit.name, limit.needed))
-            .collect();
-        say(format_args!("  {:<18} {}{overrides}{needs}", shader.name, entries.join(" + ")))?;
+        say(format_args!("  {:<18} {}{overrides}", shader.name, entries.join(" + ")))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -15,7 +15,7 @@ use crate::output::say;
 /// There is one flat file per pass; `module_<name>.wgsl`, functions to put before your own shaders (every
 /// ray-height method, zone weights, rotations, dual quaternions); and `manifest.json`, which has for each pass its
 /// entry points with workgroup sizes and vertex inputs, its bindings with types, its override constants with
-/// defaults, its structs with offsets, and the limits that it needs above WebGPU's defaults.
+/// defaults, and its structs with offsets.
 #[derive(Args)]
 pub struct Shaders {
     /// The folder to write to.

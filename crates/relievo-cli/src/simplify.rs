@@ -10,12 +10,11 @@ use clap::{ArgGroup, Args, ValueEnum};
 use image::{DynamicImage, RgbaImage};
 use relievo::asset::Model;
 use relievo::mesh::Seams;
-use relievo::render::portraits;
-use relievo::skinning::Portrait;
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
 use relievo_lab::measure::reduction::{MeasuredLevel, ReducerComparison, Reduction, Target, reduction};
 use relievo_lab::plot::strip;
+use relievo_lab::portrait::{Portrait, portraits};
 use relievo_lab::reduce::Normals;
 use relievo_lab::reduce::Reducer;
 

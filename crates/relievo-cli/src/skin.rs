@@ -6,13 +6,13 @@ use std::process::ExitCode;
 use clap::Args;
 use image::RgbaImage;
 use relievo::asset::Model;
-use relievo::render::portrait;
+use relievo::skinning::coarsen;
 use relievo::skinning::export::write_obj;
 use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::vertex::{Blend, Vertex};
-use relievo::skinning::{Portrait, PosedModel, coarsen};
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
+use relievo_lab::portrait::{Portrait, PosedModel, portrait};
 
 use crate::Context;
 use crate::arguments::Backend;

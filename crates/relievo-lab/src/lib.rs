@@ -6,7 +6,7 @@
 //!
 //! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
 //! models, and surface mapping on height maps. [`files`] writes reports and pictures whole or not at all. [`plot`] draws
-//! charts. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
+//! charts. [`portrait`] draws models, on the host and by a scene. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
 //! apart.
 //!
 //! On `wasm32` there are the parity cases ([`verify::run_async`]), reducers and plots: the rest waits for the device.
@@ -27,6 +27,7 @@ pub mod harness;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod measure;
 pub mod plot;
+pub mod portrait;
 pub mod reduce;
 pub mod shade;
 pub mod verify;

@@ -17,8 +17,6 @@ use relievo_lab::harness::CaseResult;
 use relievo_lab::harness::compare::LeftOut;
 use relievo_lab::harness::compare::{absolute, exact, levels, relative, ulps};
 use relievo_lab::harness::poison::{POISON, Poisoned};
-use relievo_lab::reduce::cluster::reference::cluster;
-use relievo_lab::reduce::cluster::{ClusterBuffers, ClusterCounts, ClusterPass, Grid, Representative};
 use relievo_lab::shade::ShadePass;
 use relievo_lab::shade::{Shade, ShadePoint, ShadeView};
 use relievo_lab::{OPERATIONS, verify};
@@ -292,48 +290,4 @@ fn a_kernel_that_computes_something_else_fails() {
     let actual = heights.read_blocking(&gpu).expect("read");
     assert!(exact(&actual, &[32_768; 64]).holds);
     assert!(!exact(&actual, &[32_769; 64]).holds);
-}
-
-/// Clusters of a mesh of which one vertex lies 10⁻⁵, or some cells, elsewhere do not pass, nor do triangles in another order.
-#[test]
-fn clusters_of_another_mesh_fail() {
-    let gpu = harness::gpu();
-    let place = |at: usize| [at % 7, at * 5 % 11, at * 3 % 13].map(|x| x as f32);
-    let mut positions: Vec<[f32; 3]> = (0..100).map(place).collect();
-    let mut indices: Vec<u32> = (0..300).map(|at| at * 37 % 100).collect();
-    let grid = Grid::around(&positions, 5);
-    let uploaded = Buffer::from_slice(&gpu, "positions", &positions).expect("uploaded");
-    let corners = Buffer::from_slice(&gpu, "indices", &indices).expect("uploaded");
-    let representatives = Buffer::<Representative>::new(&gpu, "representatives", 100).expect("allocated");
-    let clustered = Buffer::<u32>::new(&gpu, "clustered", 300).expect("allocated");
-    let counts = Buffer::<ClusterCounts>::new(&gpu, "counts", 1).expect("allocated");
-    let buffers = ClusterBuffers {
-        positions: &uploaded,
-        indices: &corners,
-        representatives: &representatives,
-        clustered: &clustered,
-        counts: &counts,
-    };
-    let pass = ClusterPass::new(&gpu).expect("compiled");
-    let job = pass.prepare(&gpu, &grid, [100, 100], buffers).expect("prepared");
-    gpu.run("test", |encoder| job.record(encoder)).expect("run");
-    let counts = counts.read_blocking(&gpu).expect("read")[0];
-    let mut found = representatives.read_blocking(&gpu).expect("read");
-    found.truncate(counts.representatives as usize);
-    let mut triangles = clustered.read_blocking(&gpu).expect("read");
-    triangles.truncate(counts.index_count as usize);
-    let holds = |positions: &[[f32; 3]], indices: &[u32]| {
-        let expected = cluster(positions, indices, &grid).expect("valid");
-        exact(&found, &expected.representatives).holds && exact(&triangles, &expected.indices).holds
-    };
-    assert!(holds(&positions, &indices) && triangles.len() > 100);
-    positions[40][1] += 1e-5;
-    assert!(!holds(&positions, &indices));
-    positions[40] = place(40);
-    assert!(holds(&positions, &indices));
-    positions[40][0] = 6.0 - positions[40][0];
-    assert!(!holds(&positions, &indices));
-    positions[40] = place(40);
-    indices.rotate_left(3);
-    assert!(!holds(&positions, &indices));
 }

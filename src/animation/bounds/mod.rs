@@ -22,8 +22,6 @@ pub mod reference;
 
 #[cfg(feature = "gpu")]
 pub use pass::BoundsPass;
-#[cfg(feature = "gpu")]
-pub use pass::Threads;
 
 /// The largest difference allowed between a side and the reference, on any device, relative to the largest
 /// side: 14ε and 6ε of the extent, 4ε of the center and 2ε of the side from either: 52ε < 4e-6.

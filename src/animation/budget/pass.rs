@@ -65,11 +65,7 @@ impl BudgetPass {
             tally: tally.slice(),
         };
         let step = |(kernel, threads): (&Kernel, u32)| {
-            Ok(Step {
-                groups: vec![group.bind(gpu, kernel)?],
-                workgroups: kernel.spread(gpu, threads),
-                kernel: kernel.clone(),
-            })
+            Ok(Step::spread(gpu, kernel, vec![group.bind(gpu, kernel)?], threads))
         };
         let threads = [words, 1, words, 1, words];
         let steps = self.stages.iter().zip(threads).map(step).collect::<Result<_, GpuError>>()?;

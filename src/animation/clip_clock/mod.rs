@@ -10,7 +10,7 @@ use crate::shared::animation::gate_state;
 pub use crate::shared::animation::gate_state::ClipClock;
 
 #[cfg(feature = "gpu")]
-pub(crate) mod pass;
+mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]

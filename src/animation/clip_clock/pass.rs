@@ -4,7 +4,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::{check_elapsed, check_seconds};
 use crate::gpu::bindings::animation::clip_clock as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform, Upload};
 use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
@@ -34,46 +34,6 @@ impl ClipClockPass {
         crowd: &Crowd,
         state: &GateState,
     ) -> Result<ClipClockJob, Error> {
-        let time = ClipClockTime::new(gpu, clips, crowd, state)?;
-        let group = group(&time, clips, crowd, state).bind(gpu, &self.kernel)?;
-        let step = Step {
-            groups: vec![group],
-            workgroups: self.kernel.spread(gpu, time.params.instances),
-            kernel: self.kernel.clone(),
-        };
-        Ok(ClipClockJob { time, job: Job::new(gpu, "animation/clip_clock", vec![step])? })
-    }
-}
-
-/// What clip clocks are found from, and where they are written.
-pub(crate) fn group<'a>(
-    time: &'a ClipClockTime,
-    clips: &'a ClipBuffers,
-    crowd: &'a Crowd,
-    gate_state: &'a GateState,
-) -> bindings::Group<'a> {
-    bindings::Group {
-        clip_clock_params: &time.uniform,
-        instances: crowd.instances.slice(),
-        clips: clips.clips.slice(),
-        timelines: clips.timelines.slice(),
-        times: clips.times.slice(),
-        lods: gate_state.lods.slice(),
-        layer_weights: crowd.layer_weights.slice(),
-        history: gate_state.history.slice(),
-        clip_clocks: gate_state.clip_clocks.slice(),
-    }
-}
-
-/// The time of the next submission.
-#[derive(Debug, Clone)]
-pub(crate) struct ClipClockTime {
-    params: ClipClockParams,
-    uniform: Uniform<ClipClockParams>,
-}
-
-impl ClipClockTime {
-    pub fn new(gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd, state: &GateState) -> Result<Self, Error> {
         if clips.clips.len() != crowd.clips {
             let bound = format!("must be {}, as the crowd's", crowd.clips);
             return Err(InputError::new("clips.len", clips.clips.len(), bound).into());
@@ -84,21 +44,29 @@ impl ClipClockTime {
             layers: crowd.layers as u32 - 1,
             ahead: 0.0,
         };
-        Ok(Self { params, uniform: Uniform::new(gpu, "clip_clock", &params)? })
-    }
-
-    /// As [`ClipClockJob::set`].
-    pub fn set(&self, upload: &mut impl Upload, elapsed: f32, ahead: f32) -> Result<(), Error> {
-        check_elapsed(elapsed)?;
-        check_seconds("frame.ahead", ahead)?;
-        Ok(upload.uniform(&self.uniform, &ClipClockParams { elapsed, ahead, ..self.params })?)
+        let uniform = Uniform::new(gpu, "clip_clock", &params)?;
+        let group = bindings::Group {
+            params: &uniform,
+            instances: crowd.instances.slice(),
+            clips: clips.clips.slice(),
+            timelines: clips.timelines.slice(),
+            times: clips.times.slice(),
+            lods: state.lods.slice(),
+            layer_weights: crowd.layer_weights.slice(),
+            history: state.history.slice(),
+            clip_clocks: state.clip_clocks.slice(),
+        };
+        let group = group.bind(gpu, &self.kernel)?;
+        let job = Job::spread(gpu, "animation/clip_clock", (&self.kernel, group), params.instances)?;
+        Ok(ClipClockJob { params, uniform, job })
     }
 }
 
 /// Prepared clip clocks: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct ClipClockJob {
-    time: ClipClockTime,
+    params: ClipClockParams,
+    uniform: Uniform<ClipClockParams>,
     job: Job,
 }
 
@@ -118,7 +86,9 @@ impl ClipClockJob {
     /// # Errors
     /// As [`ClipClockJob::set`].
     pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32, ahead: f32) -> Result<(), Error> {
-        self.time.set(upload, elapsed, ahead)
+        check_elapsed(elapsed)?;
+        check_seconds("frame.ahead", ahead)?;
+        Ok(upload.uniform(&self.uniform, &ClipClockParams { elapsed, ahead, ..self.params })?)
     }
 
     /// Records the pass.

@@ -3,10 +3,8 @@
 //! the order is the same on every device.
 
 #[cfg(feature = "gpu")]
-pub(crate) mod pass;
+mod pass;
 pub mod reference;
 
-#[cfg(feature = "gpu")]
-pub use pass::Stages;
 #[cfg(feature = "gpu")]
 pub use pass::{CompactJob, CompactPass};

@@ -5,7 +5,7 @@ use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate_state::GateState;
 use crate::gpu::bindings::animation::drive as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::animation::drive::DriveParams;
 use crate::{Error, InputError};
 
@@ -52,11 +52,7 @@ impl DrivePass {
             lods: state.lods.slice(),
             bits: active.bits.slice(),
         };
-        let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, count),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "animation/drive", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "animation/drive", (&self.kernel, group), count)?)
     }
 }

@@ -1,12 +1,13 @@
-//! A frame of a crowd under a gate as one object, from the time to model matrices: `decide`, then
-//! `keyframe_cursor`, `sample` and `local_to_model` for active bones, in one compute pass. The bound of
+//! A frame of a crowd under a gate as one object, from the time to model matrices: `clip_clock`, `gate` (or `budget`) and
+//! `compact`, then `keyframe_cursor`, `sample` and `local_to_model` for active bones, in one compute pass. The bound of
 //! `bounded` holds only in this order, because cursors use the times that the gate saw.
 
 use crate::Error;
 use crate::animation::active::Active;
+use crate::animation::clip_clock::{ClipClockJob, ClipClockPass};
+use crate::animation::compact::{CompactJob, CompactPass};
 use crate::animation::crowd::{ClipBuffers, Crowd};
-use crate::animation::decide::{DecideJob, DecidePass};
-use crate::animation::gate::{Frame, Gate};
+use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gate_state::GateState;
 use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
 use crate::animation::local_to_model::{LocalToModelActiveJob, LocalToModelPass};
@@ -24,20 +25,23 @@ pub struct GatedFrame {
     /// The work of the frame that was recorded last.
     pub active: Active,
     model_matrices: ModelMatrices,
-    decide: DecideJob,
+    /// Whether bones may be sampled ahead of their time.
+    leads: bool,
+    clip_clock: ClipClockJob,
+    gate: GateJob,
+    lists: CompactJob,
     cursor: KeyframeCursorJob,
     sample: SampleActiveJob,
     local_to_model: LocalToModelActiveJob,
 }
 
 impl GatedFrame {
-    /// Compiles and prepares everything for a crowd, with the choices that are fastest on this device.
-    /// Rotations use the crowd's path.
+    /// Compiles and prepares everything for a crowd. Rotations use the crowd's path.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a crowd of another skeleton, a gate of other bones or clips, or of motion along
-    /// another path than the crowd's ([`Crowd::path`]), and for [`Gate::Bounded`] over model matrices that dual
-    /// quaternions were prepared to blend; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) for a crowd of another skeleton, clips of another set than the crowd's, a gate of other
+    /// bones or clips, or of motion along another path than the crowd's ([`Crowd::path`]), and for [`Gate::Bounded`] over model
+    /// matrices that dual quaternions were prepared to blend; [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,
@@ -47,13 +51,15 @@ impl GatedFrame {
     ) -> Result<Self, Error> {
         let state = GateState::new(gpu, crowd)?;
         let active = Active::new(gpu, &Order::new(skeleton), crowd)?;
-        let decide = DecidePass::new(gpu, gate, crowd)?;
         let sample = match crowd.layers {
             1 => SamplePass::new(gpu, crowd.path())?,
             _ => SamplePass::layered(gpu, crowd.path())?,
         };
         Ok(Self {
-            decide: decide.prepare(gpu, clips, crowd, &state, &active)?,
+            leads: matches!(gate, Gate::Bounded(_)),
+            clip_clock: ClipClockPass::new(gpu)?.prepare(gpu, clips, crowd, &state)?,
+            gate: GatePass::new(gpu, gate)?.prepare(gpu, crowd, &state, &active)?,
+            lists: CompactPass::new(gpu)?.prepare(gpu, crowd, &active)?,
             cursor: KeyframeCursorPass::new(gpu)?.prepare_active(gpu, clips, crowd, &state, &active)?,
             sample: sample.prepare_active(gpu, clips, crowd, &active.pairs)?,
             local_to_model: LocalToModelPass::new(gpu)?.prepare_active(gpu, skeleton, crowd, &active)?,
@@ -84,16 +90,17 @@ impl GatedFrame {
     /// # Errors
     /// As [`GatedFrame::set`].
     pub fn set_through(&self, upload: &mut impl Upload, frame: &Frame, elapsed: f32) -> Result<(), Error> {
-        self.decide.set_through(upload, frame, elapsed)?;
+        self.clip_clock.set_through(upload, elapsed, if self.leads { frame.ahead } else { 0.0 })?;
+        self.gate.set_through(upload, frame)?;
         self.cursor.set_through(upload, elapsed)
     }
 
-    /// As [`DecideJob::set_budget`].
+    /// As [`GateJob::set_budget`].
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) unless the gate is [`Gate::Budget`]; [`GpuError`](crate::gpu::GpuError).
     pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
-        self.decide.set_budget(gpu, bones)
+        self.gate.set_budget(gpu, bones)
     }
 
     /// Records the frame. Afterwards the crowd's model matrices are those of the set time.
@@ -108,9 +115,11 @@ impl GatedFrame {
         self.dispatch_local_to_model(pass);
     }
 
-    /// Adds the first part of the frame: which bones are active.
+    /// Adds the first part of the frame: which bones are active. It tells the readers of [`Active::updated_bones`].
     pub fn dispatch_gate(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.decide.dispatch(pass);
+        self.clip_clock.dispatch(pass);
+        self.gate.dispatch(pass);
+        self.lists.dispatch(pass);
     }
 
     /// Adds the second part: cursors and samples of the active bones.

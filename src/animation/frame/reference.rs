@@ -2,9 +2,10 @@
 
 use crate::InputError;
 use crate::animation::active::PAIR_AHEAD;
+use crate::animation::clip_clock::reference::clip_clocks;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::compact::reference::{Work, compact};
-use crate::animation::decide::reference::Decider;
+use crate::animation::gate::reference::gate;
 use crate::animation::gate::{Frame, Gate};
 use crate::animation::gate_table::check_path;
 use crate::animation::instance::Instance;
@@ -30,7 +31,12 @@ pub struct Crowd<'a> {
     pub locals: Vec<Transform>,
     /// Model matrices, in the same order.
     pub model_matrices: Vec<Affine>,
-    decider: Decider<'a>,
+    set: &'a ClipSet,
+    gate: &'a Gate,
+    /// For each instance, what it played when it was last decided; see [`clip_clocks`].
+    history: Vec<[u32; 4]>,
+    /// For each slot of each instance, the sum of motion when it was last sampled; see [`gate()`].
+    sampled: Vec<u32>,
 }
 
 impl<'a> Crowd<'a> {
@@ -54,37 +60,33 @@ impl<'a> Crowd<'a> {
             lods: vec![Lod::FULL; count],
             locals: vec![Transform::IDENTITY; pairs],
             model_matrices: vec![AFFINE_IDENTITY; pairs],
-            decider: Decider::new(set, gate, count),
+            set,
+            gate,
+            history: vec![[0; 4]; count],
+            sampled: vec![0; pairs],
         })
     }
 
     /// Advances the crowd to a time, and returns the work that was done.
     pub fn advance(&mut self, frame: &Frame, elapsed: f32) -> Work {
-        let set = self.decider.set;
-        let lead = self.decider.gate.ahead(frame);
-        let now = cursors(set, &self.instances, elapsed);
+        let Self { set, order, gate: by, path, instances, lods, .. } = self;
+        let (lead, bones, words) = (by.ahead(frame), set.bones(), order.words());
+        let now = cursors(set, instances, elapsed);
         // Without a lead nothing is sampled ahead.
-        let ahead = if lead == 0.0 { Vec::new() } else { cursors(set, &self.instances, elapsed + lead) };
-        let clip_clocks = self.decider.clip_clocks(&self.instances, &[], &self.lods, elapsed, lead);
-        let bits = self.decider.bits(frame, &self.lods, &clip_clocks);
-        let work = compact(self.order, &bits);
-        let (bones, timelines) = (set.bones(), set.timelines_a_clip());
+        let ahead = if lead == 0.0 { Vec::new() } else { cursors(set, instances, elapsed + lead) };
+        let clip_clocks = clip_clocks(set, instances, &[], lods, elapsed, lead, &mut self.history);
+        let work = compact(order, &gate(by, frame, lods, &clip_clocks, &mut self.sampled));
         for listed in &work.pairs {
             let pair = (listed & !PAIR_AHEAD) as usize;
             let (instance, bone) = (pair / bones, pair % bones);
             let cursors = if listed & PAIR_AHEAD == 0 { &now } else { &ahead };
-            let cursors = &cursors[instance * timelines..];
-            self.locals[pair] = sample_pair(set, &self.instances[instance], cursors, bone, self.path);
+            let cursors = &cursors[instance * set.timelines_a_clip()..];
+            self.locals[pair] = sample_pair(set, &instances[instance], cursors, bone, *path);
         }
         for instance in work.instances.iter().map(|instance| *instance as usize) {
-            let updated_bones = &work.updated_bones[instance * self.order.words()..];
             let own = instance * bones..(instance + 1) * bones;
-            local_to_model_updated(
-                self.order,
-                updated_bones,
-                &self.locals[own.clone()],
-                &mut self.model_matrices[own],
-            );
+            let (locals, matrices) = (&self.locals[own.clone()], &mut self.model_matrices[own]);
+            local_to_model_updated(order, &work.updated_bones[instance * words..], locals, matrices);
         }
         work
     }

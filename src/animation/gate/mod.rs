@@ -7,7 +7,7 @@
 //! [`animation::frame`](super::frame) has the steps of a frame before and after the gate.
 
 #[cfg(feature = "gpu")]
-pub(crate) mod pass;
+mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]

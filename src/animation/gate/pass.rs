@@ -8,21 +8,21 @@ use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::TableBuffers;
 use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::animation::gate as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
-use crate::shared::animation::gate as modes;
-use crate::shared::animation::gate::GateParams;
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform, Upload, compute_pass};
+use crate::shared::animation::gate::{BOUNDED, GateParams, OFF, RANDOM, SKIP_PERIOD, UNIFORM};
 use crate::{Error, InputError};
 
 /// Decides which bones are sampled.
 #[derive(Debug, Clone)]
 pub struct GatePass {
-    decider: Decider<Kernel>,
+    decider: Decider,
 }
 
-/// The pass that decides: the gate's kernel, compiled as `K`, or the kernels of a budget.
 #[derive(Debug, Clone)]
-pub(crate) enum Decider<K> {
-    Gate(UploadedGate, K),
+enum Decider {
+    /// The gate's kernel for a mode, with the period and the first row of parents that some modes need.
+    Gate { kernel: Kernel, mode: u32, period: u32, first_above: u32, table: TableBuffers },
+    /// The kernels of a budget.
     Budget(Box<BudgetPass>),
 }
 
@@ -32,13 +32,26 @@ impl GatePass {
     /// # Errors
     /// [`GpuError`] if the device has no room for the table, or fails.
     pub fn new(gpu: &Gpu, gate: &Gate) -> Result<Self, GpuError> {
-        let kernel = |mode: Mode| bindings::kernel(gpu, &bindings::Constants { mode: mode.constant() });
-        Ok(Self { decider: Decider::new(gpu, gate, kernel)? })
-    }
-
-    /// A gate whose decisions are made by the pass of a budget.
-    pub(crate) fn of_budget(pass: BudgetPass) -> Self {
-        Self { decider: Decider::Budget(Box::new(pass)) }
+        let (mut period, mut first_above) = (0, 0);
+        let (mode, table) = match gate {
+            Gate::Off(bones) => (OFF, TableBuffers::of_animated_bones(gpu, bones)?),
+            Gate::Uniform(bones) => (UNIFORM, TableBuffers::of_animated_bones(gpu, bones)?),
+            Gate::Random(bones) => (RANDOM, TableBuffers::of_animated_bones(gpu, bones)?),
+            Gate::SkipPeriod { table, period: ticks } => {
+                period = *ticks;
+                (SKIP_PERIOD, TableBuffers::of_priorities(gpu, table)?)
+            }
+            Gate::Bounded(table) => {
+                first_above = table.first_above();
+                (BOUNDED, TableBuffers::of_bounds(gpu, table)?)
+            }
+            Gate::Budget { table, bones } => {
+                let budget = BudgetPass::new(gpu, table, *bones)?;
+                return Ok(Self { decider: Decider::Budget(Box::new(budget)) });
+            }
+        };
+        let kernel = bindings::kernel(gpu, &bindings::Constants { mode })?;
+        Ok(Self { decider: Decider::Gate { kernel, mode, period, first_above, table } })
     }
 
     /// Prepares the decision from a crowd's clip clocks.
@@ -55,127 +68,14 @@ impl GatePass {
         state: &GateState,
         active: &Active,
     ) -> Result<GateJob, Error> {
-        let (gate, kernel) = match &self.decider {
-            Decider::Gate(gate, kernel) => (gate, kernel),
+        let (kernel, mode, period, first_above, table) = match &self.decider {
+            Decider::Gate { kernel, mode, period, first_above, table } => {
+                (kernel, *mode, *period, *first_above, table)
+            }
             Decider::Budget(pass) => {
                 return Ok(GateJob { work: Work::Budget(pass.prepare(gpu, crowd, state, active)?) });
             }
         };
-        let time = GateTime::new(gpu, gate, crowd, state, active)?;
-        let group = group(&time, &gate.table, state, active).bind(gpu, kernel)?;
-        let step = Step {
-            groups: vec![group],
-            workgroups: kernel.spread(gpu, time.threads(gate.mode)),
-            kernel: kernel.clone(),
-        };
-        let job = Job::new(gpu, "animation/gate", vec![step])?;
-        Ok(GateJob { work: Work::Gate { time, job } })
-    }
-}
-
-/// The bindings of a gate: what it decides from, and its decision.
-pub(crate) fn group<'a>(
-    time: &'a GateTime,
-    table: &'a TableBuffers,
-    state: &'a GateState,
-    active: &'a Active,
-) -> bindings::Group<'a> {
-    bindings::Group {
-        lods: state.lods.slice(),
-        clip_clocks: state.clip_clocks.slice(),
-        gate_params: &time.uniform,
-        animated_bones: table.animated_bones.slice(),
-        table: table.rows.slice(),
-        sampled: state.sampled.slice(),
-        remaining: time.remaining.slice(),
-        bits: active.bits.slice(),
-    }
-}
-
-impl<K> Decider<K> {
-    /// Uploads a gate's table; unless the gate is a budget, `kernel` compiles the kernel for its mode.
-    pub fn new(
-        gpu: &Gpu,
-        gate: &Gate,
-        kernel: impl FnOnce(Mode) -> Result<K, GpuError>,
-    ) -> Result<Self, GpuError> {
-        let (mode, table) = match gate {
-            Gate::Off(bones) => (Mode::Off, TableBuffers::of_animated_bones(gpu, bones)?),
-            Gate::SkipPeriod { table, period } => {
-                (Mode::SkipPeriod { period: *period }, TableBuffers::of_priorities(gpu, table)?)
-            }
-            Gate::Uniform(bones) => (Mode::Uniform, TableBuffers::of_animated_bones(gpu, bones)?),
-            Gate::Random(bones) => (Mode::Random, TableBuffers::of_animated_bones(gpu, bones)?),
-            Gate::Bounded(table) => {
-                let mode = Mode::Bounded { first_above: table.first_above() };
-                (mode, TableBuffers::of_bounds(gpu, table)?)
-            }
-            Gate::Budget { table, bones } => {
-                return Ok(Self::Budget(Box::new(BudgetPass::new(gpu, table, *bones)?)));
-            }
-        };
-        Ok(Self::Gate(UploadedGate { mode, table }, kernel(mode)?))
-    }
-}
-
-/// The way in which the gate's kernel decides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Mode {
-    Off,
-    SkipPeriod {
-        period: u32,
-    },
-    Uniform,
-    Random,
-    Bounded {
-        /// The index of the table's first row of parents.
-        first_above: u32,
-    },
-}
-
-impl Mode {
-    /// The value of the kernel's override constant `MODE`.
-    pub fn constant(self) -> u32 {
-        match self {
-            Self::Off => modes::OFF,
-            Self::SkipPeriod { .. } => modes::SKIP_PERIOD,
-            Self::Uniform => modes::UNIFORM,
-            Self::Random => modes::RANDOM,
-            Self::Bounded { .. } => modes::BOUNDED,
-        }
-    }
-
-    fn is_bounded(self) -> bool {
-        matches!(self, Self::Bounded { .. })
-    }
-}
-
-/// The gate's table on the device.
-#[derive(Debug, Clone)]
-pub(crate) struct UploadedGate {
-    pub mode: Mode,
-    pub table: TableBuffers,
-}
-
-/// The time of the frame that is submitted next.
-#[derive(Debug, Clone)]
-pub(crate) struct GateTime {
-    params: GateParams,
-    uniform: Uniform<GateParams>,
-    /// For each slot of each instance, the error budget that its bone leaves, if bones below need it in the
-    /// same frame.
-    remaining: Buffer<u32>,
-}
-
-impl GateTime {
-    pub fn new(
-        gpu: &Gpu,
-        gate: &UploadedGate,
-        crowd: &Crowd,
-        state: &GateState,
-        active: &Active,
-    ) -> Result<Self, Error> {
-        let UploadedGate { mode, table } = gate;
         table.check(crowd)?;
         active.pairs.check_crowd(crowd)?;
         let params = GateParams {
@@ -183,29 +83,33 @@ impl GateTime {
             bones: crowd.bones as u32,
             words: table.words,
             stride: table.stride,
-            first_above: if let Mode::Bounded { first_above } = mode { *first_above } else { 0 },
+            first_above,
             ticks: 0,
             frame_ticks: 0,
-            period: if let Mode::SkipPeriod { period } = mode { *period } else { 0 },
+            period,
             frame: 0,
         };
-        let remaining = Buffer::new(gpu, "remaining", if mode.is_bounded() { crowd.pairs() } else { 0 })?;
         let uniform = Uniform::new(gpu, "gate", &params)?;
-        if mode.is_bounded() {
+        // The error budget that bones leave, if bones below need it in the same frame.
+        let is_bounded = mode == BOUNDED;
+        let remaining = Buffer::new(gpu, "remaining", if is_bounded { crowd.pairs() } else { 0 })?;
+        if is_bounded {
             crowd.model_matrices.consumer().claim(Consumer::BoundedGate)?;
         }
-        Ok(Self { params, uniform, remaining })
-    }
-
-    /// Number of threads: one per word of bits, or one per instance if words depend on each other.
-    fn threads(&self, mode: Mode) -> u32 {
-        self.params.instances * if mode.is_bounded() { 1 } else { self.params.words }
-    }
-
-    /// Sets the frame, as [`GateJob::set`] does.
-    pub fn set(&self, upload: &mut impl Upload, frame: &Frame) -> Result<(), GpuError> {
-        let Frame { ticks, frame_ticks, frame, ahead: _ } = *frame;
-        upload.uniform(&self.uniform, &GateParams { ticks, frame_ticks, frame, ..self.params })
+        let group = bindings::Group {
+            params: &uniform,
+            lods: state.lods.slice(),
+            clip_clocks: state.clip_clocks.slice(),
+            animated_bones: table.animated_bones.slice(),
+            table: table.rows.slice(),
+            sampled: state.sampled.slice(),
+            remaining: remaining.slice(),
+            bits: active.bits.slice(),
+        };
+        // One per word of bits, or one per instance if words depend on each other.
+        let threads = params.instances * if is_bounded { 1 } else { params.words };
+        let job = Job::spread(gpu, "animation/gate", (kernel, group.bind(gpu, kernel)?), threads)?;
+        Ok(GateJob { work: Work::Gate { params, uniform, job } })
     }
 }
 
@@ -217,7 +121,7 @@ pub struct GateJob {
 
 #[derive(Debug, Clone)]
 enum Work {
-    Gate { time: GateTime, job: Job },
+    Gate { params: GateParams, uniform: Uniform<GateParams>, job: Job },
     Budget(BudgetJob),
 }
 
@@ -235,8 +139,11 @@ impl GateJob {
     /// # Errors
     /// As [`GateJob::set`].
     pub fn set_through(&self, upload: &mut impl Upload, frame: &Frame) -> Result<(), GpuError> {
+        let Frame { ticks, frame_ticks, frame, ahead: _ } = *frame;
         match &self.work {
-            Work::Gate { time, .. } => time.set(upload, frame),
+            Work::Gate { params, uniform, .. } => {
+                upload.uniform(uniform, &GateParams { ticks, frame_ticks, frame, ..*params })
+            }
             Work::Budget(_) => Ok(()),
         }
     }
@@ -247,17 +154,17 @@ impl GateJob {
     /// [`InputError`] unless the gate is [`Gate::Budget`]; [`GpuError`] for errors of the device.
     pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
         match &self.work {
-            Work::Gate { .. } => Err(no_budget(bones).into()),
+            Work::Gate { .. } => {
+                let bound = "must be of a crowd that is under one, not another gate";
+                Err(InputError::new("budget", bones, bound).into())
+            }
             Work::Budget(job) => Ok(job.set(gpu, bones)?),
         }
     }
 
     /// Records the decision.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        match &self.work {
-            Work::Gate { job, .. } => job.record(encoder),
-            Work::Budget(job) => job.record(encoder),
-        }
+        self.dispatch(&mut compute_pass(encoder, "animation/gate"));
     }
 
     /// Adds the decision to a compute pass that is being recorded.
@@ -267,9 +174,4 @@ impl GateJob {
             Work::Budget(job) => job.dispatch(pass),
         }
     }
-}
-
-/// The error of setting a budget for another gate than [`Gate::Budget`].
-pub(crate) fn no_budget(bones: u32) -> InputError {
-    InputError::new("budget", bones, "must be of a crowd that is under one, not another gate")
 }

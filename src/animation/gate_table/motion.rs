@@ -3,6 +3,7 @@
 use super::columns::Column;
 use super::{AnimatedBones, MAX_MOTION, empty_rows};
 use crate::InputError;
+use crate::animation::bounds::check_bone_radii;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::order::Order;
 use crate::asset::clip::Clip;
@@ -33,7 +34,7 @@ impl MotionTable {
     ) -> Result<(Self, Order), InputError> {
         let order = Order::new(skeleton);
         let animated_bones = AnimatedBones::new(&order, set, clips)?;
-        check_bone_radii(skeleton, bone_radii)?;
+        check_bone_radii(bone_radii, skeleton.len())?;
         let rows = empty_rows(set, more, animated_bones.bones())?;
         Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
     }
@@ -71,19 +72,5 @@ impl MotionTable {
     /// A slot's motion in a clip's last row.
     pub fn of_clip(&self, clip: u32, slot: usize) -> [u32; 2] {
         self.motion(self.animated_bones.last_row(clip), slot)
-    }
-}
-
-fn check_bone_radii(skeleton: &Skeleton, bone_radii: &[f32]) -> Result<(), InputError> {
-    if bone_radii.len() != skeleton.len() {
-        let bound = format!("must be {}, one a bone", skeleton.len());
-        return Err(InputError::new("bone_radii.len", bone_radii.len(), bound));
-    }
-    match bone_radii.iter().position(|bone_radius| !(*bone_radius >= 0.0 && bone_radius.is_finite())) {
-        None => Ok(()),
-        Some(bone) => {
-            let bound = "must be at least 0 and finite";
-            Err(InputError::new(format!("bone_radii[{bone}]"), bone_radii[bone], bound))
-        }
     }
 }

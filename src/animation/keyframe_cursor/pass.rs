@@ -6,9 +6,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::check_elapsed;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
-use crate::gpu::{
-    Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, Upload, compute_pass,
-};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Uniform, Upload, compute_pass};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
 
 /// Finds the keyframe cursors of instances.
@@ -38,13 +36,10 @@ impl KeyframeCursorPass {
         let words = Buffer::new(gpu, "nothing", 0)?;
         let (dispatches, history) = (Buffer::new(gpu, "nothing", 1)?, Buffer::new(gpu, "nothing", 1)?);
         let listed = Listed { instances: &words, dispatches: &dispatches, history: &history };
-        let step = Step {
-            groups: vec![bind(&self.all, gpu, &uniform, clips, crowd, &listed)?],
-            workgroups: self.all.spread(gpu, params.entries * params.timelines),
-            kernel: self.all.clone(),
-        };
-        let work = Work::All(Job::new(gpu, "animation/keyframe_cursor", vec![step])?);
-        Ok(KeyframeCursorJob { params, uniform, work })
+        let group = bind(&self.all, gpu, &uniform, clips, crowd, &listed)?;
+        let threads = params.entries * params.timelines;
+        let job = Job::spread(gpu, "animation/keyframe_cursor", (&self.all, group), threads)?;
+        Ok(KeyframeCursorJob { params, uniform, work: Work::All(job) })
     }
 
     /// Prepares the cursors of instances with an active bone, at the times that the gate saw. Record it after

@@ -4,8 +4,7 @@
 //! contiguous, and the first child of a bone continues its chain. A chain is a run of slots from parent to
 //! child, as in heavy-path decompositions of trees; a thread walks it with the parent's matrix in registers.
 //! Each matrix is thus read once per chain and not once per bone, and a dispatch handles every chain whose
-//! parent is done. There are far fewer such dispatches than levels of bones. On adapters with few processors, a
-//! thread walks all chains of its instance (`Walk`).
+//! parent is done. There are far fewer such dispatches than levels of bones.
 //!
 //! Everything below an active bone is a run of slots too, so that a thread that knows the first bone to compute
 //! knows them all.
@@ -14,8 +13,6 @@
 mod pass;
 pub mod reference;
 
-#[cfg(feature = "gpu")]
-pub use pass::Walk;
 #[cfg(feature = "gpu")]
 pub use pass::{LocalToModelActiveJob, LocalToModelJob, LocalToModelPass};
 

@@ -10,30 +10,11 @@ use crate::shared::animation::local_to_model::LocalToModelParams;
 use crate::shared::animation::order::Slot as PackedSlot;
 use crate::{Error, InputError};
 
-/// How threads divide the work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Walk {
-    /// One thread per chain and one dispatch per level of chains, which gives enough threads to hardware.
-    Levels,
-    /// One thread per instance, in one dispatch: the bones of an instance stay in a processor's cache. On
-    /// lavapipe this is about one and a half times as fast; a workgroup per instance with barriers between
-    /// levels is three times as slow.
-    Whole,
-}
-
-impl Walk {
-    /// The faster choice for this kind of adapter.
-    pub fn of(gpu: &Gpu) -> Self {
-        if gpu.tuning().wants_long_threads() { Self::Whole } else { Self::Levels }
-    }
-}
-
 /// Concatenates local transforms.
 #[derive(Debug, Clone)]
 pub struct LocalToModelPass {
     all: Kernel,
     compacted: Kernel,
-    walk: Walk,
 }
 
 /// A prepared concatenation, with one dispatch per level of chains.
@@ -43,22 +24,13 @@ pub type LocalToModelJob = Job;
 pub type LocalToModelActiveJob = IndirectJob;
 
 impl LocalToModelPass {
-    /// Compiles the pipelines that are fastest on this kind of adapter.
+    /// Compiles the pipelines.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::with_walk(gpu, Walk::of(gpu))
-    }
-
-    /// Compiles the pipelines of a walk.
-    ///
-    /// # Errors
-    /// What the driver's compiler reports.
-    pub fn with_walk(gpu: &Gpu, walk: Walk) -> Result<Self, GpuError> {
-        let whole = walk == Walk::Whole;
-        let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { whole, compacted });
-        Ok(Self { all: kernel(false)?, compacted: kernel(true)?, walk })
+        let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { compacted });
+        Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
     }
 
     /// Prepares the model matrices of a crowd from its local transforms.
@@ -67,21 +39,16 @@ impl LocalToModelPass {
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<LocalToModelJob, Error> {
         let binder = Binder::new(gpu, skeleton, crowd)?;
-        let nothing = Nothing::new(gpu)?;
-        let instances = crowd.len() as u32;
+        // Every slot is walked: these are not read.
+        let (words, dispatches) = (Buffer::new(gpu, "nothing", 0)?, Buffer::new(gpu, "nothing", 1)?);
+        let lists =
+            Lists { updated_bones: &words, first_word: 0, instances: &words, dispatches: &dispatches };
         let step = |level: &[u32]| {
-            let threads = match self.walk {
-                Walk::Levels => instances * (level[1] - level[0]),
-                Walk::Whole => instances,
-            };
-            Ok(Step {
-                groups: vec![binder.bind(gpu, &self.all, level, &nothing.lists())?],
-                workgroups: self.all.spread(gpu, threads),
-                kernel: self.all.clone(),
-            })
+            let group = binder.bind(gpu, &self.all, level, &lists)?;
+            Ok(Step::spread(gpu, &self.all, vec![group], crowd.len() as u32 * (level[1] - level[0])))
         };
-        let steps = self.levels(&binder.order).into_iter().map(|level| step(&level));
-        Ok(Job::new(gpu, "animation/local_to_model", steps.collect::<Result<_, GpuError>>()?)?)
+        let steps = binder.order.levels.windows(2).map(step).collect::<Result<_, GpuError>>()?;
+        Ok(Job::new(gpu, "animation/local_to_model", steps)?)
     }
 
     /// Prepares the model matrices of updated bones; all others stay unchanged.
@@ -104,21 +71,13 @@ impl LocalToModelPass {
             instances: &active.instances,
             dispatches: &active.dispatches,
         };
-        let group = |(dispatch, level): (u64, &[u32; 2])| {
+        // The first dispatch is over instances.
+        let group = |(dispatch, level): (u64, &[u32])| {
             Ok((binder.bind(gpu, &self.compacted, level, &lists)?, 16 * dispatch))
         };
-        let first_dispatch = u64::from(self.walk == Walk::Levels);
-        let levels = self.levels(&binder.order);
-        let groups = (first_dispatch..).zip(&levels).map(group).collect::<Result<_, GpuError>>()?;
+        let levels = binder.order.levels.windows(2);
+        let groups = (1..).zip(levels).map(group).collect::<Result<_, GpuError>>()?;
         Ok(IndirectJob::new("animation/local_to_model", &self.compacted, active.dispatches.raw(), groups))
-    }
-
-    /// First and last chain of each dispatch.
-    fn levels(&self, order: &Order) -> Vec<[u32; 2]> {
-        match self.walk {
-            Walk::Levels => order.levels.windows(2).map(|level| [level[0], level[1]]).collect(),
-            Walk::Whole => vec![[0, order.chains.len() as u32]],
-        }
     }
 }
 
@@ -129,27 +88,6 @@ struct Lists<'a> {
     first_word: u32,
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
-}
-
-/// Stand-ins that are bound where every slot is walked.
-struct Nothing {
-    words: Buffer<u32>,
-    dispatches: Buffer<[u32; 4]>,
-}
-
-impl Nothing {
-    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { words: Buffer::new(gpu, "nothing", 0)?, dispatches: Buffer::new(gpu, "nothing", 1)? })
-    }
-
-    fn lists(&self) -> Lists<'_> {
-        Lists {
-            updated_bones: &self.words,
-            first_word: 0,
-            instances: &self.words,
-            dispatches: &self.dispatches,
-        }
-    }
 }
 
 /// The resources that all dispatches bind.

@@ -5,7 +5,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::asset::keyframe::{KeyframeCursor, RotationPath};
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::sample as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Uniform};
 use crate::shared::animation::sample::SampleParams;
 use crate::{Error, InputError};
 
@@ -61,12 +61,8 @@ impl SamplePass {
         let pairs = Buffer::new(gpu, "no pairs", 0)?;
         let dispatched = Buffer::from_slice(gpu, "no pairs", &[0; 4])?;
         let kernel = &self.all[usize::from(clips.has_splines)];
-        let step = Step {
-            groups: vec![bind(kernel, gpu, clips, crowd, [&pairs, &dispatched])?],
-            workgroups: kernel.spread(gpu, crowd.pairs() as u32),
-            kernel: kernel.clone(),
-        };
-        Ok(Job::new(gpu, "animation/sample", vec![step])?)
+        let group = bind(kernel, gpu, clips, crowd, [&pairs, &dispatched])?;
+        Ok(Job::spread(gpu, "animation/sample", (kernel, group), crowd.pairs() as u32)?)
     }
 
     /// Prepares the sampling of the active pairs; all other local transforms stay unchanged.

@@ -3,7 +3,7 @@
 use super::AssignParams;
 use crate::Error;
 use crate::gpu::bindings::lod::assign as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 
 /// What an assignment reads and writes.
 #[doc(inline)]
@@ -36,11 +36,7 @@ impl AssignPass {
         instances: u32,
     ) -> Result<Job, Error> {
         let lengths = bindings::Lengths { instances: instances as usize };
-        let step = Step {
-            groups: vec![buffers.bind(gpu, &self.kernel, params, &lengths)?],
-            workgroups: self.kernel.spread(gpu, instances),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "lod/assign", vec![step])?)
+        let group = buffers.bind(gpu, &self.kernel, params, &lengths)?;
+        Ok(Job::spread(gpu, "lod/assign", (&self.kernel, group), instances)?)
     }
 }

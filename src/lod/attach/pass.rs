@@ -3,7 +3,7 @@
 use super::AttachParams;
 use crate::Error;
 use crate::gpu::bindings::lod::attach as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 
 /// What attaching reads and writes.
 #[doc(inline)]
@@ -40,11 +40,7 @@ impl AttachPass {
         let is_kept = buffers.last_instances.raw() != buffers.instances.raw();
         let rows = if is_kept { 6 } else { 3 } * instances;
         let lengths = bindings::Lengths { attachments, instances, rows };
-        let step = Step {
-            groups: vec![buffers.bind(gpu, &self.kernel, params, &lengths)?],
-            workgroups: self.kernel.spread(gpu, attachments as u32),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "lod/attach", vec![step])?)
+        let group = buffers.bind(gpu, &self.kernel, params, &lengths)?;
+        Ok(Job::spread(gpu, "lod/attach", (&self.kernel, group), attachments as u32)?)
     }
 }

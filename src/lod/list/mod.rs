@@ -6,8 +6,7 @@
 //! thread came first. The totals are the numbers of instances of the object's draws.
 
 #[cfg(feature = "gpu")]
-#[doc(hidden)]
-pub mod pass;
+mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::gpu::bindings::lod::list as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw};
-use crate::shared::lod::list::{ListParams, PLACE, PLACED_BLOCKS, RUNS, SUM, WALK};
+use crate::shared::lod::list::{ListParams, PLACE, RUNS, SUM};
 
 /// What the lists are made from, and where they go.
 #[derive(Debug, Clone, Copy)]
@@ -23,28 +23,11 @@ pub struct ListBuffers<'a> {
     pub arguments: &'a Buffer<SceneDraw>,
 }
 
-/// How threads divide the instances that are written into lists.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Threads {
-    /// One thread for each instance. Those of a block find their order together, with barriers.
-    Instances,
-    /// One thread for each block, without barriers, which are slow on processors.
-    Blocks,
-}
-
-impl Threads {
-    /// The faster choice for this kind of adapter.
-    fn of(gpu: &Gpu) -> Self {
-        if gpu.tuning().wants_long_threads() { Self::Blocks } else { Self::Instances }
-    }
-}
-
 /// Lists instances.
 #[derive(Debug, Clone)]
 pub struct ListPass {
     sum: Kernel,
     place: Kernel,
-    threads: Threads,
 }
 
 impl ListPass {
@@ -53,20 +36,8 @@ impl ListPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::with_threads(gpu, Threads::of(gpu))
-    }
-
-    /// Compiles the pipelines for what takes instances together.
-    ///
-    /// # Errors
-    /// What the driver's compiler reports.
-    pub fn with_threads(gpu: &Gpu, threads: Threads) -> Result<Self, GpuError> {
         let kernel = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
-        let place = match threads {
-            Threads::Instances => PLACE,
-            Threads::Blocks => WALK,
-        };
-        Ok(Self { sum: kernel(SUM)?, place: kernel(place)?, threads })
+        Ok(Self { sum: kernel(SUM)?, place: kernel(PLACE)? })
     }
 
     /// Prepares the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
@@ -94,19 +65,11 @@ impl ListPass {
             lists: buffers.lists.slice(),
             arguments: buffers.arguments.slice(),
         };
-        let step = |kernel: &Kernel, threads: u32| {
-            Ok(Step {
-                groups: vec![group.bind(gpu, kernel)?],
-                workgroups: kernel.spread(gpu, threads),
-                kernel: kernel.clone(),
-            })
+        let step = |kernel, threads| {
+            Ok::<_, GpuError>(Step::spread(gpu, kernel, vec![group.bind(gpu, kernel)?], threads))
         };
-        let placing = match self.threads {
-            Threads::Instances => BLOCK * blocks.next_multiple_of(PLACED_BLOCKS),
-            Threads::Blocks => blocks,
-        };
-        let steps = [step(&self.sum, OBJECT_LISTS * RUNS * object_count), step(&self.place, placing)];
-        let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
+        let steps =
+            vec![step(&self.sum, OBJECT_LISTS * RUNS * object_count)?, step(&self.place, BLOCK * blocks)?];
         Ok(Job::new(gpu, "lod/list", steps)?)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::gpu::bindings::lod::select as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step};
+use crate::gpu::{Gpu, GpuError, Job, Kernel};
 use crate::lod::BLOCK;
 
 /// What a selection reads and writes.
@@ -30,11 +30,7 @@ impl SelectPass {
     /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, buffers: SelectBuffers<'_>) -> Result<Job, Error> {
         let blocks = buffers.block_objects.len();
-        let step = Step {
-            groups: vec![buffers.bind(gpu, &self.kernel, &bindings::Lengths { blocks })?],
-            workgroups: self.kernel.spread(gpu, BLOCK * blocks as u32),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "lod/select", vec![step])?)
+        let group = buffers.bind(gpu, &self.kernel, &bindings::Lengths { blocks })?;
+        Ok(Job::spread(gpu, "lod/select", (&self.kernel, group), BLOCK * blocks as u32)?)
     }
 }

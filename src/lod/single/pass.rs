@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::gpu::bindings::lod::single as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::lod::single::SingleParams;
 
 /// What the draws of single instances are made from, and where they go.
@@ -32,9 +32,6 @@ impl SinglePass {
         let uniform = Uniform::new(gpu, "single", &SingleParams { count })?;
         let lengths = bindings::Lengths { singles: count as usize };
         let group = buffers.bind(gpu, &self.kernel, &uniform, &lengths)?;
-        let kernel = self.kernel.clone();
-        let workgroups = kernel.spread(gpu, count);
-        let step = Step { groups: vec![group], workgroups, kernel };
-        Ok(Job::new(gpu, "lod/single", vec![step])?)
+        Ok(Job::spread(gpu, "lod/single", (&self.kernel, group), count)?)
     }
 }

@@ -10,7 +10,7 @@ use crate::gpu::{Buffer, Gpu, Staged, Uniform, Upload as _};
 use crate::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 use crate::scene::handles::{InstanceId, ObjectId, Slots};
 use crate::scene::layout::Layout;
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::Object;
 
 /// The meshes of a character on the device.
 #[derive(Debug)]
@@ -173,7 +173,6 @@ fn on_device(
 /// The index in the scene of the first instance of a character's chunk, and the number of the character's bones.
 fn first_of(objects: &Slots<Object>, object: [u32; 2], chunk: usize) -> Option<[u32; 2]> {
     let object = objects.get(object)?;
-    let Kind::Character(character) = &object.kind else { return None };
-    let bones = character.model().skeleton.len() as u32;
+    let bones = object.kind.character()?.model().skeleton.len() as u32;
     Some([object.chunks.get(chunk)?.range.first, bones])
 }

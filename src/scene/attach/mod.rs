@@ -181,7 +181,7 @@ impl Scene {
         let Some(meshes) = self.attachments.carried.get(&character).cloned() else { return Ok(()) };
         let ObjectId { index, generation, .. } = character.object;
         let Some(object) = self.objects.get_mut([index, generation]) else { return Ok(()) };
-        let Kind::Character(animated) = &object.kind else { return Ok(()) };
+        let Some(animated) = object.kind.character() else { return Ok(()) };
         let mut around = animated.sphere_of(character.index);
         let mut paths = Vec::new();
         for mesh in &meshes {
@@ -218,7 +218,7 @@ impl Scene {
     ) -> Result<Option<DAffine3>, InputError> {
         let Some(attached) = self.attachments.all.get(&mesh) else { return Ok(None) };
         let Attached { character, bone, offset, .. } = attached;
-        let Kind::Character(animated) = &self.object_of(*character)?.kind else { return Ok(None) };
+        let Some(animated) = self.object_of(*character)?.kind.character() else { return Ok(None) };
         let pose = animated.pose(character.index, self.now)?;
         let bone = affine_of(&pose.model_matrices[*bone]) * affine_of(&affine(offset));
         Ok(Some(self.placed(*character, cell)? * bone))

@@ -86,7 +86,7 @@ impl Object {
         if let Kind::Terrain(terrain) = &mut self.kind {
             terrain.morphing = morphing;
         }
-        if let (Kind::Character(character), Some(on_device)) = (&mut self.kind, on_device) {
+        if let (Some(character), Some(on_device)) = (self.kind.character_mut(), on_device) {
             character.adopt(on_device);
         }
         self.chunks = chunks;
@@ -99,7 +99,7 @@ impl Object {
 
     /// Sets the sphere of an instance that plays something else.
     pub(in crate::scene) fn bound_again(&mut self, index: u32) {
-        if let Kind::Character(character) = &self.kind {
+        if let Some(character) = self.kind.character() {
             let sphere = character.sphere_of(index);
             self.instances.change(index, |instance| instances::bound(instance, &sphere));
         }
@@ -107,7 +107,7 @@ impl Object {
 
     /// Ends fades that have reached their weight.
     pub(in crate::scene) fn settle(&mut self, now: f64) {
-        let Kind::Character(character) = &mut self.kind else { return };
+        let Some(character) = self.kind.character_mut() else { return };
         let settled = character.settle(now);
         for index in settled {
             // What carries a mesh keeps the larger sphere until it plays something else.

@@ -29,7 +29,7 @@ impl Object {
     ) -> Result<bool, Error> {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
         let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object(&all) };
-        let Kind::Character(character) = &mut self.kind else { return Ok(false) };
+        let Some(character) = self.kind.character_mut() else { return Ok(false) };
         let Provided { coarsening, replaced } = character.provide(gpu, views, &lod, self.instances.all())?;
         match replaced {
             Replaced::Nothing => {}
@@ -66,7 +66,7 @@ impl Object {
             for chunk in &self.chunks {
                 staged.elements(&layout.objects, chunk.number, &[self.lod_object(chunk)])?;
             }
-            if let Kind::Character(character) = &self.kind {
+            if let Some(character) = self.kind.character() {
                 character.stage_mesh_fraction(staged, self.coarsening * self.mesh_fraction)?;
             }
         }
@@ -85,7 +85,7 @@ impl Object {
         (pass, shares): (&AssignPass, Shares),
         staged: &mut Staged,
     ) -> Result<(), Error> {
-        if let Kind::Character(character) = &mut self.kind {
+        if let Some(character) = self.kind.character_mut() {
             character.fit_driven(gpu, staged)?;
         }
         if self.fitted == layout.version {
@@ -101,7 +101,7 @@ impl Object {
             stage_params(staged, chunk, self.handle)?;
         }
         let mesh_fraction = self.coarsening * self.mesh_fraction;
-        if let Kind::Character(character) = &mut self.kind {
+        if let Some(character) = self.kind.character_mut() {
             // Level 0 has no error that counts.
             let mut errors = self.transition.begins(&self.errors);
             errors[0] = 0.0;

@@ -99,6 +99,18 @@ pub(super) enum Kind {
     Character(Box<Character>),
 }
 
+impl Kind {
+    /// The character, if it is one.
+    pub fn character(&self) -> Option<&Character> {
+        if let Self::Character(character) = self { Some(character) } else { None }
+    }
+
+    /// As [`Kind::character`], to be changed.
+    pub fn character_mut(&mut self) -> Option<&mut Character> {
+        if let Self::Character(character) = self { Some(character) } else { None }
+    }
+}
+
 impl Object {
     /// An object that is shown.
     pub(super) fn new(
@@ -222,9 +234,7 @@ impl Object {
     /// Keeps the last frame, once it is refreshed, or does no longer.
     pub(super) fn keep_last(&mut self, keeps: bool) {
         self.instances.keep_last(keeps);
-        if let Kind::Character(character) = &mut self.kind {
-            character.keep_last(keeps);
-        }
+        self.kind.character_mut().into_iter().for_each(|character| character.keep_last(keeps));
     }
 
     /// The largest number of its draws in a view and a layer.

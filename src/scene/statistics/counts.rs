@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::{CharacterStatistics, FRAMES, SceneStatistics};
 use crate::gpu::{Gpu, GpuError, ReadbackRing};
+use crate::scene::character::Character;
 use crate::scene::handles::{ObjectId, Slots};
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::Object;
 
 /// The word of `[workgroups x, y, z, number]` that holds the number.
 const NUMBER: u64 = 12;
@@ -26,10 +27,8 @@ pub(in crate::scene) struct SceneCounts {
 impl SceneCounts {
     /// Room for the counts of these objects.
     pub fn new(gpu: &Gpu, version: u64, objects: &Slots<Object>) -> Result<Self, GpuError> {
-        let character = |(object, entry): (ObjectId, &Object)| match &entry.kind {
-            Kind::Character(character) => Some((object, character.counted())),
-            _ => None,
-        };
+        let character =
+            |(object, entry): (ObjectId, &Object)| Some((object, entry.kind.character()?.counted()));
         let characters: Arc<[_]> = objects.each().filter_map(character).collect();
         let words: usize = characters.iter().map(|(_, [meshes, chunks])| chunks * (1 + meshes)).sum();
         let ring = ReadbackRing::new(gpu, "statistics of characters", FRAMES, 4 * words as u64)?;
@@ -40,11 +39,8 @@ impl SceneCounts {
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, objects: &Slots<Object>) {
         self.arrive();
         self.ring.record(encoder, (frame, self.characters.clone()), |encoder, to| {
-            let characters = objects.iter().filter_map(|object| match &object.kind {
-                Kind::Character(character) => Some(character),
-                _ => None,
-            });
-            let counters = characters.flat_map(|character| character.counters());
+            let characters = objects.iter().filter_map(|object| object.kind.character());
+            let counters = characters.flat_map(Character::counters);
             for (at, counter) in (0..).zip(counters) {
                 encoder.copy_buffer_to_buffer(counter.raw(), NUMBER, to, 4 * at, 4);
             }

@@ -3,17 +3,14 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::CollapseOptions;
-use super::compose::{is_constant, signs};
-use super::rest::{Follower, Rest};
+use super::compose::{is_constant, signs, signs_in};
+use super::rest::{Follower, Rest, bind};
+use super::{CollapseOptions, looked_at};
 use crate::InputError;
-use crate::animation::local_to_model::reference::local_to_model;
-use crate::animation::sample::reference::sample;
 use crate::asset::clip::{Clip, Part};
-use crate::asset::keyframe::RotationPath;
 use crate::asset::transform::column_major;
 use crate::asset::{Model, Skeleton};
-use crate::skinning::poses_of;
+use crate::skinning::pose::{Moment, bones_at};
 
 /// The largest number of poses of each clip in which costs are measured.
 const POSES: usize = 64;
@@ -98,15 +95,14 @@ impl<'a> Choice<'a> {
         let skeleton = &model.skeleton;
         let is_even = |bone: usize| {
             let at_rest = signs([skeleton.bones()[bone].rest.scale]).is_some();
-            at_rest && model.clips.iter().all(|clip| super::compose::signs_in(clip, bone).is_some())
+            at_rest && model.clips.iter().all(|clip| signs_in(clip, bone).is_some())
         };
-        let mut poses = Vec::new();
-        for clip in &model.clips {
-            poses.extend(looked_at(skeleton, clip)?);
-        }
+        let pose = |moment: &Moment| -> Vec<DAffine3> {
+            bones_at(model, *moment).iter().map(|bone| bind(&column_major(bone))).collect()
+        };
         Ok(Self {
             rest,
-            poses,
+            poses: looked_at(model, POSES)?.par_iter().map(pose).collect(),
             stays: stays(model, options)?,
             is_even: (0..skeleton.len()).map(is_even).collect(),
             remap: Remap::new(skeleton),
@@ -214,17 +210,6 @@ impl<'a> Choice<'a> {
 
 fn difference(a: DAffine3, b: DAffine3) -> (DMat3, DVec3) {
     (a.matrix3 - b.matrix3, a.translation - b.translation)
-}
-
-/// The matrices of all bones in poses of a clip, evenly spaced from start to end, at most [`POSES`].
-fn looked_at(skeleton: &Skeleton, clip: &Clip) -> Result<Vec<Vec<DAffine3>>, InputError> {
-    let poses = poses_of(clip)?.min(POSES);
-    let pose = |at: usize| {
-        let time = clip.duration() * (at as f32 / (poses - 1) as f32);
-        let models = local_to_model(skeleton, &sample(clip, time, RotationPath::Slerp));
-        models.iter().map(|model| super::rest::bind(&column_major(model))).collect()
-    };
-    Ok((0..poses).into_par_iter().map(pose).collect())
 }
 
 /// For each bone, whether it never collapses: roots, the uppermost bones that a clip moves, end effectors,

@@ -3,14 +3,11 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::CollapseError;
 use super::choice::Remap;
+use super::{CollapseError, looked_at};
 use crate::InputError;
-use crate::animation::local_to_model::reference::local_to_model;
-use crate::animation::sample::reference::sample;
-use crate::asset::keyframe::RotationPath;
-use crate::asset::{Affine, Mesh, Model, Transform};
-use crate::skinning::pose::{Pose, poses_of};
+use crate::asset::{Affine, Mesh, Model};
+use crate::skinning::pose::{Moment, Pose, bones_at, weights_at};
 
 /// The largest distances of bones and of vertices in a pose, and the sum of the squares of the latter.
 #[derive(Default)]
@@ -22,14 +19,9 @@ struct Off {
 
 /// Compares the models 60 times a second in every clip, or at rest if there are none.
 pub(super) fn error(model: &Model, collapsed: &Model, remap: &Remap) -> Result<CollapseError, InputError> {
-    let mut moments: Vec<Option<(usize, f32)>> = Vec::new();
-    for (index, clip) in model.clips.iter().enumerate() {
-        let poses = poses_of(clip)?;
-        let time = |at: usize| clip.duration() * (at as f32 / (poses - 1) as f32);
-        moments.extend((0..poses).map(|at| Some((index, time(at)))));
-    }
+    let mut moments = looked_at(model, usize::MAX)?;
     if moments.is_empty() {
-        moments.push(None);
+        moments.push(Moment::Rest);
     }
     let kept: Vec<usize> = remap.kept().collect();
     let off: Vec<Off> = moments.par_iter().map(|moment| off(model, collapsed, &kept, *moment)).collect();
@@ -43,17 +35,14 @@ pub(super) fn error(model: &Model, collapsed: &Model, remap: &Remap) -> Result<C
     })
 }
 
-fn off(model: &Model, collapsed: &Model, kept: &[usize], moment: Option<(usize, f32)>) -> Off {
-    let [before, after] = [model, collapsed].map(|model| posed(model, moment));
+fn off(model: &Model, collapsed: &Model, kept: &[usize], moment: Moment) -> Off {
+    let [before, after] = [model, collapsed].map(|model| bones_at(model, moment));
     let mut off = Off::default();
     for (bone, after) in kept.iter().zip(&after) {
         off.bones = off.bones.max(origin(&before[*bone]).distance(origin(after)).into());
     }
     for (full, reduced) in model.meshes.iter().zip(&collapsed.meshes) {
-        let weights = match moment {
-            None => full.weights.clone(),
-            Some((clip, time)) => full.weights_at(clip, time),
-        };
+        let weights = weights_at(model, full, moment);
         let before = Pose::at(model, full, &before, &weights).positions(full);
         let after = Pose::at(collapsed, reduced, &after, &weights).positions(reduced);
         for (before, after) in before.into_iter().zip(after) {
@@ -63,14 +52,6 @@ fn off(model: &Model, collapsed: &Model, kept: &[usize], moment: Option<(usize, 
         }
     }
     off
-}
-
-fn posed(model: &Model, moment: Option<(usize, f32)>) -> Vec<Affine> {
-    let locals: Vec<Transform> = match moment {
-        None => model.skeleton.rest(),
-        Some((clip, time)) => sample(&model.clips[clip], time, RotationPath::Slerp),
-    };
-    local_to_model(&model.skeleton, &locals)
 }
 
 fn origin(model: &Affine) -> Vec3 {

@@ -101,16 +101,14 @@ impl<'a> Chain<'a> {
 
     fn tracks(&self) -> Result<[Keys; 3], InputError> {
         let is_rigid = self.moving(self.collapsed.iter().map(|(bone, _)| *bone)).is_empty();
-        let all = if is_rigid { Part::ALL.map(|part| self.mapped(part)) } else { self.sampled() };
-        let mut checked = Part::ALL.into_iter().zip(all).map(|(part, keys)| match part {
-            Part::Rotation if keys.interpolation != Interpolation::CubicSpline => {
-                keys.stored("rotation", true)
-            }
-            _ => finite("keys", keys.values.as_flattened()).map(|()| keys),
-        });
-        let mut next =
-            || checked.next().unwrap_or_else(|| Err(InputError::new("keys", "none", "must be three")));
-        Ok([next()?, next()?, next()?])
+        let [translation, mut rotation, scale] =
+            if is_rigid { Part::ALL.map(|part| self.mapped(part)) } else { self.sampled() };
+        if rotation.interpolation != Interpolation::CubicSpline {
+            rotation = rotation.stored("rotation", true)?;
+        }
+        let all = [translation, rotation, scale];
+        all.iter().try_for_each(|keys| finite("keys", keys.values.as_flattened()))?;
+        Ok(all)
     }
 
     /// The keys of those tracks of these bones that are not constant.

@@ -171,12 +171,12 @@ fn parts_of(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
 
 /// The largest distance of each level of several groups of meshes at any of these moments, in units of each. `watch` gets the
 /// number of moments that were looked at, and may break.
-pub(super) fn errors<B>(
+pub(super) fn errors(
     model: &Model,
     groups: &[(&Whole<'_>, &Suspects)],
     moments: &[Moment],
-    watch: &mut dyn FnMut(usize) -> ControlFlow<B>,
-) -> ControlFlow<B, Vec<Vec<f32>>> {
+    watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
+) -> ControlFlow<(), Vec<Vec<f32>>> {
     let mut errors: Vec<Vec<f32>> = groups.iter().map(|(_, suspects)| suspects.least.clone()).collect();
     // Moments far from each other first: they soon tell how far samples are off, so that others need not be looked at.
     let stride = moments.len().div_ceil(BATCH).max(1);
@@ -207,11 +207,9 @@ fn larger(mut a: Vec<Vec<f32>>, b: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
 
 #[cfg(test)]
 mod tests {
-    use std::convert::Infallible;
-
-    use super::super::Group;
     use super::super::bodies::Bodies;
     use super::super::whole::Shared;
+    use super::super::{Group, unwatched};
     use super::*;
     use crate::asset::{Influence, Influences};
 
@@ -229,12 +227,10 @@ mod tests {
             let moments: Vec<Moment> = (0..90).map(|at| Moment::In(at % 2, at as f32 / 89.0)).collect();
             let whole = Whole::new(&model, &[0], &Shared::new());
             let bodies = Bodies::new(&model, &[0], &super::super::looked_at(&moments));
-            let mut watch = |_| ControlFlow::<Infallible>::Continue(());
-            let ControlFlow::Continue(group) =
-                Group::new(&whole, &moments, &bodies, &mut watch).expect("valid");
-            let mut watch = |_| ControlFlow::<Infallible>::Continue(());
-            let ControlFlow::Continue(found) =
-                errors(&model, &[(&whole, &group.suspects)], &moments, &mut watch);
+            let group = Group::new(&whole, &moments, &bodies, &mut unwatched).expect("valid");
+            let group = group.expect("not broken");
+            let found = errors(&model, &[(&whole, &group.suspects)], &moments, &mut unwatched);
+            let found = found.continue_value().expect("not broken");
             let mut all = vec![0.0_f32; group.sides.len()];
             let mut samples = 0_u32;
             for moment in &moments {

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::gpu::bind::Slice;
 use crate::gpu::bindings::skinning::morph as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform, rows_of_workgroups};
+use crate::gpu::{Buffer, Gpu, GpuError, IndirectJob, Kernel, Uniform};
 use crate::shared::skinning::morph::MorphParams;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::pages::PageBuffers;
@@ -12,17 +12,8 @@ use crate::skinning::vertex::Vertex;
 /// Applies morph targets.
 #[derive(Debug, Clone)]
 pub struct MorphPass {
-    all: Kernel,
-    active: Kernel,
+    kernel: Kernel,
     paged: Kernel,
-}
-
-/// What is morphed, and where to.
-struct Output<'a> {
-    active: &'a ActiveClusters,
-    /// Words of the levels of detail, or the page table.
-    seen: Slice<'a, u32>,
-    morphed: &'a Buffer<Vertex>,
 }
 
 impl MorphPass {
@@ -31,35 +22,15 @@ impl MorphPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |compacted, paged| bindings::kernel(gpu, &bindings::Constants { compacted, paged });
-        Ok(Self { all: kernel(false, false)?, active: kernel(true, false)?, paged: kernel(true, true)? })
-    }
-
-    /// Prepares the morphed vertices of all instances that are seen; clusters beyond their level of detail keep
-    /// their previous contents. For a mesh without targets the job is empty.
-    ///
-    /// # Errors
-    /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Job, Error> {
-        let mut steps = Vec::new();
-        if mesh.targets > 0 {
-            let nothing = ActiveClusters {
-                keeps_last: false,
-                pairs: Buffer::new(gpu, "no clusters", 0)?,
-                dispatched: Buffer::from_slice(gpu, "no clusters", &[0; 4])?,
-            };
-            let group = bind(gpu, &self.all, mesh, crowd, by_level(mesh, crowd, &nothing)?)?;
-            let workgroups = rows_of_workgroups(gpu, pairs(mesh, crowd));
-            steps.push(Step { groups: vec![group], workgroups, kernel: self.all.clone() });
-        }
-        Ok(Job::new(gpu, "skinning/morph", steps)?)
+        let kernel = |paged| bindings::kernel(gpu, &bindings::Constants { paged });
+        Ok(Self { kernel: kernel(false)?, paged: kernel(true)? })
     }
 
     /// Prepares the active clusters, as far as their instances are seen and the clusters are within the level
-    /// of detail; all other vertices stay unchanged. For a mesh without targets the job is empty.
+    /// of detail; all other vertices stay unchanged. `None` for a mesh without targets.
     ///
     /// # Errors
-    /// As [`MorphPass::prepare`].
+    /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -70,16 +41,17 @@ impl MorphPass {
         if mesh.targets == 0 {
             return Ok(None);
         }
-        let group = bind(gpu, &self.active, mesh, crowd, by_level(mesh, crowd, active)?)?;
-        let arguments = active.dispatched.raw();
-        Ok(Some(IndirectJob::new("skinning/morph", &self.active, arguments, vec![(group, 0)])))
+        crowd.morphed.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
+        crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
+        let seen = crowd.instance_lods.slice().cast();
+        job(gpu, &self.kernel, (mesh, crowd), active, (seen, &crowd.morphed)).map(Some)
     }
 
     /// As [`MorphPass::prepare_active`], into the pages that [`PagesPass`](crate::skinning::pages::PagesPass) deals out.
     /// Clusters without a page are skipped.
     ///
     /// # Errors
-    /// As [`MorphPass::prepare`].
+    /// As [`MorphPass::prepare_active`].
     pub fn prepare_paged(
         &self,
         gpu: &Gpu,
@@ -92,54 +64,37 @@ impl MorphPass {
             return Ok(None);
         }
         pages.table.check_holds("pages.table", crowd.instances * mesh.clusters())?;
-        let output = Output { active, seen: pages.table.slice(), morphed: &pages.morphed };
-        let group = bind(gpu, &self.paged, mesh, crowd, output)?;
-        let arguments = active.dispatched.raw();
-        Ok(Some(IndirectJob::new("skinning/morph", &self.paged, arguments, vec![(group, 0)])))
+        job(gpu, &self.paged, (mesh, crowd), active, (pages.table.slice(), &pages.morphed)).map(Some)
     }
 }
 
-fn pairs(mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> u32 {
-    (crowd.instances * mesh.clusters()) as u32
-}
-
-/// All vertices of each instance that is seen, up to its level of detail.
-fn by_level<'a>(
-    mesh: &MeshBuffers,
-    crowd: &'a SkinnedCrowd,
-    active: &'a ActiveClusters,
-) -> Result<Output<'a>, Error> {
-    crowd.morphed.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
-    crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
-    Ok(Output { active, seen: crowd.instance_lods.slice().cast(), morphed: &crowd.morphed })
-}
-
-fn bind(
+/// `seen` are the words of the levels of detail, or the page table.
+fn job(
     gpu: &Gpu,
     kernel: &Kernel,
-    mesh: &MeshBuffers,
-    crowd: &SkinnedCrowd,
-    output: Output<'_>,
-) -> Result<Group, Error> {
+    (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
+    active: &ActiveClusters,
+    (seen, morphed): (Slice<'_, u32>, &Buffer<Vertex>),
+) -> Result<IndirectJob, Error> {
     crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
     let params = MorphParams {
         vertices: mesh.vertices.len() as u32,
         targets: mesh.targets as u32,
         instances: crowd.instances as u32,
-        pairs: pairs(mesh, crowd),
+        pairs: (crowd.instances * mesh.clusters()) as u32,
         levels: mesh.clusters_of_levels(),
     };
-    let uniform = Uniform::new(gpu, "morph", &params)?;
     let group = bindings::Group {
-        params: &uniform,
+        params: &Uniform::new(gpu, "morph", &params)?,
         vertices: mesh.vertices.slice().cast(),
         offsets: mesh.delta_offsets.slice(),
         deltas: mesh.deltas.slice().cast(),
         weights: crowd.weights.slice(),
-        seen: output.seen,
-        pairs: output.active.pairs.slice(),
-        dispatched: output.active.dispatched.slice().cast(),
-        morphed: output.morphed.slice().cast(),
+        seen,
+        pairs: active.pairs.slice(),
+        dispatched: active.dispatched.slice().cast(),
+        morphed: morphed.slice().cast(),
     };
-    Ok(group.bind(gpu, kernel)?)
+    let groups = vec![(group.bind(gpu, kernel)?, 0)];
+    Ok(IndirectJob::new("skinning/morph", kernel, active.dispatched.raw(), groups))
 }

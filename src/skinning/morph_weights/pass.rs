@@ -57,11 +57,8 @@ impl MorphWeightsPass {
                 values: values.slice(),
                 weights: crowd.weights.slice(),
             };
-            steps.push(Step {
-                groups: vec![group.bind(gpu, &self.kernel)?],
-                workgroups: self.kernel.spread(gpu, params.pairs),
-                kernel: self.kernel.clone(),
-            });
+            let groups = vec![group.bind(gpu, &self.kernel)?];
+            steps.push(Step::spread(gpu, &self.kernel, groups, params.pairs));
         }
         Ok(MorphWeightsJob { job: Job::new(gpu, "skinning/morph_weights", steps)?, params, uniform })
     }

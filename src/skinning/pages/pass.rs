@@ -4,7 +4,7 @@ use super::{NO_PAGE, PageState};
 use crate::Error;
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::skinning::pages as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::skinning::pages::PageParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::CLUSTER;
@@ -130,8 +130,8 @@ impl PagesPass {
             stack: pages.stack.slice(),
             state: pages.state.slice().cast(),
         };
-        let kernel = self.kernel.clone();
-        let step = Step { groups: vec![group.bind(gpu, &kernel)?], workgroups: [1; 3], kernel };
-        Ok(Job::new(gpu, "skinning/pages", vec![step])?)
+        // One workgroup serves all instances.
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "skinning/pages", (&self.kernel, group), 1)?)
     }
 }

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::animation::ModelMatrices;
 use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::skinning::palette as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::skinning::palette::PaletteParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::Blend;
@@ -59,11 +59,7 @@ impl PalettePass {
             instance_lods: crowd.instance_lods.slice(),
             palette: crowd.palette.slice(),
         };
-        let step = Step {
-            groups: vec![group.bind(gpu, kernel)?],
-            workgroups: kernel.spread(gpu, params.pairs),
-            kernel: kernel.clone(),
-        };
-        Ok(Job::new(gpu, "skinning/palette", vec![step])?)
+        let group = group.bind(gpu, kernel)?;
+        Ok(Job::spread(gpu, "skinning/palette", (kernel, group), params.pairs)?)
     }
 }

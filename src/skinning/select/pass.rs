@@ -21,9 +21,7 @@ pub struct SelectBuffers {
     /// seen then is skinned.
     ///
     /// The fourth word is 0 for an instance that is not seen, 1 for one that is seen for the first time or
-    /// again, and 2 for one that was seen in the frame before too. At 1, the vertices that
-    /// [`keep_last`](crate::skinning::skin::keep_last) copied belong to an earlier time or are unwritten;
-    /// motion vectors can then use the placement only.
+    /// again, and 2 for one that was seen in the frame before too.
     pub skinned: Buffer<u32>,
 }
 
@@ -66,7 +64,7 @@ impl SelectPass {
         })
     }
 
-    /// Prepares the list of clusters to be skinned. The updated bones stay as they are.
+    /// Prepares two lists of clusters to be skinned: the first job leaves the updated bones as they are, the second clears them.
     ///
     /// # Errors
     /// [`crate::InputError`] for buffers of another crowd; [`GpuError`].
@@ -77,57 +75,7 @@ impl SelectPass {
         crowd: &SkinnedCrowd,
         buffers: &SelectBuffers,
         active: &ActiveClusters,
-    ) -> Result<Job, Error> {
-        self.job(gpu, mesh, crowd, (buffers, active), &self.finish)
-    }
-
-    /// As [`SelectPass::prepare`]; afterwards no bone is updated any more.
-    ///
-    /// # Errors
-    /// As [`SelectPass::prepare`].
-    pub fn prepare_clearing(
-        &self,
-        gpu: &Gpu,
-        mesh: &MeshBuffers,
-        crowd: &SkinnedCrowd,
-        buffers: &SelectBuffers,
-        active: &ActiveClusters,
-    ) -> Result<Job, Error> {
-        self.job(gpu, mesh, crowd, (buffers, active), &self.finish_and_clear)
-    }
-
-    /// Both selections: the one that keeps the updated bones, and the one that clears them.
-    pub(crate) fn prepare_both(
-        &self,
-        gpu: &Gpu,
-        mesh: &MeshBuffers,
-        crowd: &SkinnedCrowd,
-        buffers: &SelectBuffers,
-        active: &ActiveClusters,
     ) -> Result<[Job; 2], Error> {
-        Ok([
-            self.prepare(gpu, mesh, crowd, buffers, active)?,
-            self.prepare_clearing(gpu, mesh, crowd, buffers, active)?,
-        ])
-    }
-
-    /// The kernel that selects, where last positions are kept or not.
-    fn selecting(&self, gpu: &Gpu, keep: bool) -> Result<Kernel, GpuError> {
-        if keep {
-            bindings::kernel(gpu, &bindings::Constants { keep, ..Default::default() })
-        } else {
-            Ok(self.select.clone())
-        }
-    }
-
-    fn job(
-        &self,
-        gpu: &Gpu,
-        mesh: &MeshBuffers,
-        crowd: &SkinnedCrowd,
-        (buffers, active): (&SelectBuffers, &ActiveClusters),
-        finish: &Kernel,
-    ) -> Result<Job, Error> {
         let pairs = crowd.instances * mesh.clusters();
         buffers.updated_bones.check_holds("updated_bones", crowd.instances * mesh.mask_words)?;
         buffers.skinned.check_holds("skinned", crowd.instances * (SKINNED_WORDS + mesh.targets))?;
@@ -157,15 +105,18 @@ impl SelectPass {
             pairs: active.pairs.slice(),
             dispatched: active.dispatched.slice().cast(),
         };
-        let step = |kernel: &Kernel, threads: usize| {
-            Ok(Step {
-                groups: vec![group.bind(gpu, kernel)?],
-                workgroups: kernel.spread(gpu, threads as u32),
-                kernel: kernel.clone(),
-            })
+        // Where last positions are kept, the kernel that selects is another.
+        let select = match active.keeps_last {
+            true => &bindings::kernel(gpu, &bindings::Constants { keep: true, ..Default::default() })?,
+            false => &self.select,
         };
-        let steps = [step(&self.selecting(gpu, active.keeps_last)?, pairs), step(finish, crowd.instances)];
-        let steps = steps.into_iter().collect::<Result<_, GpuError>>()?;
-        Ok(Job::new(gpu, "skinning/select", steps)?)
+        let step = |kernel, threads| {
+            Ok::<_, GpuError>(Step::spread(gpu, kernel, vec![group.bind(gpu, kernel)?], threads as u32))
+        };
+        let job = |finish| {
+            let steps = vec![step(select, pairs)?, step(finish, crowd.instances)?];
+            Job::new(gpu, "skinning/select", steps)
+        };
+        Ok([job(&self.finish)?, job(&self.finish_and_clear)?])
     }
 }

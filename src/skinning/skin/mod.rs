@@ -10,7 +10,7 @@ mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::{SkinPass, keep_last};
+pub use pass::SkinPass;
 
 /// The largest difference allowed between a component of a position and the reference, on any device, relative
 /// to the palette's largest component L (at least 1) times 1 + |x| + |y| + |z| of the vertex.

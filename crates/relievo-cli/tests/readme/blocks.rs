@@ -103,7 +103,7 @@ fn skinning(
 ) -> Result<(), Error> {
     // begin README.md
     let skin = SkinFrame::new(&gpu, &fox, 0, matrices, 1000, Blend::Linear)?; // a mesh of 1000 instances
-    skin.crowd.instance_lods.write(&gpu, lods)?;                          // who is seen, how coarse: yours, or `skinning::lod`
+    skin.crowd.instance_lods.write(&gpu, lods)?;                          // who is seen, how coarse
     skin.record_updated_bones(&mut encoder);                              // a frame: clusters with a bone that moved
     let (vertices, triangles) = (&skin.skinned, &skin.mesh.indices);      // instance · vertices + index
     // end

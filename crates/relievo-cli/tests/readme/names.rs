@@ -10,7 +10,6 @@ use relievo::mesh::{Options, Simplified};
 use relievo::render::{Layer, Renderer, TargetFormat};
 use relievo::scene::{Scene, Transition};
 use relievo::skinning::Extent;
-use relievo::skinning::lod::LodView;
 use relievo::surface::ReliefOptions;
 
 #[rustfmt::skip]
@@ -63,7 +62,6 @@ fn members() {
     let _ = |projection: &Projection, extent: &Extent| extent.level_ranges(projection, 1.0, [0.0]); // Extent::level_ranges
     let _ = |extent: Extent| extent.stray; // Extent::stray
     let _ = LodCamera::new; // LodCamera::new
-    let _ = LodView::projected_distance; // LodView::projected_distance
     let _ = Projection::allowed; // Projection::allowed
     let _ = Transition::Geomorph; // Transition::Geomorph
     let _ = |options: ReliefOptions| options.shadow; // ReliefOptions::shadow

@@ -8,13 +8,11 @@ use serde_json::{Value, json};
 /// Values of the override constants that are not `bool`: those that the library sets.
 const VALUES: &[(&str, &str, &[f64])] = &[
     ("animation/budget", "STAGE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
-    ("animation/compact", "STAGE", &[0.0, 1.0, 2.0, 3.0]),
-    ("animation/decide", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
+    ("animation/compact", "STAGE", &[0.0, 1.0, 2.0]),
     ("animation/gate", "MODE", &[0.0, 1.0, 2.0, 3.0, 4.0]),
     ("baseline/texels", "PLANES", &[1.0, 3.0]),
     ("baseline/texels", "QUADS", &[1.0]),
-    ("lod/list", "STAGE", &[0.0, 1.0, 2.0]),
-    ("mesh/cluster", "STAGE", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]),
+    ("lod/list", "STAGE", &[0.0, 1.0]),
     ("render/scene_relief", "relievo_METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
     ("render/scene_relief", "relievo_SHADOW", &[0.0, 1.0, 2.0]),
     ("surface/relief", "METHOD", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),

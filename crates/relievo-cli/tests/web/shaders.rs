@@ -1,6 +1,5 @@
 //! The browser's compiler accepts every shader and module, and refuses some that are wrong on purpose.
 
-use std::collections::BTreeSet;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -8,9 +7,6 @@ use serde_json::{Value, json};
 
 use crate::harness::{browser, relievo};
 use crate::plan::{Written, name_of};
-
-/// Shaders that need more than WebGPU's default limits. The library does without them on devices with these limits.
-const OPTIONAL: &[&str] = &["animation/decide"];
 
 /// A literal just above the largest f32.
 const BEYOND_F32: &str = "const LARGEST = 3.40282347e38;
@@ -141,9 +137,6 @@ fn every_shader_compiles_with_every_value_of_its_constants() {
     let mut made = 0;
     for shader in &said().written.shaders {
         let name = name_of(shader);
-        if OPTIONAL.contains(&name.as_str()) {
-            continue;
-        }
         let job = job(&name);
         assert_accepted(job);
         // Every entry point occurs equally often; a vertex entry comes with each of its fragment entries.
@@ -161,31 +154,14 @@ fn every_shader_compiles_with_every_value_of_its_constants() {
         );
         made += pipelines(job).len();
     }
-    let planned: usize = (said().written.jobs().iter())
-        .filter(|job| !OPTIONAL.contains(&job["name"].as_str().unwrap_or_default()))
-        .map(|job| job["pipelines"].as_array().map_or(0, Vec::len))
-        .sum();
+    let planned: usize =
+        (said().written.jobs().iter()).map(|job| job["pipelines"].as_array().map_or(0, Vec::len)).sum();
     assert_eq!(made, planned);
-    println!("{made} pipelines of {} shaders", said().written.shaders.len() - OPTIONAL.len());
+    println!("{made} pipelines of {} shaders", said().written.shaders.len());
 }
 
 fn name_begins(pipeline: &Value, begin: &str) -> bool {
     pipeline["label"].as_str().is_some_and(|label| label.starts_with(begin))
-}
-
-/// The test lists these shaders by name, so that a new one is noticed.
-#[test]
-fn shaders_that_need_more_than_the_default_limits_are_known_by_name_and_refused() {
-    let needs = |shader: &&Value| !shader["limits"].as_array().expect("a list").is_empty();
-    let found: BTreeSet<_> = said().written.shaders.iter().filter(needs).map(name_of).collect();
-    assert_eq!(found, OPTIONAL.iter().map(|name| (*name).to_owned()).collect());
-    for name in OPTIONAL {
-        let job = job(name);
-        assert!(job["error"].is_null(), "the module itself is fine: {job}");
-        let layout = job["layout"].as_str().unwrap_or_default();
-        assert!(layout.contains("number of storage buffers (20)"), "{job}");
-        assert!(pipelines(job).iter().all(|pipeline| pipeline["error"].is_string()), "{job}");
-    }
 }
 
 #[test]

@@ -3,7 +3,6 @@
 pub mod animation;
 pub mod baseline;
 pub mod lod;
-pub mod mesh;
 pub mod skinning;
 pub mod surface;
 pub mod terrain;
@@ -12,7 +11,8 @@ use std::pin::Pin;
 
 use relievo::{Error, InputError};
 
-use crate::harness::{Bench, Cases};
+use crate::cases::terrain::copy_of;
+use crate::harness::{Backend, Bench, Cases, Contender};
 
 /// The cases of a kernel.
 #[derive(Clone, Copy)]
@@ -60,18 +60,15 @@ pub static OPERATIONS: &[Operation] = operations![
     surface / cone_map,
     surface / shade,
     surface / tangent,
-    mesh / cluster,
     animation / keyframe_cursor,
     animation / clip_clock,
     animation / gate,
     animation / budget,
     animation / drive,
     animation / compact,
-    animation / decide,
     animation / sample,
     animation / local_to_model,
     animation / bounds,
-    skinning / lod,
     skinning / palette,
     skinning / morph_weights,
     skinning / morph,
@@ -100,4 +97,23 @@ pub(crate) fn selected(only: Option<&str>) -> Result<Vec<&'static Operation>, In
         return Err(InputError::new("only", only.unwrap_or(""), bound));
     }
     Ok(found)
+}
+
+/// Measures a kernel that reads and writes `words` words for `count` of a unit, its reference, and a copy of as many words.
+pub(crate) fn measure<R>(
+    bench: &mut Bench<'_>,
+    name: impl Into<String>,
+    (count, unit): (usize, &'static str),
+    words: usize,
+    record: &dyn Fn(&mut wgpu::CommandEncoder),
+    mut reference: impl FnMut() -> R,
+) -> Result<(), Error> {
+    // A copy reads half of the words that it moves, and writes the other half.
+    let copied = copy_of(bench.gpu, words / 2)?;
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, record),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Reference, || drop(std::hint::black_box(reference()))),
+    ];
+    bench.case(name, (count, unit), 4 * words as u64, contenders)
 }

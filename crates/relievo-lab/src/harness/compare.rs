@@ -166,6 +166,13 @@ pub struct Judgement {
     pub touches: bool,
 }
 
+impl Judgement {
+    /// That of a value that is right or not, whatever its error.
+    pub(crate) fn exact(is_right: bool, error: f64, touches: bool) -> Self {
+        Self { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches }
+    }
+}
+
 /// Compares values that each have a bound of their own: every error must be within its bound, and of all values
 /// at most the fraction `may_touch`, but at least one, may prove little. `describe` describes a value by its
 /// index.

@@ -8,6 +8,8 @@ use crate::asset::material::{Alpha, Material, Sampling, Texture};
 use crate::asset::transform::{Affine, rows};
 use crate::asset::{Light, Mesh, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
+use crate::picture::texture::Surface;
+use crate::picture::{self, Part};
 use crate::render::{Layer, TargetFormat};
 use crate::samples::creature::creature;
 use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
@@ -15,8 +17,6 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::buffers::MeshBuffers;
-use crate::skinning::picture::texture::Surface;
-use crate::skinning::picture::{self, Part};
 use crate::skinning::skin::reference::transformed;
 use crate::skinning::vertex::{Vertex, vertices_of};
 

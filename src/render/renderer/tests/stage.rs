@@ -5,13 +5,13 @@ use glam::{Mat4, Vec3, Vec4, camera};
 use crate::asset::Light;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, Group, Options, Uniform};
+use crate::lod::is_mirrored;
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw, SceneInstance};
 use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
 use crate::scene::layouts::SceneLayouts;
 use crate::shared::render::scene_view::SceneView;
-use crate::skinning::picture::is_mirrored;
 
 /// Pixels along the edges of a canvas. The bytes of a row are a multiple of 256, as copies demand.
 pub const SIZE: [u32; 2] = [192, 128];

@@ -2,7 +2,7 @@
 
 use relievo::Error;
 use relievo::animation::bounds::reference::bounds;
-use relievo::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, Threads, bone_radii};
+use relievo::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, bone_radii};
 use relievo::animation::crowd::Crowd;
 use relievo::animation::keyframe_cursor::reference::cursors;
 use relievo::animation::local_to_model::reference::local_to_model;
@@ -13,9 +13,9 @@ use relievo::gpu::Buffer;
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// The cases cover matrices of every size, sheared, singular and mirrored, around the model's origin and far
 /// from it. Sides are compared relative to the instance's largest, and the exact box, in double precision, must
@@ -31,30 +31,18 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let crowd = Crowd::new(gpu, &set, &instances)?;
         crowd.model_matrices.buffer().write(gpu, &model_matrices)?;
         let expected = bounds(&model_matrices, &bone_radii);
-        for threads in [Threads::Workgroup, Threads::Whole] {
-            let output = Poisoned::<Bounds>::new(gpu, count)?;
-            let job =
-                BoundsPass::with_threads(gpu, threads)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
-            gpu.submit("verify", |encoder| job.record(encoder))?;
-            let name = format!("{bones} bones × {count}, {threads:?}");
-            let comparison = output
-                .check(gpu, |actual| {
-                    compare::absolute(
-                        &relative_sizes(actual, &expected),
-                        &relative_sizes(&expected, &expected),
-                        BOUNDS_BOUND,
-                    )
-                })
-                .await?;
-            cases.add(name.clone(), comparison);
-            let contained = output
-                .check(gpu, |actual| {
-                    let inside = contain(actual, &model_matrices, &bone_radii);
-                    compare::exact(&inside, &vec![true; inside.len()])
-                })
-                .await?;
-            cases.add(format!("{name}, the exact box inside"), contained);
-        }
+        let output = Poisoned::<Bounds>::new(gpu, count)?;
+        let job = BoundsPass::new(gpu)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
+        gpu.submit("verify", |encoder| job.record(encoder))?;
+        let name = format!("{bones} bones × {count}");
+        let sides = |boxes: &[Bounds]| relative_sizes(boxes, &expected);
+        let near = |actual: &[Bounds]| compare::absolute(&sides(actual), &sides(&expected), BOUNDS_BOUND);
+        cases.check(name.clone(), &output, near).await?;
+        let holds = |actual: &[Bounds]| {
+            let inside = contain(actual, &model_matrices, &bone_radii);
+            compare::exact(&inside, &vec![true; inside.len()])
+        };
+        cases.check(format!("{name}, the exact box inside"), &output, holds).await?;
     }
     Ok(())
 }
@@ -125,15 +113,10 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, &scene.crowd, &bone_radii, &Buffer::new(gpu, "bounds", count)?)?;
         // The kernel reads the model matrices and writes 8 words per instance.
         let words = 12 * scene.pairs() + 8 * count;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                drop(std::hint::black_box(bounds(&model_matrices, &bone_radii)));
-            }),
-        ];
-        bench.case(format!("{count} × 153"), (count, "instance"), 4 * words as u64, contenders)?;
+        let name = format!("{count} × 153");
+        measure(bench, name, (count, "instance"), words, &|encoder| job.record(encoder), || {
+            bounds(&model_matrices, &bone_radii)
+        })?;
     }
     Ok(())
 }

@@ -16,9 +16,9 @@ use relievo::gpu::Buffer;
 use crate::cases::animation::gate::random_state;
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_clips, random_crowd};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases};
 
 /// The cases cover sequences of frames, budgets from 0 to more than all bones, and weights of every size, also
 /// equal ones, which give many bones the same rank. The integer results must be equal to the bit.
@@ -62,10 +62,10 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             // No bone is sampled ahead.
             expected.resize(2 * count * order.words(), 0);
             let name = format!("{most} of {bones} bones × {count}, frame {frame}");
-            cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected)).await?);
+            cases.exact(name, &output, &expected).await?;
         }
         let name = format!("{bones} bones × {count}, sums of motion");
-        cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled)).await?);
+        cases.exact(name, &sums, &sampled).await?;
     }
     Ok(())
 }
@@ -97,21 +97,17 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let most = pairs as u32 / 2;
         let job = BudgetPass::new(gpu, &table, most)?.prepare(gpu, &scene.crowd, &state, &active)?;
         // For each bone, the kernel reads four words, writes and reads half a word of ranks, and writes a word.
-        let copied = copy_of(gpu, 3 * pairs)?;
         // Every bone has missed motion each time.
         let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
-        let contenders = vec![
-            Contender::recorded(Backend::Gpu, |encoder| {
-                encoder.copy_buffer_to_buffer(before.raw(), 0, state.sampled.raw(), 0, before.bytes());
-                job.record(encoder);
-            }),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                sampled.fill(0);
-                drop(std::hint::black_box(budget(&table, most, &lods, &clip_clocks, &mut sampled)));
-            }),
-        ];
-        bench.case(format!("{count} × 153, half"), (pairs, "bone"), 24 * pairs as u64, contenders)?;
+        let name = format!("{count} × 153, half");
+        let record = |encoder: &mut wgpu::CommandEncoder| {
+            encoder.copy_buffer_to_buffer(before.raw(), 0, state.sampled.raw(), 0, before.bytes());
+            job.record(encoder);
+        };
+        measure(bench, name, (pairs, "bone"), 6 * pairs, &record, || {
+            sampled.fill(0);
+            budget(&table, most, &lods, &clip_clocks, &mut sampled)
+        })?;
     }
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use relievo::Error;
 use relievo::animation::active::Active;
+use relievo::animation::compact::CompactPass;
 use relievo::animation::compact::reference::{Work, accumulated, compact};
-use relievo::animation::compact::{CompactPass, Stages};
 use relievo::animation::crowd::Crowd;
 use relievo::animation::gate::reference::Chosen;
 use relievo::animation::order::Order;
@@ -11,10 +11,10 @@ use relievo::animation::updated_bones::UpdatedBones;
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::{Comparison, exact};
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// The cases cover no bit, all, every third, single ones and whole instances; half of the bits ahead; and more
 /// instances than the sums have threads.
@@ -33,9 +33,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let ahead = bits.iter().map(|word| word & draw.word()).collect();
             let chosen = Chosen { bits, ahead };
             let name = format!("{bones} bones × {count}, {kind}");
-            for stages in [Stages::Three, Stages::One] {
-                add(cases, &format!("{name}, {stages:?}"), &order, &crowd, &chosen, stages).await?;
-            }
+            add(cases, &name, &order, &crowd, &chosen).await?;
         }
     }
     Ok(())
@@ -67,7 +65,6 @@ async fn add(
     order: &Order,
     crowd: &Crowd,
     chosen: &Chosen,
-    stages: Stages,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let mut active = Active::new(gpu, order, crowd)?;
@@ -84,21 +81,18 @@ async fn add(
     active.updated_bones = UpdatedBones::over(updated_bones.buffer.clone());
     active.pairs.pairs = pairs.buffer.clone();
     active.instances = instances.buffer.clone();
-    let job = CompactPass::new(gpu)?.prepare_stages(gpu, crowd, &active, stages)?;
+    let job = CompactPass::new(gpu)?.prepare(gpu, crowd, &active)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected = compact(order, chosen);
     let Work { pairs: expected_pairs, instances: expected_instances, .. } = &expected;
     let listed = padded(expected_pairs, crowd.pairs());
     let shown = padded(expected_instances, crowd.len());
-    cases.add(format!("{name}: pairs"), pairs.check(gpu, |actual| exact(actual, &listed)).await?);
-    cases.add(format!("{name}: instances"), instances.check(gpu, |actual| exact(actual, &shown)).await?);
+    cases.exact(format!("{name}: pairs"), &pairs, &listed).await?;
+    cases.exact(format!("{name}: instances"), &instances, &shown).await?;
     let all = [chosen.words(), expected.updated_bones.clone()].concat();
-    cases.add(format!("{name}: bits"), bits.check(gpu, |actual| exact(actual, &all)).await?);
+    cases.exact(format!("{name}: bits"), &bits, &all).await?;
     let accumulated = accumulated(&before, &expected.updated_bones);
-    cases.add(
-        format!("{name}: updated bones"),
-        updated_bones.check(gpu, |actual| exact(actual, &accumulated)).await?,
-    );
+    cases.exact(format!("{name}: updated bones"), &updated_bones, &accumulated).await?;
     cases.add(format!("{name}: dispatches"), dispatches(gpu, order, crowd, &active, &expected).await?);
     Ok(())
 }
@@ -166,14 +160,10 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             let chosen: u32 = bits.bits.iter().map(|word| word.count_ones()).sum();
             // The kernel reads bits twice and writes them once, and writes a pair and its slot.
             let words = (3 * bits.bits.len() + 2 * chosen as usize) / 2;
-            let copied = copy_of(gpu, words)?;
-            let contenders = vec![
-                Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
-                Contender::job(Backend::Copy, &copied),
-                Contender::host(Backend::Reference, || drop(std::hint::black_box(compact(&order, &bits)))),
-            ];
             let name = format!("{count} × 153, {fraction}");
-            bench.case(name, (scene.pairs(), "bone"), 8 * words as u64, contenders)?;
+            measure(bench, name, (scene.pairs(), "bone"), 2 * words, &|encoder| job.record(encoder), || {
+                compact(&order, &bits)
+            })?;
         }
     }
     Ok(())

@@ -11,10 +11,9 @@ use relievo::animation::{Lod, Sampling};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};
-use crate::cases::terrain::copy_of;
-use crate::harness::compare::exact;
+use crate::cases::measure;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// The cases cover no driven bone, one, all bones of some instances, and random ones; a third of the instances is hidden, and
 /// half of the bits are ahead.
@@ -48,8 +47,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let mut expected = before;
             let (sampled, rest) = expected.split_at_mut(words);
             drive(&driven, order.words(), &hidden, [sampled, &mut rest[..words]]);
-            let comparison = bits.check(gpu, |found| exact(found, &expected)).await?;
-            cases.add(format!("{bones} bones × {count}, {kind}"), comparison);
+            cases.exact(format!("{bones} bones × {count}, {kind}"), &bits, &expected).await?;
         }
     }
     Ok(())
@@ -89,19 +87,14 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, &driven, &scene.crowd, &state, &active)?;
         // The kernel reads a word of driven bones, the flags of an instance, and reads and writes two words of bits.
         let words = 4 * driven.len();
-        let copied = copy_of(gpu, words)?;
         let hidden = vec![false; count];
         let mut bits = vec![0; count * order.words()];
         let mut ahead = bits.clone();
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                drive(&driven, order.words(), &hidden, [&mut bits, &mut ahead]);
-                std::hint::black_box(&mut bits);
-            }),
-        ];
-        bench.case(format!("{count} × 153"), (8 * count, "bone"), 8 * words as u64, contenders)?;
+        let name = format!("{count} × 153");
+        measure(bench, name, (8 * count, "bone"), 2 * words, &|encoder| job.record(encoder), || {
+            drive(&driven, order.words(), &hidden, [&mut bits, &mut ahead]);
+            std::hint::black_box(&mut bits);
+        })?;
     }
     Ok(())
 }
@@ -109,6 +102,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::harness::compare::exact;
 
     /// Every word that differs is found: a bone that is not added, one that stays ahead, and one of a hidden instance.
     #[test]

@@ -19,9 +19,9 @@ use relievo::gpu::Buffer;
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_clips, random_crowd};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases};
 
 /// The cases cover every gate over sequences of frames, with integers of every size: Ω from 0 to 1, clip clocks
 /// at both ends of rows, ticks before and after they wrap, and all update reasons. The integer results must be
@@ -96,10 +96,10 @@ async fn add(
         gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = gate(mode, &frame, &lods, &clip_clocks, &mut sampled).words();
         let name = format!("{} bones × {count}, {}, frame {number}", crowd.bones, mode.name());
-        cases.add(name, output.check(gpu, |actual| compare::exact(actual, &expected)).await?);
+        cases.exact(name, &output, &expected).await?;
     }
     let name = format!("{} bones × {count}, {}, sums of motion", crowd.bones, mode.name());
-    cases.add(name, sums.check(gpu, |actual| compare::exact(actual, &sampled)).await?);
+    cases.exact(name, &sums, &sampled).await?;
     Ok(())
 }
 
@@ -144,11 +144,10 @@ pub(crate) fn random_state(
 /// # Errors
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
-    let makers = [Scene::uniform, Scene::random, Scene::skip_period, Scene::bounded];
-    for maker in makers {
-        for count in CROWDS {
-            let scene = Scene::new(bench.gpu, count)?;
-            case(bench, &scene, &maker(&scene)?)?;
+    for count in CROWDS {
+        let scene = Scene::new(bench.gpu, count)?;
+        for mode in &gates(&scene.skeleton, &scene.set, &[&scene.clip])?[1..] {
+            case(bench, &scene, mode)?;
         }
     }
     Ok(())
@@ -175,48 +174,17 @@ fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> 
         Gate::SkipPeriod { .. } => pairs / 4,
         _ => 4 * count,
     };
-    let copied = copy_of(gpu, words.max(1))?;
     // At each time every bone has missed some motion.
     let (before, mut sampled) = (Buffer::from_slice(gpu, "before", &vec![0_u32; pairs])?, vec![0; pairs]);
-    let contenders = vec![
-        Contender::recorded(Backend::Gpu, |encoder| {
-            if matches!(mode, Gate::Bounded(_)) {
-                encoder.copy_buffer_to_buffer(before.raw(), 0, state.sampled.raw(), 0, before.bytes());
-            }
-            job.record(encoder);
-        }),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, || {
-            sampled.fill(0);
-            drop(std::hint::black_box(gate(mode, &frame, &lods, &clip_clocks, &mut sampled)));
-        }),
-    ];
-    bench.case(format!("{count} × 153, {}", mode.name()), (pairs, "bone"), 8 * words as u64, contenders)
-}
-
-impl Scene {
-    fn animated_bones(&self) -> Result<AnimatedBones, Error> {
-        Ok(AnimatedBones::new(&self.order(), &self.set, &[&self.clip])?)
-    }
-
-    /// The uniform gate, which samples all bones of an instance together.
-    pub(crate) fn uniform(&self) -> Result<Gate, Error> {
-        Ok(Gate::Uniform(self.animated_bones()?))
-    }
-
-    fn random(&self) -> Result<Gate, Error> {
-        Ok(Gate::Random(self.animated_bones()?))
-    }
-
-    fn skip_period(&self) -> Result<Gate, Error> {
-        let priorities = [self.priorities()?];
-        let table = PriorityTable::new(&self.order(), &self.set, &[&self.clip], &priorities)?;
-        Ok(Gate::SkipPeriod { table, period: 65536 })
-    }
-
-    fn bounded(&self) -> Result<Gate, Error> {
-        let (clips, bone_radii) = ([&self.clip], vec![0.1; self.skeleton.len()]);
-        let path = RotationPath::Slerp;
-        Ok(Gate::Bounded(BoundTable::new(&self.skeleton, &self.set, &clips, &bone_radii, path)?))
-    }
+    let name = format!("{count} × 153, {}", mode.name());
+    let record = |encoder: &mut wgpu::CommandEncoder| {
+        if matches!(mode, Gate::Bounded(_)) {
+            encoder.copy_buffer_to_buffer(before.raw(), 0, state.sampled.raw(), 0, before.bytes());
+        }
+        job.record(encoder);
+    };
+    measure(bench, name, (pairs, "bone"), 2 * words.max(1), &record, || {
+        sampled.fill(0);
+        gate(mode, &frame, &lods, &clip_clocks, &mut sampled)
+    })
 }

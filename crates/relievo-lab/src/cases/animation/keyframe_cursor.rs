@@ -16,10 +16,10 @@ use relievo::asset::keyframe::KeyframeCursor;
 use crate::cases::animation::edges::{ELAPSED, edges};
 use crate::cases::animation::scene::{CROWDS, ELAPSED as MEASURED, Scene};
 use crate::cases::animation::{SIZES, random_crowd, random_instances};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// The cases cover every kind of timeline, loops, clamps, reverse play, and clips of 0 seconds, at the start
 /// and later. Cursors of timelines that a clip does not have must stay unchanged.
@@ -48,8 +48,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let is_used = |at: usize| {
                 at < used && at % room < set.clips()[instances[at / room].clip as usize].timelines as usize
             };
-            let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used)).await?;
-            cases.add(format!("{bones} bones × {count} after {elapsed} s"), comparison);
+            let name = format!("{bones} bones × {count} after {elapsed} s");
+            cases.check(name, &output, |actual| compare_cursors(actual, &expected, is_used)).await?;
         }
     }
     at_edges(cases, &pass).await?;
@@ -112,8 +112,7 @@ async fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(
             is_listed && at % room < set.clips()[playing.clip as usize].timelines as usize
         };
         let name = format!("every third of {count}, {bones} bones, {} layers", 1 + layers.len());
-        let comparison = output.check(gpu, |actual| compare_cursors(actual, &expected, is_used)).await?;
-        cases.add(name, comparison);
+        cases.check(name, &output, |actual| compare_cursors(actual, &expected, is_used)).await?;
     }
     Ok(())
 }
@@ -199,16 +198,11 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, &scene.clips, &scene.crowd)?;
         job.set(gpu, MEASURED)?;
         // The kernel reads an instance and four times, and writes a cursor: 10 words.
-        let copied = copy_of(gpu, 5 * count)?;
         let mut cursors = vec![KeyframeCursor::default(); count];
-        let contenders = vec![
-            Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                cursors_into(&scene.set, &scene.instances, MEASURED, black_box(&mut cursors));
-            }),
-        ];
-        bench.case(format!("{count} instances"), (count, "instance"), 40 * count as u64, contenders)?;
+        let name = format!("{count} instances");
+        measure(bench, name, (count, "instance"), 10 * count, &|encoder| job.record(encoder), || {
+            cursors_into(&scene.set, &scene.instances, MEASURED, black_box(&mut cursors));
+        })?;
     }
     Ok(())
 }

@@ -4,14 +4,14 @@ use std::hint::black_box;
 
 use relievo::Error;
 use relievo::animation::active::Active;
+use relievo::animation::compact::CompactPass;
 use relievo::animation::compact::reference::compact;
-use relievo::animation::compact::{CompactPass, Stages};
 use relievo::animation::crowd::{Crowd, packed};
 use relievo::animation::gate::reference::Chosen;
 use relievo::animation::local_to_model::reference::{
     local_to_model, local_to_model_into, local_to_model_updated,
 };
-use relievo::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass, Walk};
+use relievo::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass};
 use relievo::animation::model_matrices::ModelMatrices;
 use relievo::animation::order::Order;
 use relievo::animation::sample::reference::sample_set;
@@ -65,20 +65,24 @@ async fn add(
     crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
     let expected: Vec<Affine> =
         locals.chunks(bones).flat_map(|locals| local_to_model(skeleton, locals)).collect();
-    let flat = |model_matrices: &[Affine]| model_matrices.as_flattened().as_flattened().to_vec();
-    let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
+    let bound = bound(skeleton, &expected);
+    let output = Poisoned::<Affine>::new(gpu, bones * count)?;
+    crowd.model_matrices = ModelMatrices::new(&output.buffer);
+    let job = LocalToModelPass::new(gpu)?.prepare(gpu, skeleton, &crowd)?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
+    let near = |actual: &[Affine]| compare::absolute(flat(actual), flat(&expected), bound);
+    cases.check(format!("{name}, {bones} bones × {count}"), &output, near).await
+}
+
+fn flat(model_matrices: &[Affine]) -> &[f32] {
+    model_matrices.as_flattened().as_flattened()
+}
+
+/// How far matrices may be from the expected ones.
+fn bound(skeleton: &Skeleton, expected: &[Affine]) -> f32 {
+    let largest = flat(expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
     let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
-    let bound = LOCAL_TO_MODEL_BOUND * deepest as f32 * largest;
-    for walk in [Walk::Levels, Walk::Whole] {
-        let output = Poisoned::<Affine>::new(gpu, bones * count)?;
-        crowd.model_matrices = ModelMatrices::new(&output.buffer);
-        let job = LocalToModelPass::with_walk(gpu, walk)?.prepare(gpu, skeleton, &crowd)?;
-        gpu.submit("verify", |encoder| job.record(encoder))?;
-        let comparison =
-            output.check(gpu, |actual| compare::absolute(&flat(actual), &flat(&expected), bound)).await?;
-        cases.add(format!("{name}, {bones} bones × {count}, {walk:?}"), comparison);
-    }
-    Ok(())
+    LOCAL_TO_MODEL_BOUND * deepest as f32 * largest
 }
 
 async fn add_updated(
@@ -111,46 +115,33 @@ async fn add_updated(
     {
         local_to_model_updated(&order, updated_bones, locals, model_matrices);
     }
-    let flat = |model_matrices: &[Affine]| model_matrices.as_flattened().as_flattened().to_vec();
-    let largest = flat(&expected).iter().fold(1.0, |a: f32, b| a.max(b.abs()));
-    let deepest = skeleton.depths().iter().max().map_or(1, |depth| depth + 1);
     let is_kept = |pair: usize, actual: &[Affine]| {
         let slot =
             order.slots.iter().position(|slot| slot.bone as usize == pair % bones).expect("every bone");
         let word = work.updated_bones[pair / bones * order.words() + slot / 32];
         word >> (slot % 32) & 1 == 1 || actual[pair] == stale[pair]
     };
-    for walk in [Walk::Levels, Walk::Whole] {
-        let mut crowd = Crowd::new(gpu, &set, &instances)?;
-        crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
-        let output = Poisoned::<Affine>::new(gpu, bones * count)?;
-        output.buffer.write(gpu, &stale)?;
-        crowd.model_matrices = ModelMatrices::new(&output.buffer);
-        let active = Active::new(gpu, &order, &crowd)?;
-        active.bits.write(gpu, &chosen.bits)?;
-        // Bones that frames before updated are not updated again.
-        active.updated_bones.write(gpu, &vec![u32::MAX; chosen.bits.len()])?;
-        let lists = CompactPass::new(gpu)?.prepare_stages(gpu, &crowd, &active, Stages::Three)?;
-        let job = LocalToModelPass::with_walk(gpu, walk)?.prepare_active(gpu, skeleton, &crowd, &active)?;
-        gpu.submit("verify", |encoder| {
-            lists.record(encoder);
-            job.record(encoder);
-        })?;
-        let comparison = output
-            .check(gpu, |actual| match (0..stale.len()).find(|pair| !is_kept(*pair, actual)) {
-                Some(pair) => {
-                    compare::Comparison::failed(stale.len(), format!("pair {pair} is clean, and changed"))
-                }
-                None => compare::absolute(
-                    &flat(actual),
-                    &flat(&expected),
-                    LOCAL_TO_MODEL_BOUND * deepest as f32 * largest,
-                ),
-            })
-            .await?;
-        cases.add(format!("updated bones, {bones} bones × {count}, {walk:?}"), comparison);
-    }
-    Ok(())
+    let mut crowd = Crowd::new(gpu, &set, &instances)?;
+    crowd.locals.write(gpu, &locals.iter().map(packed).collect::<Vec<_>>())?;
+    let output = Poisoned::<Affine>::new(gpu, bones * count)?;
+    output.buffer.write(gpu, &stale)?;
+    crowd.model_matrices = ModelMatrices::new(&output.buffer);
+    let active = Active::new(gpu, &order, &crowd)?;
+    active.bits.write(gpu, &chosen.bits)?;
+    // Bones that frames before updated are not updated again.
+    active.updated_bones.write(gpu, &vec![u32::MAX; chosen.bits.len()])?;
+    let lists = CompactPass::new(gpu)?.prepare(gpu, &crowd, &active)?;
+    let job = LocalToModelPass::new(gpu)?.prepare_active(gpu, skeleton, &crowd, &active)?;
+    gpu.submit("verify", |encoder| {
+        lists.record(encoder);
+        job.record(encoder);
+    })?;
+    let bound = bound(skeleton, &expected);
+    let near = |actual: &[Affine]| match (0..stale.len()).find(|pair| !is_kept(*pair, actual)) {
+        Some(pair) => compare::Comparison::failed(stale.len(), format!("pair {pair} is clean, and changed")),
+        None => compare::absolute(flat(actual), flat(&expected), bound),
+    };
+    cases.check(format!("updated bones, {bones} bones × {count}"), &output, near).await
 }
 
 /// Scales are close to 1, so that long chains stay in range.

@@ -4,7 +4,6 @@ pub mod bounds;
 pub mod budget;
 pub mod clip_clock;
 pub mod compact;
-pub mod decide;
 pub mod drive;
 pub mod edges;
 pub mod frame;

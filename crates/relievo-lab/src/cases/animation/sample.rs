@@ -21,7 +21,7 @@ use crate::cases::animation::plain_soa::PlainSoa;
 use crate::cases::animation::scene::{CROWDS, KEYS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd, random_instances};
 use crate::cases::baseline::gather::evenly_keyed;
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::LeftOut;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Backend, Bench, Cases, Contender, compare};
@@ -220,13 +220,8 @@ impl<'a> Case<'a> {
         // A pair that is not listed stays unchanged, whether it is left out or not.
         let is_left_out: Vec<bool> =
             self.torn.iter().enumerate().map(|(pair, torn)| *torn && written(pair).is_some()).collect();
-        let comparison = self
-            .output
-            .check(self.gpu, |actual: &[Local]| {
-                compared(actual, &expected, &is_left_out, self.bound * largest)
-            })
-            .await;
-        Ok(comparison?)
+        let near = |actual: &[Local]| compared(actual, &expected, &is_left_out, self.bound * largest);
+        Ok(self.output.check(self.gpu, near).await?)
     }
 }
 
@@ -275,16 +270,16 @@ fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
     let chosen: Vec<u32> = (0..scene.pairs() as u32).step_by(4).collect();
     active.write(gpu, &chosen)?;
     let job = pass.prepare_active(gpu, &scene.clips, &scene.crowd, &active)?;
-    let copied = copy_of(gpu, 16 * chosen.len())?;
     let cursors = &scene.cursors[..scene.cursors.len() / 4];
     let mut locals = vec![Transform::IDENTITY; cursors.len() * scene.set.bones()];
-    let contenders = vec![
-        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, || reference(&scene, cursors, black_box(&mut locals))),
-    ];
-    let bytes = 128 * chosen.len() as u64;
-    bench.case("a quarter of 1000 × 153", (chosen.len(), "bone"), bytes, contenders)
+    measure(
+        bench,
+        "a quarter of 1000 × 153",
+        (chosen.len(), "bone"),
+        32 * chosen.len(),
+        &|encoder| job.record(encoder),
+        || reference(&scene, cursors, black_box(&mut locals)),
+    )
 }
 
 /// Two layers on all bones; the upper one is 0.3 s later and has half the weight.
@@ -299,17 +294,14 @@ fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pairs = crowd.pairs();
     let job = SamplePass::layered(gpu, RotationPath::Slerp)?.prepare(gpu, &scene.clips, &crowd)?;
     // The kernel reads four keys of 10 words and writes 10 words.
-    let copied = copy_of(gpu, 25 * pairs)?;
-    let reference = || {
-        let (set, base) = (&scene.set, &scene.instances);
-        drop(std::hint::black_box(sample_layers(set, base, &layers, &found, RotationPath::Slerp)));
-    };
-    let contenders = vec![
-        Contender::job(Backend::Gpu, &job),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, reference),
-    ];
-    bench.case("two clips blended, 1000 × 153", (pairs, "bone"), 200 * pairs as u64, contenders)
+    measure(
+        bench,
+        "two clips blended, 1000 × 153",
+        (pairs, "bone"),
+        50 * pairs,
+        &|encoder| job.record(encoder),
+        || sample_layers(&scene.set, &scene.instances, &layers, &found, RotationPath::Slerp),
+    )
 }
 
 #[cfg(test)]

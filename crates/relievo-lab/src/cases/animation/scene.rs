@@ -7,7 +7,6 @@ use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::keyframe_cursor::reference::cursors;
 use relievo::animation::order::Order;
-use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::animation::sample::reference::sample;
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::{KeyframeCursor, RotationPath};
@@ -54,11 +53,6 @@ impl Scene {
 
     pub(crate) fn order(&self) -> Order {
         Order::new(&self.skeleton)
-    }
-
-    pub(crate) fn priorities(&self) -> Result<Priorities, Error> {
-        let user = vec![USER_DEFAULT; self.skeleton.len()];
-        Ok(Priorities::new(&self.skeleton, &self.clip, true, &Weights::default(), &user)?)
     }
 
     /// A job that moves what sampling reads and writes.

@@ -11,10 +11,10 @@ use relievo::skinning::instance_lod::InstanceLod;
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::random_instances;
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// How far rounding may move the quotients: products round by 2⁻²³, divisions by 5 · 2⁻²⁴.
 const QUOTIENT: f32 = 1e-6;
@@ -52,11 +52,10 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let allowed: Vec<(f32, bool)> =
                 allowed[of_object.clone()].iter().copied().zip(all[of_object].iter().map(carries)).collect();
             let name = format!("{instances} instances, {levels} levels");
-            let gates = lods.check(gpu, |lods| compared_lods(&params, &allowed, lods)).await?;
-            cases.add(format!("{name}: gates"), gates);
-            let skins =
-                instance_lods.check(gpu, |lods| compared_instance_lods(&params, &allowed, lods)).await?;
-            cases.add(format!("{name}: skins"), skins);
+            let gates = |found: &[PackedLod]| compared_lods(&params, &allowed, found);
+            cases.check(format!("{name}: gates"), &lods, gates).await?;
+            let skins = |found: &[InstanceLod]| compared_instance_lods(&params, &allowed, found);
+            cases.check(format!("{name}: skins"), &instance_lods, skins).await?;
         }
     }
     Ok(())
@@ -123,7 +122,7 @@ fn compared_lods(params: &AssignParams, allowed: &[(f32, bool)], found: &[Packed
         let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
             && PackedLod { allowed: right.allowed, ..*found } == right;
         let error = f64::from(found.allowed.abs_diff(right.allowed));
-        Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: false }
+        Judgement::exact(is_right, error, false)
     };
     let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
     each(&judgements, "units", MAY_TOUCH, |at| {
@@ -145,7 +144,7 @@ fn compared_instance_lods(
             // Fades are whole steps, exact in f32.
             && libm::truncf(64.0 * found.influence_fade) == 64.0 * found.influence_fade;
         let error = f64::from((found.influence_fade - right.influence_fade).abs());
-        Judgement { ratio: if is_right { 0.0 } else { f64::INFINITY }, error, touches: least != largest }
+        Judgement::exact(is_right, error, least != largest)
     };
     let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
     each(&judgements, "fade", MAY_TOUCH, |at| {
@@ -161,18 +160,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = AssignPass::new(gpu)?;
     for count in [1_000, 100_000_usize] {
-        let params = AssignParams {
-            first: 0,
-            instances: count as u32,
-            levels: 8,
-            mesh_fraction: 0.5,
-            bone_fraction: 0.3,
-            influence_fraction: 0.2,
-            unit: 1e-6,
-            stray: 0.1,
-            max_influences: 4,
-            errors: [Vec4::new(0.0, 0.01, 0.02, 0.04), Vec4::new(0.08, 0.16, 0.32, 0.64)],
-        };
+        let params = params(0, count as u32, 8);
         let allowed: Vec<f32> =
             (0..count).map(|at| if at % 4 == 0 { -1.0 } else { 1e-3 * (at % 1024) as f32 }).collect();
         let buffers = AssignBuffers {
@@ -184,16 +172,10 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers, count as u32)?;
         // The kernel reads two words and writes a Lod and an InstanceLod.
         let words = 9 * count;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let all = allowed.iter().map(|allowed| assign(&params, *allowed, false));
-                drop(std::hint::black_box(all.collect::<Vec<_>>()));
-            }),
-        ];
-        bench.case(format!("{count} instances"), (count, "instance"), 4 * words as u64, contenders)?;
+        let name = format!("{count} instances");
+        measure(bench, name, (count, "instance"), words, &|encoder| job.record(encoder), || {
+            allowed.iter().map(|allowed| assign(&params, *allowed, false)).collect::<Vec<_>>()
+        })?;
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use relievo::Error;
 use relievo::animation::ModelMatrices;
 use relievo::asset::Affine;
 use relievo::asset::transform::AFFINE_IDENTITY;
-use relievo::gpu::{Buffer, Gpu, Uniform};
+use relievo::gpu::{Buffer, Gpu, Job, Uniform};
 use relievo::lod::attach::reference::{attached, last_local, local, product};
 use relievo::lod::attach::{
     ATTACH_BOUND, AttachBuffers, AttachParams, AttachPass, Attachment, KeptBone, NO_MESH,
@@ -14,10 +14,10 @@ use relievo::lod::{SceneInstance, SelectView};
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::{CELL, frame, random_instances};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// Bones of the characters.
 const BONES: u32 = 5;
@@ -105,24 +105,34 @@ impl Case {
         Self { params, attachments, instances, last_instances, allowed, model_matrices, kept }
     }
 
-    async fn compared(&self, gpu: &Gpu, view: &SelectView) -> Result<Comparison, Error> {
-        let rows = Poisoned::<[f32; 4]>::new(gpu, 6 * INSTANCES as usize)?;
-        // Room for more than there are.
+    /// The rows of attached meshes, prepared. There is room for more than there are.
+    fn prepared(
+        &self,
+        gpu: &Gpu,
+        pass: &AttachPass,
+        view: &SelectView,
+        (rows, kept): (&Buffer<[f32; 4]>, &Buffer<KeptBone>),
+    ) -> Result<Job, Error> {
         let mut room = self.attachments.clone();
         room.resize(room.len() + ROOM as usize, Attachment { mesh: 0, ..FREE });
         let matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &self.model_matrices)?);
-        let kept = Buffer::from_slice(gpu, "kept", self.kept.as_flattened())?;
         let buffers = AttachBuffers {
             view: &Uniform::new(gpu, "view", view)?,
             attachments: &Buffer::from_slice(gpu, "attachments", &room)?,
             model_matrices: &matrices.buffer().cast(),
             instances: &Buffer::from_slice(gpu, "instances", &self.instances)?,
             allowed: &Buffer::from_slice(gpu, "allowed", &self.allowed)?,
-            rows: &rows.buffer,
+            rows,
             last_instances: &Buffer::from_slice(gpu, "last instances", &self.last_instances)?,
-            kept: &kept,
+            kept,
         };
-        let job = AttachPass::new(gpu)?.prepare(gpu, &Uniform::new(gpu, "params", &self.params)?, buffers)?;
+        pass.prepare(gpu, &Uniform::new(gpu, "params", &self.params)?, buffers)
+    }
+
+    async fn compared(&self, gpu: &Gpu, view: &SelectView) -> Result<Comparison, Error> {
+        let rows = Poisoned::<[f32; 4]>::new(gpu, 6 * INSTANCES as usize)?;
+        let kept = Buffer::from_slice(gpu, "kept", self.kept.as_flattened())?;
+        let job = self.prepared(gpu, &AttachPass::new(gpu)?, view, (&rows.buffer, &kept))?;
         gpu.submit("verify", |encoder| {
             job.record(encoder);
             job.record(encoder);
@@ -188,12 +198,7 @@ impl Case {
         let judge = |(at, entry): (usize, &f32)| {
             let (instance, row, column) = (at / 12, at / 4 % 3, at % 4);
             let Some((right, sizes)) = &expected[instance] else {
-                let is_right = entry.to_bits() == POISON;
-                return Judgement {
-                    ratio: if is_right { 0.0 } else { f64::INFINITY },
-                    error: 0.0,
-                    touches: false,
-                };
+                return Judgement::exact(entry.to_bits() == POISON, 0.0, false);
             };
             let error = (f64::from(*entry) - f64::from(right[row][column])).abs();
             let bound = f64::from(ATTACH_BOUND) * f64::from(sizes[row][column]);
@@ -246,8 +251,6 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let view = frame()?[0].1;
     for count in [1_000, 10_000_u32] {
         let instances = random_instances(1, 2 * count as usize);
-        let allowed = vec![0.5; instances.len()];
-        let matrices = vec![AFFINE_IDENTITY; (count * MEASURED_BONES) as usize];
         let attachment = |character: u32| Attachment {
             mesh: count + character,
             character,
@@ -255,42 +258,34 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             key: character,
             offset: AFFINE_IDENTITY,
         };
-        let attachments: Vec<Attachment> = (0..count).map(attachment).collect();
-        let params = AttachParams {
-            attached: count,
-            bones: MEASURED_BONES,
-            first: 0,
-            last_rows: 0,
-            frame: 1,
-            last_frame: 0,
+        let case = Case {
+            params: AttachParams {
+                attached: count,
+                bones: MEASURED_BONES,
+                first: 0,
+                last_rows: 0,
+                frame: 1,
+                last_frame: 0,
+            },
+            attachments: (0..count).map(attachment).collect(),
+            allowed: vec![0.5; instances.len()],
+            model_matrices: vec![AFFINE_IDENTITY; (count * MEASURED_BONES) as usize],
+            last_instances: instances.clone(),
+            instances,
+            kept: Vec::new(),
         };
-        let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
-        let of_scene = Buffer::from_slice(gpu, "instances", &instances)?;
-        let buffers = AttachBuffers {
-            view: &Uniform::new(gpu, "view", &view)?,
-            attachments: &Buffer::from_slice(gpu, "attachments", &attachments)?,
-            model_matrices: &model_matrices.buffer().cast(),
-            instances: &of_scene,
-            last_instances: &of_scene,
-            kept: &Buffer::new(gpu, "kept", 2 * attachments.len())?,
-            allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
-            rows: &Buffer::new(gpu, "rows", 3 * instances.len())?,
-        };
-        let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers)?;
+        let (entries, rows) = ((count + ROOM) as usize, 6 * case.instances.len());
+        let outputs = (&Buffer::new(gpu, "rows", rows)?, &Buffer::new(gpu, "kept", 2 * entries)?);
+        let job = case.prepared(gpu, &pass, &view, outputs)?;
         // The kernel reads an attachment, a bone, an instance and what it is allowed, and writes three rows.
         let words = (16 + 12 + 24 + 1 + 12) * count as usize;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let scene = (&instances[..], &allowed[..]);
-                let of = |of| attached(&params, of, view.cell, scene, &local(&params, of, &matrices));
-                let all = attachments.iter().map(of);
-                drop(std::hint::black_box(all.collect::<Vec<_>>()));
-            }),
-        ];
-        bench.case(format!("{count} meshes"), (count as usize, "mesh"), 4 * words as u64, contenders)?;
+        let name = format!("{count} meshes");
+        measure(bench, name, (count as usize, "mesh"), words, &|encoder| job.record(encoder), || {
+            let Case { params, attachments, instances, allowed, model_matrices, .. } = &case;
+            let scene = (&instances[..], &allowed[..]);
+            let of = |of| attached(params, of, view.cell, scene, &local(params, of, model_matrices));
+            attachments.iter().map(of).collect::<Vec<_>>()
+        })?;
     }
     Ok(())
 }

@@ -1,16 +1,16 @@
 //! Parity and benchmark cases of `kernels/lod/single.wgsl`.
 
 use relievo::Error;
-use relievo::gpu::Buffer;
+use relievo::gpu::{Buffer, Gpu, Job};
 use relievo::lod::single::reference::{draws, entries};
 use relievo::lod::single::{Single, SingleBuffers, SinglePass};
 use relievo::lod::{OBJECT_LISTS, SceneDraw};
 use relievo::shared::lod::object::{decision_word, list_entry_instance};
 
 use crate::cases::animation::Draw;
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// Random singles with decisions of which a part sees nothing, and random draws.
 pub(crate) struct Given {
@@ -48,6 +48,23 @@ impl Given {
         }
     }
 
+    /// The draws and the lists of one, prepared.
+    fn prepared(
+        &self,
+        gpu: &Gpu,
+        pass: &SinglePass,
+        (draws, entries): (&Buffer<SceneDraw>, &Buffer<u32>),
+    ) -> Result<Job, Error> {
+        let buffers = SingleBuffers {
+            singles: &Buffer::from_slice(gpu, "singles", &self.singles)?,
+            decisions: &Buffer::from_slice(gpu, "decisions", &self.decisions)?,
+            arguments: &Buffer::from_slice(gpu, "arguments", &self.arguments)?,
+            draws,
+            entries,
+        };
+        pass.prepare(gpu, buffers, self.singles.len() as u32)
+    }
+
     /// What the reference writes.
     pub(crate) fn expected(&self) -> Vec<SceneDraw> {
         draws(&self.singles, &self.decisions, &self.arguments)
@@ -65,21 +82,13 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let given = Given::new(count);
         let output = Poisoned::<SceneDraw>::new(gpu, count)?;
         let lists = Poisoned::<u32>::new(gpu, count)?;
-        let buffers = SingleBuffers {
-            singles: &Buffer::from_slice(gpu, "singles", &given.singles)?,
-            decisions: &Buffer::from_slice(gpu, "decisions", &given.decisions)?,
-            arguments: &Buffer::from_slice(gpu, "arguments", &given.arguments)?,
-            draws: &output.buffer,
-            entries: &lists.buffer,
-        };
-        let job = pass.prepare(gpu, buffers, count as u32)?;
+        let job = given.prepared(gpu, &pass, (&output.buffer, &lists.buffer))?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
         let expected = given.expected();
-        let comparison = output.check(gpu, |actual| compare::exact(words(actual), words(&expected))).await?;
-        cases.add(format!("{count} draws"), comparison);
+        let same = |actual: &[SceneDraw]| compare::exact(words(actual), words(&expected));
+        cases.check(format!("{count} draws"), &output, same).await?;
         let expected = entries(&given.singles, &given.decisions);
-        let comparison = lists.check(gpu, |actual| compare::exact(actual, &expected)).await?;
-        cases.add(format!("{count} lists of one"), comparison);
+        cases.exact(format!("{count} lists of one"), &lists, &expected).await?;
     }
     Ok(())
 }
@@ -97,26 +106,14 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pass = SinglePass::new(gpu)?;
     for count in [1_000, 100_000] {
         let given = Given::new(count);
-        let buffers = SingleBuffers {
-            singles: &Buffer::from_slice(gpu, "singles", &given.singles)?,
-            decisions: &Buffer::from_slice(gpu, "decisions", &given.decisions)?,
-            arguments: &Buffer::from_slice(gpu, "arguments", &given.arguments)?,
-            draws: &Buffer::<SceneDraw>::new(gpu, "draws", count)?,
-            entries: &Buffer::new(gpu, "entries", count)?,
-        };
-        let job = pass.prepare(gpu, buffers, count as u32)?;
+        let outputs = (&Buffer::new(gpu, "draws", count)?, &Buffer::new(gpu, "entries", count)?);
+        let job = given.prepared(gpu, &pass, outputs)?;
         // Three words and a decision are read, a draw of five is read and written, and an entry written.
         let words = 15 * count;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                drop(std::hint::black_box(draws(&given.singles, &given.decisions, &given.arguments)));
-                drop(std::hint::black_box(entries(&given.singles, &given.decisions)));
-            }),
-        ];
-        bench.case(format!("{count} draws"), (count, "draw"), 4 * words as u64, contenders)?;
+        let name = format!("{count} draws");
+        measure(bench, name, (count, "draw"), words, &|encoder| job.record(encoder), || {
+            (given.expected(), entries(&given.singles, &given.decisions))
+        })?;
     }
     Ok(())
 }

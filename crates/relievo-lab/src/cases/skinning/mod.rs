@@ -1,6 +1,5 @@
 //! Helpers of the parity and benchmark cases of `kernels/skinning/`.
 
-pub mod lod;
 pub mod morph;
 pub mod morph_weights;
 pub mod pages;
@@ -12,7 +11,7 @@ use relievo::animation::local_to_model::reference::{affine, product};
 use relievo::asset::mesh::smooth_normals;
 use relievo::asset::morph::MorphDelta;
 use relievo::asset::skeleton::Skin;
-use relievo::asset::transform::{Affine, Transform, rows};
+use relievo::asset::transform::{Affine, Transform, column_major, rows};
 use relievo::asset::{Influence, Influences, Mesh, MeshLevel, Model, MorphTarget};
 use relievo::gpu::Gpu;
 use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
@@ -183,10 +182,6 @@ pub(crate) fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceL
         InstanceLod { mesh_lod: level, ..instance_lod(instance, &mut draw) }
     };
     (0..instances).map(levelled).collect()
-}
-
-pub(crate) fn column_major(matrix: &Affine) -> [f32; 16] {
-    relievo::asset::transform::column_major(matrix)
 }
 
 /// The value of an element that a kernel has not written, for any type.

@@ -15,11 +15,11 @@ use relievo::skinning::vertex::Blend;
 use relievo::{Error, InputError};
 
 use crate::cases::animation::Draw;
+use crate::cases::measure;
 use crate::cases::skinning::{SHAPES, Scene, Shape, random_model};
-use crate::cases::terrain::copy_of;
 use crate::harness::compare::{Comparison, LeftOut};
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// The distance in seconds from a key, or from the clip's end, within which rounding may decide either way:
 /// three roundings of times up to 16 s.
@@ -71,8 +71,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                     .enumerate()
                     .map(|(at, instance)| is_seen(at) && is_at_a_jump(instance, &weights, elapsed))
                     .collect();
-                let comparison = output.check(gpu, |actual| compared(actual, &expected, &jumps)).await?;
-                cases.add(format!("{} targets × {count} after {elapsed} s", shape.targets), comparison);
+                let name = format!("{} targets × {count} after {elapsed} s", shape.targets);
+                cases.check(name, &output, |actual| compared(actual, &expected, &jumps)).await?;
             }
         }
     }
@@ -165,17 +165,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         job.set(gpu, 0.5)?;
         // The kernel reads an instance, an InstanceLod, four times and two values, and writes a weight.
         let (all, words) = (count * TARGETS, 4 + 2 + 4 + 2 + 1);
-        let copied = copy_of(gpu, words * all / 2)?;
         let mut weights = vec![0.0; all];
-        let contenders = vec![
-            Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let weights = std::hint::black_box(&mut weights);
-                morph_weights(mesh, (&set, &[0]), &instances, &instance_lods, 0.5, weights);
-            }),
-        ];
-        bench.case(format!("4 targets × {count}"), (all, "weight"), (4 * words * all) as u64, contenders)?;
+        let name = format!("4 targets × {count}");
+        measure(bench, name, (all, "weight"), words * all, &|encoder| job.record(encoder), || {
+            let weights = std::hint::black_box(&mut weights);
+            morph_weights(mesh, (&set, &[0]), &instances, &instance_lods, 0.5, weights);
+        })?;
     }
     Ok(())
 }

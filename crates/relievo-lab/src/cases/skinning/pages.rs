@@ -8,10 +8,10 @@ use relievo::skinning::pages::{NO_PAGE, PageBuffers, PagesPass};
 use relievo::skinning::vertex::Blend;
 
 use crate::cases::animation::Draw;
+use crate::cases::measure;
 use crate::cases::skinning::{CROWDS, SHAPES, Scene, random_model, seen_of};
-use crate::cases::terrain::copy_of;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// A sequence of frames: name, and of 64 instances how many are seen.
 const FRAMES: [(&str, u32); 7] = [
@@ -57,10 +57,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             gpu.submit("verify", |encoder| job.record(encoder))?;
             reference.deal(&lods, &levels);
             let name = format!("{} clusters × {instances}, {pages} pages, {name}", mesh.clusters());
-            let found = table.check(gpu, |found| compare::exact(found, &reference.table)).await?;
-            cases.add(format!("{name}: pages"), found);
-            let found = held.check(gpu, |found| compare::exact(found, &reference.held)).await?;
-            cases.add(format!("{name}: held"), found);
+            cases.exact(format!("{name}: pages"), &table, &reference.table).await?;
+            cases.exact(format!("{name}: held"), &held, &reference.held).await?;
             let mut found = buffers.state.read(gpu).await?;
             let mut expected = vec![reference.free.len() as u32, reference.short];
             found.extend(&buffers.stack.read(gpu).await?[..reference.free.len()]);
@@ -108,18 +106,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let mut reference = Pages::new(instances, clusters, count);
         reference.deal(&lods, &levels);
         // The kernel reads an InstanceLod and what the instance holds.
-        let copied = copy_of(gpu, 2 * instances)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let mut pages = reference.clone();
-                pages.deal(&lods, &levels);
-                drop(std::hint::black_box(pages));
-            }),
-        ];
         let case = format!("{instances} instances, unchanged");
-        bench.case(case, (instances, "instance"), 16 * instances as u64, contenders)?;
+        measure(bench, case, (instances, "instance"), 4 * instances, &|encoder| job.record(encoder), || {
+            let mut pages = reference.clone();
+            pages.deal(&lods, &levels);
+            pages
+        })?;
     }
     Ok(())
 }

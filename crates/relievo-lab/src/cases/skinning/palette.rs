@@ -9,10 +9,10 @@ use relievo::skinning::palette::reference::{palette, palette_for};
 use relievo::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
 use relievo::skinning::vertex::Blend;
 
+use crate::cases::measure;
 use crate::cases::skinning::{BONES, CROWDS, SHAPES, Scene, poisoned, random_matrices, random_model};
-use crate::cases::terrain::copy_of;
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// The cases cover random skins with some of a skeleton's bones, mirrored and stretched, for both kinds of
 /// blending. A quaternion may have the opposite sign, its dual part with it. The second instance is not seen,
@@ -46,17 +46,13 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let largest = expected.as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
             let each = expected.len() / instances;
             expected[each..2 * each].fill(poisoned());
-            let comparison = output
-                .check(gpu, |actual: &[[f32; 4]]| {
-                    let actual =
-                        if blend == Blend::Linear { actual.to_vec() } else { same_side(actual, &expected) };
-                    compare::absolute(actual.as_flattened(), expected.as_flattened(), PALETTE_BOUND * largest)
-                })
-                .await?;
-            cases.add(
-                format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones),
-                comparison,
-            );
+            let name = format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones);
+            let near = |actual: &[[f32; 4]]| {
+                let turned = (blend != Blend::Linear).then(|| same_side(actual, &expected));
+                let actual = turned.as_deref().unwrap_or(actual);
+                compare::absolute(actual.as_flattened(), expected.as_flattened(), PALETTE_BOUND * largest)
+            };
+            cases.check(name, &output, near).await?;
         }
     }
     Ok(())
@@ -87,23 +83,13 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let job = pass.prepare(gpu, &scene.mesh, &model_matrices, &scene.crowd)?;
         let pairs = BONES * instances;
         // The kernel reads two matrices and an index, and writes a matrix.
-        let copied = copy_of(gpu, 37 * pairs / 2)?;
         let reference = || {
             for model_matrices in matrices.chunks(2 * BONES) {
                 drop(std::hint::black_box(palette(&scene.model.skins[0], model_matrices)));
             }
         };
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, reference),
-        ];
-        bench.case(
-            format!("{BONES} bones × {instances}"),
-            (pairs, "bone"),
-            148 * pairs as u64,
-            contenders,
-        )?;
+        let name = format!("{BONES} bones × {instances}");
+        measure(bench, name, (pairs, "bone"), 37 * pairs, &|encoder| job.record(encoder), reference)?;
     }
     Ok(())
 }

@@ -11,11 +11,11 @@ use relievo::skinning::vertex::Blend;
 use relievo::{Error, InputError};
 
 use crate::cases::animation::Draw;
+use crate::cases::measure;
 use crate::cases::skinning::{CROWDS, SHAPES, Scene, Shape, random_instance_lods, random_model, seen_of};
-use crate::cases::terrain::copy_of;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
+use crate::harness::{Bench, Cases, compare};
 
 /// A sequence of frames: name, how many of 64 bones are updated, and whether InstanceLods and weights change.
 const FRAMES: [(&str, u32, bool); 10] = [
@@ -102,8 +102,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         active.pairs = output.buffer.clone();
         let updated_bones = Poisoned::<u32>::new(gpu, instances * clusters.mask_words)?;
         buffers.updated_bones = updated_bones.buffer.clone();
-        let keeping = pass.prepare(gpu, &mesh, &crowd, &buffers, &active)?;
-        let clearing = pass.prepare_clearing(gpu, &mesh, &crowd, &buffers, &active)?;
+        let [keeping, clearing] = pass.prepare(gpu, &mesh, &crowd, &buffers, &active)?;
         let mut last = vec![Skinned::nothing(shape.targets); instances];
         let mut draw = Draw::new(case ^ 0xb17);
         let mut frame = Frame::before_all(instances, clusters.mask_words, shape.targets);
@@ -119,13 +118,13 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             remember(&frame.now(), &mut last);
             let dispatched = active.dispatched.read(gpu).await?;
             let name = format!("{} clusters × {instances}, {}", clusters.len(), given.0);
-            cases.add(name, output.check(gpu, |actual| listed(actual, &dispatched, &expected)).await?);
+            cases.check(name, &output, |actual| listed(actual, &dispatched, &expected)).await?;
             let name = format!("{} clusters × {instances}, {}: updated bones", clusters.len(), given.0);
             let left: Vec<u32> =
                 frame.updated_bones.iter().map(|word| if clears { 0 } else { *word }).collect();
-            cases.add(name, updated_bones.check(gpu, |actual| compare::exact(actual, &left)).await?);
+            cases.exact(name, &updated_bones, &left).await?;
             let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), given.0);
-            cases.add(name, remembered.check(gpu, |actual| compare::exact(actual, &words_of(&last))).await?);
+            cases.exact(name, &remembered, &words_of(&last)).await?;
         }
         keeping_cases(cases, &pass, case, (&mesh, &clusters), &crowd).await?;
     }
@@ -146,7 +145,7 @@ async fn keeping_cases(
     let mut active = ActiveClusters::keeping(gpu, mesh, crowd)?;
     let output = Poisoned::<u32>::new(gpu, 2 * count)?;
     active.pairs = output.buffer.clone();
-    let job = pass.prepare(gpu, mesh, crowd, &buffers, &active)?;
+    let [job, _] = pass.prepare(gpu, mesh, crowd, &buffers, &active)?;
     let mut last = vec![Skinned::nothing(mesh.targets); instances];
     let mut states = vec![ClusterState::Still; count];
     let mut draw = Draw::new(case ^ 0x6ee9);
@@ -164,14 +163,13 @@ async fn keeping_cases(
         remember(&frame.now(), &mut last);
         let dispatched = active.dispatched.read(gpu).await?;
         let words: Vec<u32> = states.iter().map(|state| *state as u32).collect();
-        let compared = output
-            .check(gpu, |actual| {
-                let (pairs, found) = actual.split_at(count.min(actual.len()));
-                let listed = listed(pairs, &dispatched, &expected);
-                if listed.holds { compare::exact(found, &words) } else { listed }
-            })
-            .await?;
-        cases.add(format!("{} clusters × {instances}, {}: last kept", clusters.len(), given.0), compared);
+        let same = |actual: &[u32]| {
+            let (pairs, found) = actual.split_at(count.min(actual.len()));
+            let listed = listed(pairs, &dispatched, &expected);
+            if listed.holds { compare::exact(found, &words) } else { listed }
+        };
+        let name = format!("{} clusters × {instances}, {}: last kept", clusters.len(), given.0);
+        cases.check(name, &output, same).await?;
     }
     Ok(())
 }
@@ -231,7 +229,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         buffers.updated_bones.write(gpu, &updated_bones)?;
         let instance_lods = seen_of(instances, seen);
         scene.crowd.instance_lods.write(gpu, &instance_lods)?;
-        let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, &buffers, &active)?;
+        let [job, _] = pass.prepare(gpu, &scene.mesh, &scene.crowd, &buffers, &active)?;
         let pairs = scene.clusters.len() * instances;
         let last: Vec<Skinned> =
             instance_lods.iter().map(|now| Skinned { instance_lod: *now, ..Skinned::nothing(0) }).collect();
@@ -239,18 +237,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads an InstanceLod and the remembered state and, for instances that are seen, a mask and
         // a set of bones.
         let read = 2 + SKINNED_WORDS + 2 * words / seen;
-        let copied = copy_of(gpu, read * pairs / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let now = Now { updated_bones: &updated_bones, instance_lods: &instance_lods, weights: &[] };
-                drop(std::hint::black_box(select(&scene.clusters, &now, &last)));
-            }),
-        ];
         let name = if seen == 1 { "" } else { ", a quarter seen" };
         let case = format!("157 clusters × {instances}{name}");
-        bench.case(case, (pairs, "cluster"), 4 * (read * pairs) as u64, contenders)?;
+        measure(bench, case, (pairs, "cluster"), read * pairs, &|encoder| job.record(encoder), || {
+            let now = Now { updated_bones: &updated_bones, instance_lods: &instance_lods, weights: &[] };
+            select(&scene.clusters, &now, &last)
+        })?;
     }
     Ok(())
 }

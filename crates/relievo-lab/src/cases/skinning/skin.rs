@@ -4,7 +4,7 @@ use relievo::Error;
 use relievo::asset::Model;
 use relievo::asset::mesh::MeshLevel;
 use relievo::asset::transform::{Affine, rows};
-use relievo::gpu::{Buffer, Gpu, Job};
+use relievo::gpu::{Buffer, Gpu};
 use relievo::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use relievo::skinning::clusters::{CLUSTER, Clusters};
 use relievo::skinning::instance_lod::InstanceLod;
@@ -31,7 +31,7 @@ use crate::harness::{Backend, Bench, Cases, Contender, compare};
 const INSTANCES: usize = 9;
 
 /// The cases cover one to eight influences, linear blending and dual quaternions, with and without morph
-/// targets; all instances, some, and lists of clusters. All other vertices must stay unchanged, as must those
+/// targets; lists of all clusters, some, and none. All other vertices must stay unchanged, as must those
 /// of unseen instances and those beyond an instance's level. Errors are divided by each value's own bound.
 ///
 /// # Errors
@@ -42,16 +42,6 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         for (case, shape) in (0..).zip(SHAPES) {
             let scene = Case::new(cases.gpu, case, shape, blend)?;
             let name = format!("{} vertices of {} influences, {blend:?}", shape.vertices, shape.influences);
-            for instances in [0..INSTANCES, 0..1, 4..7] {
-                let output = Poisoned::<Vertex>::new(cases.gpu, instances.len() * shape.vertices)?;
-                let (mesh, crowd) = (&scene.mesh, &scene.crowd);
-                let job = pass.prepare(cases.gpu, mesh, crowd, instances.clone(), &output.buffer)?;
-                cases.gpu.submit("verify", |encoder| job.record(encoder))?;
-                let expected =
-                    &scene.expected[instances.start * shape.vertices..][..instances.len() * shape.vertices];
-                let comparison = output.check(cases.gpu, |actual| scene.compare(actual, expected)).await?;
-                cases.add(format!("{name}, instances {instances:?}"), comparison);
-            }
             for (list, every) in [("none", u32::MAX), ("every third", 3), ("backwards", 1)] {
                 cases.add(format!("{name}, {list}"), scene.some(cases.gpu, &pass, every).await?);
             }
@@ -298,177 +288,112 @@ fn lengths(matrix: &Affine, vertex: &Vertex) -> [f32; 2] {
     [(cofactors * glam::Vec3::from(vertex.normal)).length(), (linear * glam::vec3(tx, ty, tz)).length()]
 }
 
-/// Measures vertices with eight, four, two influences and one.
+/// A benchmark case: which clusters of a crowd are skinned, and what its reference does.
+struct Work {
+    name: String,
+    /// Instances of the scene, and how often all of it is skinned.
+    instances: usize,
+    repeats: usize,
+    /// Every so many of the clusters are listed.
+    every: usize,
+    /// Vertices that are skinned, in all, and by each call of the reference.
+    vertices: usize,
+    each: usize,
+    /// Words that are loaded and stored per vertex.
+    words: usize,
+    instance_lods: Vec<InstanceLod>,
+}
+
+impl Work {
+    /// All vertices of `instances` instances of the tube, at full quality.
+    fn new(name: String, influences: usize, instances: usize) -> Self {
+        let each = RING * RING;
+        // The kernel reads a vertex, its influences and its bones' rows, and writes a vertex.
+        let words = 10 + influences.div_ceil(2) + (influences - 1) + 12 * influences + 10;
+        let (vertices, instance_lods) = (each * instances, vec![InstanceLod::FULL; instances]);
+        Self { name, instances, repeats: 1, every: 1, vertices, each, words, instance_lods }
+    }
+}
+
+/// Measures vertices with eight, four, two influences and one; and of a hundred instances with four: a list with every eighth
+/// cluster; instances of which a quarter is seen; a level with a quarter of the vertices; and full fade, where the weight that
+/// decides is read, and one bone. Times are per skinned vertex.
 ///
 /// # Errors
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
-    let gpu = bench.gpu;
+    let (gpu, count, vertices) = (bench.gpu, CROWDS[1], RING * RING);
     let pass = SkinPass::new(gpu, Blend::Linear)?;
-    let vertices = RING * RING;
     for influences in [8, 4, 2, 1] {
         for instances in CROWDS {
-            let scene = Scene::new(gpu, influences, 0, instances)?;
-            // The kernel reads a vertex, its influences and its bones' rows, and writes a vertex.
-            let words = 10 + influences.div_ceil(2) + (influences - 1) + 12 * influences + 10;
-            let batch = batch(gpu, instances, 4 * words / 2);
-            let jobs = batches(gpu, &pass, &scene, [instances, batch])?;
-            let copied = copy_of(gpu, words * vertices * batch / 2)?;
-            let mesh = &scene.model.meshes[0];
-            let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
-            let unskinned = morph(mesh, &[]);
-            let reference = || {
-                for _ in 0..instances {
-                    drop(std::hint::black_box(skin(
-                        &unskinned,
-                        &mesh.influences,
-                        &palette,
-                        InstanceLod::FULL,
-                    )));
-                }
-            };
-            // The same output without influences.
-            let unmoved = copy_of(gpu, 20 * vertices * batch / 2)?;
-            let contenders = vec![
-                Contender::recorded(Backend::Gpu, |encoder| jobs.iter().for_each(|job| job.record(encoder))),
-                Contender::recorded(Backend::Copy, |encoder| {
-                    jobs.iter().for_each(|_| copied.record(encoder))
-                }),
-                Contender::recorded(Backend::Limit, |encoder| {
-                    jobs.iter().for_each(|_| unmoved.record(encoder))
-                }),
-                Contender::host(Backend::Reference, reference),
-            ];
-            let all = instances * vertices;
-            let case = format!("{influences} influences, 10k × {instances}");
-            bench.case(case, (all, "vertex"), (4 * words * all) as u64, contenders)?;
+            let name = format!("{influences} influences, 10k × {instances}");
+            let each = batch(gpu, instances);
+            let work = Work { repeats: instances / each, ..Work::new(name, influences, each) };
+            measured(bench, &pass, Scene::new(gpu, influences, 0, each)?, &work)?;
         }
     }
-    some(bench, &pass)?;
-    seen(bench, &pass)?;
-    levelled(bench, &pass)?;
-    faded(bench, &pass)
-}
-
-/// Measures a list with every eighth cluster of a hundred instances.
-fn some(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
-    let gpu = bench.gpu;
-    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
-    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
-    let active = ActiveClusters::new(gpu, &scene.mesh, &scene.crowd)?;
-    let chosen: Vec<u32> = (0..(CROWDS[1] * scene.mesh.clusters()) as u32).step_by(8).collect();
-    active.write(gpu, &chosen)?;
-    let job = pass.prepare_active(gpu, &scene.mesh, &scene.crowd, &output, &active)?;
-    let vertices = CLUSTER * chosen.len();
-    let copied = copy_of(gpu, 73 * vertices / 2)?;
-    let mesh = &scene.model.meshes[0];
-    let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
-    let unskinned = morph(mesh, &[]);
-    let contenders = vec![
-        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, || {
-            for _ in 0..vertices / unskinned.len() {
-                drop(std::hint::black_box(skin(&unskinned, &mesh.influences, &palette, InstanceLod::FULL)));
-            }
-        }),
-    ];
-    bench.case("an eighth of 4, 10k × 100", (vertices, "vertex"), 292 * vertices as u64, contenders)
-}
-
-/// Measures a hundred instances of which a quarter is seen, without a list: nanoseconds per vertex of those
-/// that are seen.
-fn seen(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
-    let gpu = bench.gpu;
-    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
-    scene.crowd.instance_lods.write(gpu, &seen_of(CROWDS[1], 4))?;
-    let work =
-        Work { instances: CROWDS[1] / 4, vertices: RING * RING, words: 73, instance_lod: InstanceLod::FULL };
-    crowd(bench, pass, &scene, "4, a quarter of 10k × 100 seen, no list", &work)
-}
-
-/// Measures a hundred instances at a level with a quarter of the vertices, without a list: nanoseconds per
-/// vertex of the level's clusters.
-fn levelled(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
-    let gpu = bench.gpu;
+    let four = |name: &str| Work::new(name.to_owned(), 4, count);
+    let scene = || Scene::new(gpu, 4, 0, count);
+    let clusters = scene()?.clusters.len();
+    let listed = CLUSTER * (count * clusters).div_ceil(8);
+    measured(
+        bench,
+        &pass,
+        scene()?,
+        &Work { every: 8, vertices: listed, ..four("an eighth of 4, 10k × 100") },
+    )?;
+    let (quarter, instance_lods) = (count / 4 * vertices, seen_of(count, 4));
+    let seen = four("4, a quarter of 10k × 100 seen");
+    measured(bench, &pass, scene()?, &Work { vertices: quarter, instance_lods, ..seen })?;
     let mut model = tube(4, 0)?;
     let mesh = &mut model.meshes[0];
-    let quarter = mesh.indices[..mesh.indices.len() / 12 * 3].to_vec();
-    mesh.levels = vec![MeshLevel { indices: quarter, error: 0.0 }];
-    let scene = Scene::of(gpu, model, CROWDS[1])?;
-    let level = InstanceLod::level(1)?;
-    scene.crowd.instance_lods.write(gpu, &[level; CROWDS[1]])?;
-    let each = CLUSTER * scene.clusters.level(1).clusters as usize;
-    let work = Work { instances: CROWDS[1], vertices: each, words: 73, instance_lod: level };
-    crowd(bench, pass, &scene, "4, 10k × 100 at a level of a quarter, no list", &work)
+    let indices = mesh.indices[..mesh.indices.len() / 12 * 3].to_vec();
+    mesh.levels = vec![MeshLevel { indices, error: 0.0 }];
+    let levelled = Scene::of(gpu, model, count)?;
+    let each = CLUSTER * levelled.clusters.level(1).clusters as usize;
+    let instance_lods = vec![InstanceLod::level(1)?; count];
+    let level = four("4, 10k × 100 at a level of a quarter");
+    measured(bench, &pass, levelled, &Work { vertices: count * each, each, instance_lods, ..level })?;
+    let instance_lods = vec![InstanceLod::fade(1.0)?; count];
+    measured(bench, &pass, scene()?, &Work { words: 34, instance_lods, ..four("4 faded to 1, 10k × 100") })
 }
 
-/// The part of a crowd that is skinned. Which vertices of an instance these are does not matter to the
-/// reference.
-struct Work {
-    instances: usize,
-    vertices: usize,
-    /// Words that are loaded and stored per vertex.
-    words: usize,
-    instance_lod: InstanceLod,
-}
-
-/// Measures a hundred instances without a list: nanoseconds per skinned vertex.
-fn crowd(
-    bench: &mut Bench<'_>,
-    pass: &SkinPass,
-    scene: &Scene,
-    name: &str,
-    work: &Work,
-) -> Result<(), Error> {
+/// Measures a crowd beside a copy of the same words, and one of the same output without influences.
+fn measured(bench: &mut Bench<'_>, pass: &SkinPass, scene: Scene, work: &Work) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let output = Buffer::new(gpu, "skinned", CROWDS[1] * RING * RING)?;
-    let job = pass.prepare(gpu, &scene.mesh, &scene.crowd, 0..CROWDS[1], &output)?;
-    let all = work.instances * work.vertices;
-    let copied = copy_of(gpu, work.words * all / 2)?;
+    scene.crowd.instance_lods.write(gpu, &work.instance_lods)?;
+    let output = Buffer::new(gpu, "skinned", work.instances * RING * RING)?;
+    let active = ActiveClusters::new(gpu, &scene.mesh, &scene.crowd)?;
+    let pairs = (work.instances * scene.clusters.len()) as u32;
+    active.write(gpu, &(0..pairs).step_by(work.every).collect::<Vec<_>>())?;
+    let job = pass.prepare_active(gpu, &scene.mesh, &scene.crowd, &output, &active)?;
+    let [copied, unmoved] = [work.words, 20].map(|words| copy_of(gpu, words * work.vertices / 2));
+    let (copied, unmoved) = (copied?, unmoved?);
     let mesh = &scene.model.meshes[0];
     let palette = Palette::Linear(scene.model.skins[0].inverse_binds.iter().map(rows).collect());
     let unskinned = morph(mesh, &[]);
+    let all = work.repeats * work.vertices;
     let contenders = vec![
-        Contender::job(Backend::Gpu, &job),
-        Contender::job(Backend::Copy, &copied),
+        Contender::recorded(Backend::Gpu, |encoder| (0..work.repeats).for_each(|_| job.record(encoder))),
+        Contender::recorded(Backend::Copy, |encoder| (0..work.repeats).for_each(|_| copied.record(encoder))),
+        Contender::recorded(Backend::Limit, |encoder| {
+            (0..work.repeats).for_each(|_| unmoved.record(encoder))
+        }),
         Contender::host(Backend::Reference, || {
-            let some = &unskinned[..work.vertices];
-            for _ in 0..work.instances {
-                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, work.instance_lod)));
+            for _ in 0..all / work.each {
+                let some = &unskinned[..work.each];
+                drop(std::hint::black_box(skin(some, &mesh.influences, &palette, InstanceLod::FULL)));
             }
         }),
     ];
-    bench.case(name, (all, "vertex"), (4 * work.words * all) as u64, contenders)
+    bench.case(&work.name, (all, "vertex"), (4 * work.words * all) as u64, contenders)
 }
 
-/// Measures a hundred instances at full fade: the weight that decides is read, and one bone.
-fn faded(bench: &mut Bench<'_>, pass: &SkinPass) -> Result<(), Error> {
-    let gpu = bench.gpu;
-    let scene = Scene::new(gpu, 4, 0, CROWDS[1])?;
-    let rigid = InstanceLod { influence_fade: 1.0, ..InstanceLod::FULL };
-    scene.crowd.instance_lods.write(gpu, &[rigid; CROWDS[1]])?;
-    // The kernel reads a vertex, a bone, a weight and the bone's rows, and writes a vertex.
-    let work = Work { instances: CROWDS[1], vertices: RING * RING, words: 34, instance_lod: rigid };
-    crowd(bench, pass, &scene, "4 faded to 1, 10k × 100", &work)
-}
-
-/// The number of instances, a divisor of `instances`, whose vertices of `bytes` bytes fit one buffer.
-fn batch(gpu: &Gpu, instances: usize, bytes: usize) -> usize {
-    let room = gpu.max_binding() as usize / (RING * RING * bytes.max(size_of::<Vertex>()));
+/// The number of instances, a divisor of `instances`, whose vertices and copies fit one buffer.
+fn batch(gpu: &Gpu, instances: usize) -> usize {
+    // The copy of eight influences is the largest: 128 words a vertex, half of them read.
+    let room = gpu.max_binding() as usize / (RING * RING * 4 * 64);
     (1..=instances).rev().find(|batch| instances.is_multiple_of(*batch) && *batch <= room.max(1)).unwrap_or(1)
-}
-
-/// Jobs for all instances, batch by batch into the same buffer.
-fn batches(
-    gpu: &Gpu,
-    pass: &SkinPass,
-    scene: &Scene,
-    [instances, batch]: [usize; 2],
-) -> Result<Vec<Job>, Error> {
-    let output = Buffer::new(gpu, "skinned", batch * RING * RING)?;
-    let firsts = (0..instances).step_by(batch);
-    firsts.map(|first| pass.prepare(gpu, &scene.mesh, &scene.crowd, first..first + batch, &output)).collect()
 }
 
 #[cfg(test)]

@@ -212,7 +212,7 @@ fn hard(actual: f32, judged: &JudgedShade) -> Judgement {
     let error = f64::from((actual - judged.expected.hard).abs());
     let is_light = actual == 0.0 || actual == 1.0;
     let is_wrong = !is_light || (judged.is_certain && error != 0.0);
-    Judgement { ratio: if is_wrong { f64::INFINITY } else { 0.0 }, error, touches: !judged.is_certain }
+    Judgement::exact(!is_wrong, error, !judged.is_certain)
 }
 
 fn soft(actual: f32, judged: &JudgedShade) -> Judgement {

@@ -1,6 +1,5 @@
 //! Clustering of a mesh's vertices in the cells of a uniform grid (Rossignac and Borrel, "Multi-resolution 3D Approximations
-//! for Rendering Complex Scenes", 1993), on the device after DeCoro and Tatarchuk, "Real-time Mesh Simplification Using the
-//! GPU", I3D 2007. It is the one reducer that is fast enough for meshes that change in every frame.
+//! for Rendering Complex Scenes", 1993).
 //!
 //! Each cell has one *representative*: the mean of its vertices. Triangles whose corners lie in three different cells stay, in
 //! the mesh's order; all others are dropped. The representative's attributes are those of its *source*, the vertex of the
@@ -18,12 +17,8 @@
 //! triangles may meet at an edge, two triangles may have the same corners, and triangles may turn around. Seams of
 //! attributes inside a cell are lost.
 
-pub use pass::{ClusterBuffers, ClusterJob, ClusterPass};
-pub use relievo::shared::mesh::cluster::ClusterCounts;
-
 use relievo::InputError;
 
-mod pass;
 pub mod reference;
 
 /// The largest number of cells along an edge of a grid.

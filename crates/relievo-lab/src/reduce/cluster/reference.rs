@@ -1,4 +1,4 @@
-//! Clustering in a uniform grid: the CPU reference of `kernels/mesh/cluster.wgsl`.
+//! Clustering in a uniform grid.
 
 use std::collections::HashMap;
 

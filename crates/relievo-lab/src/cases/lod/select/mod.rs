@@ -1,11 +1,10 @@
 //! Parity and benchmark cases of `kernels/lod/select.wgsl`.
 
-use levels::{before, untouched};
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
 use relievo::lod::object::level_within;
 use relievo::lod::select::reference::{
-    counts, depth_inside, is_shown, morph_within, placed_sphere, select, view_allows,
+    counts, depth_inside, is_shown, level_told, morph_within, placed_sphere, select, view_allows,
 };
 use relievo::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
 use relievo::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
@@ -15,12 +14,10 @@ use relievo::shared::lod::object::{
 use relievo::shared::lod::view::POSITION_SLACK;
 
 use crate::cases::lod::{Blocks, SIZES, frame, random_instances};
-use crate::cases::terrain::copy_of;
+use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Backend, Bench, Cases, Contender, compare};
-
-mod levels;
+use crate::harness::{Bench, Cases, compare};
 
 /// How far rounding may move a level or an allowed displacement beyond what it does to positions: kernel and reference
 /// round some 40 times each, by at most 2⁻²³.
@@ -53,13 +50,11 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let last_levels = if at == 0 { 0 } else { 3 * count };
             let blocks = all - u32::from(all > 2);
             let view = SelectView { blocks, last_levels, is_next: u32::from(at != 2), ..view };
-            let (ends, found) = outputs.run(cases.gpu, &scene, &view).await?;
-            let comparisons = found.compared(&scene, &view, &mut state);
             let name = format!("{} blocks, {name}", view.blocks);
-            ends.into_iter().for_each(|(output, end)| cases.add(format!("{name}: the end of {output}"), end));
-            comparisons
-                .into_iter()
-                .for_each(|(what, comparison)| cases.add(format!("{name}: {what}"), comparison));
+            let found = outputs.run(cases, &name, &scene, &view).await?;
+            for (what, comparison) in found.compared(&scene, &view, &mut state) {
+                cases.add(format!("{name}: {what}"), comparison);
+            }
         }
     }
     Ok(())
@@ -103,9 +98,6 @@ struct Found {
     counts: Vec<u32>,
 }
 
-/// Whether an output's end is untouched, by its name.
-type Ends = Vec<(&'static str, Comparison)>;
-
 impl Outputs {
     fn new(gpu: &Gpu, instances: usize) -> Result<Self, GpuError> {
         Ok(Self {
@@ -117,7 +109,14 @@ impl Outputs {
     }
 
     /// Runs the kernel, with the allowed displacements of the views before.
-    async fn run(&self, gpu: &Gpu, scene: &Scene, view: &SelectView) -> Result<(Ends, Found), Error> {
+    async fn run(
+        &self,
+        cases: &mut Cases<'_>,
+        name: &str,
+        scene: &Scene,
+        view: &SelectView,
+    ) -> Result<Found, Error> {
+        let gpu = cases.gpu;
         self.decisions.poison(gpu)?;
         if view.last_levels != 0 {
             self.decisions.buffer.write(gpu, &before(scene.instances.len()))?;
@@ -136,30 +135,17 @@ impl Outputs {
         };
         let job = SelectPass::new(gpu)?.prepare(gpu, buffers)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
-        let mut found = Found::default();
-        let ends = vec![
-            ("allowed", read(gpu, &self.allowed, &mut found.allowed).await?),
-            ("decisions", read(gpu, &self.decisions, &mut found.decisions).await?),
-            ("rows", read(gpu, &self.rows, &mut found.rows).await?),
-            ("counts", read(gpu, &self.counts, &mut found.counts).await?),
-        ];
-        found.levels = found.rows.split_off(3 * scene.instances.len());
-        Ok((ends, found))
-    }
-}
-
-/// Reads an output, and compares nothing but its end.
-async fn read<T: bytemuck::Pod>(
-    gpu: &Gpu,
-    output: &Poisoned<T>,
-    to: &mut Vec<T>,
-) -> Result<Comparison, GpuError> {
-    output
-        .check(gpu, |values| {
-            to.extend_from_slice(values);
-            compare::exact(&[0], &[0])
+        let end = |output| format!("{name}: the end of {output}");
+        let mut rows = cases.values(end("rows"), &self.rows).await?;
+        let levels = rows.split_off(3 * scene.instances.len());
+        Ok(Found {
+            allowed: cases.values(end("allowed"), &self.allowed).await?,
+            decisions: cases.values(end("decisions"), &self.decisions).await?,
+            rows,
+            levels,
+            counts: cases.values(end("counts"), &self.counts).await?,
         })
-        .await
+    }
 }
 
 /// What is known of an instance's allowed displacement.
@@ -238,11 +224,7 @@ impl Range {
 }
 
 fn judgement(is_right: bool, touches: bool) -> Judgement {
-    Judgement {
-        ratio: if is_right { 0.0 } else { f64::INFINITY },
-        error: f64::from(u8::from(!is_right)),
-        touches,
-    }
+    Judgement::exact(is_right, f64::from(u8::from(!is_right)), touches)
 }
 
 impl Found {
@@ -317,6 +299,19 @@ impl Found {
         each(&judgements, "units", MAY_TOUCH, |at| format!("{:?} of instance {}", self.rows[at / 4], at / 12))
     }
 
+    fn compared_levels(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let poison = [f32::from_bits(POISON); 4];
+        let before = before(self.levels.len());
+        let expected = |(index, before): (usize, &u32)| match scene.object_of(view, index) {
+            Some(_) if view.last_levels != 0 && view.is_next != 0 => level_told(*before),
+            Some(_) if view.last_levels != 0 => level_told(0),
+            _ => poison,
+        };
+        let expected: Vec<[f32; 4]> = before.iter().enumerate().map(expected).collect();
+        let bits = bytemuck::cast_slice::<[f32; 4], u32>;
+        compare::exact(bits(&self.levels), bits(&expected))
+    }
+
     fn compared_allowed(&self, scene: &Scene, view: &SelectView, state: &mut [State]) -> Comparison {
         let mut judgements = Vec::with_capacity(self.allowed.len());
         for (index, allowed) in self.allowed.iter().enumerate() {
@@ -339,6 +334,20 @@ impl Found {
             format!("{} instead of {:?} of instance {at}", self.allowed[at], state[at])
         })
     }
+}
+
+/// The decisions of a frame before: all lists, some instances that were not seen, and all numbers of steps.
+fn before(count: usize) -> Vec<u32> {
+    let decision = |at: u32| match at % (OBJECT_LISTS + 1) {
+        0 => 0,
+        list => decision_word(list, morph_word(0, at.wrapping_mul(37) % (MORPH_STEPS + 1))),
+    };
+    (0..count as u32).map(decision).collect()
+}
+
+/// What a decision is that a view does not write.
+fn untouched(view: &SelectView, count: usize, index: usize) -> u32 {
+    if view.last_levels == 0 { POISON } else { before(count)[index] }
 }
 
 #[cfg(test)]
@@ -372,17 +381,10 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let seen = instances.iter().filter(|instance| select(&view, &objects[0], instance).is_some()).count();
         // The kernel reads 18 of an instance's words and writes two, and the rows of those that are seen.
         let words = 20 * count + 12 * seen;
-        let copied = copy_of(gpu, words / 2)?;
-        let contenders = vec![
-            Contender::job(Backend::Gpu, &job),
-            Contender::job(Backend::Copy, &copied),
-            Contender::host(Backend::Reference, || {
-                let selected = instances.iter().map(|instance| select(&view, &objects[0], instance));
-                drop(std::hint::black_box(selected.collect::<Vec<_>>()));
-            }),
-        ];
         let case = format!("{count} instances, {seen} seen");
-        bench.case(case, (count, "instance"), 4 * words as u64, contenders)?;
+        measure(bench, case, (count, "instance"), words, &|encoder| job.record(encoder), || {
+            instances.iter().map(|instance| select(&view, &objects[0], instance)).collect::<Vec<_>>()
+        })?;
     }
     Ok(())
 }

@@ -5,20 +5,9 @@ pub mod texture;
 
 pub use scene::{Part, Scene};
 
-use glam::{DVec3, Mat4, Vec2, Vec3, camera};
-
-use crate::asset::Model;
-use crate::skinning::vertex::{Vertex, vertices_of};
-
-/// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space,
-/// seen from outside, then run clockwise on the screen. For a parallel view, whose depth must grow with
-/// distance, the sign of the determinant of all three axes decides.
-pub fn is_mirrored(clip: &Mat4) -> bool {
-    // In f64, because the product of three small scales may underflow f32.
-    let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());
-    let ahead = if ahead == DVec3::ZERO { depth } else { ahead };
-    right.cross(up).dot(ahead) > 0.0
-}
+use glam::{Mat4, Vec2, Vec3, camera};
+use relievo::asset::Model;
+use relievo::skinning::vertex::{Vertex, vertices_of};
 
 /// A matrix from the model's space to clip space that puts all of these vertices in the middle of a square
 /// picture, seen from +Z, slightly from the left and from above.
@@ -46,7 +35,7 @@ pub fn framing_camera<'a>(vertices: impl Iterator<Item = &'a Vertex> + Clone) ->
 }
 
 /// The camera of [`framing`] for the first of some models that stand still.
-pub(crate) fn framing_of(models: &[&Model]) -> [Mat4; 2] {
+pub fn framing_of(models: &[&Model]) -> [Mat4; 2] {
     let vertices: Vec<Vertex> =
         models.iter().take(1).flat_map(|model| &model.meshes).flat_map(vertices_of).collect();
     framing_camera(vertices.iter())
@@ -66,34 +55,4 @@ fn around(positions: impl Iterator<Item = Vec3>) -> [Mat4; 2] {
     let near = distance - 1.01 * radius;
     let far = distance + 1.01 * radius;
     [view, camera::rh::proj::directx::perspective(field_of_view, 1.0, near, far)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use camera::rh::{proj::directx, view::look_at_mat4};
-
-    #[test]
-    fn mirror_images_are_told_from_pictures() {
-        let look = look_at_mat4(Vec3::new(3.0, 4.0, 5.0), Vec3::new(0.0, 1.0, -2.0), Vec3::Y);
-        for projection in [
-            directx::perspective(0.8, 1.5, 0.1, 90.0),
-            directx::perspective_infinite_reverse(0.8, 1.5, 0.1),
-            directx::frustum(0.3, 0.9, -0.2, 0.1, 0.5, 40.0),
-            directx::orthographic(-3.0, 2.0, -1.0, 4.0, -10.0, 50.0),
-        ] {
-            for turn in [
-                Mat4::IDENTITY,
-                Mat4::from_rotation_x(2.0),
-                Mat4::from_scale(Vec3::new(-1e-13, -1e-13, 2e-13)),
-            ] {
-                assert!(!is_mirrored(&(projection * look * turn)), "{projection} {turn}");
-                let mirror = Mat4::from_scale(Vec3::new(1.0, 1.0, -3.0));
-                assert!(is_mirrored(&(projection * look * turn * mirror)), "{projection} {turn}");
-                assert!(is_mirrored(
-                    &(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * projection * look * turn)
-                ));
-            }
-        }
-    }
 }

@@ -2,24 +2,25 @@
 
 use glam::Mat4;
 use image::RgbaImage;
+use relievo::asset::material::{Alpha, Material, Texture};
+use relievo::asset::{Mesh, Model};
+use relievo::gpu::Gpu;
+use relievo::render::Offscreen;
+use relievo::scene::{Camera, Depth, Placement, Scene};
+use relievo::skinning::{Vertex, still};
+use relievo::{Error, InputError};
 
-use super::Offscreen;
-use crate::asset::material::{Alpha, Material, Texture};
-use crate::asset::{Mesh, Model};
-use crate::gpu::Gpu;
-use crate::scene::{Camera, Depth, Placement, Scene};
-use crate::skinning::picture::{framing_camera, framing_of};
-use crate::skinning::{Portrait, Vertex, still};
-use crate::{Error, InputError};
+use super::Portrait;
+use super::picture::{framing_camera, framing_of};
 
 /// Draws the meshes of a model, with these vertices of each, in the middle of a picture: a scene of static meshes in full
-/// detail under the default light. [`PosedModel::on_host`](crate::skinning::PosedModel::on_host) draws the same without a
+/// detail under the default light. [`PosedModel::on_host`](super::PosedModel::on_host) draws the same without a
 /// device, within rounding. Waits for the device.
 ///
 /// # Errors
 /// [`InputError`] for another number of meshes or vertices than the model has, for vertices outside the range of coordinates,
 /// for a material or an image that the model lacks, and for a picture without a pixel or a sample;
-/// [`crate::gpu::GpuError`].
+/// [`relievo::gpu::GpuError`].
 pub fn portrait(
     gpu: &Gpu,
     model: &Model,
@@ -29,7 +30,7 @@ pub fn portrait(
     drawn(gpu, &still(model, vertices)?, framing_camera(vertices.iter().flatten()), portrait)
 }
 
-/// Draws models that stand still, such as those of [`still`] and [`at_rest`](crate::skinning::at_rest()), as [`portrait`] does,
+/// Draws models that stand still, such as those of [`still`] and [`at_rest`](relievo::skinning::at_rest()), as [`portrait`] does,
 /// a picture each. One camera sees all of them, with the first in the middle. Waits for the device.
 ///
 /// # Errors

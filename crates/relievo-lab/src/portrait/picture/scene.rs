@@ -2,14 +2,14 @@
 //! maps.
 
 use glam::{Mat4, Vec3, Vec4};
+use relievo::asset::Mesh;
+use relievo::asset::material::{Alpha, dither_threshold};
+use relievo::asset::{Light, light::lambert};
+use relievo::lod::is_mirrored;
+use relievo::skinning::vertex::Vertex;
+use relievo::surface::linear_image::LinearImage;
 
-use super::is_mirrored;
 use super::texture::Surface;
-use crate::asset::Mesh;
-use crate::asset::material::{Alpha, dither_threshold};
-use crate::asset::{Light, light::lambert};
-use crate::skinning::vertex::Vertex;
-use crate::surface::linear_image::LinearImage;
 
 /// The view and lighting of meshes.
 #[derive(Debug, Clone, Copy)]

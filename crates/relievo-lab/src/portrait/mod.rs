@@ -1,24 +1,26 @@
-//! Computes the vertices of a whole model at one time of a clip, on the host or on the device, and draws a picture of them on
-//! the host; `render::portrait` draws the same by a scene.
+//! Pictures of models: a model's vertices at one time of a clip, on the host or on the device, and how they are drawn.
+
+#[cfg(not(target_arch = "wasm32"))]
+mod device;
+pub mod picture;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use device::{portrait, portraits};
 
 use glam::Mat4;
 use image::RgbaImage;
-
-use super::InstanceLod;
-#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
-use super::frame::SkinFrame;
-use super::morph::reference::morph;
-use super::palette::reference::palette_for;
-use super::picture::texture::Surface;
-use super::picture::{Part, Scene};
-use super::picture::{framing, framing_of};
-use super::skin::reference::skin;
-use super::vertex::{Blend, Vertex, vertices_of};
-use crate::InputError;
-use crate::animation::Pose;
-use crate::asset::Light;
-use crate::asset::mesh::COORDINATE_LIMIT;
-use crate::asset::{Mesh, Model};
+use picture::texture::Surface;
+use picture::{Part, Scene, framing, framing_of};
+use relievo::InputError;
+use relievo::animation::Pose;
+use relievo::asset::{Light, Mesh, Model};
+use relievo::skinning::InstanceLod;
+use relievo::skinning::morph::reference::morph;
+use relievo::skinning::palette::reference::palette_for;
+use relievo::skinning::skin::reference::skin;
+use relievo::skinning::vertex::{Blend, Vertex, check_range, vertices_of};
+#[cfg(not(target_arch = "wasm32"))]
+use relievo::{animation::ModelMatrices, gpu::Buffer, skinning::frame::SkinFrame};
 
 /// A model at one time of a clip, and how it is skinned.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +51,7 @@ pub struct Portrait {
 }
 
 impl Portrait {
-    /// Draws models that stand still, such as those of [`at_rest`](super::at_rest()), a picture each, on the host. One camera sees
+    /// Draws models that stand still, such as those of [`at_rest`](relievo::skinning::at_rest()), a picture each, on the host. One camera sees
     /// all of them, with the first in the middle.
     ///
     /// # Errors
@@ -112,16 +114,17 @@ impl PosedModel<'_> {
     /// those of [`PosedModel::on_host`] within rounding. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for vertices outside the range of `f32`, as large scales produce; [`crate::gpu::GpuError`].
-    #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
-    pub fn on_device(&self, gpu: &crate::gpu::Gpu) -> Result<Vec<Vec<Vertex>>, crate::Error> {
+    /// [`InputError`] for vertices outside the range of `f32`, as large scales produce; [`relievo::gpu::GpuError`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn on_device(&self, gpu: &relievo::gpu::Gpu) -> Result<Vec<Vec<Vertex>>, relievo::Error> {
         let model = self.model;
-        let bones = crate::animation::pose::posed(gpu, &model.skeleton, &model.clips[self.clip], self.time)?;
+        let pose = Pose::on_device(gpu, &model.skeleton, &model.clips[self.clip], self.time)?;
+        let bones = ModelMatrices::new(&Buffer::from_slice(gpu, "bones", &pose.model_matrices)?);
         let skinned = |mesh: usize| {
-            let frame = SkinFrame::new(gpu, model, mesh, bones.model_matrices(), 1, self.blend)?;
+            let frame = SkinFrame::new(gpu, model, mesh, &bones, 1, self.blend)?;
             frame.crowd.instance_lods.write(gpu, &[self.instance_lod])?;
             frame.crowd.weights.write(gpu, &self.weights(&model.meshes[mesh]))?;
-            gpu.run("skin", |encoder| frame.record_all(encoder))?;
+            gpu.run("skin", |encoder| frame.record_updated_bones(encoder))?;
             let vertices = frame.read(gpu, 0)?;
             check_range(mesh, &vertices)?;
             Ok(vertices)
@@ -132,18 +135,5 @@ impl PosedModel<'_> {
     /// The weights of a mesh's morph targets at the time.
     fn weights(&self, mesh: &Mesh) -> Vec<f32> {
         mesh.weights_at(self.clip, self.time)
-    }
-}
-
-/// Refuses vertices outside the range of `f32`, as large scales produce.
-pub(crate) fn check_range(mesh: usize, vertices: &[Vertex]) -> Result<(), InputError> {
-    let is_good = |value: &f32| value.abs() <= COORDINATE_LIMIT;
-    match vertices.iter().position(|vertex| !vertex.position.iter().all(is_good)) {
-        None => Ok(()),
-        Some(at) => {
-            let bound = format!("must be within ±{COORDINATE_LIMIT:e}: scales or weights are too large");
-            let value = format!("{:?}", vertices[at].position);
-            Err(InputError::new(format!("meshes[{mesh}].positions[{at}]"), value, bound))
-        }
     }
 }

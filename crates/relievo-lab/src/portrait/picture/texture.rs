@@ -2,11 +2,10 @@
 //! may round.
 
 use image::RgbaImage;
-
-use crate::asset::Model;
-use crate::asset::material::{Alpha, Filter, Material, Sampling, Wrapping};
-use crate::srgb::linear;
-use crate::surface::mips::Mips;
+use relievo::asset::Model;
+use relievo::asset::material::{Alpha, Filter, Material, Sampling, Wrapping};
+use relievo::srgb::linear;
+use relievo::surface::mips::Mips;
 
 /// The base colour of a surface.
 #[derive(Debug, Clone)]

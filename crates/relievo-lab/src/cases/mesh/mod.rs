@@ -1,3 +1,0 @@
-//! Cases of `kernels/mesh/`.
-
-pub mod cluster;
