@@ -47,13 +47,8 @@ impl Timer {
                 ty: wgpu::QueryType::Timestamp,
                 count: 2,
             });
-            let resolved = gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                label: Some("timer"),
-                size: 16,
-                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            });
-            (set, resolved)
+            let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+            (set, gpu.raw_buffer("timer", 16, usage))
         })?;
         Ok(Self { queries: Some((set, Buffer::new(gpu, "timer", 2)?, resolved)) })
     }

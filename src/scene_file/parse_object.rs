@@ -63,18 +63,13 @@ fn placed(
         return Err(fields.missing("instances", "or scatter, to say where it stands"));
     }
     let instances = instances.unwrap_or_default();
-    let transition = fields.maybe("transition", |at| transition(&at))?;
+    let transition = fields.maybe("transition", |at| at.one_of(Transition::NAMES))?;
     if let (Some(Transition::Geomorph), EntryKind::Relief(_)) = (transition, &kind) {
         let path = format!("{}.transition", at.path);
         let bound = "must be hard: a mesh with a relief has one level of detail";
         return Err(InputError::new(path, "geomorph", bound));
     }
     Ok(ObjectEntry { path: at.path.clone(), source, kind, transition, instances, scatter })
-}
-
-/// How levels of detail change.
-pub(super) fn transition(at: &At<'_>) -> Result<Transition, InputError> {
-    at.one_of(Transition::NAMES)
 }
 
 /// The model's `file`.
@@ -115,21 +110,16 @@ fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
     let known = ["relief", "channel", "albedo", "normal", "scale", "tiles", "method", "shadow"];
     let fields = at.fields(&known)?;
     let heights = image(fields.need("relief", "the image of its heights")?)?;
-    let is_alpha =
-        fields.maybe("channel", |at| at.one_of([("brightness", false), ("alpha", true)]))?.unwrap_or(false);
-    let method = fields.maybe("method", |at| {
-        let all = Method::ALL.map(|method| (method.name(), method));
-        at.one_of(all)
-    })?;
+    let all = Method::ALL.map(|method| (method.name(), method));
     Ok(ReliefEntry {
         heights,
-        is_alpha,
+        is_alpha: fields.one_of("channel", [("brightness", false), ("alpha", true)], false)?,
         albedo: fields.maybe("albedo", image)?,
         normals: fields.maybe("normal", image)?,
-        scale: fields.maybe("scale", |at| at.number(0.0, MAX_SCALE.into()))?.unwrap_or(0.1) as f32,
-        tiles: fields.maybe("tiles", |at| at.number(1e-3, 1e3))?.unwrap_or(1.0) as f32,
-        method: method.unwrap_or(Method::Quadtree),
-        shadow: fields.maybe("shadow", |at| at.one_of(SHADOWS))?.unwrap_or_default(),
+        scale: fields.number("scale", 0.0, MAX_SCALE.into(), 0.1)? as f32,
+        tiles: fields.number("tiles", 1e-3, 1e3, 1.0)? as f32,
+        method: fields.one_of("method", all, Method::Quadtree)?,
+        shadow: fields.one_of("shadow", SHADOWS, Shadow::default())?,
     })
 }
 
@@ -139,13 +129,11 @@ fn play(fields: &Fields<'_>, otherwise: &PlayEntry) -> Result<PlayEntry, InputEr
         true => Ok(at.whole(0, i64::from(u32::MAX))?.to_string()),
         false => Ok(at.text()?.to_owned()),
     })?;
-    let rate = fields.maybe("rate", |at| at.number(-MAX_RATE, MAX_RATE))?;
-    let start = fields.maybe("start", |at| at.number(-MAX_SECONDS, MAX_SECONDS))?;
     Ok(PlayEntry {
         clip: clip.or_else(|| otherwise.clip.clone()),
-        rate: rate.map_or(otherwise.rate, |rate| rate as f32),
-        start: start.unwrap_or(otherwise.start),
-        wrap: fields.maybe("wrap", |at| at.one_of(WRAPS))?.unwrap_or(otherwise.wrap),
+        rate: fields.number("rate", -MAX_RATE, MAX_RATE, otherwise.rate.into())? as f32,
+        start: fields.number("start", -MAX_SECONDS, MAX_SECONDS, otherwise.start)?,
+        wrap: fields.one_of("wrap", WRAPS, otherwise.wrap)?,
     })
 }
 
