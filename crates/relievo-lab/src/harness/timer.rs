@@ -3,7 +3,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
 
-use super::{Buffer, Gpu, GpuError};
+use relievo::gpu::{Buffer, Gpu, GpuError};
 
 /// The clock of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -47,8 +47,13 @@ impl Timer {
                 ty: wgpu::QueryType::Timestamp,
                 count: 2,
             });
-            let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-            (set, gpu.raw_buffer("timer", 16, usage))
+            let resolved = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("timer"),
+                size: 16,
+                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
+            (set, resolved)
         })?;
         Ok(Self { queries: Some((set, Buffer::new(gpu, "timer", 2)?, resolved)) })
     }
