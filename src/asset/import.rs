@@ -1,6 +1,6 @@
 //! Import of models from files, by the ending of their names.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 
 use super::model::Model;
 use crate::asset::gltf::Beside;
@@ -56,14 +56,4 @@ impl Model {
 
 fn is_obj(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
-}
-
-/// The path of a file that lies in a folder or below it; `None` for one with a scheme or a drive letter, and for one that
-/// leads out of the folder.
-pub(super) fn path_below(name: &str) -> Option<PathBuf> {
-    let is_plain = |part: &Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    let parts = || Path::new(name).components();
-    let path: PathBuf = parts().filter(|part| *part != Component::CurDir).collect();
-    let is_below = !name.contains(':') && parts().all(|part| is_plain(&part));
-    (is_below && !path.as_os_str().is_empty()).then_some(path)
 }

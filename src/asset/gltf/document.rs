@@ -17,7 +17,7 @@ use super::container::Container;
 use super::extensions::Extensions;
 use super::{faults, json};
 use crate::InputError;
-use crate::asset::import::path_below;
+use crate::asset::beside::path_below;
 
 /// A document whose indices are all in range.
 pub struct Document<'a> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::statements::Statement;
 use crate::InputError;
-use crate::asset::import::path_below;
+use crate::asset::beside::path_below;
 
 /// An image that a material names.
 #[derive(Debug, Clone, PartialEq)]

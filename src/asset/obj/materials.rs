@@ -10,10 +10,10 @@ use image::imageops::{FilterType, resize};
 use super::library::{Entry, entries};
 use super::maps::{Map, slashes};
 use crate::InputError;
+use crate::asset::beside::path_below;
 use crate::asset::gltf::Beside;
 use crate::asset::gltf::budget::Budget;
 use crate::asset::gltf::materials::decode;
-use crate::asset::import::path_below;
 use crate::asset::material::{Alpha, Material, Sampling, Texture, Wrapping};
 use crate::asset::mesh::COORDINATE_LIMIT;
 

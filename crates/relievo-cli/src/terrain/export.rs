@@ -1,7 +1,7 @@
 //! Stores heights in files: as raw `i32` and as 16-bit PNG (written and read); samples features from a PNG; and writes all
 //! files of a batch of patches.
 
-use std::io::{BufReader, BufWriter, Write};
+use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 
 use relievo::terrain::config::{Config, HEIGHT_ONE};
@@ -54,17 +54,18 @@ impl HeightRange {
 /// # Errors
 /// [`Error::Output`] when the file cannot be written.
 fn write_png(path: &Path, heights: &[i32], width: u32, range: HeightRange) -> Result<(), Error> {
-    let failed = |error: &dyn std::fmt::Display| Error::output(path, error);
-    let file = std::fs::File::create(path).map_err(|error| failed(&error))?;
-    let mut encoder = png::Encoder::new(BufWriter::new(file), width, heights.len() as u32 / width.max(1));
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Sixteen);
-    let text = format!("{} {}", range.low, range.high);
-    encoder.add_text_chunk(CHUNK.to_owned(), text).map_err(|error| failed(&error))?;
     let samples: Vec<u8> = heights.iter().flat_map(|height| range.sample(*height).to_be_bytes()).collect();
-    let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
-    writer.write_image_data(&samples).map_err(|error| failed(&error))?;
-    writer.finish().map_err(|error| failed(&error))
+    let write = || -> Result<(), png::EncodingError> {
+        let file = BufWriter::new(std::fs::File::create(path)?);
+        let mut encoder = png::Encoder::new(file, width, heights.len() as u32 / width.max(1));
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.set_depth(png::BitDepth::Sixteen);
+        encoder.add_text_chunk(CHUNK.to_owned(), format!("{} {}", range.low, range.high))?;
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&samples)?;
+        writer.finish()
+    };
+    write().map_err(|error| Error::output(path, error))
 }
 
 /// The heights of several patches, to be written as files.
@@ -167,29 +168,27 @@ impl HeightImage {
     /// # Errors
     /// [`Error::File`] for a file that cannot be read or is not a 16-bit greyscale PNG.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
-        let file = std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
-        let decoder = png::Decoder::new(BufReader::new(file));
-        let mut reader = decoder.read_info().map_err(|error| Error::file(path, error))?;
+        let refused = |error: &dyn std::fmt::Display| Error::file(path, error);
+        let file = std::fs::File::open(path).map_err(|error| refused(&error))?;
+        let mut reader =
+            png::Decoder::new(BufReader::new(file)).read_info().map_err(|error| refused(&error))?;
         let info = reader.info();
         let (color, depth) = (info.color_type, info.bit_depth);
         if color != png::ColorType::Grayscale || depth != png::BitDepth::Sixteen {
-            let bound = format!("is a {depth:?}-bit {color:?} PNG; heights need 16-bit greyscale");
-            return Err(Error::file(path, bound));
+            return Err(refused(&format!("is a {depth:?}-bit {color:?} PNG; heights need 16-bit greyscale")));
         }
         let (width, height) = (info.width, info.height);
         if u64::from(width) * u64::from(height) > 1 << 28 {
-            return Err(Error::file(
-                path,
-                format!("is {width} × {height}; height images have at most 2^28 samples"),
-            ));
+            let bound = format!("is {width} × {height}; height images have at most 2^28 samples");
+            return Err(refused(&bound));
         }
         let range = (info.uncompressed_latin1_text.iter())
             .find(|chunk| chunk.keyword == CHUNK)
             .and_then(|chunk| chunk.text.split_once(' '))
             .and_then(|(low, high)| Some(HeightRange { low: low.parse().ok()?, high: high.parse().ok()? }));
-        let size = reader.output_buffer_size().ok_or_else(|| Error::file(path, "is too large to read"))?;
+        let size = reader.output_buffer_size().ok_or_else(|| refused(&"is too large to read"))?;
         let mut bytes = vec![0; size];
-        reader.next_frame(&mut bytes).map_err(|error| Error::file(path, error))?;
+        reader.next_frame(&mut bytes).map_err(|error| refused(&error))?;
         let samples = bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect();
         Ok(Self { width, height, samples, range })
     }
@@ -233,6 +232,5 @@ impl HeightImage {
 }
 
 fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let write = || std::fs::File::create(path)?.write_all(bytes);
-    write().map_err(|error: std::io::Error| Error::output(path, error))
+    std::fs::write(path, bytes).map_err(|error| Error::output(path, error))
 }
