@@ -8,6 +8,9 @@ use serde_json::{Map, Number, Value};
 use crate::InputError;
 use crate::error::json::{shown, unreadable};
 
+/// The largest absolute value of a coordinate, in world units.
+pub(super) const COORDINATE: f64 = 1e9;
+
 /// A JSON value in which no object has a field twice.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Json(Value);

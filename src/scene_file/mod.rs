@@ -34,7 +34,6 @@ mod builtin;
 mod camera;
 mod entries;
 mod json;
-mod limits;
 mod load;
 mod parse;
 mod parse_object;

@@ -4,8 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
 use super::entries::{ObjectEntry, Spot, TerrainEntry};
-use super::json::{At, Fields, Json};
-use super::limits::COORDINATE;
+use super::json::{At, COORDINATE, Fields, Json};
 use super::parse_object::{character, mesh};
 use super::spec::{SceneFile, SunOptions};
 use crate::InputError;

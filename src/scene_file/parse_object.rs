@@ -7,8 +7,7 @@ use glam::{DVec3, Quat, Vec3};
 use super::entries::{
     BUILT_IN, EntryKind, InstanceEntry, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
 };
-use super::json::{At, Fields};
-use super::limits::{COORDINATE, scale};
+use super::json::{At, COORDINATE, Fields};
 use crate::InputError;
 use crate::animation::Wrap;
 use crate::asset::import::ENDINGS;
@@ -185,6 +184,19 @@ fn turn(at: At<'_>) -> Result<Quat, InputError> {
         true => Ok(quaternion.normalize()),
         false => Err(at.error("must not be 0")),
     }
+}
+
+/// Three scale factors, of which one alone is enough.
+fn scale(at: &At<'_>) -> Result<Vec3, InputError> {
+    let check = |factor: f64| (1e-6..=1e6).contains(&factor.abs());
+    let all = match at.value().is_number() {
+        true => [at.number(-1e6, 1e6)?; 3],
+        false => at.numbers::<3>(-1e6, 1e6)?,
+    };
+    if !all.into_iter().all(check) {
+        return Err(at.error("must be one number or three between 1e-6 and 1e6, negative ones to mirror"));
+    }
+    Ok(all.map(|factor| factor as f32).into())
 }
 
 /// The rotation about the vertical axis by an angle, the same bits on every machine.
