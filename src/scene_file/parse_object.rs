@@ -74,35 +74,25 @@ fn placed(
 /// The model's `file`.
 fn model(fields: &Fields<'_>) -> Result<Source, InputError> {
     let at = fields.need("file", "a .glb, .gltf or .obj file, or a built-in model")?;
-    let found = source(&at)?;
-    let Source::File(path) = &found else { return Ok(found) };
-    match extension(path).as_str() {
-        ending if ENDINGS.contains(&ending) => Ok(found),
-        _ => Err(at.error("must be a .glb, .gltf or .obj file")),
-    }
+    source(&at, &ENDINGS, "must be a .glb, .gltf or .obj file")
 }
 
 /// An image file, or a built-in map.
 fn image(at: At<'_>) -> Result<Source, InputError> {
-    let found = source(&at)?;
-    match &found {
-        Source::File(path) if !["png", "jpg", "jpeg"].contains(&extension(path).as_str()) => {
-            Err(at.error("must be a .png or .jpg file"))
-        }
-        _ => Ok(found),
-    }
+    source(&at, &["png", "jpg", "jpeg"], "must be a .png or .jpg file")
 }
 
-fn extension(path: &Path) -> String {
-    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
-}
-
-fn source(at: &At<'_>) -> Result<Source, InputError> {
+/// A file with one of these endings, in lower case, or what is built in.
+fn source(at: &At<'_>, endings: &[&str], bound: &str) -> Result<Source, InputError> {
     let text = at.text()?;
-    Ok(match text.strip_prefix(BUILT_IN) {
-        Some(name) => Source::BuiltIn(name.to_owned()),
-        None => Source::File(text.into()),
-    })
+    if let Some(name) = text.strip_prefix(BUILT_IN) {
+        return Ok(Source::BuiltIn(name.to_owned()));
+    }
+    let ending = Path::new(text).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.is_some_and(|ending| endings.contains(&ending.as_str())) {
+        true => Ok(Source::File(text.into())),
+        false => Err(at.error(bound)),
+    }
 }
 
 fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
