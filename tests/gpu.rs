@@ -15,13 +15,14 @@ use relievo::animation::keyframe_cursor::KeyframeCursorPass;
 use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::sample::SamplePass;
 use relievo::asset::keyframe::RotationPath;
-use relievo::gpu::{Buffer, Gpu, GpuError, Options, TimedBy, Timer, adapters};
+use relievo::gpu::{Buffer, Gpu, GpuError, Options, adapters};
 use relievo::terrain::config::{Config, Offset};
 use relievo::terrain::features::Features;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::height::reference::height;
 use relievo::terrain::height::{HeightBatch, HeightPass};
 use relievo::terrain::window::Window;
+use relievo_lab::harness::{TimedBy, Timer};
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.
 fn foreign() -> (wgpu::Device, wgpu::Queue) {

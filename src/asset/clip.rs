@@ -103,10 +103,7 @@ impl Clip {
         bones: &[BoneKeys],
         duration: f32,
     ) -> Result<Self, InputError> {
-        if bones.len() != skeleton.len() {
-            let bound = format!("must be {}, one a bone", skeleton.len());
-            return Err(InputError::new("clip.bones.len", bones.len(), bound));
-        }
+        InputError::check_len("clip.bones", bones.len(), skeleton.len(), "a bone")?;
         if !(0.0..=LONGEST).contains(&duration) {
             let bound = format!("must be in 0..={LONGEST} seconds");
             return Err(InputError::new("clip.duration", duration, bound));

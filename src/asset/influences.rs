@@ -82,6 +82,12 @@ impl Influences {
         Ok(influences)
     }
 
+    /// The influences of vertices that all follow bone 0 with a weight of 1.
+    pub fn rigid(vertices: usize) -> Self {
+        let one = Influence { bone: 0, weight: 1.0 };
+        Self { offsets: (0..=vertices as u32).collect(), all: vec![one; vertices] }
+    }
+
     /// Influences that keep their order and their weights to the bit: those of [`Influences::of`], stored and read back.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use crate::InputError;
 use crate::asset::influences::Influences;
 use crate::asset::skeleton::Skin;
 
-pub(crate) use validate::in_range;
+pub(crate) use tangents::in_range;
 
 /// The most vertices of a mesh.
 pub const MAX_VERTICES: usize = 1 << 24;
@@ -34,8 +34,8 @@ pub struct MeshLevel {
     pub error: f32,
 }
 
-/// Triangles that follow the bones of one skin.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Triangles that follow the bones of one skin. By default it is empty.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Mesh {
     /// The node's name followed by the primitive's number.
     pub name: String,
@@ -127,6 +127,16 @@ pub fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> 
     sums.iter().map(|sum| unit(sum).to_array().map(|component| component as f32)).collect()
 }
 
+/// A normal with length 1; `None` for one without a direction. Normals of about unit length are kept as they are, to avoid a
+/// second rounding.
+pub(super) fn unit_normal(normal: [f32; 3]) -> Option<[f32; 3]> {
+    match normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt() {
+        length if (length - 1.0).abs() < 1e-3 => Some(normal),
+        length if length > 1e-6 => Some(normal.map(|x| (f64::from(x) / length) as f32)),
+        _ => None,
+    }
+}
+
 /// Tangents for vertices that have none; see [`mod@tangents`].
 ///
 /// # Errors
@@ -207,8 +217,6 @@ mod tests {
         let both = [one(0), one(1)].concat();
         let delta = MorphDelta { position: [0.0, 0.0, 1.0], ..MorphDelta::default() };
         let mesh = Mesh {
-            name: String::new(),
-            skin: 0,
             normals: smooth_normals(&positions, &[0, 1, 2]),
             tangents: vec![[1.0, 0.0, 0.0, 1.0]; 3],
             uv: vec![[0.0; 2]; 3],

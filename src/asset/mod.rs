@@ -1,6 +1,7 @@
 //! Plain data, independent of any device: models with their skeletons, skins, clips, meshes and materials, and
 //! their import.
 
+mod beside;
 pub mod clip;
 pub mod gltf;
 pub(crate) mod images;

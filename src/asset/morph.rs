@@ -95,7 +95,7 @@ impl WeightKeys {
         targets: usize,
     ) -> Result<Self, InputError> {
         check_times(at_times, &times)?;
-        let each = if interpolation == Interpolation::CubicSpline { 3 * targets } else { targets };
+        let each = interpolation.values_a_key() * targets;
         if targets == 0 || values.len() != each * times.len() {
             let bound = format!("must be {}, {each} a key", each * times.len());
             return Err(InputError::new(format!("{at_values}.len"), values.len(), bound));

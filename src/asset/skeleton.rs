@@ -233,10 +233,7 @@ impl Skin {
             let bound = format!("must be below {}", skeleton.len());
             return Err(InputError::new(format!("skin.bones[{at}]"), self.bones[at], bound));
         }
-        if self.inverse_binds.len() != self.bones.len() {
-            let bound = format!("must be {}, one a bone", self.bones.len());
-            return Err(InputError::new("skin.inverse_binds.len", self.inverse_binds.len(), bound));
-        }
+        InputError::check_len("skin.inverse_binds", self.inverse_binds.len(), self.bones.len(), "a bone")?;
         for (at, matrix) in self.inverse_binds.iter().enumerate() {
             inverse_bind(&format!("skin.inverse_binds[{at}]"), matrix)?;
         }

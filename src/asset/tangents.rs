@@ -37,31 +37,35 @@ impl Mesh<'_> {
     /// [`InputError`] that names the field, with its index.
     pub fn validate(&self) -> Result<(), InputError> {
         let vertices = self.positions.len();
-        for (field, len) in [("normals.len", self.normals.len()), ("uv.len", self.uv.len())] {
-            if len != vertices {
-                return Err(InputError::new(field, len, format!("must be {vertices}, one a position")));
-            }
-        }
+        InputError::check_len("normals", self.normals.len(), vertices, "a position")?;
+        InputError::check_len("uv", self.uv.len(), vertices, "a position")?;
         for (field, len) in [("positions.len", vertices), ("indices.len", self.indices.len())] {
             // The last offset of the adjacency is the number of all corners.
             if u32::try_from(len).is_err() {
                 return Err(InputError::new(field, len, format!("must be at most {}", u32::MAX)));
             }
         }
-        coordinates("positions", self.positions)?;
-        coordinates("uv", self.uv)?;
+        in_range("positions", self.positions)?;
+        in_range("uv", self.uv)?;
         check_triangles("indices", self.indices, vertices)
     }
 }
 
-fn coordinates<const N: usize>(field: &str, vectors: &[[f32; N]]) -> Result<(), InputError> {
-    let good = |coordinate: &f32| coordinate.abs() <= COORDINATE_LIMIT;
-    match vectors.iter().flatten().position(|coordinate| !good(coordinate)) {
+/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`]; `path` is that of the list of vectors.
+pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
+    (vectors.iter().enumerate())
+        .try_for_each(|(at, vector)| numbers_in_range(|| format!("{path}[{at}]"), vector.as_ref()))
+}
+
+/// As [`in_range`], for one list of numbers.
+pub(super) fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Result<(), InputError> {
+    // The comparison is false for NaN.
+    let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
+    match numbers.iter().position(|value| !is_within(value)) {
         None => Ok(()),
         Some(at) => {
-            let (vertex, axis) = (at / N, at % N);
             let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
-            Err(InputError::new(format!("{field}[{vertex}][{axis}]"), vectors[vertex][axis], bound))
+            Err(InputError::new(format!("{}[{at}]", path()), numbers[at], bound))
         }
     }
 }

@@ -116,24 +116,20 @@ const SHEAR: f64 = 1e-3;
 
 /// The unit axes of a matrix; axes whose scale is zero are chosen at right angles.
 fn completed(columns: [glam::DVec3; 3], scale: [f64; 3], largest: f64) -> [glam::DVec3; 3] {
-    let is_there = |axis: usize| scale[axis] > 1e-12 * largest;
-    let mut axes =
-        [0, 1, 2].map(|axis| if is_there(axis) { columns[axis] / scale[axis] } else { glam::DVec3::ZERO });
-    match [0, 1, 2].map(is_there) {
-        [false, false, false] => axes = glam::DVec3::AXES,
-        there => {
-            for axis in 0..3 {
-                let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-                if there[axis] && !there[next] && !there[last] {
-                    axes[next] = axes[axis].any_orthonormal_vector();
-                }
-            }
-            for axis in 0..3 {
-                if axes[axis] == glam::DVec3::ZERO {
-                    axes[axis] = axes[(axis + 1) % 3].cross(axes[(axis + 2) % 3]).normalize_or_zero();
-                }
-            }
-        }
+    let zero = glam::DVec3::ZERO;
+    let unit = |axis: usize| if scale[axis] > 1e-12 * largest { columns[axis] / scale[axis] } else { zero };
+    let mut axes = [0, 1, 2].map(unit);
+    if axes == [zero; 3] {
+        return glam::DVec3::AXES;
+    }
+    for axis in 0..3 {
+        let [next, last] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3]];
+        axes[axis] = match axes[axis] {
+            there if there != zero => there,
+            _ if next == zero => last.any_orthonormal_vector(),
+            _ if last == zero => next.any_orthonormal_vector(),
+            _ => next.cross(last).normalize_or_zero(),
+        };
     }
     axes
 }

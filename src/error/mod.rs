@@ -30,6 +30,14 @@ impl InputError {
         Self { path: path.into(), value: value.to_string(), bound: bound.into() }
     }
 
+    /// Refuses a list at `path` whose length is not `wanted`, one a thing: `each` says which.
+    pub(crate) fn check_len(path: &str, len: usize, wanted: usize, each: &str) -> Result<(), Self> {
+        if len == wanted {
+            return Ok(());
+        }
+        Err(Self::new(format!("{path}.len"), len, format!("must be {wanted}, one {each}")))
+    }
+
     /// The same error, of a field of what stands at `parent`.
     pub(crate) fn below(self, parent: &str) -> Self {
         Self { path: format!("{parent}.{}", self.path), ..self }

@@ -26,34 +26,29 @@ impl Gpu {
         let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
         check("maxBindGroups", groups, limits.max_bind_groups)?;
         for stage in [Stage::Vertex, Stage::Fragment, Stage::Compute] {
-            let count = |is_counted: fn(BindingKind) -> bool| {
-                let counted = |binding: &&super::shaders::Binding| {
-                    binding.stages.contains(&stage) && is_counted(binding.kind)
-                };
-                shader.bindings.iter().filter(counted).count() as u32
-            };
-            let storage = |kind| matches!(kind, BindingKind::StorageRead | BindingKind::StorageReadWrite);
-            let uniform = |kind| matches!(kind, BindingKind::Uniform);
-            let sampler = |kind| matches!(kind, BindingKind::Sampler | BindingKind::ComparisonSampler);
-            let texture = |kind| {
-                use BindingKind::{DepthTexture, LoadedTexture, Texture, TextureArray};
-                matches!(kind, TextureArray | Texture | LoadedTexture | DepthTexture)
-            };
+            let [mut storage, mut uniform, mut textures, mut samplers] = [0; 4];
+            for binding in shader.bindings.iter().filter(|binding| binding.stages.contains(&stage)) {
+                use BindingKind as Kind;
+                *match binding.kind {
+                    Kind::StorageRead | Kind::StorageReadWrite => &mut storage,
+                    Kind::Uniform => &mut uniform,
+                    Kind::TextureArray | Kind::Texture => &mut textures,
+                    Kind::LoadedTexture | Kind::DepthTexture => &mut textures,
+                    Kind::Sampler | Kind::ComparisonSampler => &mut samplers,
+                } += 1;
+            }
             let allowed = limits.max_storage_buffers_per_shader_stage;
-            check("maxStorageBuffersPerShaderStage", count(storage), allowed)?;
+            check("maxStorageBuffersPerShaderStage", storage, allowed)?;
             let allowed = limits.max_uniform_buffers_per_shader_stage;
-            check("maxUniformBuffersPerShaderStage", count(uniform), allowed)?;
+            check("maxUniformBuffersPerShaderStage", uniform, allowed)?;
             let allowed = limits.max_sampled_textures_per_shader_stage;
-            check("maxSampledTexturesPerShaderStage", count(texture), allowed)?;
-            check("maxSamplersPerShaderStage", count(sampler), limits.max_samplers_per_shader_stage)?;
+            check("maxSampledTexturesPerShaderStage", textures, allowed)?;
+            check("maxSamplersPerShaderStage", samplers, limits.max_samplers_per_shader_stage)?;
         }
         for entry in shader.entry_points {
             let invocations = entry.workgroup_size.iter().product();
-            check(
-                "maxComputeInvocationsPerWorkgroup",
-                invocations,
-                limits.max_compute_invocations_per_workgroup,
-            )?;
+            let allowed = limits.max_compute_invocations_per_workgroup;
+            check("maxComputeInvocationsPerWorkgroup", invocations, allowed)?;
         }
         Ok(())
     }

@@ -26,7 +26,6 @@ mod readback;
 mod readback_ring;
 pub mod shaders;
 mod shared;
-mod timer;
 mod tuning;
 mod upload;
 mod wait;
@@ -45,7 +44,6 @@ pub(crate) use kernel::{Layouts, rows_of_workgroups};
 pub use memory::Memory;
 pub(crate) use pending::PendingUploads;
 pub use readback_ring::ReadbackRing;
-pub use timer::{Measurement, TimedBy, Timer};
 pub use tuning::Tuning;
 pub(crate) use upload::StagingStream;
 pub use upload::{Staged, StagingRing, Upload};
@@ -184,6 +182,13 @@ impl Gpu {
         let limits = self.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         most - most % 16
+    }
+
+    /// A buffer that is not mapped. The caller holds an error scope.
+    fn raw_buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let descriptor =
+            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+        self.device.create_buffer(&descriptor)
     }
 
     /// A command encoder.

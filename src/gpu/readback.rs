@@ -20,12 +20,8 @@ impl Readback {
     pub(crate) fn start(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Self, GpuError> {
         let padded = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         gpu.scoped(|| {
-            let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                label: Some("readback"),
-                size: padded.max(wgpu::COPY_BUFFER_ALIGNMENT),
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
+            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            let staging = gpu.raw_buffer("readback", padded.max(wgpu::COPY_BUFFER_ALIGNMENT), usage);
             if size == 0 {
                 return Self { staging, size, mapped: None };
             }

@@ -106,9 +106,7 @@ impl<T> ReadbackRing<T> {
 impl<T> Slot<T> {
     fn new(gpu: &Gpu, label: &'static str, size: u64) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let descriptor =
-            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
-        let buffer = gpu.scoped(|| gpu.device().create_buffer(&descriptor))?;
+        let buffer = gpu.scoped(|| gpu.raw_buffer(label, size, usage))?;
         Ok(Self { buffer, state: Arc::default(), about: None })
     }
 

@@ -198,14 +198,8 @@ impl Slot {
     fn make_room(&mut self, gpu: &Gpu, needed: u64) -> Result<(), GpuError> {
         if self.buffer.as_ref().is_none_or(|buffer| buffer.size() < needed) {
             let size = needed.next_power_of_two().max(LEAST);
-            self.buffer = Some(gpu.scoped(|| {
-                gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("staging"),
-                    size,
-                    usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            })?);
+            let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+            self.buffer = Some(gpu.scoped(|| gpu.raw_buffer("staging", size, usage))?);
         }
         Ok(())
     }

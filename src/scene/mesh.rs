@@ -63,7 +63,7 @@ pub(super) fn drawn(
         if most.holds(mesh) {
             upload(merged, index)?;
         } else {
-            let pieces = pieces(merged, index, most)?;
+            let pieces = pieces(merged, index, most);
             (0..pieces.model.meshes.len()).try_for_each(|piece| upload(&pieces, piece))?;
         }
     }

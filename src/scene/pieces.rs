@@ -4,8 +4,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::InputError;
-use crate::asset::{Influence, Influences, Mesh, Model};
+use crate::asset::{Influences, Mesh, Model};
 use crate::skinning::character_levels::own_levels;
 use crate::skinning::merged::{Merged, Part};
 
@@ -30,10 +29,7 @@ pub(super) fn indices_of_levels(mesh: &Mesh) -> usize {
 
 /// A merged mesh at rest in pieces: meshes without levels, whose parts are drawn at one level each. The triangles of a level
 /// keep their order, and their vertices have the same bits.
-///
-/// # Errors
-/// None for a mesh at rest.
-pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Result<Merged, InputError> {
+pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Merged {
     let whole = &merged.model.meshes[index];
     let own = own_levels(whole, &merged.errors);
     let mut all = Merged {
@@ -59,14 +55,14 @@ pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Result<Merged
             let Range { start, end } = part.indices[level];
             for triangle in triangles[start as usize..end as usize].chunks_exact(3) {
                 if !piece.has_room(triangle, most) {
-                    std::mem::take(&mut piece).finish(merged, index, level, &mut all)?;
+                    std::mem::take(&mut piece).finish(merged, index, level, &mut all);
                 }
                 piece.add(triangle, part);
             }
         }
-        piece.finish(merged, index, level, &mut all)?;
+        piece.finish(merged, index, level, &mut all);
     }
-    Ok(all)
+    all
 }
 
 /// A piece that is being filled.
@@ -103,7 +99,7 @@ impl<'a> Piece<'a> {
     }
 
     /// Adds it to `all` as a mesh with parts that are drawn at `level` alone.
-    fn finish(self, merged: &Merged, index: usize, level: usize, all: &mut Merged) -> Result<(), InputError> {
+    fn finish(self, merged: &Merged, index: usize, level: usize, all: &mut Merged) {
         let (whole, mesh) = (&merged.model.meshes[index], all.model.meshes.len());
         let mut begin = 0;
         for (part, end) in &self.parts {
@@ -113,13 +109,11 @@ impl<'a> Piece<'a> {
             begin = *end;
         }
         if self.indices.is_empty() {
-            return Ok(());
+            return;
         }
         let (materials, sources) = (&merged.materials[index], &merged.sources[index]);
         all.materials.push(self.vertices.iter().map(|vertex| materials[*vertex as usize]).collect());
         all.sources.push(self.vertices.iter().map(|vertex| sources[*vertex as usize]).collect());
-        let one = |_: &u32| vec![Influence { bone: 0, weight: 1.0 }];
-        let influences = Influences::new("influences", 1, self.vertices.iter().map(one))?;
         all.model.meshes.push(Mesh {
             name: whole.name.clone(),
             skin: whole.skin,
@@ -130,14 +124,9 @@ impl<'a> Piece<'a> {
             indices: self.indices,
             double_sided: whole.double_sided,
             material: whole.material,
-            influences,
-            targets: Vec::new(),
-            weights: Vec::new(),
-            weight_keys: Vec::new(),
-            levels: Vec::new(),
-            partners: Vec::new(),
+            influences: Influences::rigid(self.vertices.len()),
+            ..Mesh::default()
         });
-        Ok(())
     }
 
     /// The values of its vertices among those of the whole mesh.

@@ -114,22 +114,6 @@ impl CameraPath {
     }
 }
 
-/// The camera of the columns `from..to` of a camera's picture.
-#[cfg(any(test, not(target_arch = "wasm32")))]
-pub(super) fn columns(camera: &Camera, from: u32, to: u32) -> Camera {
-    let [width, height] = camera.viewport;
-    let part = (to - from) as f32 / width as f32;
-    // The middle of the columns, −1 to 1.
-    let middle = (from + to) as f32 / width as f32 - 1.0;
-    let cut = Mat4::from_cols(
-        Vec4::new(1.0 / part, 0.0, 0.0, 0.0),
-        Vec4::Y,
-        Vec4::Z,
-        Vec4::new(-middle / part, 0.0, 0.0, 1.0),
-    );
-    Camera { clip_from_view: cut * camera.clip_from_view, viewport: [to - from, height], ..*camera }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,18 +173,5 @@ mod tests {
         let camera = far.camera(0.0, [320, 200], Depth::Forward);
         assert_eq!(camera.cell, [3906, -1, 0]);
         assert!(camera.eye_offset().distance(Vec3::new(64.25, 255.0, 0.0)) < 1e-4, "{}", camera.eye_offset());
-    }
-
-    #[test]
-    fn columns_show_what_the_picture_shows_there() {
-        let camera = path(None).camera(0.0, [300, 200], Depth::Forward);
-        let right = columns(&camera, 100, 300);
-        assert_eq!(right.viewport, [200, 200]);
-        for point in [Vec3::new(1.0, 2.5, -4.0), Vec3::new(-2.0, 0.0, -9.0)] {
-            let [whole, part] = [camera, right].map(|camera| camera.clip_from_cell().project_point3(point));
-            let pixel = |x: f32, width: f32| (0.5 + 0.5 * x) * width;
-            assert!((pixel(part.x, 200.0) + 100.0 - pixel(whole.x, 300.0)).abs() < 1e-3);
-            assert!((part.y - whole.y).abs() < 1e-6 && (part.z - whole.z).abs() < 1e-6);
-        }
     }
 }

@@ -8,6 +8,9 @@ use serde_json::{Map, Number, Value};
 use crate::InputError;
 use crate::error::json::{shown, unreadable};
 
+/// The largest absolute value of a coordinate, in world units.
+pub(super) const COORDINATE: f64 = 1e9;
+
 /// A JSON value in which no object has a field twice.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Json(Value);
@@ -129,12 +132,10 @@ impl<'a> At<'a> {
     pub fn fields(&self, known: &[&str]) -> Result<Fields<'a>, InputError> {
         let Value::Object(fields) = self.value else { return Err(self.error("must be an object")) };
         let all = Fields { path: self.path.clone(), fields };
-        match fields.keys().find(|name| !known.contains(&name.as_str())) {
+        let unknown = fields.keys().find(|name| !known.contains(&name.as_str()));
+        match unknown.and_then(|name| all.get(name)) {
             None => Ok(all),
-            Some(name) => {
-                let bound = format!("is no field here: must be one of {}", known.join(", "));
-                Err(all.get(name).map_or_else(|| self.error(&bound), |field| field.error(&bound)))
-            }
+            Some(field) => Err(field.error(format!("is no field here: must be one of {}", known.join(", ")))),
         }
     }
 
@@ -166,17 +167,10 @@ impl<'a> At<'a> {
 
     /// `N` numbers in `low..=high`.
     pub fn numbers<const N: usize>(&self, low: f64, high: f64) -> Result<[f64; N], InputError> {
-        let Value::Array(all) = self.value else {
-            return Err(self.error(format!("must be a list of {N} numbers")));
-        };
-        if all.len() != N {
-            return Err(self.error(format!("must be a list of {N} numbers")));
-        }
-        let mut numbers = [0.0; N];
-        for (number, entry) in numbers.iter_mut().zip(self.list(N, N)?) {
-            *number = entry.number(low, high)?;
-        }
-        Ok(numbers)
+        let refused = || self.error(format!("must be a list of {N} numbers"));
+        let list = self.list(N, N).map_err(|_| refused())?;
+        let numbers = list.iter().map(|entry| entry.number(low, high)).collect::<Result<Vec<_>, _>>()?;
+        numbers.try_into().map_err(|_| refused())
     }
 
     /// A text of 1 to 1024 bytes.
@@ -225,6 +219,21 @@ impl<'a> Fields<'a> {
 
     fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+    }
+
+    /// A number in `low..=high`; `otherwise` if it is not there.
+    pub fn number(&self, name: &str, low: f64, high: f64, otherwise: f64) -> Result<f64, InputError> {
+        Ok(self.maybe(name, |at| at.number(low, high))?.unwrap_or(otherwise))
+    }
+
+    /// The value that a name stands for; `otherwise` if it is not there.
+    pub fn one_of<T: Copy, const N: usize>(
+        &self,
+        name: &str,
+        names: [(&str, T); N],
+        otherwise: T,
+    ) -> Result<T, InputError> {
+        Ok(self.maybe(name, |at| at.one_of(names))?.unwrap_or(otherwise))
     }
 
     /// What `read` makes of a field, if it is there.

@@ -100,10 +100,15 @@ struct Files<'a> {
     built_ins: &'a dyn BuiltIns,
     models: HashMap<Source, Arc<Model>>,
     needs: HashMap<Source, Needs>,
-    /// With levels of detail for all that is needed.
-    levelled: HashMap<Source, Arc<Model>>,
-    /// The same at rest.
-    resting: HashMap<Source, Arc<Model>>,
+    levelled: HashMap<Source, Levelled>,
+}
+
+/// A model with levels of detail for all that objects do with it.
+#[derive(Clone)]
+struct Levelled {
+    model: Arc<Model>,
+    /// The same at rest, if an object shows it so: with the same vertices, triangles and levels.
+    resting: Option<Arc<Model>>,
 }
 
 /// What objects do with a model that has levels of detail.
@@ -117,8 +122,8 @@ struct Needs {
 
 impl<'a> Files<'a> {
     fn new(read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>, built_ins: &'a dyn BuiltIns) -> Self {
-        let (models, needs) = (HashMap::new(), HashMap::new());
-        Self { read, built_ins, models, needs, levelled: HashMap::new(), resting: HashMap::new() }
+        let (models, needs, levelled) = Default::default();
+        Self { read, built_ins, models, needs, levelled }
     }
 
     fn objects(&mut self, entries: &[ObjectEntry]) -> Result<Vec<Loaded>, InputError> {
@@ -158,8 +163,11 @@ impl<'a> Files<'a> {
                 let rest = at_rest(&model).map_err(within)?;
                 Ok(Loaded::Relief(Box::new(self.relief(entry, relief, &rest)?)))
             }
-            EntryKind::Mesh => self.resting(&path, &entry.source).map(Loaded::Model).map_err(within),
-            EntryKind::Character(_) => self.levelled(&path, &entry.source).map(Loaded::Model).map_err(within),
+            EntryKind::Mesh | EntryKind::Character(_) => {
+                let Levelled { model, resting } = self.levelled(&path, &entry.source).map_err(within)?;
+                let resting = resting.filter(|_| entry.kind == EntryKind::Mesh);
+                Ok(Loaded::Model(resting.unwrap_or(model)))
+            }
         }
     }
 
@@ -185,41 +193,30 @@ impl<'a> Files<'a> {
             .map_err(|error| InputError::new(path, file.display(), format!("cannot be read: {error}")))
     }
 
-    /// A model with levels of detail for all that is needed.
-    fn levelled(&mut self, path: &str, source: &Source) -> Result<Arc<Model>, InputError> {
+    fn levelled(&mut self, path: &str, source: &Source) -> Result<Levelled, InputError> {
         if let Some(known) = self.levelled.get(source) {
             return Ok(known.clone());
         }
         let mut own = Model::clone(&*self.model(path, source)?);
-        let none = Needs::default();
-        let needs = self.needs.get(source).unwrap_or(&none);
-        let clips: Vec<usize> = needs.clips.iter().copied().collect();
+        let Needs { clips, is_at_rest } = self.needs.remove(source).unwrap_or_default();
+        let clips: Vec<usize> = clips.into_iter().collect();
         let poses = clips.iter().map(|clip| poses_of(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
         let poses = poses.into_iter().map(|poses| (poses / SPARSER).clamp(LEAST_POSES, MOST_POSES)).max();
         let poses = poses.unwrap_or(1);
-        if needs.is_at_rest {
+        let mut resting = None;
+        if is_at_rest {
             add_levels_and_at_rest(&mut own, &clips, poses)?;
+            let mut rest = at_rest(&own)?;
+            for (mesh, from) in rest.meshes.iter_mut().zip(&own.meshes) {
+                mesh.levels.clone_from(&from.levels);
+                mesh.partners.clone_from(&from.partners);
+            }
+            resting = Some(Arc::new(rest));
         } else {
             add_levels(&mut own, &clips, poses)?;
         }
-        let own = Arc::new(own);
+        let own = Levelled { model: Arc::new(own), resting };
         self.levelled.insert(source.clone(), own.clone());
-        Ok(own)
-    }
-
-    /// A model at rest, whose vertices and triangles are those of [`Self::levelled`], with its levels.
-    fn resting(&mut self, path: &str, source: &Source) -> Result<Arc<Model>, InputError> {
-        if let Some(known) = self.resting.get(source) {
-            return Ok(known.clone());
-        }
-        let levelled = self.levelled(path, source)?;
-        let mut own = at_rest(&levelled)?;
-        for (mesh, from) in own.meshes.iter_mut().zip(&levelled.meshes) {
-            mesh.levels.clone_from(&from.levels);
-            mesh.partners.clone_from(&from.partners);
-        }
-        let own = Arc::new(own);
-        self.resting.insert(source.clone(), own.clone());
         Ok(own)
     }
 

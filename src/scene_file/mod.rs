@@ -3,7 +3,7 @@
 //!
 //! [`SceneFile::from_json`] checks a text. [`SceneFile::load`] reads what it names, through a function of the caller's, so
 //! that it works without a file system; what it names after `builtin:` comes from the caller's [`BuiltIns`]. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it (and
-//! [`LoadedScene::build_async`] without blocking), and `Player` draws its frames off screen.
+//! [`LoadedScene::build_async`] without blocking).
 //!
 //! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`), the
 //! value and the bound.
@@ -34,12 +34,9 @@ mod builtin;
 mod camera;
 mod entries;
 mod json;
-mod limits;
 mod load;
 mod parse;
 mod parse_object;
-#[cfg(not(target_arch = "wasm32"))]
-mod player;
 mod scatter;
 mod spec;
 mod world;
@@ -47,7 +44,5 @@ mod world;
 pub use builtin::{BuiltIns, NoBuiltIns};
 pub use camera::CameraPath;
 pub use load::LoadedScene;
-#[cfg(not(target_arch = "wasm32"))]
-pub use player::{FrameTimes, Player, Rendering, SurfacePixel};
 pub use spec::{SceneFile, SunOptions};
 pub use world::{World, WorldKind, WorldObject};

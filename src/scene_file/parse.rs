@@ -1,12 +1,11 @@
 //! Reads a scene file: terrain, light, camera, quality, and the lists of objects.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
 use super::entries::{ObjectEntry, Spot, TerrainEntry};
-use super::json::{At, Fields, Json};
-use super::limits::COORDINATE;
-use super::parse_object::{character, mesh, transition};
+use super::json::{At, COORDINATE, Fields, Json};
+use super::parse_object::{character, mesh};
 use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
@@ -176,38 +175,31 @@ pub(super) fn below(path: &str, whole: &str, error: InputError) -> InputError {
 /// The light, and the shadow that it casts, if it does.
 fn light(at: &At<'_>) -> Result<(Light, Option<SunOptions>), InputError> {
     let fields = at.fields(&["direction", "color", "ambient", "shadow"])?;
-    let mut light = Light::default();
-    if let Some(direction) = fields.get("direction") {
-        light.direction = direction.numbers::<3>(-1e6, 1e6)?.map(|axis| axis as f32).into();
-        if light.direction.try_normalize().is_none() {
-            return Err(direction.error("must not be 0: it points towards the light"));
-        }
-    }
-    if let Some(rgb) = fields.maybe("color", |at| color(&at, 1000.0))? {
-        light.color = rgb.into();
-    }
-    if let Some(ambient) = fields.maybe("ambient", |at| at.number(0.0, 1.0))? {
-        light.ambient = ambient as f32;
-    }
+    let otherwise = Light::default();
+    let direction = fields.maybe("direction", |at| {
+        let direction = Vec3::from(at.numbers::<3>(-1e6, 1e6)?.map(|axis| axis as f32));
+        let is_one = direction.try_normalize().is_some();
+        is_one.then_some(direction).ok_or_else(|| at.error("must not be 0: it points towards the light"))
+    })?;
+    let light = Light {
+        direction: direction.unwrap_or(otherwise.direction),
+        color: fields.maybe("color", |at| color(&at, 1000.0))?.map_or(otherwise.color, Vec3::from),
+        ambient: fields.number("ambient", 0.0, 1.0, otherwise.ambient.into())? as f32,
+    };
     Ok((light, fields.maybe("shadow", |at| shadow(&at))?.flatten()))
 }
 
 /// True, false, or what the shadow has.
 fn shadow(at: &At<'_>) -> Result<Option<SunOptions>, InputError> {
-    let SunOptions { mut size, mut range } = SunOptions::default();
+    let otherwise = SunOptions::default();
     if !at.value().is_object() {
         let bound = "must be true, false, or an object with size and range";
-        return Ok(at.flag().map_err(|_| at.error(bound))?.then_some(SunOptions { size, range }));
+        return Ok(at.flag().map_err(|_| at.error(bound))?.then_some(otherwise));
     }
     let fields = at.fields(&["size", "range"])?;
-    if let Some(texels) = fields.maybe("size", |at| at.whole(16, 8192))? {
-        // The bounds are those of the type.
-        size = texels as u32;
-    }
-    if let Some(units) = fields.maybe("range", |at| at.number(1e-3, 1e6))? {
-        range = units as f32;
-    }
-    Ok(Some(SunOptions { size, range }))
+    // The bounds are those of the type.
+    let size = fields.maybe("size", |at| at.whole(16, 8192))?.map_or(otherwise.size, |size| size as u32);
+    Ok(Some(SunOptions { size, range: fields.number("range", 1e-3, 1e6, otherwise.range.into())? as f32 }))
 }
 
 /// Linear red, green and blue.
@@ -217,14 +209,13 @@ fn color(at: &At<'_>, most: f64) -> Result<[f32; 3], InputError> {
 
 fn quality(at: &At<'_>) -> Result<(Quality, Transition), InputError> {
     let fields = at.fields(&["pixels", "transition"])?;
-    let pixels = fields.maybe("pixels", |at| at.number(0.0, 1e4))?;
-    let quality = pixels.map_or_else(Quality::default, |pixels| Quality { pixels: pixels as f32 });
-    Ok((quality, fields.maybe("transition", |at| transition(&at))?.unwrap_or_default()))
+    let pixels = fields.number("pixels", 0.0, 1e4, Quality::default().pixels.into())? as f32;
+    Ok((Quality { pixels }, fields.one_of("transition", Transition::NAMES, Transition::default())?))
 }
 
 fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
     let fields = at.fields(&["fov", "near", "far", "path", "at", "look"])?;
-    let near = fields.maybe("near", |at| at.number(1e-4, 1e4))?.unwrap_or(NEAR);
+    let near = fields.number("near", 1e-4, 1e4, NEAR)?;
     let far = fields.maybe("far", |at| {
         let far = at.number(0.0, COORDINATE)?;
         // The depths of both are f32.
@@ -233,7 +224,8 @@ fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
         }
         Ok(far)
     })?;
-    let field_of_view = fields.maybe("fov", field_of_view)?.unwrap_or(FIELD_OF_VIEW);
+    let [least, most] = FIELDS_OF_VIEW;
+    let field_of_view = fields.number("fov", least, most, FIELD_OF_VIEW)?;
     let Some(path) = fields.get("path") else {
         let key = CameraKey { time: 0.0, ..key(&fields, field_of_view)? };
         return Ok(CameraPath { keys: vec![key], near, far });
@@ -250,15 +242,10 @@ fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
             let bound = format!("must be later than {} by a millisecond at least", before.time);
             return Err(time.error(bound));
         }
-        let field_of_view = moment.maybe("fov", self::field_of_view)?.unwrap_or(field_of_view);
+        let field_of_view = moment.number("fov", least, most, field_of_view)?;
         keys.push(CameraKey { time: seconds, ..key(&moment, field_of_view)? });
     }
     Ok(CameraPath { keys, near, far })
-}
-
-fn field_of_view(at: At<'_>) -> Result<f64, InputError> {
-    let [least, most] = FIELDS_OF_VIEW;
-    at.number(least, most)
 }
 
 /// Where the eye is and looks.

@@ -7,8 +7,7 @@ use glam::{DVec3, Quat, Vec3};
 use super::entries::{
     BUILT_IN, EntryKind, InstanceEntry, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
 };
-use super::json::{At, Fields};
-use super::limits::{COORDINATE, scale};
+use super::json::{At, COORDINATE, Fields};
 use crate::InputError;
 use crate::animation::Wrap;
 use crate::asset::import::ENDINGS;
@@ -63,7 +62,7 @@ fn placed(
         return Err(fields.missing("instances", "or scatter, to say where it stands"));
     }
     let instances = instances.unwrap_or_default();
-    let transition = fields.maybe("transition", |at| transition(&at))?;
+    let transition = fields.maybe("transition", |at| at.one_of(Transition::NAMES))?;
     if let (Some(Transition::Geomorph), EntryKind::Relief(_)) = (transition, &kind) {
         let path = format!("{}.transition", at.path);
         let bound = "must be hard: a mesh with a relief has one level of detail";
@@ -72,64 +71,44 @@ fn placed(
     Ok(ObjectEntry { path: at.path.clone(), source, kind, transition, instances, scatter })
 }
 
-/// How levels of detail change.
-pub(super) fn transition(at: &At<'_>) -> Result<Transition, InputError> {
-    at.one_of(Transition::NAMES)
-}
-
 /// The model's `file`.
 fn model(fields: &Fields<'_>) -> Result<Source, InputError> {
     let at = fields.need("file", "a .glb, .gltf or .obj file, or a built-in model")?;
-    let found = source(&at)?;
-    let Source::File(path) = &found else { return Ok(found) };
-    match extension(path).as_str() {
-        ending if ENDINGS.contains(&ending) => Ok(found),
-        _ => Err(at.error("must be a .glb, .gltf or .obj file")),
-    }
+    source(&at, &ENDINGS, "must be a .glb, .gltf or .obj file")
 }
 
 /// An image file, or a built-in map.
 fn image(at: At<'_>) -> Result<Source, InputError> {
-    let found = source(&at)?;
-    match &found {
-        Source::File(path) if !["png", "jpg", "jpeg"].contains(&extension(path).as_str()) => {
-            Err(at.error("must be a .png or .jpg file"))
-        }
-        _ => Ok(found),
-    }
+    source(&at, &["png", "jpg", "jpeg"], "must be a .png or .jpg file")
 }
 
-fn extension(path: &Path) -> String {
-    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
-}
-
-fn source(at: &At<'_>) -> Result<Source, InputError> {
+/// A file with one of these endings, in lower case, or what is built in.
+fn source(at: &At<'_>, endings: &[&str], bound: &str) -> Result<Source, InputError> {
     let text = at.text()?;
-    Ok(match text.strip_prefix(BUILT_IN) {
-        Some(name) => Source::BuiltIn(name.to_owned()),
-        None => Source::File(text.into()),
-    })
+    if let Some(name) = text.strip_prefix(BUILT_IN) {
+        return Ok(Source::BuiltIn(name.to_owned()));
+    }
+    let ending = Path::new(text).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.is_some_and(|ending| endings.contains(&ending.as_str())) {
+        true => Ok(Source::File(text.into())),
+        false => Err(at.error(bound)),
+    }
 }
 
 fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
     let known = ["relief", "channel", "albedo", "normal", "scale", "tiles", "method", "shadow"];
     let fields = at.fields(&known)?;
     let heights = image(fields.need("relief", "the image of its heights")?)?;
-    let is_alpha =
-        fields.maybe("channel", |at| at.one_of([("brightness", false), ("alpha", true)]))?.unwrap_or(false);
-    let method = fields.maybe("method", |at| {
-        let all = Method::ALL.map(|method| (method.name(), method));
-        at.one_of(all)
-    })?;
+    let all = Method::ALL.map(|method| (method.name(), method));
     Ok(ReliefEntry {
         heights,
-        is_alpha,
+        is_alpha: fields.one_of("channel", [("brightness", false), ("alpha", true)], false)?,
         albedo: fields.maybe("albedo", image)?,
         normals: fields.maybe("normal", image)?,
-        scale: fields.maybe("scale", |at| at.number(0.0, MAX_SCALE.into()))?.unwrap_or(0.1) as f32,
-        tiles: fields.maybe("tiles", |at| at.number(1e-3, 1e3))?.unwrap_or(1.0) as f32,
-        method: method.unwrap_or(Method::Quadtree),
-        shadow: fields.maybe("shadow", |at| at.one_of(SHADOWS))?.unwrap_or_default(),
+        scale: fields.number("scale", 0.0, MAX_SCALE.into(), 0.1)? as f32,
+        tiles: fields.number("tiles", 1e-3, 1e3, 1.0)? as f32,
+        method: fields.one_of("method", all, Method::Quadtree)?,
+        shadow: fields.one_of("shadow", SHADOWS, Shadow::default())?,
     })
 }
 
@@ -139,13 +118,11 @@ fn play(fields: &Fields<'_>, otherwise: &PlayEntry) -> Result<PlayEntry, InputEr
         true => Ok(at.whole(0, i64::from(u32::MAX))?.to_string()),
         false => Ok(at.text()?.to_owned()),
     })?;
-    let rate = fields.maybe("rate", |at| at.number(-MAX_RATE, MAX_RATE))?;
-    let start = fields.maybe("start", |at| at.number(-MAX_SECONDS, MAX_SECONDS))?;
     Ok(PlayEntry {
         clip: clip.or_else(|| otherwise.clip.clone()),
-        rate: rate.map_or(otherwise.rate, |rate| rate as f32),
-        start: start.unwrap_or(otherwise.start),
-        wrap: fields.maybe("wrap", |at| at.one_of(WRAPS))?.unwrap_or(otherwise.wrap),
+        rate: fields.number("rate", -MAX_RATE, MAX_RATE, otherwise.rate.into())? as f32,
+        start: fields.number("start", -MAX_SECONDS, MAX_SECONDS, otherwise.start)?,
+        wrap: fields.one_of("wrap", WRAPS, otherwise.wrap)?,
     })
 }
 
@@ -197,6 +174,19 @@ fn turn(at: At<'_>) -> Result<Quat, InputError> {
         true => Ok(quaternion.normalize()),
         false => Err(at.error("must not be 0")),
     }
+}
+
+/// Three scale factors, of which one alone is enough.
+fn scale(at: &At<'_>) -> Result<Vec3, InputError> {
+    let check = |factor: f64| (1e-6..=1e6).contains(&factor.abs());
+    let all = match at.value().is_number() {
+        true => [at.number(-1e6, 1e6)?; 3],
+        false => at.numbers::<3>(-1e6, 1e6)?,
+    };
+    if !all.into_iter().all(check) {
+        return Err(at.error("must be one number or three between 1e-6 and 1e6, negative ones to mirror"));
+    }
+    Ok(all.map(|factor| factor as f32).into())
 }
 
 /// The rotation about the vertical axis by an angle, the same bits on every machine.

@@ -209,15 +209,16 @@ fn height(scene: &Scene, land: Option<ObjectId>, x: f64, z: f64) -> Option<f64> 
 /// Adds an object with room for its instances.
 async fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Result<WorldObject, Error> {
     let capacity = entry.count();
-    let object = match (loaded, &entry.kind) {
-        (Loaded::Relief(relief), _) => scene.add_relief_async(relief, capacity).await,
-        (Loaded::Model(model), EntryKind::Character(_)) => scene.add_character_async(model, capacity).await,
-        (Loaded::Model(model), _) => scene.add_mesh_async(model, capacity).await,
+    let (kind, object) = match (loaded, &entry.kind) {
+        (Loaded::Relief(relief), _) => (WorldKind::Relief, scene.add_relief_async(relief, capacity).await),
+        (Loaded::Model(model), EntryKind::Character(_)) => {
+            (WorldKind::Character, scene.add_character_async(model, capacity).await)
+        }
+        (Loaded::Model(model), _) => (WorldKind::Mesh, scene.add_mesh_async(model, capacity).await),
     };
-    let (kind, model) = match (loaded, &entry.kind) {
-        (Loaded::Relief(_), _) => (WorldKind::Relief, None),
-        (Loaded::Model(model), EntryKind::Character(_)) => (WorldKind::Character, Some(model.clone())),
-        (Loaded::Model(model), _) => (WorldKind::Mesh, Some(model.clone())),
+    let model = match loaded {
+        Loaded::Relief(_) => None,
+        Loaded::Model(model) => Some(model.clone()),
     };
     let object = object.map_err(|error| below(&entry.path, error))?;
     Ok(WorldObject { object, kind, name: entry.source.to_string(), model })

@@ -5,7 +5,7 @@ use super::pose::{Moment, Pose};
 use super::vertex::{Vertex, check_range};
 use crate::InputError;
 use crate::asset::skeleton::Bone;
-use crate::asset::{Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
+use crate::asset::{Influences, Mesh, Model, Skeleton, Skin, Transform};
 
 /// The model at rest: the positions, normals and tangents of all meshes are what skinning makes of them without a
 /// clip, with the morph weights that they have then. Its only bone and its only skin change nothing, so that skinning
@@ -59,10 +59,8 @@ fn baked(mesh: &Mesh, index: usize, vertices: &[Vertex]) -> Result<Mesh, InputEr
         return Err(InputError::new(format!("vertices[{index}].len"), vertices.len(), bound));
     }
     check_range(index, vertices)?;
-    let one = || vec![Influence { bone: 0, weight: 1.0 }];
     Ok(Mesh {
         name: mesh.name.clone(),
-        skin: 0,
         positions: vertices.iter().map(|vertex| vertex.position).collect(),
         normals: vertices.iter().map(|vertex| vertex.normal).collect(),
         tangents: vertices.iter().map(|vertex| vertex.tangent).collect(),
@@ -70,11 +68,7 @@ fn baked(mesh: &Mesh, index: usize, vertices: &[Vertex]) -> Result<Mesh, InputEr
         indices: mesh.indices.clone(),
         double_sided: mesh.double_sided,
         material: mesh.material,
-        influences: Influences::new("influences", 1, vertices.iter().map(|_| one()))?,
-        targets: Vec::new(),
-        weights: Vec::new(),
-        weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
+        influences: Influences::rigid(vertices.len()),
+        ..Mesh::default()
     })
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 use relievo::scene::Ray;
-use relievo::scene_file::{Player, Rendering, SceneFile, WorldKind};
+use relievo::scene_file::{SceneFile, WorldKind};
+use relievo_lab::measure::{Player, Rendering};
 use serde_json::{Value, json};
 
 use crate::harness::{Difference, Tolerance, check_golden, gpu};

@@ -5,11 +5,11 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use relievo::gpu::Gpu;
-use relievo::terrain::export::HeightRange;
 use relievo::{Error, InputError};
 use serde::Serialize;
 
 use crate::Context;
+use crate::terrain::export::HeightRange;
 
 /// The processor that computes.
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]

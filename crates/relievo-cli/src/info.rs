@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use relievo::Error;
-use relievo::gpu::{TimedBy, Timer, adapters, shaders};
+use relievo::gpu::{adapters, shaders};
+use relievo_lab::harness::{TimedBy, Timer};
 
 use crate::Context;
 use crate::output::say;

@@ -12,10 +12,10 @@ use clap::builder::RangedU64ValueParser;
 use image::RgbaImage;
 use relievo::render::Layer;
 use relievo::scene::{Depth, Quality, Transition};
-use relievo::scene_file::{LoadedScene, Rendering};
+use relievo::scene_file::LoadedScene;
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
-use relievo_lab::measure::{CharacterDump, FrameReport, FrameSummary, ObjectReport, ScenePlay};
+use relievo_lab::measure::{CharacterDump, FrameReport, FrameSummary, ObjectReport, Rendering, ScenePlay};
 use serde::Serialize;
 
 use crate::Context;

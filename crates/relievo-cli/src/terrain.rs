@@ -1,6 +1,7 @@
 //! `relievo terrain`: heights, colour maps and views of patches of terrain.
 
 mod erosion;
+pub mod export;
 mod frames;
 mod injected;
 mod look;
@@ -17,7 +18,7 @@ use relievo::scene::TerrainStyle;
 use relievo::terrain::blend::{Shading, WeightMode};
 use relievo::terrain::color_maps::ColorMaps;
 use relievo::terrain::despike::Despike;
-use relievo::terrain::export::{Batch, HeightRange, PatchReport, cropped};
+use relievo::terrain::export::cropped;
 use relievo::terrain::field::field_with;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
@@ -36,6 +37,7 @@ use crate::memory;
 use crate::output::say;
 use crate::progress::bar;
 use erosion::Erosion;
+use export::{Batch, HeightRange, PatchReport};
 use frames::Frame;
 use look::Look;
 use target::{Target, TargetArguments, Way};

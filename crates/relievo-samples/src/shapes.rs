@@ -5,7 +5,7 @@ use relievo::InputError;
 use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::mesh::solved_tangents;
 use relievo::asset::skeleton::Bone;
-use relievo::asset::{Influence, Influences, Material, Mesh, Model, Skeleton, Skin, Transform};
+use relievo::asset::{Influences, Material, Mesh, Model, Skeleton, Skin, Transform};
 use relievo::hash::{LANES, threefry2x32};
 use relievo::terrain::config::BuiltIn;
 use relievo::terrain::texture::{TEXTURE_SIZE, Texture as ZoneTexture};
@@ -159,25 +159,17 @@ impl Builder {
         image: Option<image::RgbaImage>,
     ) -> Result<Model, InputError> {
         let bone = Bone { name: name.to_owned(), parent: None, rest: Transform::IDENTITY };
-        let vertices = self.positions.len();
-        let follows = (0..vertices).map(|_| vec![Influence { bone: 0, weight: 1.0 }]);
         let tangents = solved_tangents(&self.positions, &self.normals, &self.uv, &self.indices)?;
         let mesh = Mesh {
             name: name.to_owned(),
-            skin: 0,
             tangents,
-            influences: Influences::new("influences", 1, follows)?,
+            influences: Influences::rigid(self.positions.len()),
             positions: self.positions,
             normals: self.normals,
             uv: self.uv,
             indices: self.indices,
-            double_sided: false,
             material: Some(0),
-            targets: Vec::new(),
-            weights: Vec::new(),
-            weight_keys: Vec::new(),
-            levels: Vec::new(),
-            partners: Vec::new(),
+            ..Mesh::default()
         };
         let texture = image.is_some().then(|| Texture { image: 0, sampling: Sampling::default() });
         let material = Material { texture, ..Material::opaque(name, color) };

@@ -23,6 +23,13 @@ pub enum Interpolation {
     CubicSpline = interpolation::INTERPOLATION_SPLINE,
 }
 
+impl Interpolation {
+    /// Number of values of a key.
+    pub(crate) fn values_a_key(self) -> usize {
+        if self == Self::CubicSpline { 3 } else { 1 }
+    }
+}
+
 /// The keys of one track, as an importer gives them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keys {
@@ -45,7 +52,7 @@ impl Keys {
     /// without a direction.
     pub(crate) fn validate(&self, [times, values]: [&str; 2], is_rotation: bool) -> Result<(), InputError> {
         check_times(times, &self.times)?;
-        let each = self.values_a_key();
+        let each = self.interpolation.values_a_key();
         if self.values.len() != each * self.times.len() {
             let bound = format!("must be {}, {each} a key", each * self.times.len());
             return Err(InputError::new(format!("{values}.len"), self.values.len(), bound));
@@ -58,10 +65,6 @@ impl Keys {
             }
         }
         Ok(())
-    }
-
-    fn values_a_key(&self) -> usize {
-        if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 }
     }
 
     /// The keys in the form in which a clip stores them; the keys must be valid.

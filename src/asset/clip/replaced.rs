@@ -1,6 +1,6 @@
 //! Copies of clips in which some tracks have other keys.
 
-use super::{Clip, Interpolation, Keys, Layout, Part, Track};
+use super::{Clip, Keys, Layout, Part, Track};
 use crate::InputError;
 
 impl Clip {
@@ -8,8 +8,8 @@ impl Clip {
     /// track at rest gives no keys and one value.
     pub(crate) fn stored_keys(&self, track: &Track) -> Keys {
         let interpolation = track.interpolation;
-        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-        let values = &self.values[track.first_value as usize..][..each * track.keys.max(1) as usize];
+        let count = interpolation.values_a_key() * track.keys.max(1) as usize;
+        let values = &self.values[track.first_value as usize..][..count];
         Keys { times: self.times_of(track).to_vec(), values: values.to_vec(), interpolation }
     }
 

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Clip, Interpolation, LONGEST, Part, Track, check_times};
+use super::{Clip, LONGEST, Part, Track, check_times};
 use crate::InputError;
 use crate::asset::transform::{finite, unit};
 
@@ -57,7 +57,7 @@ fn check_track(at: usize, track: &Track, times: &[f32], values: &[[f32; 4]]) -> 
         Ok(first..end)
     };
     let keys = track.keys as usize;
-    let each = if track.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    let each = track.interpolation.values_a_key();
     let own_times = of_track(track.first_time, keys, times.len(), "times")?;
     let own_values = of_track(track.first_value, each * keys.max(1), values.len(), "values")?;
     if at % Part::ALL.len() == Part::Rotation as usize {

@@ -2,7 +2,6 @@
 //! normalized. Values are read as floats, or as integers for joints and indices.
 
 use gltf_json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
-use gltf_json::validation::Checked;
 use gltf_json::{Index, buffer};
 
 use super::document::Document;
@@ -29,15 +28,15 @@ enum Kind {
     Whole,
 }
 
-type Decode<T> = fn(Shape, &[u8]) -> T;
+/// Makes a value of a component, whose number is given.
+type Decode<T> = fn(Shape, f64) -> T;
 
 /// The elements of an accessor: in a buffer view, or in a compressed primitive.
-#[derive(Clone, Copy)]
 pub struct Elements<'d, 'a> {
     pub document: &'d Document<'a>,
     pub accessor: Index<Accessor>,
     /// The compressed primitive, and which of its attributes the accessor describes.
-    pub compressed: Option<(&'d Decompressed<'d>, &'d str)>,
+    pub compressed: Option<(&'d Decompressed<'d>, String)>,
 }
 
 impl Elements<'_, '_> {
@@ -47,6 +46,14 @@ impl Elements<'_, '_> {
     /// [`InputError`] with the path of the fault in the file; integers that are not normalized are a fault too.
     pub fn vectors<const N: usize>(self) -> Result<Vec<[f32; N]>, InputError> {
         self.read(Kind::Fraction, float)
+    }
+
+    /// Reads them as floats, as [`Elements::vectors`].
+    ///
+    /// # Errors
+    /// The same.
+    pub fn floats(self) -> Result<Vec<f32>, InputError> {
+        Ok(self.vectors::<1>()?.into_flattened())
     }
 
     /// Reads a vertex attribute: as [`Elements::vectors`], and also integers of 8 or 16 bits, as their values.
@@ -62,7 +69,7 @@ impl Elements<'_, '_> {
     /// # Errors
     /// [`InputError`] with the path of the fault in the file; floats and normalized integers are a fault too.
     pub fn integers<const N: usize>(self) -> Result<Vec<[u32; N]>, InputError> {
-        self.read(Kind::Whole, |shape, bytes| whole(shape.component, bytes))
+        self.read(Kind::Whole, |_, number| number as u32)
     }
 
     fn read<const N: usize, T: Copy + Default>(
@@ -70,22 +77,16 @@ impl Elements<'_, '_> {
         kind: Kind,
         decode: Decode<T>,
     ) -> Result<Vec<[T; N]>, InputError> {
-        let Self { document, accessor: index, compressed } = self;
-        let path = format!("accessors[{}]", index.value());
-        let accessor = document.root.accessors.get(index.value());
-        let accessor = accessor.ok_or_else(|| InputError::new(&path, index.value(), "must exist"))?;
+        let Self { document, accessor, compressed } = self;
+        let path = format!("accessors[{}]", accessor.value());
+        let accessor = &document.root.accessors[accessor.value()];
         let shape = shape(&path, accessor, N, kind)?;
-        let values = match compressed {
-            Some((primitive, name)) => primitive.attribute(name, shape.component, N)?,
-            None => None,
-        };
+        let values = compressed.map(|(primitive, name)| primitive.attribute(&name, N)).transpose()?.flatten();
         let values = match values {
-            Some(bytes) => {
-                bytes.chunks_exact(shape.component.size()).map(|bytes| decode(shape, bytes)).collect()
-            }
+            Some(values) => values.into_iter().map(|number| decode(shape, number.into())).collect(),
             None => document.values(&path, accessor, shape, decode)?,
         };
-        Ok(values.chunks_exact(N).map(|chunk| std::array::from_fn(|at| chunk[at])).collect())
+        Ok(values.as_chunks().0.to_vec())
     }
 }
 
@@ -107,7 +108,7 @@ impl<'a> Document<'a> {
         let mut values = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                self.decoded(&format!("{path}.byteOffset"), view, offset, shape, decode)?
+                self.decoded(path, (view, offset), shape, decode)?
             }
             None => vec![T::default(); shape.count * shape.components],
         };
@@ -132,33 +133,23 @@ impl<'a> Document<'a> {
     fn replace<T: Copy>(
         &self,
         path: &str,
-        sparse: &Sparse,
+        Sparse { count, indices, values: new, .. }: &Sparse,
         shape: Shape,
         values: &mut [T],
         decode: Decode<T>,
     ) -> Result<(), InputError> {
-        let count =
-            usize::try_from(sparse.count.0).ok().filter(|count| *count <= shape.count).ok_or_else(|| {
-                let bound = format!("must be at most {}, the accessor's count", shape.count);
-                InputError::new(format!("{path}.count"), sparse.count.0, bound)
-            })?;
-        let Checked::Valid(component) = sparse.indices.component_type else {
-            return Err(InputError::new(
-                format!("{path}.indices.componentType"),
-                "invalid",
-                "must be unsigned",
-            ));
-        };
-        let of_indices = Shape { component: component.0, components: 1, count, is_normalized: false };
-        let offset = sparse.indices.byte_offset.0;
-        let at = format!("{path}.indices.byteOffset");
-        let bytes = self.packed(&at, sparse.indices.buffer_view, offset, of_indices)?;
-        let indices = bytes.chunks_exact(component.0.size()).map(|bytes| whole(component.0, bytes));
-        let offset = sparse.values.byte_offset.0;
-        let at = format!("{path}.values.byteOffset");
-        let new = self.decoded(&at, sparse.values.buffer_view, offset, Shape { count, ..shape }, decode)?;
-        for (at, (index, new)) in indices.zip(new.chunks_exact(shape.components)).enumerate() {
-            let index = index as usize;
+        let count = usize::try_from(count.0).ok().filter(|count| *count <= shape.count).ok_or_else(|| {
+            let bound = format!("must be at most {}, the accessor's count", shape.count);
+            InputError::new(format!("{path}.count"), count.0, bound)
+        })?;
+        let component = indices.component_type.unwrap().0;
+        let place = (indices.buffer_view, indices.byte_offset.0);
+        let of_indices = Shape { component, components: 1, count, is_normalized: false };
+        let indices =
+            self.decoded(&format!("{path}.indices"), place, of_indices, |_, number| number as usize)?;
+        let place = (new.buffer_view, new.byte_offset.0);
+        let new = self.decoded(&format!("{path}.values"), place, Shape { count, ..shape }, decode)?;
+        for (at, (index, new)) in indices.into_iter().zip(new.chunks_exact(shape.components)).enumerate() {
             if index >= shape.count {
                 let bound = format!("must be below {}, the accessor's count", shape.count);
                 return Err(InputError::new(format!("{path}.indices[{at}]"), index, bound));
@@ -168,34 +159,20 @@ impl<'a> Document<'a> {
         Ok(())
     }
 
+    /// The components of elements that begin at an offset in a buffer view. `path` is that of the offset's object.
     fn decoded<T>(
         &self,
         path: &str,
-        view: Index<buffer::View>,
-        offset: u64,
+        (view, offset): (Index<buffer::View>, u64),
         shape: Shape,
         decode: Decode<T>,
     ) -> Result<Vec<T>, InputError> {
-        let bytes = self.packed(path, view, offset, shape)?;
-        Ok(bytes.chunks_exact(shape.component.size()).map(|bytes| decode(shape, bytes)).collect())
-    }
-
-    /// The bytes of the elements, without the bytes between them.
-    fn packed(
-        &self,
-        path: &str,
-        view: Index<buffer::View>,
-        offset: u64,
-        shape: Shape,
-    ) -> Result<Vec<u8>, InputError> {
         let (bytes, stride) = self.view(view)?;
         let size = shape.components * shape.component.size();
         let stride = stride.unwrap_or(size);
         if stride < size {
-            let bound = format!(
-                "must be at least {size}, the size of an element of {}",
-                path.split('.').next().unwrap_or_default()
-            );
+            let accessor = path.split('.').next().unwrap_or_default();
+            let bound = format!("must be at least {size}, the size of an element of {accessor}");
             return Err(InputError::new(format!("bufferViews[{}].byteStride", view.value()), stride, bound));
         }
         if shape.count == 0 {
@@ -207,9 +184,14 @@ impl<'a> Document<'a> {
             let view = view.value();
             let bound =
                 format!("{} elements must lie in bufferViews[{view}], {} bytes", shape.count, bytes.len());
-            InputError::new(path, offset, bound)
+            InputError::new(format!("{path}.byteOffset"), offset, bound)
         })?;
-        Ok(slice.chunks(stride).flat_map(|element| &element[..size]).copied().collect())
+        let mut values = Vec::with_capacity(shape.count * shape.components);
+        for element in slice.chunks(stride) {
+            let components = element[..size].chunks_exact(shape.component.size());
+            values.extend(components.map(|bytes| decode(shape, number(shape.component, bytes))));
+        }
+        Ok(values)
     }
 }
 
@@ -221,17 +203,11 @@ fn shape(path: &str, accessor: &Accessor, components: usize, kind: Kind) -> Resu
         4 => Type::Vec4,
         _ => Type::Mat4,
     };
-    if accessor.type_ != Checked::Valid(wanted) {
-        let found = match accessor.type_ {
-            Checked::Valid(found) => format!("{found:?}"),
-            Checked::Invalid => "unknown".to_owned(),
-        };
-        return Err(InputError::new(format!("{path}.type"), found, format!("must be {wanted:?} here")));
+    let (found, component) = (accessor.type_.unwrap(), accessor.component_type.unwrap().0);
+    if found != wanted {
+        let bound = format!("must be {wanted:?} here");
+        return Err(InputError::new(format!("{path}.type"), format!("{found:?}"), bound));
     }
-    let Checked::Valid(component) = accessor.component_type else {
-        return Err(InputError::new(format!("{path}.componentType"), "unknown", "must be one of glTF's"));
-    };
-    let component = component.0;
     let is_small = component.size() < 4 && components < 16;
     let is_unsigned = matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
     let (fits, bound) = match kind {
@@ -252,28 +228,29 @@ fn shape(path: &str, accessor: &Accessor, components: usize, kind: Kind) -> Resu
     Ok(Shape { component, components, count, is_normalized: accessor.normalized })
 }
 
-/// The value of a component: the number itself or, for normalized integers, a fraction (glTF 2.0, section
-/// 3.6.2.2).
-fn float(shape: Shape, bytes: &[u8]) -> f32 {
-    let (value, one) = match (shape.component, bytes) {
-        (ComponentType::I8, [byte, ..]) => (f32::from(*byte as i8), 127.0),
-        (ComponentType::U8, [byte, ..]) => (f32::from(*byte), 255.0),
-        (ComponentType::I16, [low, high, ..]) => (f32::from(i16::from_le_bytes([*low, *high])), 32_767.0),
-        (ComponentType::U16, [low, high, ..]) => (f32::from(u16::from_le_bytes([*low, *high])), 65_535.0),
-        (ComponentType::F32, [a, b, c, d, ..]) => return f32::from_le_bytes([*a, *b, *c, *d]),
-        // Not reached: `shape` accepts only the types above.
-        _ => return f32::NAN,
-    };
-    if shape.is_normalized { (value / one).max(-1.0) } else { value }
+/// The number that the bytes of a component are.
+fn number(component: ComponentType, bytes: &[u8]) -> f64 {
+    match (component, bytes) {
+        (ComponentType::I8, [a]) => (*a as i8).into(),
+        (ComponentType::U8, [a]) => (*a).into(),
+        (ComponentType::I16, [a, b]) => i16::from_le_bytes([*a, *b]).into(),
+        (ComponentType::U16, [a, b]) => u16::from_le_bytes([*a, *b]).into(),
+        (ComponentType::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]).into(),
+        (ComponentType::F32, [a, b, c, d]) => f32::from_le_bytes([*a, *b, *c, *d]).into(),
+        // Not reached: components have the size of their type.
+        _ => f64::NAN,
+    }
 }
 
-/// The value of an index component.
-fn whole(component: ComponentType, bytes: &[u8]) -> u32 {
-    match (component, bytes) {
-        (ComponentType::U8, [byte, ..]) => u32::from(*byte),
-        (ComponentType::U16, [low, high, ..]) => u32::from(u16::from_le_bytes([*low, *high])),
-        (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
-        // Not reached: gltf-json knows no other type of index. The value exceeds every count.
-        _ => u32::MAX,
-    }
+/// The value of a component: the number itself or, for normalized integers, a fraction (glTF 2.0, section
+/// 3.6.2.2).
+fn float(shape: Shape, number: f64) -> f32 {
+    let one = match shape.component {
+        ComponentType::I8 => 127.0,
+        ComponentType::U8 => 255.0,
+        ComponentType::I16 => 32_767.0,
+        ComponentType::U16 => 65_535.0,
+        ComponentType::U32 | ComponentType::F32 => return number as f32,
+    };
+    if shape.is_normalized { (number as f32 / one).max(-1.0) } else { number as f32 }
 }

@@ -1,13 +1,14 @@
-//! Reads animations as clips.
+//! Reads animations: those of bones as clips, and those of morph weights as keys of a mesh.
 
-use gltf_json::Animation;
+use gltf_json::accessor::Accessor;
 use gltf_json::animation::{Interpolation as GltfInterpolation, Property};
-use gltf_json::validation::Checked;
+use gltf_json::{Animation, Index};
 
 use super::document::Document;
 use super::nodes::Nodes;
 use crate::InputError;
 use crate::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
+use crate::asset::morph::WeightKeys;
 
 /// Reads every animation of the document.
 pub fn clips(document: &Document<'_>, nodes: &Nodes) -> Result<Vec<Clip>, InputError> {
@@ -26,71 +27,88 @@ fn clip(
     let mut bones = vec![BoneKeys::default(); nodes.skeleton.len()];
     let mut duration = 0.0_f32;
     for (at, channel) in animation.channels.iter().enumerate() {
-        let path = format!("animations[{index}].channels[{at}]");
-        let node = channel.target.node.value();
-        if node >= document.root.nodes.len() {
-            let bound = format!("must be below {}", document.root.nodes.len());
-            return Err(InputError::new(format!("{path}.target.node"), node, bound));
-        }
-        let Checked::Valid(property) = channel.target.path else {
-            return Err(InputError::new(format!("{path}.target.path"), "unknown", "must be one of glTF's"));
-        };
-        let sampler = channel.sampler.value();
-        let keys = match (nodes.bone(node), property) {
-            (Some(bone), Property::Translation) => Some(&mut bones[bone].translation),
-            (Some(bone), Property::Rotation) => Some(&mut bones[bone].rotation),
-            (Some(bone), Property::Scale) => Some(&mut bones[bone].scale),
-            _ => None,
-        };
-        let Some(place) = keys else {
-            let input = animation.samplers[sampler].input;
-            let times = document.elements(input).vectors::<1>()?.into_iter().flatten();
-            duration = times.filter(|time| time.is_finite()).fold(duration, f32::max);
-            continue;
+        let (node, sampler) = (channel.target.node.value(), channel.sampler.value());
+        let bone = nodes.bone(node).map(|bone| &mut bones[bone]);
+        let property = channel.target.path.unwrap();
+        let place = match (bone, property) {
+            (Some(bone), Property::Translation) => &mut bone.translation,
+            (Some(bone), Property::Rotation) => &mut bone.rotation,
+            (Some(bone), Property::Scale) => &mut bone.scale,
+            _ => {
+                let times = document.elements(animation.samplers[sampler].input).floats()?.into_iter();
+                duration = times.filter(|time| time.is_finite()).fold(duration, f32::max);
+                continue;
+            }
         };
         if place.is_some() {
-            return Err(InputError::new(
-                format!("{path}.target"),
-                node,
-                "must not be animated by two channels",
-            ));
+            return Err(twice(index, at, node));
         }
-        *place = Some(keys_of(document, index, animation, sampler, property)?);
+        let Sampler { paths: [input, output], times, values, interpolation } =
+            Sampler::new(document, index, sampler)?;
+        let values = match property {
+            Property::Rotation => document.elements(values).vectors()?,
+            _ => document.elements(values).vectors()?.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect(),
+        };
+        let keys = Keys { times, values, interpolation };
+        keys.validate([&input, &output], property == Property::Rotation)?;
+        *place = Some(keys);
     }
     let name = animation.name.clone().unwrap_or_else(|| format!("animation_{index}"));
     Clip::new(name, &nodes.skeleton, &bones, duration)
 }
 
-fn keys_of(
+/// The clips that animate the weights of a node's targets.
+pub fn weight_keys(
     document: &Document<'_>,
-    index: usize,
-    animation: &Animation,
-    sampler: usize,
-    property: Property,
-) -> Result<Keys, InputError> {
-    let path = format!("animations[{index}].samplers[{sampler}]");
-    let sampler = &animation.samplers[sampler];
-    let interpolation = match sampler.interpolation {
-        Checked::Valid(GltfInterpolation::Step) => Interpolation::Step,
-        Checked::Valid(GltfInterpolation::Linear) => Interpolation::Linear,
-        Checked::Valid(GltfInterpolation::CubicSpline) => Interpolation::CubicSpline,
-        Checked::Invalid => {
-            let bound = "must be STEP, LINEAR or CUBICSPLINE";
-            return Err(InputError::new(format!("{path}.interpolation"), "unknown", bound));
+    node: usize,
+    targets: usize,
+) -> Result<Vec<(usize, WeightKeys)>, InputError> {
+    let mut all: Vec<(usize, WeightKeys)> = Vec::new();
+    for (clip, animation) in document.root.animations.iter().enumerate() {
+        for (at, channel) in animation.channels.iter().enumerate() {
+            let is_of_weights = channel.target.path.unwrap() == Property::MorphTargetWeights;
+            // A mesh without targets has no weights to animate.
+            if !is_of_weights || channel.target.node.value() != node || targets == 0 {
+                continue;
+            }
+            if all.last().is_some_and(|(last, _)| *last == clip) {
+                return Err(twice(clip, at, node));
+            }
+            let Sampler { paths: [input, output], times, values, interpolation } =
+                Sampler::new(document, clip, channel.sampler.value())?;
+            let values = document.elements(values).floats()?;
+            let keys = WeightKeys::new([&input, &output], times, values, interpolation, targets)?;
+            all.push((clip, keys));
         }
-    };
-    let times = document.elements(sampler.input).vectors::<1>()?.into_iter().flatten().collect();
-    let values = match property {
-        Property::Rotation => document.elements(sampler.output).vectors::<4>()?,
-        _ => document
-            .elements(sampler.output)
-            .vectors::<3>()?
-            .into_iter()
-            .map(|[x, y, z]| [x, y, z, 0.0])
-            .collect(),
-    };
-    let keys = Keys { times, values, interpolation };
-    let paths = [format!("{path}.input"), format!("{path}.output")];
-    keys.validate([&paths[0], &paths[1]], property == Property::Rotation)?;
-    Ok(keys)
+    }
+    Ok(all)
+}
+
+/// The error of a channel whose target an earlier channel animates.
+fn twice(animation: usize, channel: usize, node: usize) -> InputError {
+    let path = format!("animations[{animation}].channels[{channel}].target");
+    InputError::new(path, node, "must not be animated by two channels")
+}
+
+/// The keys of a sampler, whose values are not read yet.
+struct Sampler {
+    /// The paths of times and values.
+    paths: [String; 2],
+    times: Vec<f32>,
+    values: Index<Accessor>,
+    interpolation: Interpolation,
+}
+
+impl Sampler {
+    fn new(document: &Document<'_>, animation: usize, at: usize) -> Result<Self, InputError> {
+        let sampler = &document.root.animations[animation].samplers[at];
+        let interpolation = match sampler.interpolation.unwrap() {
+            GltfInterpolation::Step => Interpolation::Step,
+            GltfInterpolation::Linear => Interpolation::Linear,
+            GltfInterpolation::CubicSpline => Interpolation::CubicSpline,
+        };
+        let paths = ["input", "output"].map(|name| format!("animations[{animation}].samplers[{at}].{name}"));
+        let times = document.elements(sampler.input).floats()?;
+        Ok(Self { paths, times, values: sampler.output, interpolation })
+    }
 }

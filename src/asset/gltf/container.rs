@@ -18,11 +18,12 @@ impl<'a> Container<'a> {
         if !bytes.starts_with(b"glTF") {
             return Ok(Self { json: bytes, binary: None });
         }
-        let word = |at: usize| -> Option<u32> {
-            Some(u32::from_le_bytes(bytes.get(at..at.checked_add(4)?)?.try_into().ok()?))
+        let word = |at: usize| {
+            let word = bytes.get(at..).and_then(|rest| rest.first_chunk()).copied();
+            let cut_off = || InputError::new("GLB", format!("[{} bytes]", bytes.len()), "is cut off");
+            word.map(u32::from_le_bytes).ok_or_else(cut_off)
         };
-        let cut_off = || InputError::new("GLB", format!("[{} bytes]", bytes.len()), "is cut off");
-        let (version, length) = (word(4).ok_or_else(cut_off)?, word(8).ok_or_else(cut_off)? as usize);
+        let (version, length) = (word(4)?, word(8)? as usize);
         if version != 2 {
             return Err(InputError::new("GLB.version", version, "must be 2"));
         }
@@ -35,8 +36,8 @@ impl<'a> Container<'a> {
             if at == length {
                 break;
             }
-            let size = word(at).ok_or_else(cut_off)? as usize;
-            let kind = word(at + 4).ok_or_else(cut_off)?;
+            let size = word(at)? as usize;
+            let kind = word(at + 4)?;
             let data = bytes.get(at + 8..).and_then(|rest| rest.get(..size)).ok_or_else(|| {
                 let bound = format!("must be at most {}", length.saturating_sub(at + 8));
                 InputError::new(format!("GLB.chunks[{chunk}].length"), size, bound)

@@ -2,7 +2,7 @@
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
-use std::path::{Component, Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use base64::Engine as _;
@@ -17,6 +17,7 @@ use super::container::Container;
 use super::extensions::Extensions;
 use super::{faults, json};
 use crate::InputError;
+use crate::asset::beside::path_below;
 
 /// A document whose indices are all in range.
 pub struct Document<'a> {
@@ -162,18 +163,11 @@ impl<'a> Document<'a> {
         }
         let name = percent_encoding::percent_decode_str(uri).decode_utf8();
         let name = name.map_err(|error| refused(format!("must be UTF-8: {error}")))?;
-        let relative = Path::new(&*name);
-        let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-        // Refuses a scheme or a drive letter, and paths that lead out of the document's folder.
-        if name.contains(':') || !relative.components().all(is_plain) {
-            return Err(refused(
-                "must be a data: URI or a file in the document's folder or below".to_owned(),
-            ));
-        }
+        let bound = "must be a data: URI or a file in the document's folder or below";
+        let name = path_below(&name).ok_or_else(|| refused(bound.to_owned()))?;
         let Some(read) = self.beside else {
             return Err(refused("lies in a file, and the document has no folder".to_owned()));
         };
-        let name: PathBuf = relative.components().filter(|part| *part != Component::CurDir).collect();
         if let Some(known) = self.files.borrow().get(&name) {
             return Ok(Rc::clone(known));
         }
@@ -228,10 +222,15 @@ fn validate(root: &Root, document: impl FnOnce() -> Value) -> Result<(), InputEr
     });
     // gltf-json does not look at these.
     for (animation, all) in root.animations.iter().enumerate() {
-        let mut channels = all.channels.iter();
-        let unknown = channels.position(|channel| channel.target.path == Checked::Invalid);
-        let path = |at| format!("animations[{animation}].channels[{at}].target.path");
-        first = first.or(unknown.map(|at| (path(at), Fault::Invalid)));
+        for (at, channel) in all.channels.iter().enumerate() {
+            let path = |field| format!("animations[{animation}].channels[{at}].target.{field}");
+            if channel.target.path == Checked::Invalid {
+                first.get_or_insert_with(|| (path("path"), Fault::Invalid));
+            }
+            if channel.target.node.value() >= root.nodes.len() {
+                first.get_or_insert_with(|| (path("node"), Fault::IndexOutOfBounds));
+            }
+        }
     }
     match first {
         Some((path, fault)) => Err(faults::of_value(&document(), &path, fault)),

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use draco_core::{DecodeLimits, DecoderBuffer, Mesh, MeshDecoder};
-use gltf_json::accessor::ComponentType;
 use gltf_json::{Index, buffer};
 use serde::Deserialize;
 
@@ -62,16 +61,11 @@ impl Decompressed<'_> {
         self.mesh.faces().iter().flat_map(|face| face.map(|point| point.0)).collect()
     }
 
-    /// The values of an attribute, vertex by vertex, as an accessor of this type has them; `None` if it is not compressed.
+    /// The values of an attribute, vertex by vertex; `None` if it is not compressed.
     ///
     /// # Errors
     /// [`InputError`] if the attribute does not exist, or has another number of components.
-    pub fn attribute(
-        &self,
-        name: &str,
-        component: ComponentType,
-        components: usize,
-    ) -> Result<Option<Vec<u8>>, InputError> {
+    pub fn attribute(&self, name: &str, components: usize) -> Result<Option<Vec<f32>>, InputError> {
         let Some(number) = self.attributes.get(name) else { return Ok(None) };
         let refused = |value: String, bound: &str| {
             Err(InputError::new(format!("{}.attributes.{name}", self.path), value, bound))
@@ -83,21 +77,6 @@ impl Decompressed<'_> {
             let value = format!("{} components", attribute.num_components());
             return refused(value, &format!("must have {components}, as the accessor"));
         }
-        let values = attribute.read_f32s(self.mesh.num_points(), components);
-        let mut bytes = Vec::with_capacity(values.len() * component.size());
-        values.into_iter().for_each(|value| push(value, component, &mut bytes));
-        Ok(Some(bytes))
-    }
-}
-
-/// Appends a number as a component type has it: the nearest one of that type.
-fn push(value: f32, component: ComponentType, bytes: &mut Vec<u8>) {
-    match component {
-        ComponentType::I8 => bytes.extend((value as i8).to_le_bytes()),
-        ComponentType::U8 => bytes.push(value as u8),
-        ComponentType::I16 => bytes.extend((value as i16).to_le_bytes()),
-        ComponentType::U16 => bytes.extend((value as u16).to_le_bytes()),
-        ComponentType::U32 => bytes.extend((value as u32).to_le_bytes()),
-        ComponentType::F32 => bytes.extend(value.to_le_bytes()),
+        Ok(Some(attribute.read_f32s(self.mesh.num_points(), components)))
     }
 }

@@ -1,7 +1,5 @@
 //! Extensions: which of them a document may have, and the data of those that gltf-json does not read.
 
-use std::collections::HashMap;
-
 use gltf_json::extensions::texture::TextureTransform;
 use serde::Deserialize;
 use serde_json::Value;
@@ -55,14 +53,14 @@ pub struct Extensions {
     pub normal_transforms: Vec<Option<TextureTransform>>,
     /// For each buffer view, how it is compressed.
     pub meshopt: Vec<Option<Meshopt>>,
-    /// Compressed primitives, by their mesh and their place in it.
-    draco: HashMap<(usize, usize), Draco>,
+    /// For each mesh and each of its primitives, how it is compressed with Draco.
+    pub draco: Vec<Vec<Option<Draco>>>,
     /// For each texture, the image of `EXT_texture_webp`.
     pub webp: Vec<Option<usize>>,
     /// For each texture, an extension with an image that is not read, and what to do about it.
     pub unread_images: Vec<Option<(&'static str, &'static str)>>,
-    /// Nodes with many copies of their mesh.
-    instanced: Vec<usize>,
+    /// For each node, whether it has many copies of its mesh.
+    instanced: Vec<bool>,
 }
 
 impl Extensions {
@@ -72,62 +70,48 @@ impl Extensions {
     /// [`InputError`] for extensions that are required and not read.
     pub fn new(document: &Value, is_bare: bool) -> Result<Self, InputError> {
         check_required(document, is_bare)?;
-        let mut draco = HashMap::new();
-        for (mesh, of_mesh) in list(document, "meshes").enumerate() {
-            for (at, primitive) in list(of_mesh, "primitives").enumerate() {
-                let path = || format!("meshes[{mesh}].primitives[{at}]");
-                if let Some(found) = extension(primitive, DRACO, path)? {
-                    draco.insert((mesh, at), found);
-                }
-            }
-        }
-        let meshopt = list(document, "bufferViews").enumerate().map(|(at, view)| {
-            let mut all = MESHOPT.iter().filter_map(|name| {
-                let found: Result<Option<Meshopt>, _> =
-                    extension(view, name, || format!("bufferViews[{at}]"));
-                found.map(|found| found.map(|found| found.named(name))).transpose()
-            });
-            all.next().transpose()
-        });
-        let transforms = list(document, "materials").enumerate().map(|(at, material)| {
-            let texture = material.get("normalTexture").unwrap_or(&Value::Null);
-            extension(texture, "KHR_texture_transform", || format!("materials[{at}].normalTexture"))
-        });
-        let webp = list(document, "textures").enumerate().map(|(at, texture)| {
-            let found: Option<Webp> = extension(texture, WEBP, || format!("textures[{at}]"))?;
-            Ok(found.map(|found| found.source))
-        });
         Ok(Self {
-            webp: webp.collect::<Result<_, InputError>>()?,
-            normal_transforms: transforms.collect::<Result<_, _>>()?,
-            meshopt: meshopt.collect::<Result<_, _>>()?,
-            draco,
+            normal_transforms: each(document, "materials", |material, path| {
+                let texture = material.get("normalTexture").unwrap_or(&Value::Null);
+                extension(texture, "KHR_texture_transform", &format!("{path}.normalTexture"))
+            })?,
+            meshopt: each(document, "bufferViews", |view, path| {
+                for name in MESHOPT {
+                    if let Some(found) = extension::<Meshopt>(view, name, path)? {
+                        return Ok(Some(found.named(name)));
+                    }
+                }
+                Ok(None)
+            })?,
+            draco: each(document, "meshes", |mesh, path| {
+                let draco = |primitive, at: &str| extension(primitive, DRACO, &format!("{path}.{at}"));
+                each(mesh, "primitives", draco)
+            })?,
+            webp: each(document, "textures", |texture, path| {
+                Ok(extension(texture, WEBP, path)?.map(|Webp { source }| source))
+            })?,
             unread_images: list(document, "textures").map(unread_image).collect(),
-            instanced: (list(document, "nodes").enumerate())
-                .filter_map(|(at, node)| node.get("extensions")?.get(INSTANCING).map(|_| at))
+            instanced: (list(document, "nodes"))
+                .map(|node| node.get("extensions").is_some_and(|all| all.get(INSTANCING).is_some()))
                 .collect(),
         })
     }
 
     /// Whether meshes are compressed.
     pub fn is_compressed(&self) -> bool {
-        !self.draco.is_empty() || self.meshopt.iter().any(Option::is_some)
+        self.draco.iter().flatten().any(Option::is_some) || self.meshopt.iter().any(Option::is_some)
     }
 
     /// Refuses a node of which only one of many copies would be read.
-    pub fn check_copies(&self, is_read: impl Fn(usize) -> bool) -> Result<(), InputError> {
-        match self.instanced.iter().find(|node| is_read(**node)) {
+    pub fn check_copies(&self, is_read: &[bool]) -> Result<(), InputError> {
+        match self.instanced.iter().zip(is_read).position(|(is_instanced, is_read)| *is_instanced && *is_read)
+        {
             None => Ok(()),
             Some(node) => {
                 let bound = "is not read: write a node for each copy";
                 Err(InputError::new(format!("nodes[{node}].extensions.{INSTANCING}"), "given", bound))
             }
         }
-    }
-
-    /// How a primitive is compressed, if it is.
-    pub fn draco(&self, mesh: usize, primitive: usize) -> Option<&Draco> {
-        self.draco.get(&(mesh, primitive))
     }
 }
 
@@ -141,15 +125,24 @@ fn list<'a>(value: &'a Value, name: &str) -> impl Iterator<Item = &'a Value> {
     value.get(name).and_then(Value::as_array).into_iter().flatten()
 }
 
+/// What `read` makes of each element of a list and of its path.
+fn each<'a, T>(
+    value: &'a Value,
+    name: &str,
+    read: impl Fn(&'a Value, &str) -> Result<T, InputError>,
+) -> Result<Vec<T>, InputError> {
+    list(value, name).enumerate().map(|(at, element)| read(element, &format!("{name}[{at}]"))).collect()
+}
+
 /// An extension of an object at `path`.
 fn extension<'a, T: Deserialize<'a>>(
     object: &'a Value,
     name: &str,
-    path: impl Fn() -> String,
+    path: &str,
 ) -> Result<Option<T>, InputError> {
     let Some(given) = object.get("extensions").and_then(|all| all.get(name)) else { return Ok(None) };
     serde_path_to_error::deserialize(given).map(Some).map_err(|error| {
-        let path = format!("{}.extensions.{name}", path());
+        let path = format!("{path}.extensions.{name}");
         let InputError { path: field, value, bound } = faults::of_type(given, &error);
         let path = if field == "glTF" { path } else { format!("{path}.{field}") };
         InputError { path, value, bound }

@@ -12,31 +12,6 @@ use crate::error::json::{refused_value, shown};
 /// The version of glTF that is read, of which any minor version is.
 const MAJOR: &str = "2";
 
-/// Fields that hold an index, each with the list into which the index points.
-const LISTS: [(&str, &str); 21] = [
-    ("buffer", "buffers"),
-    ("bufferView", "bufferViews"),
-    ("camera", "cameras"),
-    ("children", "nodes"),
-    ("indices", "accessors"),
-    ("input", "accessors"),
-    ("inverseBindMatrices", "accessors"),
-    ("joints", "nodes"),
-    ("mesh", "meshes"),
-    ("node", "nodes"),
-    ("nodes", "nodes"),
-    ("output", "accessors"),
-    ("scene", "scenes"),
-    ("index", "textures"),
-    ("material", "materials"),
-    ("skeleton", "nodes"),
-    ("skin", "skins"),
-    ("source", "images"),
-    ("POSITION", "accessors"),
-    ("NORMAL", "accessors"),
-    ("TANGENT", "accessors"),
-];
-
 /// Refuses what is no glTF, and another version than 2.
 pub fn check_version(document: &Value) -> Result<(), InputError> {
     let version = || document.pointer("/asset/version");
@@ -104,14 +79,24 @@ fn value_at<'a>(document: &'a Value, steps: &[&str]) -> Option<&'a Value> {
 /// The bound of an index that its list does not have.
 fn out_of_list(document: &Value, steps: &[&str], field: &str) -> String {
     let is_attribute = steps.iter().rev().nth(1) == Some(&"attributes");
-    let listed = LISTS.iter().find(|(name, _)| *name == field).map(|(_, list)| *list);
-    match listed.or(is_attribute.then_some("accessors")) {
-        None => "must lie in the list it points into".to_owned(),
-        Some(list) => {
-            let count = document.get(list).and_then(Value::as_array).map_or(0, Vec::len);
-            format!("must lie in the list {list}, below {count}")
-        }
-    }
+    let list = match field {
+        _ if is_attribute => "accessors",
+        "indices" | "input" | "inverseBindMatrices" | "output" => "accessors",
+        "POSITION" | "NORMAL" | "TANGENT" => "accessors",
+        "children" | "joints" | "node" | "nodes" | "skeleton" => "nodes",
+        "buffer" => "buffers",
+        "bufferView" => "bufferViews",
+        "camera" => "cameras",
+        "index" => "textures",
+        "material" => "materials",
+        "mesh" => "meshes",
+        "scene" => "scenes",
+        "skin" => "skins",
+        "source" => "images",
+        _ => return "must lie in the list it points into".to_owned(),
+    };
+    let count = document.get(list).and_then(Value::as_array).map_or(0, Vec::len);
+    format!("must lie in the list {list}, below {count}")
 }
 
 /// The error of an attribute whose name glTF does not have; gltf-json does not tell the name.

@@ -41,14 +41,12 @@ impl Materials {
         }
         let path = format!("materials[{at}]");
         let material = &document.root.materials[at];
-        let Base { color, texture, names } = Base::of(material);
+        let Base { color, texture, name } = Base::of(material);
         if let Some(channel) = color.iter().position(|value| !(0.0..=1.0).contains(value)) {
-            let field = format!("{path}.{}[{channel}]", names[0]);
+            let field = format!("{path}.{name}[{channel}]");
             return Err(InputError::new(field, color[channel], "must be in 0..=1"));
         }
-        let texture = texture
-            .map(|info| self.texture(document, &format!("{path}.{}", names[1]), info.index))
-            .transpose()?;
+        let texture = texture.map(|info| self.texture(document, info.index)).transpose()?;
         let (normal, normal_scale) = self.normal(document, &path, index)?;
         let alpha = alpha(&path, material)?;
         let name = material.name.clone().unwrap_or_else(|| format!("material_{at}"));
@@ -71,30 +69,18 @@ impl Materials {
             (Some(info), [Some(of_color), Some(of_normals)]) if of_color.are_same(&of_normals) => info,
             _ => return Ok((None, 1.0)),
         };
-        let path = format!("{path}.normalTexture");
         if !info.scale.is_finite() {
-            return Err(InputError::new(format!("{path}.scale"), info.scale, "must be finite"));
+            let path = format!("{path}.normalTexture.scale");
+            return Err(InputError::new(path, info.scale, "must be finite"));
         }
-        Ok((Some(self.texture(document, &path, info.index)?), info.scale))
+        Ok((Some(self.texture(document, info.index)?), info.scale))
     }
 
-    fn texture(
-        &mut self,
-        document: &Document<'_>,
-        path: &str,
-        index: Index<GltfTexture>,
-    ) -> Result<Texture, InputError> {
+    fn texture(&mut self, document: &Document<'_>, index: Index<GltfTexture>) -> Result<Texture, InputError> {
         let at = index.value();
-        let Some(texture) = document.root.textures.get(at) else {
-            return Err(InputError::new(format!("{path}.index"), at, "must exist"));
-        };
-        let sampling = match texture.sampler {
-            Some(sampler) => {
-                let path = format!("samplers[{}]", sampler.value());
-                sampling(&path, &document.root.samplers[sampler.value()])?
-            }
-            None => Sampling::default(),
-        };
+        let texture = &document.root.textures[at];
+        let sampler = texture.sampler.map(|sampler| &document.root.samplers[sampler.value()]);
+        let sampling = sampler.map_or_else(Sampling::default, sampling);
         let images = document.root.images.len();
         let webp = document.extensions.webp.get(at).copied().flatten();
         let Some(source) = Some(texture.source.value()).filter(|source| *source < images).or(webp) else {
@@ -140,8 +126,8 @@ impl Materials {
 struct Base<'a> {
     color: [f32; 4],
     texture: Option<&'a Info>,
-    /// The paths of both within the material.
-    names: [&'static str; 2],
+    /// The path of the colour within the material.
+    name: &'static str,
 }
 
 impl<'a> Base<'a> {
@@ -152,15 +138,12 @@ impl<'a> Base<'a> {
             (Some(glossy), _) => Self {
                 color: glossy.diffuse_factor.0,
                 texture: glossy.diffuse_texture.as_ref(),
-                names: [
-                    "extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor",
-                    "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
-                ],
+                name: "extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor",
             },
             (None, rough) => Self {
                 color: rough.base_color_factor.0,
                 texture: rough.base_color_texture.as_ref(),
-                names: ["pbrMetallicRoughness.baseColorFactor", "pbrMetallicRoughness.baseColorTexture"],
+                name: "pbrMetallicRoughness.baseColorFactor",
             },
         }
     }
@@ -198,51 +181,38 @@ pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, In
 
 fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
     let cutoff = material.alpha_cutoff.unwrap_or_default().0;
-    match material.alpha_mode {
-        Checked::Valid(AlphaMode::Opaque) => Ok(Alpha::Opaque),
-        Checked::Valid(AlphaMode::Blend) => Ok(Alpha::Dithered),
-        Checked::Valid(AlphaMode::Mask) if cutoff >= 0.0 && cutoff.is_finite() => Ok(Alpha::Mask(cutoff)),
-        Checked::Valid(AlphaMode::Mask) => {
+    match material.alpha_mode.unwrap() {
+        AlphaMode::Opaque => Ok(Alpha::Opaque),
+        AlphaMode::Blend => Ok(Alpha::Dithered),
+        AlphaMode::Mask if cutoff >= 0.0 && cutoff.is_finite() => Ok(Alpha::Mask(cutoff)),
+        AlphaMode::Mask => {
             let bound = "must be finite, and not negative";
             Err(InputError::new(format!("{path}.alphaCutoff"), cutoff, bound))
-        }
-        Checked::Invalid => {
-            let bound = "must be OPAQUE, MASK or BLEND";
-            Err(InputError::new(format!("{path}.alphaMode"), "unknown", bound))
         }
     }
 }
 
 /// The sampler's settings; those that it leaves open become linear, with mip levels.
-fn sampling(path: &str, sampler: &Sampler) -> Result<Sampling, InputError> {
-    let unknown =
-        |field: &str| InputError::new(format!("{path}.{field}"), "unknown", "must be one of glTF's");
-    let wrapping = |field: &str, mode: Checked<WrappingMode>| match mode {
-        Checked::Valid(WrappingMode::Repeat) => Ok(Wrapping::Repeat),
-        Checked::Valid(WrappingMode::MirroredRepeat) => Ok(Wrapping::Mirror),
-        Checked::Valid(WrappingMode::ClampToEdge) => Ok(Wrapping::Clamp),
-        Checked::Invalid => Err(unknown(field)),
-    };
+fn sampling(sampler: &Sampler) -> Sampling {
+    let wrap = [sampler.wrap_s, sampler.wrap_t].map(|mode| match mode.unwrap() {
+        WrappingMode::Repeat => Wrapping::Repeat,
+        WrappingMode::MirroredRepeat => Wrapping::Mirror,
+        WrappingMode::ClampToEdge => Wrapping::Clamp,
+    });
     let (nearest, linear) = (Filter::Nearest, Filter::Linear);
-    let magnified = match sampler.mag_filter {
-        None | Some(Checked::Valid(MagFilter::Linear)) => linear,
-        Some(Checked::Valid(MagFilter::Nearest)) => nearest,
-        Some(Checked::Invalid) => return Err(unknown("magFilter")),
+    let magnified = match sampler.mag_filter.map(Checked::unwrap) {
+        None | Some(MagFilter::Linear) => linear,
+        Some(MagFilter::Nearest) => nearest,
     };
-    let (minified, mips) = match sampler.min_filter {
-        None => (linear, Some(linear)),
-        Some(Checked::Valid(filter)) => match filter {
-            MinFilter::Nearest => (nearest, None),
-            MinFilter::Linear => (linear, None),
-            MinFilter::NearestMipmapNearest => (nearest, Some(nearest)),
-            MinFilter::LinearMipmapNearest => (linear, Some(nearest)),
-            MinFilter::NearestMipmapLinear => (nearest, Some(linear)),
-            MinFilter::LinearMipmapLinear => (linear, Some(linear)),
-        },
-        Some(Checked::Invalid) => return Err(unknown("minFilter")),
+    let (minified, mips) = match sampler.min_filter.map(Checked::unwrap) {
+        None | Some(MinFilter::LinearMipmapLinear) => (linear, Some(linear)),
+        Some(MinFilter::Nearest) => (nearest, None),
+        Some(MinFilter::Linear) => (linear, None),
+        Some(MinFilter::NearestMipmapNearest) => (nearest, Some(nearest)),
+        Some(MinFilter::LinearMipmapNearest) => (linear, Some(nearest)),
+        Some(MinFilter::NearestMipmapLinear) => (nearest, Some(linear)),
     };
-    let wrap = [wrapping("wrapS", sampler.wrap_s)?, wrapping("wrapT", sampler.wrap_t)?];
-    Ok(Sampling { wrap, magnified, minified, mips })
+    Sampling { wrap, magnified, minified, mips }
 }
 
 /// The texture coordinates at which a texture of a material is read, and their transform.

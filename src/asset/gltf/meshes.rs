@@ -4,14 +4,15 @@
 use gltf_json::mesh::Semantic;
 use gltf_json::validation::Checked;
 
+use super::clips::weight_keys;
 use super::document::Document;
 use super::materials::Materials;
 use super::nodes::{Nodes, node_name};
 use super::primitive::Reader;
-use super::weights::{weight_keys, weights};
 use super::winding::{mirrored, mirrors, turn_mirrored};
 use crate::InputError;
 use crate::asset::mesh::Mesh;
+use crate::asset::transform::finite;
 
 /// Elements charged for a primitive, whatever it contains.
 const PRIMITIVE: usize = 32;
@@ -49,7 +50,7 @@ pub fn meshes(
             }
             document.budget.spend(&path, PRIMITIVE + keys)?;
             let is_bare = materials.is_unread;
-            let draco = document.extensions.draco(mesh, at);
+            let draco = document.extensions.draco[mesh][at].as_ref();
             let decompressed = draco.map(|draco| draco.decompressed(document, &path)).transpose()?;
             let reader = Reader { document, primitive, path, is_rigid, is_bare, decompressed };
             let mut read = reader.mesh(&nodes.skins[skin], weights.len())?;
@@ -73,4 +74,19 @@ pub fn meshes(
             Err(InputError::new(format!("{path}.attributes.POSITION"), "missing", bound))
         }
     }
+}
+
+/// The weights of a node's targets: the node's own, or its mesh's, or 0.
+fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>, InputError> {
+    let (of_node, of_mesh) = (&document.root.nodes[node], &document.root.meshes[mesh]);
+    let first = of_mesh.primitives.first().and_then(|primitive| primitive.targets.as_ref());
+    let targets = first.map_or(0, Vec::len);
+    let (path, weights) = match (&of_node.weights, &of_mesh.weights) {
+        (Some(weights), _) => (format!("nodes[{node}].weights"), weights.clone()),
+        (None, Some(weights)) => (format!("meshes[{mesh}].weights"), weights.clone()),
+        (None, None) => return Ok(vec![0.0; targets]),
+    };
+    InputError::check_len(&path, weights.len(), targets, "a morph target")?;
+    finite(&path, &weights)?;
+    Ok(weights)
 }

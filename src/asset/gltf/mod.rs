@@ -96,7 +96,6 @@ mod primitive;
 mod rigid;
 mod scene;
 pub(super) mod tangents;
-mod weights;
 mod winding;
 mod write;
 

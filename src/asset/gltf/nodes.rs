@@ -28,7 +28,7 @@ impl Nodes {
     pub fn new(document: &Document<'_>) -> Result<Self, InputError> {
         let root = &document.root;
         let scene = Scene::new(root)?;
-        document.extensions.check_copies(|node| scene.contains[node])?;
+        document.extensions.check_copies(&scene.contains)?;
         let used = used_skins(root, &scene);
         let joints = joints(root, &used)?;
         let animated = animated(root);
@@ -42,7 +42,7 @@ impl Nodes {
             let bound = "must have a mesh, a skin or an animated node in the default scene";
             return Err(InputError::new("nodes", format!("[{} nodes]", root.nodes.len()), bound));
         }
-        let order = order(&root.nodes, &scene.parents, &needed);
+        let order = order(&root.nodes, &scene, &needed);
         let mut bones = vec![None; root.nodes.len()];
         for (node, bone) in order.iter().zip(0..) {
             bones[*node] = Some(bone);
@@ -133,26 +133,14 @@ fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
 }
 
 /// These nodes and all their ancestors, in depth-first order.
-fn order(nodes: &[Node], parents: &[Option<usize>], wanted: &[usize]) -> Vec<usize> {
-    let mut needed = vec![false; nodes.len()];
-    let mut roots = Vec::new();
-    for wanted in wanted {
-        let mut node = *wanted;
-        while !std::mem::replace(&mut needed[node], true) {
-            match parents[node] {
-                Some(parent) => node = parent,
-                None => roots.push(node),
-            }
-        }
-    }
-    roots.sort_unstable();
-    roots.reverse();
+fn order(nodes: &[Node], scene: &Scene, wanted: &[usize]) -> Vec<usize> {
+    let needed = scene.with_ancestors(wanted);
+    let is_root = |node: &usize| needed[*node] && scene.parents[*node].is_none();
+    let mut waiting: Vec<usize> = (0..nodes.len()).rev().filter(is_root).collect();
     let mut order = Vec::new();
-    let mut waiting = roots;
     while let Some(node) = waiting.pop() {
         order.push(node);
-        let children = nodes[node].children.iter().flatten().map(|child| child.value());
-        waiting.extend(children.filter(|child| needed[*child] && parents[*child] == Some(node)).rev());
+        waiting.extend(scene.children(nodes, node).filter(|child| needed[*child]).rev());
     }
     order
 }

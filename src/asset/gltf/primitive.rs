@@ -10,12 +10,13 @@ use super::accessor::Elements;
 use super::document::Document;
 use super::draco::Decompressed;
 use super::materials::Coordinates;
-use super::tangents::{Surface, Tangents};
+use super::tangents::{Tangents, generated, solved};
 use crate::InputError;
 use crate::asset::influences::{Influence, Influences, MAX_INFLUENCES};
-use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals};
+use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals, unit_normal};
 use crate::asset::morph::{MorphDelta, MorphTarget};
 use crate::asset::skeleton::Skin;
+use crate::asset::tangents::Mesh as Surface;
 
 /// Elements charged per vertex for data that the file may lack and the import adds: normal, tangent, texture
 /// coordinates and influence.
@@ -38,48 +39,41 @@ impl<'d> Reader<'_, 'd> {
     /// The primitive as a mesh of skin 0 without a name, a material and weights, for a `skin` with its bones and
     /// as many morph `targets` as the mesh's first primitive has.
     pub(super) fn mesh(&self, skin: &Skin, targets: usize) -> Result<Mesh, InputError> {
-        let Some(positions) = self.accessor(&Semantic::Positions) else {
-            return Err(InputError::new(self.named("POSITION"), "missing", "must be given"));
+        let path = self.named("POSITION");
+        let Some(positions) = self.elements(&Semantic::Positions) else {
+            return Err(InputError::new(path, "missing", "must be given"));
         };
-        let positions = self.elements("POSITION", positions).attributes::<3>()?;
+        let positions = positions.attributes::<3>()?;
         if positions.len() > MAX_VERTICES {
             let bound = format!("must be at most {MAX_VERTICES}");
-            return Err(InputError::new(format!("{}.count", self.named("POSITION")), positions.len(), bound));
+            return Err(InputError::new(format!("{path}.count"), positions.len(), bound));
         }
-        in_range(&self.named("POSITION"), &positions)?;
+        in_range(&path, &positions)?;
         let vertices = positions.len();
-        self.document.budget.spend(&self.named("POSITION"), LACKING * vertices)?;
+        self.document.budget.spend(&path, LACKING * vertices)?;
         let uv = self.coordinates(vertices)?;
         let indices = self.triangles(vertices)?;
         let normals = self.normals(&positions, &indices)?;
         let tangents = self.tangents(&positions, &normals, uv.as_deref(), &indices)?;
-        self.check_copies(vertices, tangents.copied.len())?;
+        let copies = tangents.copied.len();
+        if vertices + copies > MAX_VERTICES {
+            let bound = format!("with {copies} copies for tangents must be at most {MAX_VERTICES}");
+            return Err(InputError::new(format!("{path}.count"), vertices, bound));
+        }
+        self.document.budget.spend(&path, LACKING * copies)?;
         let influences = match self.is_rigid {
-            true => {
-                let one = Influence { bone: 0, weight: 1.0 };
-                Influences::new(&self.named("POSITION"), 1, (0..vertices).map(|_| vec![one]))?
-            }
+            true => Influences::rigid(vertices),
             false => self.influences(vertices, skin.bones.len())?,
         };
         let targets = self.targets(vertices, targets)?;
-        let name = String::new();
-        let (weights, weight_keys) = (vec![], vec![]);
         let mut mesh = Mesh {
-            name,
-            skin: 0,
             normals,
-            tangents: vec![],
             uv: uv.unwrap_or_else(|| vec![[0.0; 2]; vertices]),
             positions,
-            indices: vec![],
             double_sided: self.material().is_some_and(|material| material.double_sided),
-            material: None,
             influences,
             targets,
-            weights,
-            weight_keys,
-            levels: vec![],
-            partners: vec![],
+            ..Mesh::default()
         };
         tangents.apply(&mut mesh);
         Ok(mesh)
@@ -95,29 +89,19 @@ impl<'d> Reader<'_, 'd> {
         indices: &[u32],
     ) -> Result<Tangents, InputError> {
         let vertices = positions.len();
-        let given = self.attribute::<4>(&Semantic::Tangents, "TANGENT", vertices)?;
+        let given = self.attribute::<4>(&Semantic::Tangents, vertices)?;
         let of_normals = self.coordinates_of_normals(vertices)?;
         let uv = of_normals.as_deref().or(uv);
-        let has_normals = self.accessor(&Semantic::Normals).is_some();
+        let has_normals = self.elements(&Semantic::Normals).is_some();
         if let Some(given) = given.filter(|_| uv.is_some() && has_normals) {
             let tangents = given.into_iter().map(flipped).collect();
             return Ok(Tangents { tangents, indices: indices.to_vec(), copied: vec![] });
         }
-        let surface = |uv| Surface { positions, normals, uv, indices };
         match uv {
-            Some(uv) if !self.is_bare => surface(uv).generated(),
-            Some(uv) => surface(uv).solved(),
-            None => surface(&vec![[0.0; 2]; vertices]).solved(),
+            Some(uv) if !self.is_bare => generated(&Surface { positions, normals, uv, indices }),
+            Some(uv) => solved(&Surface { positions, normals, uv, indices }),
+            None => solved(&Surface { positions, normals, uv: &vec![[0.0; 2]; vertices], indices }),
         }
-    }
-
-    fn check_copies(&self, vertices: usize, copies: usize) -> Result<(), InputError> {
-        let path = self.named("POSITION");
-        if vertices + copies > MAX_VERTICES {
-            let bound = format!("with {copies} copies for tangents must be at most {MAX_VERTICES}");
-            return Err(InputError::new(format!("{path}.count"), vertices, bound));
-        }
-        self.document.budget.spend(&path, LACKING * copies)
     }
 
     fn material(&self) -> Option<&GltfMaterial> {
@@ -128,15 +112,15 @@ impl<'d> Reader<'_, 'd> {
     /// texture; without either the first set, if there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(texture) = self.coordinates_of_material() else {
-            return self.attribute::<2>(&Semantic::TexCoords(0), "TEXCOORD_0", vertices);
+            return self.attribute::<2>(&Semantic::TexCoords(0), vertices);
         };
-        let name = format!("TEXCOORD_{}", texture.set);
-        let Some(mut uv) = self.attribute::<2>(&Semantic::TexCoords(texture.set), &name, vertices)? else {
+        let path = self.named(&format!("TEXCOORD_{}", texture.set));
+        let Some(mut uv) = self.attribute::<2>(&Semantic::TexCoords(texture.set), vertices)? else {
             let bound = "must be given: the material's texture is read there";
-            return Err(InputError::new(self.named(&name), "missing", bound));
+            return Err(InputError::new(path, "missing", bound));
         };
         texture.apply(&mut uv);
-        in_range(&self.named(&name), &uv)?;
+        in_range(&path, &uv)?;
         Ok(Some(uv))
     }
 
@@ -154,62 +138,42 @@ impl<'d> Reader<'_, 'd> {
         let of_mesh = self.coordinates_of_material();
         let (own, is_moved) = of_mesh.map_or((0, false), |of_mesh| (of_mesh.set, of_mesh.is_moved()));
         let of_normals = Coordinates::of_normals(self.document, index).map(|texture| texture.set);
-        let is_there = |set: &u32| self.accessor(&Semantic::TexCoords(*set)).is_some();
+        let is_there = |set: &u32| self.elements(&Semantic::TexCoords(*set)).is_some();
         let set = of_normals.filter(is_there).unwrap_or(own);
         if set == own && !is_moved {
             return Ok(None);
         }
-        self.attribute::<2>(&Semantic::TexCoords(set), &format!("TEXCOORD_{set}"), vertices)
+        self.attribute::<2>(&Semantic::TexCoords(set), vertices)
     }
 
     fn named(&self, attribute: &str) -> String {
         format!("{}.attributes.{attribute}", self.path)
     }
 
-    fn accessor(&self, semantic: &Semantic) -> Option<Index<Accessor>> {
-        self.primitive.attributes.get(&Checked::Valid(semantic.clone())).copied()
-    }
-
-    fn elements<'s>(&'s self, attribute: &'s str, accessor: Index<Accessor>) -> Elements<'s, 'd> {
-        let compressed = self.decompressed.as_ref().map(|primitive| (primitive, attribute));
-        Elements { document: self.document, accessor, compressed }
+    /// The elements of an attribute; `None` if the primitive lacks it.
+    fn elements(&self, semantic: &Semantic) -> Option<Elements<'_, 'd>> {
+        let accessor = *self.primitive.attributes.get(&Checked::Valid(semantic.clone()))?;
+        let compressed = self.decompressed.as_ref().map(|primitive| (primitive, semantic.to_string()));
+        Some(Elements { document: self.document, accessor, compressed })
     }
 
     /// An attribute with one value per vertex, in range, or `None` if the primitive lacks it.
     fn attribute<const N: usize>(
         &self,
         semantic: &Semantic,
-        name: &str,
         vertices: usize,
     ) -> Result<Option<Vec<[f32; N]>>, InputError> {
-        let Some(accessor) = self.accessor(semantic) else { return Ok(None) };
-        let values = self.elements(name, accessor).attributes::<N>()?;
-        self.one_a_vertex(&self.named(name), values.len(), vertices)?;
-        in_range(&self.named(name), &values)?;
-        Ok(Some(values))
-    }
-
-    fn one_a_vertex(&self, path: &str, count: usize, vertices: usize) -> Result<(), InputError> {
-        if count == vertices {
-            return Ok(());
-        }
-        Err(InputError::new(format!("{path}.count"), count, format!("must be {vertices}, one a vertex")))
+        let Some(elements) = self.elements(semantic) else { return Ok(None) };
+        one_a_vertex(&self.named(&semantic.to_string()), elements.attributes()?, vertices).map(Some)
     }
 
     /// Unit normals: the file's. If the file has none, or one without length, they are computed from the
     /// triangles.
     fn normals(&self, positions: &[[f32; 3]], indices: &[u32]) -> Result<Vec<[f32; 3]>, InputError> {
-        let Some(given) = self.attribute::<3>(&Semantic::Normals, "NORMAL", positions.len())? else {
+        let Some(given) = self.attribute::<3>(&Semantic::Normals, positions.len())? else {
             return Ok(smooth_normals(positions, indices));
         };
-        let length = |normal: &[f32; 3]| normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
-        let unit = |normal: [f32; 3]| match length(&normal) {
-            // Normals of about unit length are kept as they are, to avoid a second rounding.
-            length if (length - 1.0).abs() < 1e-3 => Some(normal),
-            length if length > 1e-6 => Some(normal.map(|x| (f64::from(x) / length) as f32)),
-            _ => None,
-        };
-        let units: Vec<_> = given.into_iter().map(unit).collect();
+        let units: Vec<_> = given.into_iter().map(unit_normal).collect();
         if units.iter().all(Option::is_some) {
             return Ok(units.into_iter().flatten().collect());
         }
@@ -223,7 +187,7 @@ impl<'d> Reader<'_, 'd> {
         for set in 0.. {
             let (joints_name, weights_name) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
             let (joints, weights) =
-                match [Semantic::Joints(set), Semantic::Weights(set)].map(|s| self.accessor(&s)) {
+                match [Semantic::Joints(set), Semantic::Weights(set)].map(|s| self.elements(&s)) {
                     [Some(joints), Some(weights)] => (joints, weights),
                     [None, None] if set > 0 => break,
                     [joints, _] => {
@@ -232,10 +196,9 @@ impl<'d> Reader<'_, 'd> {
                         return Err(InputError::new(self.named(&lacking), "missing", bound));
                     }
                 };
-            let joints = self.elements(&joints_name, joints).integers::<4>()?;
-            let weights = self.elements(&weights_name, weights).vectors::<4>()?;
-            self.one_a_vertex(&self.named(&joints_name), joints.len(), vertices)?;
-            self.one_a_vertex(&self.named(&weights_name), weights.len(), vertices)?;
+            let (joints, weights) = (joints.integers::<4>()?, weights.vectors::<4>()?);
+            check_count(&self.named(&joints_name), joints.len(), vertices)?;
+            check_count(&self.named(&weights_name), weights.len(), vertices)?;
             for (all, (joints, weights)) in all.iter_mut().zip(joints.iter().zip(&weights)) {
                 all.extend(joints.iter().zip(weights).map(|(&bone, &weight)| Influence { bone, weight }));
             }
@@ -248,20 +211,15 @@ impl<'d> Reader<'_, 'd> {
     fn triangles(&self, vertices: usize) -> Result<Vec<u32>, InputError> {
         let indices: Vec<u32> = match (&self.decompressed, self.primitive.indices) {
             (Some(decompressed), _) => decompressed.indices(),
-            (None, Some(accessor)) => {
-                self.document.elements(accessor).integers::<1>()?.into_iter().flatten().collect()
-            }
+            (None, Some(accessor)) => self.document.elements(accessor).integers::<1>()?.into_flattened(),
             (None, None) => (0..vertices as u32).collect(),
         };
         if let Some(at) = indices.iter().position(|index| *index as usize >= vertices) {
             let bound = format!("must be below {vertices}, the number of vertices");
             return Err(InputError::new(format!("{}.indices[{at}]", self.path), indices[at], bound));
         }
-        let Checked::Valid(mode) = self.primitive.mode else {
-            return Err(InputError::new(format!("{}.mode", self.path), "unknown", "must be one of glTF's"));
-        };
         // Draco has triangles, whatever the mode is without compression.
-        let mode = if self.decompressed.is_some() { Mode::Triangles } else { mode };
+        let mode = if self.decompressed.is_some() { Mode::Triangles } else { self.primitive.mode.unwrap() };
         // Strips and fans have one triangle per index.
         self.document.budget.spend(&self.path, 3 * indices.len())?;
         // Strips are joined by triangles without area.
@@ -303,10 +261,8 @@ impl<'d> Reader<'_, 'd> {
         let mut deltas = vec![MorphDelta::default(); vertices];
         let mut add = |name: &str, accessor: Option<Index<Accessor>>, set: fn(&mut MorphDelta, [f32; 3])| {
             let Some(accessor) = accessor else { return Ok(()) };
-            let values = self.document.elements(accessor).attributes::<3>()?;
             let path = format!("{}.targets[{at}].{name}", self.path);
-            self.one_a_vertex(&path, values.len(), vertices)?;
-            in_range(&path, &values)?;
+            let values = one_a_vertex(&path, self.document.elements(accessor).attributes()?, vertices)?;
             deltas.iter_mut().zip(values).for_each(|(delta, value)| set(delta, value));
             Ok(())
         };
@@ -315,6 +271,24 @@ impl<'d> Reader<'_, 'd> {
         add("TANGENT", target.tangents, |delta, value| delta.tangent = value)?;
         Ok(MorphTarget::new(&deltas))
     }
+}
+
+/// Refuses values that are out of range or not one for each vertex.
+fn one_a_vertex<const N: usize>(
+    path: &str,
+    values: Vec<[f32; N]>,
+    vertices: usize,
+) -> Result<Vec<[f32; N]>, InputError> {
+    check_count(path, values.len(), vertices)?;
+    in_range(path, &values)?;
+    Ok(values)
+}
+
+fn check_count(path: &str, count: usize, vertices: usize) -> Result<(), InputError> {
+    if count == vertices {
+        return Ok(());
+    }
+    Err(InputError::new(format!("{path}.count"), count, format!("must be {vertices}, one a vertex")))
 }
 
 /// Leaves the strongest influences of a vertex that has more than [`MAX_INFLUENCES`].

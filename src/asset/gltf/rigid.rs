@@ -30,23 +30,11 @@ pub fn rigid(
         scene.contains[*node] && of_node.mesh.is_some() && of_node.skin.is_none()
     };
     let nodes: Vec<usize> = (0..root.nodes.len()).filter(is_rigid).collect();
-    let above_joints = with_ancestors(scene, joints);
-    let followed = Followed::new(root, scene, &with_ancestors(scene, &nodes), |node| {
+    let above_joints = scene.with_ancestors(joints);
+    let followed = Followed::new(root, scene, &scene.with_ancestors(&nodes), |node| {
         above_joints[node] || animated[node] || scene.parents[node].is_none()
     })?;
     nodes.into_iter().map(|node| followed.rigid(node)).collect()
-}
-
-/// For each node, whether it is one of `nodes` or an ancestor of one.
-fn with_ancestors(scene: &Scene, nodes: &[usize]) -> Vec<bool> {
-    let mut marked = vec![false; scene.parents.len()];
-    for node in nodes {
-        let mut next = Some(*node);
-        while let Some(node) = next.filter(|node| !std::mem::replace(&mut marked[*node], true)) {
-            next = scene.parents[node];
-        }
-    }
-    marked
 }
 
 /// For each node, its anchor and the matrix from the node's space into the anchor's.
@@ -70,8 +58,7 @@ impl Followed {
                 Some((anchor, bind)) if !is_anchor(node) => (anchor, bind * local),
                 _ => (node, DMat4::IDENTITY),
             });
-            let children = root.nodes[node].children.iter().flatten().map(|child| child.value());
-            waiting.extend(children.filter(|child| wanted[*child] && scene.parents[*child] == Some(node)));
+            waiting.extend(scene.children(&root.nodes, node).filter(|child| wanted[*child]));
         }
         Ok(followed)
     }

@@ -40,6 +40,28 @@ impl Scene {
         }
         Ok(Self { parents, contains })
     }
+
+    /// For each node, whether it is one of `nodes` or an ancestor of one.
+    pub fn with_ancestors(&self, nodes: &[usize]) -> Vec<bool> {
+        let mut marked = vec![false; self.parents.len()];
+        for node in nodes {
+            let mut next = Some(*node);
+            while let Some(node) = next.filter(|node| !std::mem::replace(&mut marked[*node], true)) {
+                next = self.parents[node];
+            }
+        }
+        marked
+    }
+
+    /// The children of a node, without roots of the scene.
+    pub fn children<'a>(
+        &'a self,
+        nodes: &'a [Node],
+        node: usize,
+    ) -> impl DoubleEndedIterator<Item = usize> + 'a {
+        let children = nodes[node].children.iter().flatten().map(|child| child.value());
+        children.filter(move |child| self.parents[*child] == Some(node))
+    }
 }
 
 /// The parent of each node. Refuses a node with two parents.

@@ -7,21 +7,13 @@ use std::collections::HashMap;
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 
 use crate::InputError;
-use crate::asset::mesh::{Mesh, solved_tangents};
+use crate::asset::mesh::Mesh;
+use crate::asset::tangents::{Mesh as Surface, tangents};
 
 /// The largest number of triangles around a vertex for which MikkTSpace is used: its time grows with the square
 /// of that number, and it visits the triangles by recursion. Surfaces with more get the tangents that
 /// [`crate::surface::tangent`] solves.
 const MAX_AROUND: u32 = 1024;
-
-/// The input of tangents: positions, normals and texture coordinates per vertex, and three indices per
-/// triangle.
-pub struct Surface<'a> {
-    pub positions: &'a [[f32; 3]],
-    pub normals: &'a [[f32; 3]],
-    pub uv: &'a [[f32; 2]],
-    pub indices: &'a [u32],
-}
 
 /// Tangents of vertices, some of which are new copies.
 pub struct Tangents {
@@ -33,45 +25,43 @@ pub struct Tangents {
     pub copied: Vec<u32>,
 }
 
-impl Surface<'_> {
-    /// One tangent per vertex, without copies, as the solver computes them; used where MikkTSpace cannot be.
-    ///
-    /// # Errors
-    /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
-    pub fn solved(&self) -> Result<Tangents, InputError> {
-        let tangents = solved_tangents(self.positions, self.normals, self.uv, self.indices)?;
-        Ok(Tangents { tangents, indices: self.indices.to_vec(), copied: Vec::new() })
-    }
+/// One tangent per vertex, without copies, as the solver computes them; used where MikkTSpace cannot be.
+///
+/// # Errors
+/// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
+pub fn solved(surface: &Surface<'_>) -> Result<Tangents, InputError> {
+    let indices = surface.indices.to_vec();
+    Ok(Tangents { tangents: tangents(surface)?, indices, copied: Vec::new() })
+}
 
-    /// The tangents of MikkTSpace. Vertices that belong to no triangle with an area in space and in texture
-    /// space get solved tangents.
-    ///
-    /// # Errors
-    /// As [`Surface::solved`].
-    pub fn generated(&self) -> Result<Tangents, InputError> {
-        let mut found = self.solved()?;
-        let mut faces = Faces::new(self);
-        if faces.is_crowded() || generate_tangents(&mut faces).is_err() {
-            return Ok(found);
-        }
-        let mut is_known = vec![false; self.positions.len()];
-        let mut copies = HashMap::new();
-        for (at, tangent) in faces.corners().zip(&faces.tangents) {
-            let Some(tangent) = *tangent else { continue };
-            let vertex = found.indices[at];
-            let known = &mut found.tangents[vertex as usize];
-            if !std::mem::replace(&mut is_known[vertex as usize], true) {
-                *known = tangent;
-            } else if *known != tangent {
-                found.indices[at] = *copies.entry((vertex, tangent.map(f32::to_bits))).or_insert_with(|| {
-                    found.tangents.push(tangent);
-                    found.copied.push(vertex);
-                    (found.tangents.len() - 1) as u32
-                });
-            }
-        }
-        Ok(found)
+/// The tangents of MikkTSpace. Vertices that belong to no triangle with an area in space and in texture
+/// space get solved tangents.
+///
+/// # Errors
+/// As [`solved`].
+pub fn generated(surface: &Surface<'_>) -> Result<Tangents, InputError> {
+    let mut found = solved(surface)?;
+    let mut faces = Faces::new(surface);
+    if faces.is_crowded() || generate_tangents(&mut faces).is_err() {
+        return Ok(found);
     }
+    let mut is_known = vec![false; surface.positions.len()];
+    let mut copies = HashMap::new();
+    for (at, tangent) in faces.corners().zip(&faces.tangents) {
+        let Some(tangent) = *tangent else { continue };
+        let vertex = found.indices[at];
+        let known = &mut found.tangents[vertex as usize];
+        if !std::mem::replace(&mut is_known[vertex as usize], true) {
+            *known = tangent;
+        } else if *known != tangent {
+            found.indices[at] = *copies.entry((vertex, tangent.map(f32::to_bits))).or_insert_with(|| {
+                found.tangents.push(tangent);
+                found.copied.push(vertex);
+                (found.tangents.len() - 1) as u32
+            });
+        }
+    }
+    Ok(found)
 }
 
 impl Tangents {

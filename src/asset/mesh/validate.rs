@@ -1,9 +1,10 @@
 //! Checks of a mesh: lengths, indices and ranges, level by level and target by target.
 
-use super::{COORDINATE_LIMIT, MAX_LEVELS, MAX_VERTICES, Mesh};
+use super::{MAX_LEVELS, MAX_VERTICES, Mesh};
 use crate::InputError;
 use crate::asset::indices::check_triangles;
 use crate::asset::skeleton::Skin;
+use crate::asset::tangents::{in_range, numbers_in_range};
 
 impl Mesh {
     /// Checks lengths, indices and ranges, and that the mesh matches its skin.
@@ -29,11 +30,8 @@ impl Mesh {
     pub(crate) fn validate_alone(&self) -> Result<(), InputError> {
         let vertices = self.vertices();
         if vertices > MAX_VERTICES {
-            return Err(InputError::new(
-                "mesh.positions.len",
-                vertices,
-                format!("must be at most {MAX_VERTICES}"),
-            ));
+            let bound = format!("must be at most {MAX_VERTICES}");
+            return Err(InputError::new("mesh.positions.len", vertices, bound));
         }
         for (field, len) in [
             ("normals", self.normals.len()),
@@ -41,13 +39,7 @@ impl Mesh {
             ("uv", self.uv.len()),
             ("influences", self.influences.vertices()),
         ] {
-            if len != vertices {
-                return Err(InputError::new(
-                    format!("mesh.{field}.len"),
-                    len,
-                    format!("must be {vertices}, one a vertex"),
-                ));
-            }
+            InputError::check_len(&format!("mesh.{field}"), len, vertices, "a vertex")?;
         }
         in_range("mesh.positions", &self.positions)?;
         in_range("mesh.normals", &self.normals)?;
@@ -123,18 +115,12 @@ impl Mesh {
 
     fn validate_targets(&self) -> Result<(), InputError> {
         let targets = self.targets.len();
-        if self.weights.len() != targets {
-            let bound = format!("must be {targets}, one a target");
-            return Err(InputError::new("mesh.weights.len", self.weights.len(), bound));
-        }
+        InputError::check_len("mesh.weights", self.weights.len(), targets, "a target")?;
         numbers_in_range(|| "mesh.weights".to_owned(), &self.weights)?;
         for (at, target) in self.targets.iter().enumerate() {
             let path = format!("mesh.targets[{at}]");
             let (vertices, deltas) = (&target.vertices, &target.deltas);
-            if vertices.len() != deltas.len() {
-                let bound = format!("must be {}, one a vertex", vertices.len());
-                return Err(InputError::new(format!("{path}.deltas.len"), deltas.len(), bound));
-            }
+            InputError::check_len(&format!("{path}.deltas"), deltas.len(), vertices.len(), "a vertex")?;
             let is_wrong = |at: &usize| {
                 vertices[*at] as usize >= self.vertices() || (*at > 0 && vertices[at - 1] >= vertices[*at])
             };
@@ -151,25 +137,6 @@ impl Mesh {
             }
         }
         Ok(())
-    }
-}
-
-/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`]; `path` is that of the list of vectors.
-pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
-    (vectors.iter().enumerate())
-        .try_for_each(|(at, vector)| numbers_in_range(|| format!("{path}[{at}]"), vector.as_ref()))
-}
-
-/// As [`in_range`], for one list of numbers.
-fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Result<(), InputError> {
-    // The comparison is false for NaN.
-    let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
-    match numbers.iter().position(|value| !is_within(value)) {
-        None => Ok(()),
-        Some(at) => {
-            let bound = format!("must be finite and within ±{COORDINATE_LIMIT:e}");
-            Err(InputError::new(format!("{}[{at}]", path()), numbers[at], bound))
-        }
     }
 }
 

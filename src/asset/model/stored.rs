@@ -30,10 +30,8 @@ impl TryFrom<StoredModel> for Model {
         let model = Self { skeleton, skins, clips, meshes, skinned, materials, images };
         (0..model.skins.len()).try_for_each(|skin| model.check_skin(skin))?;
         for (at, clip) in model.clips.iter().enumerate() {
-            if clip.bones() != model.skeleton.len() {
-                let bound = format!("must be {}, one a bone", model.skeleton.len());
-                return Err(InputError::new(format!("clips[{at}].bones.len"), clip.bones(), bound));
-            }
+            let path = format!("clips[{at}].bones");
+            InputError::check_len(&path, clip.bones(), model.skeleton.len(), "a bone")?;
         }
         for (at, mesh) in model.meshes.iter().enumerate() {
             model.check_mesh(at)?;

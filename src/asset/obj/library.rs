@@ -5,7 +5,7 @@ use super::statements::{Statement, Statements};
 use crate::InputError;
 
 /// A material as a library has it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Entry {
     /// The folder of the library, for the images that it names.
     pub folder: std::path::PathBuf,
@@ -33,17 +33,9 @@ pub(super) fn entries(file: &str, bytes: &[u8]) -> Result<Vec<Entry>, InputError
     let folder = std::path::Path::new(file).parent().unwrap_or(std::path::Path::new(""));
     let mut entries: Vec<Entry> = Vec::new();
     for statement in Statements::new(bytes) {
-        if statement.keyword == "newmtl" {
-            entries.push(Entry {
-                folder: folder.to_owned(),
-                name: statement.rest.trim_end().to_owned(),
-                color: [1.0; 3],
-                opacity: 1.0,
-                color_map: None,
-                opacity_map: None,
-                normal_map: None,
-                bump_map: None,
-            });
+        if statement.keyword() == "newmtl" {
+            let (folder, name) = (folder.to_owned(), statement.rest().to_owned());
+            entries.push(Entry { folder, name, color: [1.0; 3], opacity: 1.0, ..Entry::default() });
         } else if let Some(entry) = entries.last_mut() {
             entry.read(&statement, file)?;
         }
@@ -55,7 +47,7 @@ impl Entry {
     fn read(&mut self, statement: &Statement<'_>, file: &str) -> Result<(), InputError> {
         let map = || Map::new(statement, file).map(Some);
         let one = || Ok::<_, InputError>(fractions::<1>(statement, file)?[0]);
-        match &*statement.keyword {
+        match statement.keyword() {
             "Kd" => self.color = fractions(statement, file)?,
             "d" => self.opacity = one()?,
             "Tr" => self.opacity = 1.0 - one()?,

@@ -1,9 +1,10 @@
 //! The map statements of material libraries: options, and the name of an image.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::PathBuf;
 
 use super::statements::Statement;
 use crate::InputError;
+use crate::asset::beside::path_below;
 
 /// An image that a material names.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +45,7 @@ impl Map {
     /// library's folder.
     pub fn new(statement: &Statement<'_>, file: &str) -> Result<Self, InputError> {
         let refused = |bound: &str| statement.refused(Some(file), bound);
-        let mut words = Words(&statement.rest);
+        let mut words = Words(statement.rest());
         let (mut offset, mut scale) = ([0.0; 2], [1.0; 2]);
         let (mut is_clamped, mut bump) = (false, 1.0);
         let name = loop {
@@ -69,7 +70,7 @@ impl Map {
             }
         };
         let bound = "must be a file in the folder of the library or below";
-        let path = path_below(name).ok_or_else(|| refused(bound))?;
+        let path = path_below(&slashes(name)).ok_or_else(|| refused(bound))?;
         let at = refused("");
         Ok(Self { name: name.to_owned(), path, offset, scale, is_clamped, bump, at })
     }
@@ -78,6 +79,11 @@ impl Map {
     pub fn refused(&self, bound: impl Into<String>) -> InputError {
         InputError { bound: bound.into(), ..self.at.clone() }
     }
+}
+
+/// A path as MTL files have it, in which backslashes separate folders, too.
+pub(super) fn slashes(path: &str) -> String {
+    path.replace('\\', "/")
 }
 
 /// The rest of a statement, word by word.
@@ -115,19 +121,10 @@ impl<'a> Words<'a> {
     }
 }
 
-/// A path that does not lead out of its folder; `None` for others. Backslashes separate folders, too.
-pub(super) fn path_below(name: &str) -> Option<PathBuf> {
-    let name = name.replace('\\', "/");
-    let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    if name.is_empty() || name.contains(':') || !Path::new(&name).components().all(is_plain) {
-        return None;
-    }
-    let parts = Path::new(&name).components().filter(|part| *part != Component::CurDir);
-    Some(parts.collect::<PathBuf>()).filter(|path| !path.as_os_str().is_empty())
-}
-
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::super::statements::Statements;
     use super::*;
 

@@ -8,8 +8,9 @@ use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
 use super::library::{Entry, entries};
-use super::maps::{Map, path_below};
+use super::maps::{Map, slashes};
 use crate::InputError;
+use crate::asset::beside::path_below;
 use crate::asset::gltf::Beside;
 use crate::asset::gltf::budget::Budget;
 use crate::asset::gltf::materials::decode;
@@ -64,7 +65,7 @@ impl<'a> Materials<'a> {
             let shown: String = name.chars().take(60).collect();
             InputError::new(format!("line {line}"), format!("mtllib {shown}"), bound)
         };
-        let Some(path) = path_below(name) else {
+        let Some(path) = path_below(&slashes(name)) else {
             return Err(refused("must be a file in the folder of the model or below".to_owned()));
         };
         let bytes = match beside(&path) {
@@ -93,17 +94,11 @@ impl<'a> Materials<'a> {
         let [red, green, blue] = entry.color.map(|channel| linear(channel) as f32);
         let alpha = if has_alpha || entry.opacity < 1.0 { Alpha::Dithered } else { Alpha::Opaque };
         let color = [red, green, blue, entry.opacity as f32];
-        self.materials.push(Material {
-            name: entry.name.clone(),
-            color,
-            texture,
-            normal,
-            normal_scale,
-            alpha,
-        });
+        let name = name.to_owned();
+        self.materials.push(Material { name: name.clone(), color, texture, normal, normal_scale, alpha });
         let map = entry.color_map.or(entry.opacity_map);
         self.moves.push(map.filter(|map| map.offset != [0.0; 2] || map.scale != [1.0; 2]));
-        self.known.insert(name.to_owned(), self.materials.len() - 1);
+        self.known.insert(name, self.materials.len() - 1);
         Ok(Some(self.materials.len() - 1))
     }
 
@@ -135,19 +130,12 @@ impl<'a> Materials<'a> {
         let image = match self.of_images.get(&key) {
             Some(known) => *known,
             None => {
-                let mut image = match color {
-                    Some(map) => opaque(self.image(entry, map)?),
-                    None => RgbaImage::from_pixel(1, 1, image::Rgba([u8::MAX; 4])),
-                };
-                if let Some(map) = opacity {
-                    let opacity = self.image(entry, map)?;
-                    if color.is_none() {
-                        image = RgbaImage::from_pixel(
-                            opacity.width(),
-                            opacity.height(),
-                            image::Rgba([u8::MAX; 4]),
-                        );
-                    }
+                let color = color.as_ref().map(|map| self.image(entry, map)).transpose()?;
+                let opacity = opacity.as_ref().map(|map| self.image(entry, map)).transpose()?;
+                let size = opacity.as_ref().map_or((1, 1), RgbaImage::dimensions);
+                let white = || RgbaImage::from_pixel(size.0, size.1, image::Rgba([u8::MAX; 4]));
+                let mut image = color.map_or_else(white, opaque);
+                if let Some(opacity) = opacity {
                     set_opacity(&mut image, opacity);
                 }
                 self.push(key, image)

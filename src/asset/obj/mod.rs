@@ -21,7 +21,6 @@
 //! Every error names the line, which counts from 1, with its text. No file causes a panic. Memory grows linearly with the
 //! file; images have the limits of those of glTF ([`crate::asset::gltf`]).
 
-mod joined;
 mod library;
 mod maps;
 mod materials;

@@ -4,16 +4,16 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::joined::Joined;
 use super::materials::Materials;
-use super::parsed::{Corner, NONE, Parsed, Run};
+use super::parsed::{Corner, NONE, Owner, Parsed};
 use super::polygons::{MAX_CONCAVE, triangles};
 use crate::InputError;
 use crate::asset::gltf::Beside;
-use crate::asset::gltf::tangents::Surface;
-use crate::asset::mesh::{MAX_VERTICES, Mesh, smooth_normals};
+use crate::asset::gltf::tangents::{generated, solved};
+use crate::asset::mesh::{MAX_VERTICES, Mesh, smooth_normals, unit_normal};
 use crate::asset::skeleton::{Bone, Skeleton, Skin};
-use crate::asset::{Influence, Influences, Model, Transform};
+use crate::asset::tangents::Mesh as Surface;
+use crate::asset::{Influences, Model, Transform};
 
 /// The most meshes of a file.
 const MAX_MESHES: usize = 1 << 16;
@@ -35,13 +35,13 @@ pub(super) fn import(bytes: &[u8], beside: Option<Beside<'_>>) -> Result<Model, 
     let mut materials = Materials::new(beside, &parsed.libraries)?;
     let mut nodes = Nodes::default();
     let mut meshes = Vec::new();
-    for (run, faces) in parts {
+    for (owner, faces) in parts {
         let corners: Vec<Corner> = faces.into_iter().flat_map(|faces| triangles.of(faces)).copied().collect();
         if corners.is_empty() {
             continue;
         }
-        let material = run.material.as_deref().map(|name| materials.read(name)).transpose()?.flatten();
-        let (name, skin) = nodes.mesh(run);
+        let material = owner.material.as_deref().map(|name| materials.read(name)).transpose()?.flatten();
+        let (name, skin) = nodes.mesh(owner);
         let mut mesh = mesh(&parsed, &normals, &corners)?;
         if let Some(material) = material {
             materials.move_coordinates(material, &mut mesh.uv)?;
@@ -116,7 +116,7 @@ struct Normals {
 
 impl Normals {
     fn new(parsed: &Parsed, corners: &[Corner]) -> Self {
-        let given: Vec<_> = parsed.normals.iter().map(unit).collect();
+        let given: Vec<_> = parsed.normals.iter().map(|normal| unit_normal(*normal)).collect();
         let lacks = |corner: &Corner| corner[2] == NONE || given[corner[2] as usize].is_none();
         let lacking = corners.chunks_exact(3).filter(|triangle| triangle.iter().any(lacks));
         let indices: Vec<u32> = lacking.flatten().map(|corner| corner[0]).collect();
@@ -133,43 +133,25 @@ impl Normals {
     }
 }
 
-/// The vector with length 1; `None` for one without a direction.
-fn unit(normal: &[f32; 3]) -> Option<[f32; 3]> {
-    match normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt() {
-        // Normals of about unit length are kept as they are, to avoid a second rounding.
-        length if (length - 1.0).abs() < 1e-3 => Some(*normal),
-        length if length > 1e-6 => Some(normal.map(|x| (f64::from(x) / length) as f32)),
-        _ => None,
-    }
-}
-
-/// The mesh of corners, three a triangle, without name, skin, material and tangents.
+/// The mesh of corners, three a triangle, without name, skin, material and tangents. Corners that name the same position,
+/// texture coordinates and normal are one vertex; vertices have the order of these numbers.
 fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, InputError> {
-    let Joined { vertices, indices } = Joined::new(corners);
+    let mut vertices = corners.to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
     if vertices.len() > MAX_VERTICES {
         let bound = format!("must be at most {MAX_VERTICES} in a mesh");
         return Err(InputError::new("vertices.len", vertices.len(), bound));
     }
-    let one = Influence { bone: 0, weight: 1.0 };
+    let vertex = |corner: &Corner| vertices.partition_point(|other| other < corner) as u32;
+    let uv = |corner: &Corner| parsed.uv.get(corner[1] as usize).copied().unwrap_or_default();
     Ok(Mesh {
-        name: String::new(),
-        skin: 0,
+        indices: corners.iter().map(vertex).collect(),
         positions: vertices.iter().map(|corner| parsed.positions[corner[0] as usize]).collect(),
         normals: vertices.iter().map(|corner| normals.of(corner)).collect(),
-        tangents: Vec::new(),
-        uv: vertices
-            .iter()
-            .map(|corner| parsed.uv.get(corner[1] as usize).copied().unwrap_or([0.0; 2]))
-            .collect(),
-        indices,
-        double_sided: false,
-        material: None,
-        influences: Influences::new("v", 1, vertices.iter().map(|_| vec![one]))?,
-        targets: Vec::new(),
-        weights: Vec::new(),
-        weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
+        uv: vertices.iter().map(uv).collect(),
+        influences: Influences::rigid(vertices.len()),
+        ..Mesh::default()
     })
 }
 
@@ -178,7 +160,7 @@ fn with_tangents(mut mesh: Mesh, is_bare: bool) -> Result<Mesh, InputError> {
     let Mesh { positions, normals, uv, indices, .. } = &mesh;
     let surface = Surface { positions, normals, uv, indices };
     let has_uv = uv.iter().any(|uv| *uv != [0.0; 2]);
-    let tangents = if has_uv && !is_bare { surface.generated()? } else { surface.solved()? };
+    let tangents = if has_uv && !is_bare { generated(&surface)? } else { solved(&surface)? };
     if mesh.vertices() + tangents.copied.len() > MAX_VERTICES {
         let bound =
             format!("with {} copies for tangents must be at most {MAX_VERTICES}", tangents.copied.len());
@@ -199,9 +181,9 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// The name and the skin of the next mesh of a run's object and group.
-    fn mesh(&mut self, run: &Run) -> (String, usize) {
-        let node = self.node(&run.object, &run.group);
+    /// The name and the skin of the next mesh of an object and a group.
+    fn mesh(&mut self, owner: &Owner) -> (String, usize) {
+        let node = self.node(&owner.object, &owner.group);
         self.meshes[node] += 1;
         (format!("{}_{}", self.bones[node].name, self.meshes[node] - 1), node)
     }

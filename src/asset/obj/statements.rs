@@ -9,16 +9,24 @@ use crate::InputError;
 pub(super) struct Statement<'a> {
     /// The number of its first line, counted from 1.
     pub line: usize,
-    /// The first word.
-    pub keyword: Cow<'a, str>,
-    /// What follows it, without surrounding space.
-    pub rest: Cow<'a, str>,
+    /// Its text, without surrounding space.
+    text: Cow<'a, str>,
 }
 
 impl Statement<'_> {
+    /// The first word.
+    pub fn keyword(&self) -> &str {
+        self.text.split(char::is_whitespace).next().unwrap_or_default()
+    }
+
+    /// What follows the keyword, without surrounding space.
+    pub fn rest(&self) -> &str {
+        self.text[self.keyword().len()..].trim_start()
+    }
+
     /// The words after the keyword, up to a comment.
     pub fn words(&self) -> impl Iterator<Item = &str> {
-        self.rest.split_whitespace().take_while(|word| !word.starts_with('#'))
+        self.rest().split('#').take(1).flat_map(str::split_whitespace)
     }
 
     /// An error at this line; `file` names a material library.
@@ -27,8 +35,7 @@ impl Statement<'_> {
             Some(file) => format!("{file} line {}", self.line),
             None => format!("line {}", self.line),
         };
-        let text = format!("{} {}", self.keyword, self.rest);
-        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let text = self.text.split_whitespace().collect::<Vec<_>>().join(" ");
         let mut shown: String = text.chars().take(60).filter(|c| !c.is_control()).collect();
         if text.chars().count() > 60 {
             shown.push('…');
@@ -77,31 +84,15 @@ impl<'a> Iterator for Statements<'a> {
             // Comments end with their line, also where it ends in a path of folders.
             while text.ends_with('\\') && !text.trim_start().starts_with('#') {
                 let Some(more) = self.next_line() else { break };
-                let mut joined = text.trim_end_matches('\\').to_owned();
-                joined.push(' ');
-                joined.push_str(&String::from_utf8_lossy(more));
-                text = Cow::Owned(joined);
+                text = format!("{} {}", text.trim_end_matches('\\'), String::from_utf8_lossy(more)).into();
             }
-            let is_nothing = |text: &str| text.is_empty() || text.starts_with('#');
-            let split = |text: &str| {
-                let text = text.trim();
-                let (keyword, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-                (keyword.len(), rest.trim_start().len(), text.len())
+            let text: Cow<'_, str> = match text {
+                Cow::Borrowed(text) => text.trim().into(),
+                Cow::Owned(text) => text.trim().to_owned().into(),
             };
-            if is_nothing(text.trim()) {
-                continue;
+            if !(text.is_empty() || text.starts_with('#')) {
+                return Some(Statement { line, text });
             }
-            return Some(match text {
-                Cow::Borrowed(text) => {
-                    let (text, (keyword, rest, all)) = (text.trim(), split(text));
-                    Statement { line, keyword: text[..keyword].into(), rest: text[all - rest..].into() }
-                }
-                Cow::Owned(text) => {
-                    let (text, (keyword, rest, all)) = (text.trim(), split(&text));
-                    let [keyword, rest] = [&text[..keyword], &text[all - rest..]].map(str::to_owned);
-                    Statement { line, keyword: keyword.into(), rest: rest.into() }
-                }
-            });
         }
     }
 }
@@ -114,7 +105,7 @@ mod tests {
     fn lines_are_joined_counted_and_stripped() {
         let text = b"\xef\xbb\xbf# a comment\r\n v 1  2 3 \\\n4 # w\n\n\rusemtl caf\xe9 1\ng\nf 1 2 3\\";
         let found: Vec<_> = Statements::new(text)
-            .map(|found| (found.line, found.keyword.clone().into_owned(), found.rest.clone().into_owned()))
+            .map(|found| (found.line, found.keyword().to_owned(), found.rest().to_owned()))
             .collect();
         let expected =
             [(2, "v", "1  2 3  4 # w"), (6, "usemtl", "caf\u{fffd} 1"), (7, "g", ""), (8, "f", "1 2 3\\")];

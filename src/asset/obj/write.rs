@@ -177,7 +177,6 @@ struct Library {
 impl Library {
     fn new(model: &Model, name: &str) -> Result<Self, InputError> {
         let mut library = Self::default();
-        let mut known = HashMap::new();
         for mesh in &model.meshes {
             let (Some(index), Some(material)) = (mesh.material, model.material(mesh)?) else { continue };
             if library.names.contains_key(&index) {
@@ -187,19 +186,16 @@ impl Library {
             if library.names.values().any(|other| *other == own) {
                 own = format!("{own}_{index}");
             }
-            let mut image = |texture: Texture| -> Result<String, InputError> {
-                if let Some(known) = known.get(&texture.image) {
-                    return Ok(String::clone(known));
+            let mut image = |texture: Option<Texture>| -> Result<Option<String>, InputError> {
+                let Some(Texture { image, .. }) = texture else { return Ok(None) };
+                let file = format!("{name}_{image}.png");
+                if library.images.iter().all(|(known, _)| *known != file) {
+                    library.images.push((file.clone(), png(model, image)?));
                 }
-                let file = format!("{name}_{}.png", texture.image);
-                library.images.push((file.clone(), png(model, texture.image)?));
-                known.insert(texture.image, file.clone());
-                Ok(file)
+                Ok(Some(file))
             };
-            let files =
-                [material.texture, material.normal].map(|texture| texture.map(&mut image).transpose());
-            let [color, normal] = files;
-            library.text += &entry(&own, material, color?, normal?);
+            let (color, normal) = (image(material.texture)?, image(material.normal)?);
+            library.text += &entry(&own, material, color, normal);
             library.names.insert(index, own);
         }
         library.none = "none".to_owned();

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use image::RgbaImage;
-use relievo::gpu::TimedBy;
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
+use relievo_lab::harness::TimedBy;
 use relievo_lab::measure::{AnimationReport, AnimationRow, Errors, animation, drawn};
 
 use super::plan::Plan;

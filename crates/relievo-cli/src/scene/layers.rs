@@ -3,8 +3,8 @@
 use image::{ImageBuffer, Luma, Rgb, Rgba, RgbaImage};
 use relievo::Error;
 use relievo::render::Layer;
-use relievo::scene_file::Player;
 use relievo_lab::files::Staged;
+use relievo_lab::measure::Player;
 use serde::Serialize;
 
 /// What the ends of the range of a picture mean.

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use relievo::Error;
 use relievo::terrain::config::Config;
-use relievo::terrain::export::{HeightImage, HeightRange};
 use relievo::terrain::features::{FeatureFile, Features};
 use relievo::terrain::grid::Grid;
 
 use super::Terrain;
+use super::export::{HeightImage, HeightRange};
 use crate::arguments::height_range;
 use crate::memory;
 

@@ -11,9 +11,10 @@ use relievo::render::target::COLOR_FORMAT;
 use relievo::scene::{Camera, Scene, TerrainSource, TerrainStyle};
 use relievo::terrain::blend::Shading;
 use relievo::terrain::config::Config;
-use relievo::terrain::export::HeightRange;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::texture::Texture;
+
+use super::export::HeightRange;
 
 /// Colour of the sky in linear light.
 const SKY: [f32; 3] = [0.36, 0.55, 0.80];

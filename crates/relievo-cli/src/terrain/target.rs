@@ -6,7 +6,6 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use relievo::gpu::Gpu;
 use relievo::terrain::config::Config;
-use relievo::terrain::export::HeightRange;
 use relievo::terrain::features::Features;
 use relievo::terrain::field::field_with;
 use relievo::terrain::fields::Fields;
@@ -16,6 +15,7 @@ use relievo::terrain::morph::{Morph, MorphedFields, check_target};
 use relievo::terrain::recipe::Recipe;
 use relievo::{Error, InputError};
 
+use super::export::HeightRange;
 use super::ranged;
 
 #[derive(Args)]

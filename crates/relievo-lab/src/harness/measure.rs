@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant};
 
 use relievo::Error;
-use relievo::gpu::{Gpu, Job, TimedBy, Timer};
+use relievo::gpu::{Gpu, Job};
 
-use crate::harness::{Backend, Row};
+use crate::harness::{Backend, Row, TimedBy, Timer};
 
 /// Repetitions that are not counted: the first dispatches of a pipeline compile it.
 const WARM_UP: usize = 2;

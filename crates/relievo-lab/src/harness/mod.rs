@@ -5,6 +5,7 @@ pub use cases::{CaseResult, Cases, Skipped};
 pub use measure::{Bench, Contender};
 pub use row::{Backend, Row};
 pub use table::table;
+pub use timer::{Measurement, TimedBy, Timer};
 
 mod cases;
 pub mod compare;
@@ -12,3 +13,4 @@ mod measure;
 pub mod poison;
 mod row;
 mod table;
+mod timer;

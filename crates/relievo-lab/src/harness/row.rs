@@ -1,7 +1,8 @@
 //! The rows of a benchmark.
 
-use relievo::gpu::TimedBy;
 use serde::Serialize;
+
+use crate::harness::TimedBy;
 
 /// The contender that a row measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

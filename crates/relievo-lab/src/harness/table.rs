@@ -1,8 +1,6 @@
 //! Formats rows as a text table.
 
-use relievo::gpu::TimedBy;
-
-use crate::harness::Row;
+use crate::harness::{Row, TimedBy};
 
 /// The rows as a table: nanoseconds per item, items and bytes per second, the ratio of each row to its case's
 /// kernel, and the clock. The device's clock measures the work alone; the host's clock includes submission and

@@ -4,9 +4,10 @@
 use image::RgbaImage;
 use relievo::Error;
 use relievo::animation::Gate;
-use relievo::gpu::{Gpu, TimedBy};
+use relievo::gpu::Gpu;
 use serde::Serialize;
 
+use crate::harness::TimedBy;
 use crate::measure::cpu::Cpu;
 use crate::measure::device::Device;
 use crate::measure::drawing::{Drawing, DrawnModel, FrameCost, Parts, check_frames};

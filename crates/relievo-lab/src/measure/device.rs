@@ -8,8 +8,9 @@ use relievo::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
-use relievo::gpu::{Gpu, Job, TimedBy, Timer, compute_pass};
+use relievo::gpu::{Gpu, Job, compute_pass};
 
+use crate::harness::{TimedBy, Timer};
 use crate::measure::gates::{PATH, frame};
 use crate::measure::play::{FrameTimes, Play, Played, Times, Timing};
 use crate::measure::stage::Stage;

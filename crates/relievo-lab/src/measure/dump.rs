@@ -6,8 +6,10 @@ use glam::{DMat4, DQuat, DVec4};
 use relievo::Error;
 use relievo::asset::Affine;
 use relievo::scene::{Camera, InstanceId, Placement};
-use relievo::scene_file::{Player, WorldObject};
+use relievo::scene_file::WorldObject;
 use serde::Serialize;
+
+use crate::measure::player::Player;
 
 /// Describes the numbers that [`CharacterDump::add`] writes: for each frame, for each instance of each character, for each
 /// bone the twelve `f32`, little-endian, row by row, of the matrix from the bone's space to the world as it was drawn.

@@ -5,11 +5,12 @@ use image::RgbaImage;
 use relievo::Error;
 use relievo::gpu::{Gpu, GpuError};
 use relievo::scene::{LevelStatistics, ObjectId, Quality, StageTimes};
-use relievo::scene_file::{FrameTimes, LoadedScene, Player, Rendering, WorldKind, WorldObject};
+use relievo::scene_file::{LoadedScene, WorldKind, WorldObject};
 use serde::Serialize;
 
 use crate::measure::displacement::{Displacement, DisplacementMeter};
 use crate::measure::flip::mean_flip;
+use crate::measure::player::{FrameTimes, Player, Rendering};
 
 /// An object of a scene, as reports name it.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -64,6 +64,7 @@ pub use options::{
 };
 pub use pareto::{AtCost, AtError, Comparisons, ParetoPoint, ParetoReport, pareto};
 pub use play::StageTimes;
+pub use player::{FrameTimes, Player, Rendering, SurfacePixel};
 pub use progress::{Listener, Progress};
 pub use scene::{Cheaper, SceneReport, SceneRow, scene};
 pub use setting::Setting;
@@ -84,6 +85,7 @@ mod options;
 mod pareto;
 mod placement;
 mod play;
+mod player;
 mod progress;
 pub mod reduction;
 pub mod relief;

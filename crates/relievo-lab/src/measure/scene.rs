@@ -3,9 +3,10 @@
 
 use image::RgbaImage;
 use relievo::Error;
-use relievo::gpu::{Gpu, TimedBy};
+use relievo::gpu::Gpu;
 use serde::Serialize;
 
+use crate::harness::TimedBy;
 use crate::measure::animation::steps;
 use crate::measure::drawing::{Drawing, DrawnModel, FrameCost, Parts, check_frames};
 use crate::measure::gates::GateMode;

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3, Vec3};
 use relievo::InputError;
 use relievo::asset::mesh::{smooth_normals, solved_tangents};
-use relievo::asset::{Influence, Influences, Mesh, Model};
+use relievo::asset::{Influences, Mesh, Model};
 use relievo::mesh::simplify::{Seams, Stopped, Surface};
 use relievo::skinning::at_rest;
 use relievo::skinning::attribute_weights::{NORMAL, TextureArea, shown_uv};
@@ -299,23 +299,17 @@ impl<'a> Input<'a> {
             Normals::Recompute => smooth_normals(&positions, &indices),
         };
         let tangents = solved_tangents(&positions, &normals, &uv, &indices)?;
-        let one = Influence { bone: 0, weight: 1.0 };
         Ok(Mesh {
-            influences: Influences::new("influences", 1, used.iter().map(|_| vec![one]))?,
+            influences: Influences::rigid(used.len()),
             positions,
             normals,
             tangents,
             uv,
             indices,
             name: mesh.name.clone(),
-            skin: 0,
             double_sided: mesh.double_sided,
             material: mesh.material,
-            targets: Vec::new(),
-            weights: Vec::new(),
-            weight_keys: Vec::new(),
-            levels: Vec::new(),
-            partners: Vec::new(),
+            ..Mesh::default()
         })
     }
 

@@ -230,20 +230,13 @@ fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
     let tangents = solved_tangents(&positions, &normals, &uv, &surface.indices)?;
     Ok(Mesh {
         name: "body".to_owned(),
-        skin: 0,
         normals,
         tangents,
         uv,
         influences: Influences::new("body.weights", bones, surface.influences.into_iter().map(strongest))?,
         positions,
         indices: surface.indices,
-        double_sided: false,
-        material: None,
-        targets: vec![],
-        weights: vec![],
-        weight_keys: vec![],
-        levels: vec![],
-        partners: vec![],
+        ..Mesh::default()
     })
 }
 

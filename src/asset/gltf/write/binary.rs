@@ -7,6 +7,12 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
+/// Appends to a list of the document; returns the index.
+pub(super) fn push(list: &mut Vec<Value>, value: Value) -> usize {
+    list.push(value);
+    list.len() - 1
+}
+
 /// The bytes of the buffer, and what describes them.
 #[derive(Default)]
 pub(super) struct Binary {
@@ -21,8 +27,8 @@ impl Binary {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let start = self.bytes.len();
         self.bytes.extend(bytes);
-        self.views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": self.bytes.len() - start }));
-        self.views.len() - 1
+        let length = self.bytes.len() - start;
+        push(&mut self.views, json!({ "buffer": 0, "byteOffset": start, "byteLength": length }))
     }
 
     fn accessor(
@@ -35,14 +41,20 @@ impl Binary {
         let view = self.view(bytes);
         let accessor =
             json!({ "bufferView": view, "componentType": component, "type": kind, "count": count });
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
+        push(&mut self.accessors, accessor)
     }
 
-    /// Appends vectors of floats; returns the index of their accessor. `kind` is glTF's `VEC3` and the like; `has_bounds`
-    /// states the least and largest components, as glTF requires of positions and times.
-    pub fn floats<const N: usize>(&mut self, kind: &str, vectors: &[[f32; N]], has_bounds: bool) -> usize {
+    /// Appends vectors of floats; returns the index of their accessor. `has_bounds` states the least and largest components, as
+    /// glTF requires of positions and times.
+    pub fn floats<const N: usize>(&mut self, vectors: &[[f32; N]], has_bounds: bool) -> usize {
         let bytes = vectors.as_flattened().iter().flat_map(|number| number.to_le_bytes());
+        let kind = match N {
+            1 => "SCALAR",
+            2 => "VEC2",
+            3 => "VEC3",
+            4 => "VEC4",
+            _ => "MAT4",
+        };
         let index = self.accessor(bytes, kind, FLOAT, vectors.len());
         if has_bounds {
             let of = |start: f32, choose: fn(f32, f32) -> f32| -> Vec<f32> {

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::binary::Binary;
-use crate::asset::clip::{Clip, Interpolation, Part, Track};
+use crate::asset::clip::{Clip, Interpolation, Keys, Part};
 use crate::asset::{Mesh, Model};
 
 /// The animations of a model's clips, without those that have no keys. `weighted` are the nodes whose meshes have keys of
@@ -37,31 +37,31 @@ struct Animation<'a> {
 impl Animation<'_> {
     fn add_track(&mut self, clip: &Clip, bone: usize, part: Part) {
         let track = clip.track(bone, part);
-        let times = clip.times_of(track);
+        let Keys { times, mut values, interpolation } = clip.stored_keys(track);
         if times.is_empty() {
             return;
         }
-        let values = values(clip, track, times);
+        if interpolation == Interpolation::CubicSpline {
+            unstretch_tangents(&times, &mut values);
+        }
+        let three = || values.iter().map(|[x, y, z, _]| [*x, *y, *z]).collect::<Vec<_>>();
         let (path, output) = match part {
-            Part::Rotation => ("rotation", self.binary.floats("VEC4", &values, false)),
-            _ => {
-                let values: Vec<_> = values.iter().map(|[x, y, z, _]| [*x, *y, *z]).collect();
-                let path = if part == Part::Scale { "scale" } else { "translation" };
-                (path, self.binary.floats("VEC3", &values, false))
-            }
+            Part::Translation => ("translation", self.binary.floats(&three(), false)),
+            Part::Rotation => ("rotation", self.binary.floats(&values, false)),
+            Part::Scale => ("scale", self.binary.floats(&three(), false)),
         };
-        self.add(times, output, track.interpolation, bone, path);
+        self.add(&times, output, interpolation, bone, path);
     }
 
     fn add_weights(&mut self, clip: usize, node: usize, mesh: &Mesh) {
         let Some((_, keys)) = mesh.weight_keys.iter().find(|(of, _)| *of == clip) else { return };
         let (times, values, interpolation) = keys.parts();
-        let output = self.binary.floats("SCALAR", values.as_chunks::<1>().0, false);
+        let output = self.binary.floats(values.as_chunks::<1>().0, false);
         self.add(times, output, interpolation, node, "weights");
     }
 
     fn add(&mut self, times: &[f32], output: usize, interpolation: Interpolation, node: usize, path: &str) {
-        let input = self.binary.floats("SCALAR", times.as_chunks::<1>().0, true);
+        let input = self.binary.floats(times.as_chunks::<1>().0, true);
         let interpolation = match interpolation {
             Interpolation::Step => "STEP",
             Interpolation::Linear => "LINEAR",
@@ -73,17 +73,12 @@ impl Animation<'_> {
     }
 }
 
-/// The values of a track. Clips hold tangents of splines multiplied by the seconds beside their keys, and glTF does not.
-fn values(clip: &Clip, track: &Track, times: &[f32]) -> Vec<[f32; 4]> {
-    let each = if track.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-    let mut values = clip.values()[track.first_value as usize..][..each * times.len()].to_vec();
-    if each == 3 {
-        for (key, pair) in times.windows(2).enumerate() {
-            let seconds = pair[1] - pair[0];
-            for at in [3 * key + 2, 3 * key + 3] {
-                values[at] = values[at].map(|tangent| if seconds > 0.0 { tangent / seconds } else { 0.0 });
-            }
+/// Divides tangents by the seconds beside their keys, by which clips hold them multiplied, and glTF does not.
+fn unstretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
+    for (key, pair) in times.windows(2).enumerate() {
+        let seconds = pair[1] - pair[0];
+        for value in &mut values[3 * key + 2..=3 * key + 3] {
+            *value = value.map(|tangent| if seconds > 0.0 { tangent / seconds } else { 0.0 });
         }
     }
-    values
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::binary::Binary;
+use super::binary::{Binary, push};
 use crate::InputError;
 use crate::asset::images::png;
 use crate::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
@@ -18,7 +18,6 @@ pub(super) struct Materials {
     /// The materials of the model that were written, and whether triangles are visible from inside.
     known: Vec<(Option<usize>, bool)>,
     known_textures: Vec<Texture>,
-    known_samplers: Vec<Sampling>,
     known_images: Vec<usize>,
 }
 
@@ -45,8 +44,7 @@ impl Materials {
             written["doubleSided"] = true.into();
         }
         self.known.push(key);
-        self.materials.push(written);
-        Ok(Some(self.materials.len() - 1))
+        Ok(Some(push(&mut self.materials, written)))
     }
 
     fn material(
@@ -90,22 +88,17 @@ impl Materials {
             Some(known) => known,
             None => {
                 let view = binary.view(png(model, texture.image)?);
-                self.images.push(json!({ "bufferView": view, "mimeType": "image/png" }));
                 self.known_images.push(texture.image);
-                self.images.len() - 1
+                push(&mut self.images, json!({ "bufferView": view, "mimeType": "image/png" }))
             }
         };
-        let sampler = match self.known_samplers.iter().position(|known| *known == texture.sampling) {
+        let sampler = sampler(&texture.sampling);
+        let sampler = match self.samplers.iter().position(|known| *known == sampler) {
             Some(known) => known,
-            None => {
-                self.samplers.push(sampler(&texture.sampling));
-                self.known_samplers.push(texture.sampling);
-                self.samplers.len() - 1
-            }
+            None => push(&mut self.samplers, sampler),
         };
-        self.textures.push(json!({ "source": source, "sampler": sampler }));
         self.known_textures.push(texture);
-        Ok(self.textures.len() - 1)
+        Ok(push(&mut self.textures, json!({ "source": source, "sampler": sampler })))
     }
 }
 

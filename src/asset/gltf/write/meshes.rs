@@ -57,11 +57,11 @@ pub(super) fn primitive(
     material: Option<usize>,
     binary: &mut Binary,
 ) -> Value {
-    let mut attributes = json!({ "POSITION": binary.floats("VEC3", &mesh.positions, true) });
-    attributes["NORMAL"] = binary.floats("VEC3", &mesh.normals, false).into();
+    let mut attributes = json!({ "POSITION": binary.floats(&mesh.positions, true) });
+    attributes["NORMAL"] = binary.floats(&mesh.normals, false).into();
     let tangents: Vec<_> = mesh.tangents.iter().map(|tangent| flipped(*tangent)).collect();
-    attributes["TANGENT"] = binary.floats("VEC4", &tangents, false).into();
-    attributes["TEXCOORD_0"] = binary.floats("VEC2", &mesh.uv, false).into();
+    attributes["TANGENT"] = binary.floats(&tangents, false).into();
+    attributes["TEXCOORD_0"] = binary.floats(&mesh.uv, false).into();
     if is_skinned {
         add_influences(&mesh.influences, &mut attributes, binary);
     }
@@ -91,7 +91,7 @@ fn add_influences(influences: &Influences, attributes: &mut Value, binary: &mut 
             .map(|vertex| [0, 1, 2, 3].map(|at| of(vertex, at).map_or(0.0, |influence| influence.weight)))
             .collect();
         attributes[format!("JOINTS_{set}")] = binary.joints(&joints).into();
-        attributes[format!("WEIGHTS_{set}")] = binary.floats("VEC4", &weights, false).into();
+        attributes[format!("WEIGHTS_{set}")] = binary.floats(&weights, false).into();
     }
 }
 
@@ -104,8 +104,8 @@ fn morph_target(target: &MorphTarget, vertices: usize, binary: &mut Binary) -> V
     }
     let [positions, normals, tangents] = all;
     json!({
-        "POSITION": binary.floats("VEC3", &positions, true),
-        "NORMAL": binary.floats("VEC3", &normals, false),
-        "TANGENT": binary.floats("VEC3", &tangents, false),
+        "POSITION": binary.floats(&positions, true),
+        "NORMAL": binary.floats(&normals, false),
+        "TANGENT": binary.floats(&tangents, false),
     })
 }

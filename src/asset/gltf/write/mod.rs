@@ -9,9 +9,8 @@ use serde_json::{Value, json};
 
 use super::winding::{mirrored, mirrors};
 use crate::InputError;
-use crate::asset::Model;
-use crate::asset::skeleton::Skin;
-use binary::Binary;
+use crate::asset::{Bone, Model, Transform};
+use binary::{Binary, push};
 use materials::Materials;
 use meshes::{Group, groups};
 
@@ -38,7 +37,12 @@ impl Model {
     pub fn to_glb(&self) -> Result<Vec<u8>, InputError> {
         (0..self.skins.len()).try_for_each(|skin| self.check_skin(skin))?;
         (0..self.meshes.len()).try_for_each(|mesh| self.check_mesh(mesh))?;
-        let mut document = Document::new(self);
+        let mut document = Document::default();
+        for Bone { name, parent, rest: Transform { translation, rotation, scale } } in self.skeleton.bones() {
+            let node =
+                json!({ "name": name, "translation": translation, "rotation": rotation, "scale": scale });
+            document.add_node(*parent, node);
+        }
         document.add_meshes(self)?;
         document.add_skins(self)?;
         let clips = clips::clips(self, &document.weighted, &mut document.binary);
@@ -47,10 +51,10 @@ impl Model {
 }
 
 /// A document as it grows. Nodes are the bones, in their order, followed by those of meshes.
+#[derive(Default)]
 struct Document {
     binary: Binary,
     nodes: Vec<Value>,
-    children: Vec<Vec<usize>>,
     roots: Vec<usize>,
     meshes: Vec<Value>,
     skins: Vec<Value>,
@@ -62,80 +66,50 @@ struct Document {
 }
 
 impl Document {
-    /// A document with a node for each bone.
-    fn new(model: &Model) -> Self {
-        let bones = model.skeleton.bones();
-        let node = |bone: &crate::asset::Bone| {
-            let rest = &bone.rest;
-            json!({
-                "name": bone.name,
-                "translation": rest.translation,
-                "rotation": rest.rotation,
-                "scale": rest.scale,
-            })
+    /// Adds a node below another, or as a root; returns the index.
+    fn add_node(&mut self, parent: Option<u32>, node: Value) -> usize {
+        let at = push(&mut self.nodes, node);
+        let Some(parent) = parent else {
+            self.roots.push(at);
+            return at;
         };
-        let mut children = vec![Vec::new(); bones.len()];
-        let mut roots = Vec::new();
-        for (at, bone) in bones.iter().enumerate() {
-            match bone.parent {
-                Some(parent) => children[parent as usize].push(at),
-                None => roots.push(at),
-            }
+        match &mut self.nodes[parent as usize]["children"] {
+            Value::Array(children) => children.push(at.into()),
+            none => *none = json!([at]),
         }
-        Self {
-            binary: Binary::default(),
-            nodes: bones.iter().map(node).collect(),
-            children,
-            roots,
-            meshes: Vec::new(),
-            skins: Vec::new(),
-            materials: Materials::default(),
-            weighted: Vec::new(),
-            shared: 0,
-        }
+        at
     }
 
     /// Adds a node for each group of meshes: at the root if it has a skin of the file, and below its bone otherwise.
     fn add_meshes(&mut self, model: &Model) -> Result<(), InputError> {
         let mirrored = mirrored(&model.skeleton);
-        for group in groups(model) {
-            let first = &model.meshes[group.meshes.start];
+        for Group { name, meshes, is_skinned } in groups(model) {
+            let first = &model.meshes[meshes.start];
             let skin = &model.skins[first.skin];
             let mirrors = mirrors(&mirrored, skin);
-            let primitives = model.meshes[group.meshes.clone()].iter().map(|mesh| {
+            let primitives = model.meshes[meshes.clone()].iter().map(|mesh| {
                 let material = self.materials.index(model, mesh, &mut self.binary)?;
-                Ok(meshes::primitive(mesh, group.is_skinned, &mirrors, material, &mut self.binary))
+                Ok(meshes::primitive(mesh, is_skinned, &mirrors, material, &mut self.binary))
             });
             let primitives = primitives.collect::<Result<Vec<_>, InputError>>()?;
-            let mut mesh = json!({ "name": group.name, "primitives": primitives });
+            let mut mesh = json!({ "name": name, "primitives": primitives });
             if !first.weights.is_empty() {
                 mesh["weights"] = json!(first.weights);
             }
-            self.meshes.push(mesh);
-            self.add_node(&group, skin, first.skin, model);
+            let mut node = json!({ "name": name, "mesh": push(&mut self.meshes, mesh) });
+            let bone = skin.bones.first().copied().filter(|_| !is_skinned);
+            if bone.is_some() {
+                node["matrix"] = json!(skin.inverse_binds[0]);
+            } else {
+                node["skin"] = json!(first.skin);
+                self.shared = self.shared.max(first.skin + 1);
+            }
+            let at = self.add_node(bone, node);
+            if !first.weight_keys.is_empty() {
+                self.weighted.push((at, meshes.start));
+            }
         }
         Ok(())
-    }
-
-    fn add_node(&mut self, group: &Group, skin: &Skin, index: usize, model: &Model) {
-        let at = self.nodes.len();
-        let mut node = json!({ "name": group.name, "mesh": self.meshes.len() - 1 });
-        match (group.is_skinned, skin.bones.first()) {
-            (false, Some(bone)) => {
-                node["matrix"] = json!(skin.inverse_binds[0]);
-                self.children[*bone as usize].push(at);
-            }
-            _ => {
-                node["skin"] = json!(index);
-                self.shared = self.shared.max(index + 1);
-                self.roots.push(at);
-            }
-        }
-        self.nodes.push(node);
-        self.children.push(Vec::new());
-        if !model.meshes[group.meshes.start].weight_keys.is_empty() {
-            self.weighted.push((at, group.meshes.start));
-        }
     }
 
     /// Adds the skins that meshes share.
@@ -145,19 +119,14 @@ impl Document {
                 let bound = format!("must be at most {MAX_JOINTS}");
                 return Err(InputError::new(format!("skins[{at}].bones.len"), skin.bones.len(), bound));
             }
-            let binds = self.binary.floats("MAT4", &skin.inverse_binds, false);
+            let binds = self.binary.floats(&skin.inverse_binds, false);
             self.skins.push(json!({ "name": skin.name, "joints": skin.bones, "inverseBindMatrices": binds }));
         }
         Ok(())
     }
 
     fn finish(self, clips: Vec<Value>) -> Result<Vec<u8>, InputError> {
-        let Self { binary, mut nodes, children, roots, meshes, skins, materials, .. } = self;
-        for (node, children) in nodes.iter_mut().zip(children) {
-            if !children.is_empty() {
-                node["children"] = json!(children);
-            }
-        }
+        let Self { binary, nodes, roots, meshes, skins, materials, .. } = self;
         let mut root = json!({
             "asset": { "version": "2.0", "generator": concat!("relievo ", env!("CARGO_PKG_VERSION")) },
             "scene": 0,

@@ -64,20 +64,17 @@ pub(crate) fn random_model(case: u32, shape: Shape) -> Result<Model, InputError>
     let vertices = 0..shape.vertices;
     let mesh = Mesh {
         name: "random".to_owned(),
-        skin: 0,
         positions: vertices.clone().map(|_| [0; 3].map(|_| 2.0 * draw.signed())).collect(),
         normals: vertices.clone().map(|_| unit(&mut draw)).collect(),
         tangents: vertices.clone().map(|_| tangent(&mut draw)).collect(),
         uv: vertices.clone().map(|_| [0; 2].map(|_| draw.signed())).collect(),
         levels: levels(&mut draw, shape),
-        partners: Vec::new(),
         indices: triangles(shape).collect(),
         double_sided: true,
-        material: None,
         influences: influences(&mut draw, shape, skin.bones.len())?,
         targets: (0..shape.targets).map(|_| target(&mut draw, shape.vertices)).collect(),
         weights: vec![0.0; shape.targets],
-        weight_keys: vec![],
+        ..Mesh::default()
     };
     mesh.validate(std::slice::from_ref(&skin))?;
     let (clips, materials, images) = (vec![], vec![], vec![]);

@@ -6,12 +6,13 @@ use glam::Vec3;
 use image::RgbaImage;
 use look::Look;
 pub(crate) use parts::Parts;
-use relievo::gpu::{Gpu, TimedBy, Timer};
+use relievo::gpu::Gpu;
 use relievo::render::{Offscreen, Renderer};
 use relievo::scene::Camera;
 use relievo::{Error, InputError};
 pub(crate) use subject::DrawnModel;
 
+use crate::harness::{TimedBy, Timer};
 use crate::measure::options::CrowdOptions;
 use crate::measure::placement::Placements;
 use crate::measure::stage::{FIELD_OF_VIEW, LINES, Stage};

@@ -3,7 +3,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
 
-use super::{Buffer, Gpu, GpuError};
+use relievo::gpu::{Buffer, Gpu, GpuError};
 
 /// The clock of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

@@ -2,17 +2,15 @@
 
 use std::time::Instant;
 
+use glam::{Mat4, Vec4};
 use image::RgbaImage;
+use relievo::gpu::Gpu;
+use relievo::render::target::COLOR_FORMAT;
+use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
+use relievo::scene::{Camera, Depth, Quality, Transition, View};
+use relievo::scene_file::{SunOptions, World};
+use relievo::{Error, InputError};
 use wgpu::TextureFormat;
-
-use super::camera::columns;
-use super::spec::SunOptions;
-use super::world::World;
-use crate::gpu::Gpu;
-use crate::render::target::COLOR_FORMAT;
-use crate::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
-use crate::scene::{Camera, Depth, Quality, Transition, View};
-use crate::{Error, InputError};
 
 /// How frames are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +98,7 @@ impl Player {
     /// Prepares all that frames need; nothing is compiled or allocated afterwards, except where something grows.
     ///
     /// # Errors
-    /// [`InputError`] as [`Rendering::validate`], and for a size beyond the device's limit; [`crate::gpu::GpuError`].
+    /// [`InputError`] as [`Rendering::validate`], and for a size beyond the device's limit; [`relievo::gpu::GpuError`].
     pub fn new(mut world: World, rendering: Rendering) -> Result<Self, Error> {
         rendering.validate()?;
         let gpu = world.scene.gpu().clone();
@@ -159,7 +157,7 @@ impl Player {
     /// Draws the frame that is `seconds` after the one before, the first one that long after time 0. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite; [`crate::gpu::GpuError`].
+    /// [`InputError`] for seconds that are not finite; [`relievo::gpu::GpuError`].
     pub fn frame(&mut self, seconds: f32) -> Result<FrameTimes, Error> {
         self.world.scene.advance(seconds)?;
         let camera = self.camera();
@@ -218,7 +216,7 @@ impl Player {
     /// The colours of the last frame.
     ///
     /// # Errors
-    /// [`InputError`] for a layer without colour; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a layer without colour; [`relievo::gpu::GpuError`].
     pub fn picture(&self) -> Result<RgbaImage, Error> {
         self.target.read(&self.gpu)
     }
@@ -226,7 +224,7 @@ impl Player {
     /// The surfaces of the last frame, row by row; `None` where nothing was drawn. For [`Layer::Surface`].
     ///
     /// # Errors
-    /// [`InputError`] for another layer; [`crate::gpu::GpuError`].
+    /// [`InputError`] for another layer; [`relievo::gpu::GpuError`].
     pub fn surfaces(&self) -> Result<Vec<Option<SurfacePixel>>, Error> {
         let read = |index: usize| self.gpu.block_on(self.target.read_color(&self.gpu, index, SURFACE[index]));
         let normals: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(0)?);
@@ -243,7 +241,7 @@ impl Player {
     /// where nothing was drawn. For [`Layer::Velocity`].
     ///
     /// # Errors
-    /// [`InputError`] for another layer; [`crate::gpu::GpuError`].
+    /// [`InputError`] for another layer; [`relievo::gpu::GpuError`].
     pub fn velocities(&self) -> Result<Vec<Option<[f32; 2]>>, Error> {
         let bytes = self.gpu.block_on(self.target.read_color(&self.gpu, 0, VELOCITY))?;
         let velocities: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
@@ -263,7 +261,7 @@ impl Player {
     /// The distances ahead of the eye of the last frame, in world units, row by row; `None` where nothing was drawn.
     ///
     /// # Errors
-    /// [`InputError`] for more than one sample; [`crate::gpu::GpuError`].
+    /// [`InputError`] for more than one sample; [`relievo::gpu::GpuError`].
     pub fn distances(&self) -> Result<Vec<Option<f64>>, Error> {
         let camera = self.camera();
         // Depth is scale + offset / distance.
@@ -283,7 +281,7 @@ pub struct SurfacePixel {
     pub normal: [f32; 3],
     /// The colour in sRGB.
     pub albedo: [u8; 3],
-    /// The numbers of the object ([`ObjectId::number`](crate::scene::ObjectId::number)) and the instance.
+    /// The numbers of the object ([`ObjectId::number`](relievo::scene::ObjectId::number)) and the instance.
     pub numbers: [u32; 2],
 }
 
@@ -305,4 +303,43 @@ const VELOCITY: TextureFormat = TextureFormat::Rgba32Float;
 
 fn milliseconds(start: Instant) -> f64 {
     1e3 * start.elapsed().as_secs_f64()
+}
+
+/// The camera of the columns `from..to` of a camera's picture.
+fn columns(camera: &Camera, from: u32, to: u32) -> Camera {
+    let [width, height] = camera.viewport;
+    let part = (to - from) as f32 / width as f32;
+    // The middle of the columns, −1 to 1.
+    let middle = (from + to) as f32 / width as f32 - 1.0;
+    let cut = Mat4::from_cols(
+        Vec4::new(1.0 / part, 0.0, 0.0, 0.0),
+        Vec4::Y,
+        Vec4::Z,
+        Vec4::new(-middle / part, 0.0, 0.0, 1.0),
+    );
+    Camera { clip_from_view: cut * camera.clip_from_view, viewport: [to - from, height], ..*camera }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use relievo::scene_file::SceneFile;
+
+    use super::*;
+
+    #[test]
+    fn columns_show_what_the_picture_shows_there() {
+        let text = r#"{"meshes": [{"file": "builtin:rock", "instances": [{"at": [0, 0, 0]}]}],
+            "camera": {"at": [0, 2, 0], "look": [0, 2, -10], "fov": 1, "near": 0.5}}"#;
+        let file = SceneFile::from_json(text).expect("a scene");
+        let camera = file.camera().camera(0.0, [300, 200], Depth::Forward);
+        let right = columns(&camera, 100, 300);
+        assert_eq!(right.viewport, [200, 200]);
+        for point in [Vec3::new(1.0, 2.5, -4.0), Vec3::new(-2.0, 0.0, -9.0)] {
+            let [whole, part] = [camera, right].map(|camera| camera.clip_from_cell().project_point3(point));
+            let pixel = |x: f32, width: f32| (0.5 + 0.5 * x) * width;
+            assert!((pixel(part.x, 200.0) + 100.0 - pixel(whole.x, 300.0)).abs() < 1e-3);
+            assert!((part.y - whole.y).abs() < 1e-6 && (part.z - whole.z).abs() < 1e-6);
+        }
+    }
 }

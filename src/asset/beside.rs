@@ -1,0 +1,13 @@
+//! Paths of files beside a model.
+
+use std::path::{Component, Path, PathBuf};
+
+/// The path of a file that lies in a folder or below it; `None` for one with a scheme or a drive letter, and for one that
+/// leads out of the folder.
+pub(super) fn path_below(name: &str) -> Option<PathBuf> {
+    let is_plain = |part: &Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    let parts = || Path::new(name).components();
+    let path: PathBuf = parts().filter(|part| *part != Component::CurDir).collect();
+    let is_below = !name.contains(':') && parts().all(|part| is_plain(&part));
+    (is_below && !path.as_os_str().is_empty()).then_some(path)
+}
