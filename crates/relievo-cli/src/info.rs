@@ -1,14 +1,12 @@
 //! `relievo info`: the adapters, the chosen device's driver and limits, and the passes.
 
-use std::process::ExitCode;
-
 use relievo::Error;
 use relievo::gpu::{TimedBy, Timer, adapters, shaders};
 
 use crate::Context;
 use crate::output::say;
 
-pub fn run(context: &Context) -> Result<ExitCode, Error> {
+pub fn run(context: &Context) -> Result<(), Error> {
     say(format_args!("relievo {}", env!("CARGO_PKG_VERSION")))?;
     say("\nadapters (choose with --adapter or RELIEVO_ADAPTER):")?;
     for adapter in adapters() {
@@ -43,5 +41,5 @@ pub fn run(context: &Context) -> Result<ExitCode, Error> {
             .collect();
         say(format_args!("  {:<18} {}{overrides}{needs}", shader.name, entries.join(" + ")))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }
