@@ -89,6 +89,9 @@
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
+// Labels of features, which docs.rs shows.
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 // The samples, which unit tests have as a module, name this crate as their dependency.
 #[cfg(test)]
 extern crate self as relievo;
