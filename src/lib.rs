@@ -89,6 +89,9 @@
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
+// Labels of features, which docs.rs shows.
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 // The samples and the laboratory's pictures, which unit tests have as modules, name this crate as their dependency.
 #[cfg(test)]
 extern crate self as relievo;

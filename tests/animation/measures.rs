@@ -5,8 +5,8 @@ use std::sync::Mutex;
 use relievo::Error;
 use relievo::asset::Model;
 use relievo_lab::measure::{
-    AnimationReport, CrowdOptions, DrawnOptions, GateMode, GateName, LodOptions, MeshDetail, ParetoOptions,
-    ParetoPoint, ParetoReport, Progress, SkinningDetail, Subject, animation, drawn, pareto, scene,
+    AnimationReport, CrowdOptions, Detail, DrawnOptions, GateMode, GateName, LodOptions, ParetoOptions,
+    ParetoPoint, ParetoReport, Progress, Subject, animation, drawn, pareto, scene,
 };
 
 use crate::harness::gpu;
@@ -34,8 +34,9 @@ fn measured(gate: GateMode) -> AnimationReport {
 #[test]
 fn a_gate_that_is_off_saves_nothing_and_errs_nowhere() {
     let report = measured(GateMode::Off);
-    assert_eq!((report.model.as_str(), report.backend, report.adapter), ("rig", "cpu", None));
-    let (bones, moving) = (report.bones as u64, report.animated_bones as u64);
+    let setting = &report.setting;
+    assert_eq!((setting.model.as_str(), report.backend, &setting.adapter), ("rig", "cpu", &None));
+    let (bones, moving) = (setting.bones as u64, report.animated_bones as u64);
     assert!(bones > moving && moving > 0);
     for row in &report.distances {
         assert_eq!((row.interpolated, row.skipped, row.fraction), (moving * 5 * 12, 0, 1.0));
@@ -94,10 +95,8 @@ fn the_device_measures_as_the_cpu_does_and_draws() {
     let (gpu, model) = (gpu(), model());
     let pixels = 1.0;
     let options = LodOptions { distances: vec![900.0], ..options(GateMode::Bounded { pixels }) };
-    let quarter = DrawnOptions {
-        skinning: SkinningDetail::Bounded { pixels: 0.25 },
-        mesh: MeshDetail::Bounded { pixels: 0.25 },
-    };
+    let quarter =
+        DrawnOptions { skinning: Detail::Bounded { pixels: 0.25 }, mesh: Detail::Bounded { pixels: 0.25 } };
     let cpu = animation(None, subject(&model), &options, &|_| ()).expect("measured");
     let on_gpu = animation(Some(&gpu), subject(&model), &options, &|_| ()).expect("measured");
     let [a, b] = [&cpu, &on_gpu].map(|report| report.distances[0]);
@@ -169,6 +168,6 @@ fn options_out_of_their_bounds_are_refused() {
     let tall = ParetoOptions { tall_pixels: 0.0, ..ParetoOptions::default() };
     assert_eq!(refused(pareto(subject(&model), &tall, &|_| ())), "tall_pixels");
     let few = LodOptions { crowd: CrowdOptions { frames: 3, ..of_options.crowd }, ..of_options };
-    let full = DrawnOptions { skinning: SkinningDetail::Full, mesh: MeshDetail::Full };
+    let full = DrawnOptions { skinning: Detail::Full, mesh: Detail::Full };
     assert_eq!(refused(drawn(&gpu(), subject(&model), &few, &full, &|_| ())), "frames");
 }

@@ -1,7 +1,6 @@
 //! `relievo bench`: times each kernel beside its CPU reference and a memory copy.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use relievo::Error;
@@ -11,6 +10,7 @@ use relievo_lab::harness::{Row, table};
 
 use crate::Context;
 use crate::output::say;
+use crate::progress::spinner;
 
 /// Times every kernel beside its CPU reference and beside a copy of the same number of bytes, in one run.
 #[derive(Args)]
@@ -24,16 +24,15 @@ pub struct Bench {
 }
 
 impl Bench {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
         let gpu = context.gpu()?;
         say(format_args!("adapter: {}", gpu.adapter()))?;
         if cfg!(debug_assertions) {
             say("this is a debug build: the references are slower than they should be (use --release)")?;
         }
-        let spinner = indicatif::ProgressBar::new_spinner();
+        let spinner = spinner();
         let summary = run(&gpu, self.only.as_deref(), &mut |row: &Row| {
             spinner.set_message(format!("{} {} {}", row.name, row.case, row.backend.name()));
-            spinner.tick();
         })?;
         spinner.finish_and_clear();
         say(table(&summary.rows).trim_end())?;
@@ -45,6 +44,6 @@ impl Bench {
             write_json(path, &summary)?;
             say(format_args!("written to {}", path.display()))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(())
     }
 }

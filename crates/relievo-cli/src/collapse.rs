@@ -15,8 +15,8 @@ pub struct CollapseArgs {
     /// The bones whose collapse moves vertices least in the model's clips go first. Prints the number of
     /// bones that are left and how far the vertices are off. Roots, the uppermost bones that a clip moves,
     /// and bones without children are kept. Clips may last an hour at most.
-    #[arg(long, value_name = "N|N%", allow_hyphen_values = true)]
-    bones: Option<String>,
+    #[arg(long, value_name = "N|N%", allow_hyphen_values = true, value_parser = kept_bones)]
+    bones: Option<KeptBones>,
     /// The name of a bone to keep; may be given several times.
     #[arg(long, value_name = "NAME", requires = "bones")]
     keep_bone: Vec<String>,
@@ -28,9 +28,9 @@ pub struct CollapseArgs {
 impl CollapseArgs {
     /// Collapses the model's bones as the arguments ask; without `--bones`, returns the model as it is.
     pub fn apply(&self, model: Model) -> Result<Model, Error> {
-        let Some(bones) = &self.bones else { return Ok(model) };
+        let Some(bones) = self.bones else { return Ok(model) };
         let options = CollapseOptions {
-            bones: kept_bones(bones)?,
+            bones,
             keep: self.keep_bone.clone(),
             keep_end_effectors: !self.collapse_end_effectors,
         };
@@ -46,16 +46,14 @@ impl CollapseArgs {
 }
 
 fn kept_bones(text: &str) -> Result<KeptBones, InputError> {
-    let refused =
-        || InputError::new("bones", text, "must be a number of bones, or a part of all such as 25%");
-    match text.strip_suffix('%') {
-        Some(percent) => {
-            let percent: f32 = percent.trim().parse().map_err(|_| refused())?;
-            if !(percent > 0.0 && percent <= 100.0) {
-                return Err(InputError::new("bones", text, "must be above 0% and at most 100%"));
-            }
-            Ok(KeptBones::Fraction(percent / 100.0))
-        }
-        None => Ok(KeptBones::Count(text.parse().map_err(|_| refused())?)),
+    let refused = |bound: &str| InputError::new("bones", text, bound);
+    let odd = || refused("must be a number of bones, or a part of all such as 25%");
+    let Some(percent) = text.strip_suffix('%') else {
+        return text.parse().map(KeptBones::Count).map_err(|_| odd());
+    };
+    let percent: f32 = percent.trim().parse().map_err(|_| odd())?;
+    if percent > 0.0 && percent <= 100.0 {
+        return Ok(KeptBones::Fraction(percent / 100.0));
     }
+    Err(refused("must be above 0% and at most 100%"))
 }

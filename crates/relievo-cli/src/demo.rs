@@ -1,24 +1,18 @@
 //! `relievo demo`: every picture on one page.
 
-mod crowd;
-mod relief;
-mod scene;
-mod skin;
-mod terrain;
-
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::time::Instant;
 
-use clap::{Args, FromArgMatches};
+use clap::{Args, Parser as _};
 use image::RgbaImage;
-use indicatif::ProgressBar;
 use relievo::Error;
-use relievo_lab::files::Staged;
+use relievo_lab::files::{Staged, write_file};
+use serde::Deserialize;
+use serde_json::value::RawValue;
 
-use crate::Context;
 use crate::output::say;
 use crate::progress::bar;
+use crate::{Arguments, Command, Context};
 
 /// Draws every kind of picture that relievo can draw, and writes an `index.html` that shows each picture with
 /// the command that draws it and its timings.
@@ -32,140 +26,139 @@ pub struct Demo {
     size: String,
 }
 
+/// The sections of the page: a list of [`Section`].
+const PAGE: &str = include_str!("demo/page.json");
+
+/// The files of `examples/` that commands of the page name.
+const FILES: [(&str, &str); 4] = [
+    ("eroded.json", include_str!("demo/eroded.json")),
+    ("ruins.json", include_str!("demo/ruins.json")),
+    ("terrain.json", include_str!("demo/terrain.json")),
+    ("valley.json", include_str!("demo/valley.json")),
+];
+
 /// A section of the page: its anchor, its title, and what it shows.
-struct Section(&'static str, &'static str, &'static str);
-
-const SCENE: Section = Section(
-    "scene",
-    "A scene",
-    "Everything below in one picture, with one number of pixels for the whole of it.",
-);
-const TERRAIN: Section = Section(
-    "terrain",
-    "Terrain",
-    "Heights that are the same bits on every device, computed patch by patch from a few parameters. On the right the same \
-     ground from above.",
-);
-const SURFACE: Section = Section(
-    "surface",
-    "Surface mapping",
-    "A flat square that shows a height map: each pixel's ray is followed to where it meets the heights, by one of several \
-     methods, and the error of each is measured.",
-);
-const SKINNING: Section = Section(
-    "skinning",
-    "Skinning",
-    "Vertices that follow bones, with fewer influences and triangles where that does not show.",
-);
-const ANIMATION: Section = Section(
-    "animation",
-    "Animation level of detail",
-    "Crowds in which a bone is only interpolated where its motion would show.",
-);
-
-/// The page that is being written.
-struct Page<'a> {
-    context: &'a Context,
-    staged: Staged,
-    /// The folder for the files that the commands write themselves.
-    inputs: &'a Path,
-    progress: ProgressBar,
-    /// The list of contents, and what follows it.
-    contents: String,
-    figures: String,
-    /// Number of pictures so far.
-    count: usize,
-}
-
-impl Demo {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let inputs = tempfile::tempdir().map_err(|error| Error::output("temporary folder", error))?;
-        let mut page = Page {
-            context,
-            staged: Staged::new(&self.out)?,
-            inputs: inputs.path(),
-            progress: bar(
-                (scene::COUNT + terrain::COUNT + relief::COUNT + skin::COUNT + crowd::COUNT) as u64,
-                "drawing",
-            ),
-            contents: String::new(),
-            figures: String::new(),
-            count: 0,
-        };
-        let size = &self.size;
-        for (section, draw) in [
-            (SCENE, &scene::draw as &dyn Fn(&mut Page<'_>, &str) -> Result<(), Error>),
-            (TERRAIN, &terrain::draw),
-            (SURFACE, &relief::draw),
-            (SKINNING, &|page, _| skin::draw(page)),
-            (ANIMATION, &|page, _| crowd::draw(page)),
-        ] {
-            page.begin(&section);
-            draw(&mut page, size)?;
-        }
-        page.progress.finish_and_clear();
-        let adapter = context.gpu()?.adapter().to_string();
-        page.staged.write("index.html", html(&adapter, &page.contents, &page.figures).as_bytes())?;
-        page.staged.publish()?;
-        say(format_args!("{} pictures, and {}", page.count, self.out.join("index.html").display()))?;
-        Ok(ExitCode::SUCCESS)
-    }
+#[derive(Deserialize)]
+struct Section<'a> {
+    id: &'a str,
+    title: &'a str,
+    words: &'a str,
+    #[serde(borrow)]
+    pictures: Vec<Entry<'a>>,
 }
 
 /// A picture on the page, and the command that draws it.
-struct Entry {
-    name: &'static str,
-    title: &'static str,
-    /// The arguments, separated by spaces.
-    arguments: &'static str,
+#[derive(Deserialize)]
+struct Entry<'a> {
+    name: &'a str,
+    title: &'a str,
+    /// Without `relievo` and `--out`; SIZE stands for the size of the views.
+    command: &'a str,
+    /// The contents of `name`.json, if the command names it.
+    #[serde(borrow)]
+    config: Option<&'a RawValue>,
 }
 
-const fn entry(name: &'static str, title: &'static str, arguments: &'static str) -> Entry {
-    Entry { name, title, arguments }
+/// What a command shows on the page.
+pub struct Shown {
+    /// The picture. Terrain has none without an adapter.
+    pub picture: Option<RgbaImage>,
+    /// The same from above.
+    pub map: Option<RgbaImage>,
+    /// What it cost.
+    pub note: String,
 }
 
-impl Entry {
-    /// Parses the command that draws the picture, with the arguments in `more`.
-    fn command<T: Args + FromArgMatches>(&self, name: &'static str, more: &[&OsStr]) -> Result<T, Error> {
-        let words = ["--out", "."].iter().copied().chain(self.arguments.split_whitespace()).map(OsStr::new);
-        let refused = |error: clap::Error| Error::file(self.name, error);
-        let command = T::augment_args(clap::Command::new(name).no_binary_name(true));
-        let matches = command.try_get_matches_from(words.chain(more.iter().copied()));
-        T::from_arg_matches(&matches.map_err(refused)?).map_err(refused)
+impl Shown {
+    /// A picture alone.
+    pub fn new(picture: RgbaImage, note: impl Into<String>) -> Self {
+        Self { picture: Some(picture), map: None, note: note.into() }
     }
 }
 
-impl Page<'_> {
-    /// Begins a section.
-    fn begin(&mut self, Section(id, title, words): &Section) {
-        self.contents += &format!("<li><a href=\"#{id}\">{title}</a></li>\n");
-        self.figures += &format!("<h2 id=\"{id}\">{title}</h2>\n<p>{words}</p>\n");
-    }
-
-    /// Draws the pictures of a command; `draw` returns each picture with a note.
-    fn draw<T: Args + FromArgMatches>(
-        &mut self,
-        command: &'static str,
-        entries: &[Entry],
-        more: &[&OsStr],
-        draw: impl Fn(&T, &Context) -> Result<(RgbaImage, String), Error>,
-    ) -> Result<(), Error> {
-        for entry in entries {
-            let Entry { name, title, arguments } = entry;
-            self.progress.set_message(*name);
-            let (picture, note) = draw(&entry.command(command, more)?, self.context)?;
-            let shown: String = more.iter().map(|word| format!(" {}", word.to_string_lossy())).collect();
-            self.staged.write_png(format!("{name}.png"), &picture)?;
-            self.figures += &format!(
-                "<figure>\n<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
-                 <figcaption>{title}.<br><code>relievo {command} {arguments}{shown} --out {name}</code><br>{note}</figcaption>\n\
-                 </figure>\n"
-            );
-            self.count += 1;
-            self.progress.inc(1);
+impl Demo {
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
+        let output = |error| Error::output("temporary folder", error);
+        let inputs = tempfile::tempdir().map_err(output)?;
+        let sections: Vec<Section<'_>> =
+            serde_json::from_str(PAGE).map_err(|error| Error::file("page.json", error))?;
+        let entries = || sections.iter().flat_map(|section| &section.pictures);
+        let own = entries().filter_map(|entry| Some((format!("{}.json", entry.name), entry.config?.get())));
+        let files: Vec<_> =
+            FILES.map(|(name, text)| (name.to_owned(), text)).into_iter().chain(own).collect();
+        let mut staged = Staged::new(&self.out)?;
+        for (name, text) in &files {
+            write_file(&inputs.path().join(name), text.as_bytes())?;
+            staged.write(name, text.as_bytes())?;
         }
-        Ok(())
+        let progress = bar(entries().count() as u64, "drawing");
+        let (mut contents, mut figures, mut count) = (String::new(), String::new(), 0);
+        for Section { id, title, words, pictures } in &sections {
+            contents += &format!("<li><a href=\"#{id}\">{title}</a></li>\n");
+            figures += &format!("<h2 id=\"{id}\">{title}</h2>\n<p>{words}</p>\n");
+            for entry in pictures {
+                progress.set_message(entry.name.to_owned());
+                let command = entry.command.replace("SIZE", &self.size);
+                let shown = shown(&command, inputs.path(), context)?;
+                for (end, picture) in [(".png", &shown.picture), ("_map.png", &shown.map)] {
+                    if let Some(picture) = picture {
+                        staged.write_png(format!("{}{end}", entry.name), picture)?;
+                        count += 1;
+                    }
+                }
+                figures += &figure(entry, &command, &shown, &files);
+                progress.inc(1);
+            }
+        }
+        progress.finish_and_clear();
+        let adapter = context.gpu()?.adapter().to_string();
+        staged.write("index.html", html(&adapter, &contents, &figures).as_bytes())?;
+        staged.publish()?;
+        say(format_args!("{count} pictures, and {}", self.out.join("index.html").display()))
     }
+}
+
+/// Runs a command with the files in `inputs`, without writing what it makes.
+fn shown(command: &str, inputs: &Path, context: &Context) -> Result<Shown, Error> {
+    let words = command.split(' ').map(|word| match word.ends_with(".json") {
+        true => inputs.join(word).into_os_string(),
+        false => word.into(),
+    });
+    let words = ["relievo".into()].into_iter().chain(words).chain(["--out".into(), ".".into()]);
+    let start = Instant::now();
+    match Arguments::try_parse_from(words).map_err(|error| Error::file("page.json", error))?.command {
+        Command::Scene(scene) => scene.shown(context, start),
+        Command::Terrain(terrain) => terrain.shown(context),
+        Command::Relief(relief) => relief.shown(context, start),
+        Command::Skin(skin) => skin.shown(context, start),
+        Command::Crowd(crowd) => crowd.shown(context, start),
+        _ => Err(Error::file("page.json", format!("`{command}` has no picture"))),
+    }
+}
+
+fn figure(entry: &Entry<'_>, command: &str, shown: &Shown, files: &[(String, &str)]) -> String {
+    let Entry { name, title, .. } = entry;
+    let images = match shown.map {
+        None => format!("<a class=\"wide\" href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>"),
+        Some(_) => format!(
+            "<a href=\"{name}.png\"><img src=\"{name}.png\" alt=\"{title}\"></a>\n\
+             <a href=\"{name}_map.png\"><img class=\"map\" src=\"{name}_map.png\" alt=\"the same from above\"></a>"
+        ),
+    };
+    let file = |word: &&str| files.iter().find(|(name, _)| name == word);
+    let words: Vec<String> = (command.split(' '))
+        .map(|word| file(&word).map_or(word.to_owned(), |_| format!("<a href=\"{word}\">{word}</a>")))
+        .collect();
+    let config = command.split(' ').skip_while(|word| *word != "--config").nth(1);
+    let config = config
+        .as_ref()
+        .and_then(file)
+        .map_or(String::new(), |(_, text)| format!("<code>{}</code><br>", text.replace('"', "&quot;")));
+    format!(
+        "<figure>\n{images}\n<figcaption>{title}.<br>{config}<code>relievo {} --out {name}</code><br>{}</figcaption>\n</figure>\n",
+        words.join(" "),
+        shown.note
+    )
 }
 
 fn html(adapter: &str, contents: &str, figures: &str) -> String {

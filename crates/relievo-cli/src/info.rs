@@ -1,7 +1,5 @@
 //! `relievo info`: the adapters, the chosen device's driver and limits, and the passes.
 
-use std::process::ExitCode;
-
 use relievo::Error;
 use relievo::gpu::{adapters, shaders};
 use relievo_lab::harness::{TimedBy, Timer};
@@ -9,7 +7,7 @@ use relievo_lab::harness::{TimedBy, Timer};
 use crate::Context;
 use crate::output::say;
 
-pub fn run(context: &Context) -> Result<ExitCode, Error> {
+pub fn run(context: &Context) -> Result<(), Error> {
     say(format_args!("relievo {}", env!("CARGO_PKG_VERSION")))?;
     say("\nadapters (choose with --adapter or RELIEVO_ADAPTER):")?;
     for adapter in adapters() {
@@ -41,5 +39,5 @@ pub fn run(context: &Context) -> Result<ExitCode, Error> {
         let overrides = if names.is_empty() { String::new() } else { format!("  [{}]", names.join(", ")) };
         say(format_args!("  {:<18} {}{overrides}", shader.name, entries.join(" + ")))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }

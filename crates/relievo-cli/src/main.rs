@@ -7,7 +7,6 @@ mod creases;
 mod crowd;
 mod demo;
 mod info;
-mod measuring;
 mod memory;
 mod output;
 mod pose;
@@ -21,11 +20,12 @@ mod skin;
 mod terrain;
 mod verify;
 
+use std::error::Error as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 /// A GPU-compute rendering core: terrain that is the same bits on every device, proven on yours.
 ///
@@ -61,21 +61,6 @@ enum Command {
     Demo(demo::Demo),
 }
 
-impl Command {
-    /// Whether the command takes `--backend`.
-    fn has_backend(&self) -> bool {
-        matches!(
-            self,
-            Self::Terrain(_)
-                | Self::Relief(_)
-                | Self::Pose(_)
-                | Self::Skin(_)
-                | Self::Simplify(_)
-                | Self::Crowd(_)
-        )
-    }
-}
-
 /// The global arguments that every command runs with.
 pub struct Context {
     options: relievo::gpu::Options,
@@ -94,13 +79,14 @@ impl Context {
 }
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
+    let matches = Arguments::command().try_get_matches();
+    let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, matches)));
+    let (arguments, matches) = match parsed {
+        Ok(parsed) => parsed,
         Err(error) => return refused(&error),
     };
     let context =
         Context { options: relievo::gpu::Options { adapter: arguments.adapter }, opened: Default::default() };
-    let has_backend = arguments.command.has_backend();
     let outcome = match arguments.command {
         Command::Info => info::run(&context),
         Command::Scene(command) => command.run(&context),
@@ -112,18 +98,27 @@ fn main() -> ExitCode {
         Command::Skin(command) => command.run(&context),
         Command::Simplify(command) => command.run(&context),
         Command::Crowd(command) => command.run(&context),
-        Command::Verify(command) => command.run(&context),
         Command::Bench(command) => command.run(&context),
         Command::Shaders(command) => command.run(),
         Command::Demo(command) => command.run(&context),
+        Command::Verify(command) => match command.run(&context) {
+            Ok(false) => return ExitCode::FAILURE,
+            outcome => outcome.map(|_| ()),
+        },
     };
     match outcome {
-        Ok(code) => code,
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            complain(&format!("{error}{}", remedy(&error, has_backend)));
+            complain(&format!("{error}{}", remedy(&error, has_backend(&matches))));
             ExitCode::from(if error.is_input() { 2 } else { 1 })
         }
     }
+}
+
+/// Whether the command takes `--backend`.
+fn has_backend(matches: &ArgMatches) -> bool {
+    // It has a default: where it is taken, it is there.
+    matches.subcommand().is_some_and(|(_, own)| matches!(own.try_contains_id("backend"), Ok(true)))
 }
 
 /// What the command line offers where the device allows too little, beyond what the library advises.
@@ -141,6 +136,10 @@ fn refused(error: &clap::Error) -> ExitCode {
         // A closed pipe is no error: the reader has read enough.
         let _ = error.print();
         return ExitCode::SUCCESS;
+    }
+    if let Some(input) = error.source().and_then(|source| source.downcast_ref::<relievo::InputError>()) {
+        complain(&input.to_string());
+        return ExitCode::from(2);
     }
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         complain("which command? `relievo --help` lists them");
@@ -162,14 +161,15 @@ fn complain(text: &str) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Arguments, remedy};
-    use clap::Parser;
+    use super::{Arguments, has_backend, remedy};
+    use clap::CommandFactory as _;
     use relievo::gpu::GpuError;
     use relievo::{Error, InputError};
 
     #[test]
     fn commands_with_backends_offer_the_cpu_where_the_device_allows_too_little() {
-        let parsed = |words: &[&str]| Arguments::try_parse_from(words).expect("valid").command.has_backend();
+        let parsed =
+            |words: &[&str]| has_backend(&Arguments::command().try_get_matches_from(words).expect("valid"));
         assert!(parsed(&["relievo", "relief", "--builtin", "bricks", "--out", "out"]));
         assert!(!parsed(&["relievo", "info"]));
         let (pass, limit, remedy_of_pass) =

@@ -1,19 +1,17 @@
 //! `relievo pose`: the transforms of every bone at one time of a clip, as JSON.
 
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::path::PathBuf;
 
 use clap::Args;
+use relievo::Error;
 use relievo::animation::{self, Wrap};
 use relievo::asset::transform::column_major;
 use relievo::asset::{Clip, Model, Transform};
-use relievo::{Error, InputError};
 use relievo_lab::files::write_json;
-use relievo_samples::creature;
 use serde::Serialize;
 
 use crate::Context;
-use crate::arguments::{Backend, one_of};
+use crate::arguments::{Backend, ModelArgs, one_of};
 use crate::collapse::CollapseArgs;
 
 /// The names of `--wrap`: how times outside a clip are taken into it.
@@ -30,9 +28,8 @@ pub const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clam
 /// clip in seconds. "clip" and "time" are null at rest.
 #[derive(Args)]
 pub struct Pose {
-    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
-    #[arg(long, value_name = "FILE|builtin")]
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgs,
     #[command(flatten)]
     moment: MomentArgs,
     #[command(flatten)]
@@ -62,19 +59,13 @@ pub struct MomentArgs {
 impl MomentArgs {
     /// The index of the clip among the model's, and the time inside it in seconds. For the rest pose, this
     /// adds a clip without keys to the model.
-    pub fn find(&self, model: &mut Model, path: &Path) -> Result<(usize, f32), Error> {
+    pub fn find(&self, model: &mut Model, given: &ModelArgs) -> Result<(usize, f32), Error> {
         let Some(name) = &self.clip else {
             model.clips.push(Clip::at_rest("rest", &model.skeleton)?);
             return Ok((model.clips.len() - 1, 0.0));
         };
-        let clip = find(model, path, name)?;
-        let time = self.wrap.inside(clip.duration(), self.time.unwrap_or(0.0))?;
-        Ok((place(model, clip), time))
-    }
-
-    /// Whether the arguments ask for the rest pose: no clip is given.
-    pub fn is_rest(&self) -> bool {
-        self.clip.is_none()
+        let clip = given.clip(model, name)?;
+        Ok((clip, self.wrap.inside(model.clips[clip].duration(), self.time.unwrap_or(0.0))?))
     }
 }
 
@@ -94,8 +85,8 @@ struct BoneReport<'a> {
 }
 
 impl Pose {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let mut model = self.collapse.apply(open_bare(&self.model)?)?;
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
+        let mut model = self.collapse.apply(self.model.open_bare()?)?;
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
         let (skeleton, clip) = (&model.skeleton, &model.clips[clip]);
         let pose = match self.backend.gpu(context)? {
@@ -103,45 +94,17 @@ impl Pose {
             None => animation::Pose::on_host(skeleton, clip, time),
         };
         pose.check_range()?;
-        let moment = (!self.moment.is_rest()).then_some((clip.name(), time));
-        write_json(&self.out, &report(&model, moment, &pose))?;
-        Ok(ExitCode::SUCCESS)
+        let bone = |(joint, parent): (&u32, Option<u32>)| {
+            let at = *joint as usize;
+            BoneReport {
+                name: &skeleton.bones()[at].name,
+                parent: parent.map_or(-1, i64::from),
+                local: pose.locals[at],
+                model: column_major(&pose.model_matrices[at]),
+            }
+        };
+        let bones = skeleton.joints().iter().zip(skeleton.joint_parents()).map(bone).collect();
+        let (clip, time) = self.moment.clip.is_some().then_some((clip.name(), time)).unzip();
+        write_json(&self.out, &Report { clip, time, bones })
     }
-}
-
-fn report<'a>(model: &'a Model, moment: Option<(&'a str, f32)>, pose: &animation::Pose) -> Report<'a> {
-    let skeleton = &model.skeleton;
-    let bone = |(joint, parent): (&u32, Option<u32>)| {
-        let at = *joint as usize;
-        BoneReport {
-            name: &skeleton.bones()[at].name,
-            parent: parent.map_or(-1, i64::from),
-            local: pose.locals[at],
-            model: column_major(&pose.model_matrices[at]),
-        }
-    };
-    let bones = skeleton.joints().iter().zip(skeleton.joint_parents()).map(bone).collect();
-    let (clip, time) = moment.unzip();
-    Report { clip, time, bones }
-}
-
-/// Opens a model as [`open`] does, but without materials and images.
-pub fn open_bare(path: &Path) -> Result<Model, Error> {
-    if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file_bare(path) }
-}
-
-/// Opens the model of a file, or the built-in one.
-pub fn open(path: &Path) -> Result<Model, Error> {
-    if path == Path::new("builtin") { Ok(creature()?) } else { Model::from_file(path) }
-}
-
-/// The index of `clip`, which is one of the model's clips, among these.
-pub fn place(model: &Model, clip: &Clip) -> usize {
-    model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or_default()
-}
-
-/// Finds a clip of the model by name or number; the error names the file that lacks it.
-pub fn find<'a>(model: &'a Model, path: &Path, clip: &str) -> Result<&'a Clip, Error> {
-    let in_file = |source: InputError| Error::InputFile { path: path.to_owned(), source };
-    model.clip(clip).map_err(in_file)
 }

@@ -1,19 +1,19 @@
 //! `relievo priorities`: the priority of each key of a clip.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use relievo::animation::priority::{KeyPriority, TERMS, USER_DEFAULT, Weights};
 use relievo::animation::{Wrap, priority};
-use relievo::asset::{Clip, Model, Skeleton};
+use relievo::asset::{Clip, Skeleton};
 use relievo::{Error, InputError};
 use relievo_lab::files::write_json;
 use serde::Serialize;
 
-use crate::arguments::one_of;
+use crate::arguments::{ModelArgs, one_of};
 use crate::output::say;
-use crate::pose::{WRAPS, find, open_bare};
+use crate::pose::WRAPS;
 
 /// Prints how much each key of each bone contributes to a clip, most important first. Animation level of detail skips
 /// keys of high priority last.
@@ -23,9 +23,8 @@ use crate::pose::{WRAPS, find, open_bare};
 /// bones. The priority is the weighted mean of these terms.
 #[derive(Args)]
 pub struct Priorities {
-    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
-    #[arg(long, value_name = "FILE|builtin")]
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgs,
     /// The clip: its name, or its number, counted from 0.
     #[arg(long, value_name = "NAME|INDEX")]
     clip: String,
@@ -59,42 +58,35 @@ struct Row<'a> {
     priority: f32,
 }
 
-#[derive(Serialize)]
-struct Terms<T> {
-    translation: T,
-    rotation: T,
-    scale: T,
-    children: T,
-    depth: T,
-    user: T,
-}
+/// A number for each of [`TERMS`].
+type Terms<T> = BTreeMap<&'static str, T>;
 
-impl<T> From<[T; 6]> for Terms<T> {
-    fn from([translation, rotation, scale, children, depth, user]: [T; 6]) -> Self {
-        Self { translation, rotation, scale, children, depth, user }
-    }
+fn terms<T>(numbers: [T; 6]) -> Terms<T> {
+    TERMS.into_iter().zip(numbers).collect()
 }
 
 impl Priorities {
-    pub fn run(&self) -> Result<ExitCode, Error> {
-        let model = open_bare(&self.model)?;
-        let clip = find(&model, &self.model, &self.clip)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let model = self.model.open_bare()?;
+        let clip = &model.clips[self.model.clip(&model, &self.clip)?];
         let loops = self.wrap == Wrap::Loop;
         let weights = weights(self.weights.as_deref(), &model.skeleton, clip, loops)?;
         let user = vec![USER_DEFAULT; model.skeleton.len()];
-        let found = priority::Priorities::new(&model.skeleton, clip, loops, &weights, &user)?;
-        let mut keys = found.keys;
+        let mut keys = priority::Priorities::new(&model.skeleton, clip, loops, &weights, &user)?.keys;
         // The sort is stable: equal priorities stay in the order of bones and keys.
         keys.sort_by(|a, b| b.priority.total_cmp(&a.priority));
-        if let Some(path) = &self.json {
-            let rows = keys.iter().map(|key| row(&model, key)).collect();
-            let report = Report { clip: clip.name(), loops, weights: weights.0.into(), keys: rows };
-            write_json(path, &report)?;
-        }
+        let row = |own: KeyPriority| {
+            let KeyPriority { bone, key, time, priority, .. } = own;
+            let name = model.skeleton.bones()[bone as usize].name.as_str();
+            Row { bone, name, key, time, terms: terms(own.terms), priority }
+        };
+        let keys: Vec<Row<'_>> = keys.into_iter().map(row).collect();
         let shown: Vec<_> = TERMS.iter().zip(weights.0).map(|(term, w)| format!("{term} {w:.4}")).collect();
-        say(format_args!("weights: {}", shown.join(", ")))?;
-        say(table(&model, &keys))?;
-        Ok(ExitCode::SUCCESS)
+        let table = table(&keys);
+        if let Some(path) = &self.json {
+            write_json(path, &Report { clip: clip.name(), loops, weights: terms(weights.0), keys })?;
+        }
+        say(format_args!("weights: {}\n{table}", shown.join(", ")))
     }
 }
 
@@ -113,29 +105,21 @@ pub fn weights(
 }
 
 fn six(text: &str) -> Result<Weights, InputError> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+    let numbers = numbers.and_then(|numbers| <[f64; 6]>::try_from(numbers).ok());
     let bound = "must be `analyze` or six numbers, such as 0.2,0.3,0.1,0.2,0.1,0.1";
-    let numbers = text.split(',').map(|word| word.trim().parse());
-    let numbers =
-        numbers.collect::<Result<Vec<f64>, _>>().map_err(|_| InputError::new("weights", text, bound))?;
-    let numbers: [f64; 6] = numbers.try_into().map_err(|_| InputError::new("weights", text, bound))?;
-    Weights(numbers).validate()?;
-    Ok(Weights(numbers))
+    let weights = Weights(numbers.ok_or_else(|| InputError::new("weights", text, bound))?);
+    weights.validate()?;
+    Ok(weights)
 }
 
-fn row<'a>(model: &'a Model, key: &KeyPriority) -> Row<'a> {
-    let name = &model.skeleton.bones()[key.bone as usize].name;
-    let KeyPriority { bone, key, time, terms, priority } = *key;
-    Row { bone, name, key, time, terms: terms.into(), priority }
-}
-
-fn table(model: &Model, keys: &[KeyPriority]) -> String {
-    let name = |key: &KeyPriority| model.skeleton.bones()[key.bone as usize].name.as_str();
-    let width = keys.iter().map(|key| name(key).chars().count()).max().unwrap_or(0).max(4);
+fn table(keys: &[Row<'_>]) -> String {
+    let width = keys.iter().map(|key| key.name.chars().count()).max().unwrap_or(0).max(4);
     let mut text = format!("{:>8}  {:<width$}  {:>4}  {:>8}", "priority", "bone", "key", "seconds");
     TERMS.iter().for_each(|term| text += &format!("  {term:>11}"));
-    for key in keys {
-        text += &format!("\n{:>8.5}  {:<width$}  {:>4}  {:>8.4}", key.priority, name(key), key.key, key.time);
-        key.terms.iter().for_each(|term| text += &format!("  {term:>11.5}"));
+    for Row { name, key, time, terms, priority, .. } in keys {
+        text += &format!("\n{priority:>8.5}  {name:<width$}  {key:>4}  {time:>8.4}");
+        TERMS.iter().for_each(|term| text += &format!("  {:>11.5}", terms[term]));
     }
     text
 }

@@ -3,7 +3,6 @@
 mod plot;
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
@@ -21,6 +20,7 @@ use serde::Serialize;
 
 use crate::Context;
 use crate::arguments::{Backend, one_of, pair};
+use crate::demo::Shown;
 use crate::output::say;
 use crate::progress::bar;
 use plot::plot;
@@ -54,7 +54,7 @@ pub struct Relief {
     height: Option<PathBuf>,
     /// A built-in map of heights and colours instead of files: bricks, cobbles, text or posts.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["height", "albedo"])]
-    builtin: Option<String>,
+    builtin: Option<BuiltInMap>,
     /// Texels along an edge of a built-in map.
     #[arg(long, value_name = "N", default_value_t = 512, conflicts_with_all = ["height", "albedo"])]
     texels: u32,
@@ -70,7 +70,7 @@ pub struct Relief {
     /// The method that intersects rays with the heights: plain, parallax, parallax-limited, relief,
     /// occlusion, cone or quadtree.
     #[arg(long, value_name = "METHOD", default_value = "quadtree")]
-    method: String,
+    method: Method,
     /// Depth of the relief S, in tiles of the texture: 0 to 1.
     #[arg(long, value_name = "S", default_value_t = 0.1, allow_hyphen_values = true)]
     scale: f64,
@@ -80,8 +80,8 @@ pub struct Relief {
     bias: Option<f64>,
     /// Numbers of linear search steps when looking straight down and at the horizon, for relief and
     /// occlusion.
-    #[arg(long, value_name = "MIN,MAX", default_value = "16,64")]
-    steps: String,
+    #[arg(long, value_name = "MIN,MAX", default_value = "16,64", value_parser = steps)]
+    steps: [u32; 2],
     /// Number of binary search steps after the linear or cone steps.
     #[arg(long, value_name = "N", default_value_t = 8)]
     binary_steps: u32,
@@ -100,8 +100,9 @@ pub struct Relief {
     #[arg(long, default_value = "none", value_parser = one_of(SHADOWS))]
     shadow: Shadow,
     /// The direction towards the light, in degrees: around the normal as --azimuth, and above the square.
-    #[arg(long, value_name = "AZ,EL", default_value = "225,45", allow_hyphen_values = true)]
-    light: String,
+    #[arg(long, value_name = "AZ,EL", default_value = "225,45", allow_hyphen_values = true,
+          value_parser = pair::<f64>("light", ',', "must be azimuth and elevation in degrees, such as 225,45"))]
+    light: [f64; 2],
     /// What lies beyond the map's edge: the map again, or its outermost texels.
     #[arg(long, default_value = "wrap", value_parser = one_of(ADDRESSES))]
     address: Address,
@@ -112,15 +113,16 @@ pub struct Relief {
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
     /// Width and height of relief.png, in pixels.
-    #[arg(long, value_name = "WxH", default_value = "960x600")]
-    size: String,
+    #[arg(long, value_name = "WxH", default_value = "960x600",
+          value_parser = pair::<u32>("size", 'x', "must be columns x rows, such as 960x600"))]
+    size: [u32; 2],
     /// Measures every method at the angles 0, 30, 60 and 80 instead of drawing a picture; --method, --angle
     /// and --steps are ignored.
     #[arg(long)]
     compare: bool,
     /// The folder to write to.
     #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    out: PathBuf,
 }
 
 #[derive(Serialize)]
@@ -146,8 +148,8 @@ struct Report<'a> {
 }
 
 impl Relief {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
-        let (method, square) = self.square()?;
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
+        let square = self.square()?;
         // An output folder that cannot be written is reported before the work. The files themselves are
         // staged after it, so that an interrupted run leaves nothing behind.
         drop(Staged::new(&self.out)?);
@@ -160,58 +162,55 @@ impl Relief {
             staged.write("compare.md", table.as_bytes())?;
             staged.write_png("compare.png", &plot(&comparison)?)?;
             staged.publish()?;
-            say(table.trim_end())?;
-            return Ok(ExitCode::SUCCESS);
+            return say(table.trim_end());
         }
-        let drawn = drawn(&square, method, gpu.as_ref())?;
-        self.write(&square, method, gpu.as_ref(), &drawn)?;
+        let drawn = self.drawn(&square, gpu.as_ref())?;
+        self.write(&square, gpu.as_ref(), &drawn)?;
         let Measured { mean_error_texels, p99_error_texels, mean_samples, .. } = drawn.measured;
         say(format_args!(
             "{}: mean error {mean_error_texels:.4} texels, 99 of 100 below {p99_error_texels:.4}, \
              {mean_samples:.1} texel loads a pixel; {}",
-            method.name(),
+            self.method.name(),
             self.out.join("relief.png").display()
-        ))?;
-        Ok(ExitCode::SUCCESS)
+        ))
     }
 
-    /// The picture only, for `relievo demo`; writes no files.
-    pub fn picture(&self, context: &Context) -> Result<(RgbaImage, Measured, f64), Error> {
-        let start = Instant::now();
-        let (method, square) = self.square()?;
-        let drawn = drawn(&square, method, self.backend.gpu(context)?.as_ref())?;
-        Ok((drawn.picture, drawn.measured, start.elapsed().as_secs_f64()))
+    /// The picture or the plot only, for `relievo demo`; writes no files.
+    pub fn shown(&self, context: &Context, start: Instant) -> Result<Shown, Error> {
+        let (square, gpu) = (self.square()?, self.backend.gpu(context)?);
+        if self.compare {
+            let plot = plot(&compared(&square, gpu.as_ref())?)?;
+            return Ok(Shown::new(plot, "errors against the exact intersection"));
+        }
+        let Drawn { picture, measured, .. } = self.drawn(&square, gpu.as_ref())?;
+        let Measured { mean_error_texels, mean_samples, .. } = measured;
+        let seconds = start.elapsed().as_secs_f64();
+        let note = format!(
+            "mean error {mean_error_texels:.4} texels, {mean_samples:.1} texel loads a pixel; {seconds:.3} s with maps and \
+             measuring"
+        );
+        Ok(Shown::new(picture, note))
     }
 
-    /// The plot of `--compare` only, for `relievo demo`; writes no files.
-    pub fn comparison(&self, context: &Context) -> Result<RgbaImage, Error> {
-        Ok(plot(&compared(&self.square()?.1, self.backend.gpu(context)?.as_ref())?)?)
-    }
-
-    /// Checks the arguments and reads the maps: the method and the square to draw or compare.
-    fn square(&self) -> Result<(Method, ReliefSquare), Error> {
-        let method = self.method.parse()?;
-        let (address, binary_steps) = (self.address, self.binary_steps);
-        let march = March { address, steps: steps(&self.steps)?, binary_steps };
+    /// Checks the arguments and reads the maps: the square to draw or compare.
+    fn square(&self) -> Result<ReliefSquare, Error> {
+        let march = March { address: self.address, steps: self.steps, binary_steps: self.binary_steps };
         march.validate()?;
-        let size = pair("size", &self.size, 'x', "must be columns x rows, such as 960x600")?;
-        let view = SquareView { angle: self.angle, azimuth: self.azimuth, tiles: self.tile, size };
+        let view = SquareView { angle: self.angle, azimuth: self.azimuth, tiles: self.tile, size: self.size };
         view.validate()?;
         let material = self.material()?;
         let (map, albedo) = self.maps()?;
-        let normals = self.normal.as_deref().map(open).transpose()?.map(Mips::of_data);
-        let square = ReliefSquare {
+        Ok(ReliefSquare {
             map,
             albedo: Mips::of_color(albedo),
-            normals,
+            normals: self.normal.as_deref().map(open).transpose()?.map(Mips::of_data),
             green: self.normal_green,
             shadow: self.shadow,
             silhouette: self.silhouette,
             march,
             material,
             view,
-        };
-        Ok((method, square))
+        })
     }
 
     fn material(&self) -> Result<Material, InputError> {
@@ -224,8 +223,7 @@ impl Relief {
                 format!("must be from {} (the square at the relief's top) to 0 (at its bottom)", -self.scale);
             return Err(InputError::new("bias", bias, bound));
         }
-        let bound = "must be azimuth and elevation in degrees, such as 225,45";
-        let [azimuth, elevation] = pair::<f64>("light", &self.light, ',', bound)?;
+        let [azimuth, elevation] = self.light;
         let light = towards_light(azimuth, elevation)?.map(|axis| axis as f32);
         let material = Material {
             scale: self.scale as f32,
@@ -238,19 +236,15 @@ impl Relief {
     }
 
     fn maps(&self) -> Result<(HeightMap, RgbaImage), Error> {
-        if let Some(name) = &self.builtin {
-            let kind: BuiltInMap =
-                name.parse().map_err(|error| InputError { path: "builtin".into(), ..error })?;
+        if let Some(kind) = self.builtin {
             let refused = |error: InputError| InputError { path: "texels".into(), ..error };
             let map = kind.height_map(self.texels).map_err(refused)?;
             return Ok((map, kind.albedo(self.texels).map_err(refused)?));
         }
         match (&self.height, &self.albedo) {
-            (Some(height), Some(albedo)) => Ok((HeightMap::from_file(height)?, open(albedo)?)),
-            (Some(height), None) => {
-                let map = HeightMap::from_file(height)?;
-                let stone = RgbaImage::from_pixel(1, 1, image::Rgba([168, 160, 150, 255]));
-                Ok((map, stone))
+            (Some(height), albedo) => {
+                let stone = || Ok(RgbaImage::from_pixel(1, 1, image::Rgba([168, 160, 150, 255])));
+                Ok((HeightMap::from_file(height)?, albedo.as_deref().map_or_else(stone, open)?))
             }
             (None, Some(albedo)) => {
                 let (map, image) = HeightMap::from_alpha(albedo)?;
@@ -275,18 +269,22 @@ fn open(path: &Path) -> Result<RgbaImage, Error> {
 
 fn steps(text: &str) -> Result<[u32; 2], InputError> {
     let both = if text.contains(',') { text.to_owned() } else { format!("{text},{text}") };
-    pair("steps", &both, ',', "must be one number of steps, or MIN,MAX")
+    pair("steps", ',', "must be one number of steps, or MIN,MAX")(&both)
 }
 
 impl Relief {
+    fn drawn(&self, square: &ReliefSquare, gpu: Option<&Gpu>) -> Result<Drawn, Error> {
+        let progress = bar(4, "building maps");
+        let drawn = square.draw(self.method, gpu, (BACKGROUND, FINER), &|next| {
+            progress.inc(1);
+            progress.set_message(next);
+        })?;
+        progress.finish_and_clear();
+        Ok(drawn)
+    }
+
     /// Writes the files of a run without `--compare`.
-    fn write(
-        &self,
-        square: &ReliefSquare,
-        method: Method,
-        gpu: Option<&Gpu>,
-        drawn: &Drawn,
-    ) -> Result<(), Error> {
+    fn write(&self, square: &ReliefSquare, gpu: Option<&Gpu>, drawn: &Drawn) -> Result<(), Error> {
         let mut staged = Staged::new(&self.out)?;
         staged.write_png("relief.png", &drawn.picture)?;
         let rays = drawn.rays.iter().flat_map(|ray| match ray {
@@ -301,7 +299,7 @@ impl Relief {
         staged.write("hits.f32", &bytes(hits))?;
         let ReliefSquare { map, march, material, view, .. } = square;
         let report = Report {
-            method,
+            method: self.method,
             measured: drawn.measured,
             samples_per_pixel: drawn.measured.mean_samples,
             adapter: gpu.map(|gpu| gpu.adapter().name.as_str()),
@@ -321,16 +319,6 @@ impl Relief {
         staged.write_json("report.json", &report)?;
         staged.publish()
     }
-}
-
-fn drawn(square: &ReliefSquare, method: Method, gpu: Option<&Gpu>) -> Result<Drawn, Error> {
-    let progress = bar(4, "building maps");
-    let drawn = square.draw(method, gpu, (BACKGROUND, FINER), &|next| {
-        progress.inc(1);
-        progress.set_message(next);
-    })?;
-    progress.finish_and_clear();
-    Ok(drawn)
 }
 
 fn compared(square: &ReliefSquare, gpu: Option<&Gpu>) -> Result<Comparison, Error> {

@@ -4,12 +4,11 @@ mod layers;
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use image::RgbaImage;
 use relievo::render::Layer;
 use relievo::scene::{Depth, Quality, Transition};
 use relievo::scene_file::LoadedScene;
@@ -19,7 +18,8 @@ use relievo_lab::measure::{CharacterDump, FrameReport, FrameSummary, ObjectRepor
 use serde::Serialize;
 
 use crate::Context;
-use crate::arguments::{one_of, pair};
+use crate::arguments::{one_of, size};
+use crate::demo::Shown;
 use crate::output::say;
 use crate::progress::{bar, during};
 use layers::Extremes;
@@ -53,8 +53,8 @@ pub struct Scene {
     #[arg(long, value_name = "HZ", default_value_t = 60.0, allow_hyphen_values = true)]
     rate: f32,
     /// Width and height in pixels.
-    #[arg(long, value_name = "WxH", default_value = "960x600")]
-    size: String,
+    #[arg(long, value_name = "WxH", default_value = "960x600", value_parser = size(8192))]
+    size: [u32; 2],
     /// By how many pixels anything may be off. Default: the scene's own.
     #[arg(long, value_name = "E", conflicts_with = "full", allow_hyphen_values = true)]
     pixels: Option<f32>,
@@ -124,12 +124,12 @@ struct Frame {
 }
 
 impl Scene {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
         let (loaded, rendering) = self.loaded()?;
         let gpu = context.gpu()?;
         let mut staged = Staged::new(&self.out)?;
         let play = ScenePlay::new(&gpu, &loaded, rendering, self.compare);
-        let mut play = play.map_err(|error| in_file(&self.file, error))?;
+        let mut play = play.map_err(|error| self.in_file(error))?;
         let frames = self.play(&mut play, &mut staged)?;
         let summary = self.report(&play, frames, &mut staged)?;
         let is_ours = |name: &str| {
@@ -140,17 +140,31 @@ impl Scene {
         };
         staged.remove_stale(is_ours);
         staged.publish()?;
-        say(lines(self.frames, self.compare, &summary))?;
-        Ok(ExitCode::SUCCESS)
+        say(lines(self.frames, self.compare, &summary))
     }
 
     /// The first frame, for `relievo demo`; writes no files.
-    pub fn picture(&self, context: &Context) -> Result<(RgbaImage, FrameReport), Error> {
+    pub fn shown(&self, context: &Context, start: Instant) -> Result<Shown, Error> {
         let (loaded, rendering) = self.loaded()?;
         let play = ScenePlay::new(&context.gpu()?, &loaded, rendering, false);
-        let mut play = play.map_err(|error| in_file(&self.file, error))?;
-        let report = play.frame(0.0)?;
-        Ok((play.player().picture()?, report))
+        let mut play = play.map_err(|error| self.in_file(error))?;
+        let FrameReport { objects, pixels, .. } = play.frame(0.0)?;
+        let picture = play.player().picture()?;
+        let triangles: u64 =
+            objects.iter().flat_map(|object| &object.levels).map(|level| level.triangles).sum();
+        let seconds = start.elapsed().as_secs_f64();
+        let note = format!(
+            "{triangles} triangles, nothing more than {pixels} px off; {seconds:.3} s with loading and compiling"
+        );
+        Ok(Shown::new(picture, note))
+    }
+
+    /// An error of what was read as a mistake in the scene file.
+    fn in_file(&self, error: Error) -> Error {
+        match error {
+            Error::Input(source) => Error::InputFile { path: self.file.clone(), source },
+            other => other,
+        }
     }
 
     /// Checks the arguments, and reads the file and what it names.
@@ -159,18 +173,8 @@ impl Scene {
             return Err(InputError::new("rate", self.rate, "must be above 0 and at most 1e6").into());
         }
         if self.compare && self.layer != Layer::Color {
-            return Err(InputError::new(
-                "layer",
-                name_of(LAYERS, self.layer),
-                "must be color where frames are compared",
-            )
-            .into());
-        }
-        let size = pair::<u32>("size", &self.size, 'x', "must be width x height in pixels, such as 960x600")?;
-        if size.iter().any(|edge| !(1..=8192).contains(edge)) {
-            return Err(
-                InputError::new("size", &self.size, "must be 1 to 8192 pixels along each edge").into()
-            );
+            let bound = "must be color where frames are compared";
+            return Err(InputError::new("layer", name_of(LAYERS, self.layer), bound).into());
         }
         let quality = match (self.full, self.pixels) {
             (true, _) => Some(Quality { pixels: 0.0 }),
@@ -179,7 +183,7 @@ impl Scene {
         let (layer, depth) = (self.layer, self.depth);
         let samples = self.samples.unwrap_or(if layer == Layer::Color { 4 } else { 1 });
         let given = Rendering {
-            size,
+            size: self.size,
             samples,
             depth,
             layer,
@@ -210,8 +214,8 @@ impl Scene {
                 dump.add(play.player(), numbers)?;
             }
             frames.push(Frame { frame, report, extremes });
-            if let Some((number, stages)) = play.stages()
-                && let Some(earlier) = frames.get_mut(number as usize)
+            if let Some(stages) = play.stages()
+                && let Some(earlier) = frames.get_mut(stages.frame as usize)
             {
                 earlier.report.stages = Some(stages);
             }
@@ -257,14 +261,6 @@ impl Scene {
 
 fn name_of<T: PartialEq, const N: usize>(names: [(&'static str, T); N], value: T) -> &'static str {
     names.into_iter().find(|(_, other)| *other == value).map_or("", |(name, _)| name)
-}
-
-/// A mistake in the scene file.
-fn in_file(path: &Path, error: Error) -> Error {
-    match error {
-        Error::Input(source) => Error::InputFile { path: path.to_owned(), source },
-        other => other,
-    }
 }
 
 fn lines(frames: u32, is_compared: bool, summary: &FrameSummary) -> String {

@@ -4,10 +4,9 @@ mod plot;
 mod report;
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::{ArgGroup, Args, ValueEnum};
-use image::{DynamicImage, RgbaImage};
+use image::RgbaImage;
 use relievo::asset::Model;
 use relievo::mesh::Seams;
 use relievo::{Error, InputError};
@@ -15,14 +14,12 @@ use relievo_lab::files::Staged;
 use relievo_lab::measure::reduction::{MeasuredLevel, ReducerComparison, Reduction, Target, reduction};
 use relievo_lab::plot::strip;
 use relievo_lab::portrait::{Portrait, portraits};
-use relievo_lab::reduce::Normals;
-use relievo_lab::reduce::Reducer;
+use relievo_lab::reduce::{Normals, Reducer};
 
 use crate::Context;
-use crate::arguments::{Backend, one_of};
-use crate::measuring::shown;
+use crate::arguments::{self, Backend, one_of};
 use crate::output::say;
-use crate::pose;
+use crate::progress::shown;
 use report::{LevelReport, Report};
 
 const NORMALS: [(&str, Normals); 2] = [("carry", Normals::Carry), ("recompute", Normals::Recompute)];
@@ -70,7 +67,7 @@ pub struct Simplify {
     error: Vec<f64>,
     /// What takes triangles away; a wrong name lists all.
     #[arg(long, value_name = "NAME", default_value = "quadric")]
-    reducer: String,
+    reducer: Reducer,
     /// The normals of the levels: the model's, with its hard edges, or computed again from the triangles.
     #[arg(long, value_name = "NORMALS", default_value = "carry", value_parser = one_of(NORMALS))]
     normals: Normals,
@@ -102,13 +99,13 @@ enum Format {
 }
 
 impl Simplify {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
         // What is wrong with names is reported before the work.
-        let mut reducer: Reducer = self.reducer.parse()?;
+        let mut reducer = self.reducer;
         if self.texture_seams != Seams::Held {
             let Reducer::HalfEdge { seams, .. } = &mut reducer else {
-                let bound =
-                    format!("must be hold with the reducer {}: quadric and melax cross seams", self.reducer);
+                let name = self.reducer.name();
+                let bound = format!("must be hold with the reducer {name}: quadric and melax cross seams");
                 return Err(InputError::new("texture-seams", "cross", bound).into());
             };
             *seams = self.texture_seams;
@@ -141,7 +138,7 @@ impl Simplify {
         triangles.chain(shares).chain(self.error.iter().map(|error| Target::Error(*error))).collect()
     }
 
-    fn write(&self, made: &Reduction, pictures: &[RgbaImage]) -> Result<ExitCode, Error> {
+    fn write(&self, made: &Reduction, pictures: &[RgbaImage]) -> Result<(), Error> {
         let mut staged = Staged::new(&self.out)?;
         let mut levels = Vec::new();
         for (at, level) in made.levels.iter().enumerate() {
@@ -153,15 +150,13 @@ impl Simplify {
             }
         }
         let captions = captions(made);
-        let picture = strip(pictures, &captions, COLUMNS)?;
-        staged.write_png("levels.png", &DynamicImage::ImageRgb8(picture).into_rgba8())?;
+        staged.write_png("levels.png", &strip(pictures, &captions, COLUMNS)?)?;
         let model = self.model.to_string_lossy();
-        let report = Report { model: &model, reducer: &self.reducer, seconds: made.seconds, levels };
+        let report = Report { model: &model, reducer: self.reducer.name(), seconds: made.seconds, levels };
         staged.write_json("report.json", &report)?;
         staged.remove_stale(is_ours);
         staged.publish()?;
-        report.levels.iter().try_for_each(say)?;
-        Ok(ExitCode::SUCCESS)
+        report.levels.iter().try_for_each(say)
     }
 
     /// The files of a level, the first of them the model's.
@@ -172,7 +167,7 @@ impl Simplify {
         }
     }
 
-    fn write_comparison(&self, model: &Model) -> Result<ExitCode, Error> {
+    fn write_comparison(&self, model: &Model) -> Result<(), Error> {
         let name = self.model.to_string_lossy();
         let comparison = shown(|listener| ReducerComparison::new(&name, model, self.normals, listener))?;
         let table = comparison.table();
@@ -181,8 +176,7 @@ impl Simplify {
         staged.write("compare.md", table.as_bytes())?;
         staged.write_png("compare.png", &plot::plot(&comparison)?)?;
         staged.publish()?;
-        say(table.trim_end())?;
-        Ok(ExitCode::SUCCESS)
+        say(table.trim_end())
     }
 }
 
@@ -190,7 +184,7 @@ impl Simplify {
 fn open(path: &Path) -> Result<Model, Error> {
     match path.to_str().and_then(|text| text.strip_prefix(BUILT_IN)) {
         Some(name) => Ok(relievo_samples::model(name)?),
-        None => pose::open(path),
+        None => arguments::open(path),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `relievo skin`: a model's vertices at one time of a clip, as files and as a picture.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Args;
 use image::RgbaImage;
@@ -15,10 +15,11 @@ use relievo_lab::files::Staged;
 use relievo_lab::portrait::{Portrait, PosedModel, portrait};
 
 use crate::Context;
-use crate::arguments::Backend;
+use crate::arguments::{Backend, ModelArgs};
 use crate::collapse::CollapseArgs;
+use crate::demo::Shown;
 use crate::output::say;
-use crate::pose::{MomentArgs, open};
+use crate::pose::MomentArgs;
 use crate::progress::during;
 
 /// Writes the meshes of a model at one time of a clip, or at rest: the positions of all vertices, and a picture.
@@ -31,17 +32,16 @@ use crate::progress::during;
 /// textures of their materials; a mesh without a material is clay.
 #[derive(Args)]
 pub struct Skin {
-    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
-    #[arg(long, value_name = "FILE|builtin")]
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelArgs,
     #[command(flatten)]
     moment: MomentArgs,
     #[command(flatten)]
     collapse: CollapseArgs,
     /// The influences that each vertex follows: all of its own (up to 8); the K strongest; or all, fading to
     /// the strongest alone as LAMBDA goes from 0 to 1.
-    #[arg(long, value_name = "full|truncate:K|fade:LAMBDA", default_value = "full")]
-    influences: String,
+    #[arg(long, value_name = "full|truncate:K|fade:LAMBDA", default_value = "full", value_parser = instance_lod)]
+    influences: InstanceLod,
     /// Blends dual quaternions instead of matrices: twisted limbs keep their volume.
     #[arg(long)]
     dual_quaternion: bool,
@@ -74,7 +74,7 @@ struct Made {
 }
 
 impl Skin {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
         let Made { model, vertices, picture, notes } = self.made(context)?;
         let mut staged = Staged::new(&self.out)?;
         let meshes: Vec<_> =
@@ -89,44 +89,40 @@ impl Skin {
         }
         staged.write_png("skin.png", &picture)?;
         staged.publish()?;
-        notes.into_iter().try_for_each(say)?;
-        Ok(ExitCode::SUCCESS)
+        notes.into_iter().try_for_each(say)
     }
 
     /// The picture only, for `relievo demo`; writes no files.
-    pub fn picture(&self, context: &Context) -> Result<RgbaImage, Error> {
-        Ok(self.made(context)?.picture)
+    pub fn shown(&self, context: &Context, start: Instant) -> Result<Shown, Error> {
+        let picture = self.made(context)?.picture;
+        let seconds = start.elapsed().as_secs_f64();
+        Ok(Shown::new(picture, format!("{seconds:.3} s (first use compiles the kernels)")))
     }
 
     fn made(&self, context: &Context) -> Result<Made, Error> {
-        let instance_lod = instance_lod(&self.influences)?;
-        let mut model = open(&self.model)?;
+        let mut model = self.model.open()?;
         if model.meshes.is_empty() {
-            let bound = "must be at least 1";
-            return Err(Error::InputFile {
-                path: self.model.clone(),
-                source: InputError::new("meshes.len", 0, bound),
-            });
+            return Err(self.model.refused(InputError::new("meshes.len", 0, "must be at least 1")));
         }
         model = self.collapse.apply(model)?;
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
         let mut notes = Vec::new();
         if let Some(metres) = self.within {
             let coarsened = during("simplifying", || coarsen(&mut model, clip, metres))?;
-            for (mesh, found) in model.meshes.iter().zip(coarsened) {
+            notes.extend(model.meshes.iter().zip(coarsened).map(|(mesh, found)| {
                 let (left, all, error) = (found.triangles, found.of, found.error);
-                notes.push(format!("{}: {left} of {all} triangles, {error} metres off", mesh.name));
-            }
+                format!("{}: {left} of {all} triangles, {error} metres off", mesh.name)
+            }));
         }
         let blend = if self.dual_quaternion { Blend::DualQuaternion } else { Blend::Linear };
-        let moment = PosedModel { model: &model, clip, time, instance_lod, blend };
+        let moment = PosedModel { model: &model, clip, time, instance_lod: self.influences, blend };
         let (vertices, picture) = match self.backend.gpu(context)? {
+            None => moment.on_host(&PORTRAIT)?,
             Some(gpu) => {
                 let vertices = moment.on_device(&gpu)?;
                 let picture = portrait(&gpu, &model, &vertices, &PORTRAIT)?;
                 (vertices, picture)
             }
-            None => moment.on_host(&PORTRAIT)?,
         };
         Ok(Made { model, vertices, picture, notes })
     }
@@ -134,15 +130,13 @@ impl Skin {
 
 /// Parses `full`, `truncate:K` or `fade:LAMBDA`.
 fn instance_lod(text: &str) -> Result<InstanceLod, InputError> {
-    let refused = || InputError::new("influences", text, "must be full, truncate:K or fade:LAMBDA");
-    let named =
-        |error: InputError| InputError::new("influences", text, format!("{} {}", error.path, error.bound));
-    match text.split_once(':') {
+    let refused = |bound: &str| InputError::new("influences", text, bound);
+    let odd = || refused("must be full, truncate:K or fade:LAMBDA");
+    let made = match text.split_once(':') {
         None if text == "full" => Ok(InstanceLod::FULL),
-        Some(("truncate", most)) => {
-            InstanceLod::truncate(most.parse().map_err(|_| refused())?).map_err(named)
-        }
-        Some(("fade", fade)) => InstanceLod::fade(fade.parse().map_err(|_| refused())?).map_err(named),
-        _ => Err(refused()),
-    }
+        Some(("truncate", most)) => InstanceLod::truncate(most.parse().map_err(|_| odd())?),
+        Some(("fade", fade)) => InstanceLod::fade(fade.parse().map_err(|_| odd())?),
+        _ => return Err(odd()),
+    };
+    made.map_err(|error| refused(&format!("{} {}", error.path, error.bound)))
 }

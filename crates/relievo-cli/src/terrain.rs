@@ -8,7 +8,6 @@ mod look;
 mod target;
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
@@ -31,8 +30,8 @@ use relievo_lab::files::Staged;
 use serde::Serialize;
 
 use crate::Context;
-use crate::arguments::Backend;
-use crate::arguments::{one_of, pair};
+use crate::arguments::{Backend, one_of, pair, size};
+use crate::demo::Shown;
 use crate::memory;
 use crate::output::say;
 use crate::progress::bar;
@@ -64,7 +63,7 @@ const WEIGHT_MODES: [(&str, WeightMode); 2] =
 pub struct Terrain {
     /// The configuration, a JSON file.
     #[arg(long, value_name = "FILE")]
-    pub config: PathBuf,
+    config: PathBuf,
     /// A feature file of heights to inject; may be given several times.
     #[arg(long, value_name = "FILE")]
     features: Vec<PathBuf>,
@@ -79,14 +78,16 @@ pub struct Terrain {
     every: Option<u32>,
     /// The heights of black and white in --heights-from. Default: those that the PNG states, else ±
     /// scaleFactor.
-    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, requires = "heights_from")]
-    heights_range: Option<String>,
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, requires = "heights_from", value_parser = heights)]
+    heights_range: Option<HeightRange>,
     /// Number of columns and rows of patches.
-    #[arg(long, value_name = "WxH", default_value = "1x1")]
-    patches: String,
+    #[arg(long, value_name = "WxH", default_value = "1x1",
+          value_parser = pair::<u32>("patches", 'x', "must be columns x rows, such as 3x3"))]
+    patches: [u32; 2],
     /// Coordinates of the first patch, in patches.
-    #[arg(long, value_name = "PX,PY", default_value = "0,0", allow_hyphen_values = true)]
-    origin: String,
+    #[arg(long, value_name = "PX,PY", default_value = "0,0", allow_hyphen_values = true,
+          value_parser = pair::<i32>("origin", ',', "must be two patch coordinates, such as -1,2"))]
+    origin: [i32; 2],
     #[command(flatten)]
     erosion: Erosion,
     /// Replaces each point that is further than TAU (in height units) from the mean of its neighbours by this
@@ -102,8 +103,8 @@ pub struct Terrain {
     #[arg(long, default_value_t, value_enum)]
     backend: Backend,
     /// Width and height of terrain.png, in pixels.
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    size: String,
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size(4096))]
+    size: [u32; 2],
     /// Also writes each patch as a mesh at its place in the world, `patch_<px>_<py>.obj`.
     #[arg(long)]
     obj: bool,
@@ -112,7 +113,7 @@ pub struct Terrain {
     wireframe: bool,
     /// The folder to write to.
     #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    out: PathBuf,
 }
 
 #[derive(Serialize)]
@@ -181,30 +182,34 @@ fn ranged(windows: &[Vec<i32>]) -> HeightRange {
     ranges.reduce(HeightRange::union).unwrap_or(HeightRange { low: 0.0, high: 0.0 })
 }
 
-/// The pictures of a terrain that `relievo demo` shows.
-pub struct Pictures {
-    pub view: Option<RgbaImage>,
-    pub map: RgbaImage,
-    pub seconds: [f64; 2],
+/// Parses the heights of black and white.
+fn heights(text: &str) -> Result<HeightRange, InputError> {
+    let bound = "must be two finite heights, such as -20,35.5";
+    let [low, high] = pair::<f64>("heights-range", ',', bound)(text)?;
+    if (low + high).is_finite() {
+        return Ok(HeightRange { low, high });
+    }
+    Err(InputError::new("heights-range", text, bound))
 }
 
 impl Terrain {
-    pub fn run(&self, context: &Context) -> Result<ExitCode, Error> {
+    pub fn run(&self, context: &Context) -> Result<(), Error> {
         let plan = self.plan()?;
         let mut staged = Staged::new(&self.out)?;
         let made = self.make(&plan, context)?;
         let frames = self.write_frames(&plan, &made, &mut staged)?;
-        self.write(&plan, &made, &frames, staged)?;
-        Ok(ExitCode::SUCCESS)
+        self.write(&plan, &made, &frames, staged)
     }
 
-    /// The view, the map, and the seconds that heights and pictures took.
-    pub fn pictures(&self, context: &Context) -> Result<Pictures, Error> {
+    /// The view and the map, for `relievo demo`; writes no files.
+    pub fn shown(&self, context: &Context) -> Result<Shown, Error> {
         let plan = self.plan()?;
         let made = self.make(&plan, context)?;
         let map = plan.grid.mosaic(plan.recipe.config.patch_size, &made.maps);
         let Seconds { generate, render } = made.seconds;
-        Ok(Pictures { map, view: made.view, seconds: [generate, render] })
+        let note =
+            format!("heights {generate:.3} s, pictures {render:.3} s (first use compiles the kernels)");
+        Ok(Shown { picture: made.view, map: Some(map), note })
     }
 
     fn plan(&self) -> Result<Plan, Error> {
@@ -212,30 +217,24 @@ impl Terrain {
         let despike = self.despike.map(|threshold| Despike { threshold });
         let mut recipe = Recipe { despike, ..self.erosion.applied(read)? };
         recipe.validate(&[], 0).map_err(InputError::in_json)?;
-        let grid = pair::<u32>("patches", &self.patches, 'x', "must be columns x rows, such as 3x3")?;
-        let origin = pair::<i32>("origin", &self.origin, ',', "must be two patch coordinates, such as -1,2")?;
-        let size =
-            pair::<u32>("size", &self.size, 'x', "must be width x height in pixels, such as 1280x720")?;
-        if size.iter().any(|edge| !(1..=4096).contains(edge)) {
-            let bound = "must be 1 to 4096 pixels along each edge";
-            return Err(InputError::new("size", &self.size, bound).into());
+        let [columns, rows] = self.patches;
+        let given = format!("{columns}x{rows}");
+        if self.patches.contains(&0) {
+            return Err(InputError::new("patches", given, "must be at least 1x1").into());
         }
-        if grid.contains(&0) {
-            return Err(InputError::new("patches", &self.patches, "must be at least 1x1").into());
-        }
-        let grid = Grid { first: origin, size: grid };
+        let grid = Grid { first: self.origin, size: self.patches };
         let width = recipe.config.patch_size.saturating_add(recipe.apron(1).saturating_mul(2));
         // Hydraulic erosion has water and sediment beside the heights.
         let words = self.target.batches() * if recipe.hydraulic.is_some() { 2 } else { 1 };
-        memory::check(&self.patches, words * grid.bytes(width, 0))?;
+        memory::check(&given, words * grid.bytes(width, 0))?;
         let patches = grid.patches()?;
         recipe.features = self.read_features(&recipe.config, grid, width)?;
-        memory::check(&self.patches, words * grid.bytes(width, recipe.features.len() as u64))?;
+        memory::check(&given, words * grid.bytes(width, recipe.features.len() as u64))?;
         recipe.validate(&patches, 1).map_err(InputError::in_json)?;
         let target = self.target.read(&recipe, &patches)?;
         let textures = Texture::of_zones(&recipe.config.zones)?;
         let shading = Shading { weights: self.weights, ..Shading::default() };
-        Ok(Plan { recipe, target, grid, patches, size, shading, textures })
+        Ok(Plan { recipe, target, grid, patches, size: self.size, shading, textures })
     }
 
     fn make(&self, plan: &Plan, context: &Context) -> Result<Made, Error> {

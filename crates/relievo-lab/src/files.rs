@@ -65,34 +65,20 @@ impl Staged {
     ///
     /// # Errors
     /// [`Error::Output`] if the file cannot be written.
-    pub fn write_png(&mut self, name: impl Into<String>, image: &image::RgbaImage) -> Result<(), Error> {
-        self.encode(name, |bytes| image.write_to(bytes, image::ImageFormat::Png))
-    }
-
-    /// Stages a picture with 16 bits a channel as PNG.
-    ///
-    /// # Errors
-    /// [`Error::Output`] if the file cannot be written.
-    pub fn write_deep_png<P>(
+    pub fn write_png<P>(
         &mut self,
         name: impl Into<String>,
-        image: &image::ImageBuffer<P, Vec<u16>>,
+        image: &image::ImageBuffer<P, Vec<P::Subpixel>>,
     ) -> Result<(), Error>
     where
-        P: image::Pixel<Subpixel = u16> + image::PixelWithColorType,
+        P: image::Pixel + image::PixelWithColorType,
+        [P::Subpixel]: image::EncodableLayout,
     {
-        self.encode(name, |bytes| image.write_to(bytes, image::ImageFormat::Png))
-    }
-
-    fn encode(
-        &mut self,
-        name: impl Into<String>,
-        encode: impl FnOnce(&mut std::io::Cursor<Vec<u8>>) -> image::ImageResult<()>,
-    ) -> Result<(), Error> {
         let path = self.path(name);
         // Encodes in memory first: the image crate drops the error of the last write.
         let mut bytes = std::io::Cursor::new(Vec::new());
-        encode(&mut bytes).map_err(|error| Error::output(&path, error))?;
+        let encoded = image.write_to(&mut bytes, image::ImageFormat::Png);
+        encoded.map_err(|error| Error::output(&path, error))?;
         write_bytes(&path, bytes.get_ref())
     }
 

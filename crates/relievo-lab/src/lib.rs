@@ -9,7 +9,7 @@
 //! charts. [`portrait`] draws models, on the host and by a scene. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
 //! apart.
 //!
-//! On `wasm32` there are the parity cases ([`verify::run_async`]), reducers and plots: the rest waits for the device.
+//! On `wasm32` there are the parity cases ([`verify::run_async`]) and reducers: the rest waits for the device, or draws.
 
 #![cfg_attr(
     target_arch = "wasm32",
@@ -26,6 +26,7 @@ pub mod files;
 pub mod harness;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod measure;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod plot;
 pub mod portrait;
 pub mod reduce;

@@ -35,9 +35,10 @@ pub struct CharacterStatistics {
 }
 
 /// How long the stages of a frame took on the device, in milliseconds.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct StageTimes {
     /// The frame, as [`SceneStatistics::frame`].
+    #[serde(skip)]
     pub frame: u64,
     /// Culling, levels of detail and lists, of all views.
     pub select: f64,

@@ -1,17 +1,16 @@
 //! `--pareto`: error against cost for every gate.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use relievo::Error;
 use relievo_lab::files::Staged;
 use relievo_lab::measure::{AtCost, AtError, Comparisons, Errors, ParetoPoint, ParetoReport, pareto};
+use relievo_lab::plot::{Chart, Series};
 
 use super::plan::Plan;
-use super::report::{self, picture};
-use crate::measuring::shown;
+use super::report::{picture, publish};
 use crate::output::say;
-use relievo_lab::plot::{Chart, Series};
+use crate::progress::shown;
 
 /// The names of the files that this command writes with `--pareto`.
 pub const FILES: [&str; 3] = ["pareto.json", "pareto_max.png", "pareto_rms.png"];
@@ -26,8 +25,7 @@ pub fn run(plan: &Plan, out: &Path) -> Result<(), Error> {
     staged.write_json(figures, &report)?;
     staged.write_png(largest, &picture(chart(&report, "Largest", |error| error.max_pixels))?)?;
     staged.write_png(rms, &picture(chart(&report, "Rms", |error| error.rms_pixels))?)?;
-    staged.remove_stale(report::is_ours);
-    staged.publish()?;
+    publish(staged, plan, &[])?;
     say(format_args!("{}\n{}", table(&report.points), comparison_table(&report.comparisons).trim_end()))
 }
 
@@ -42,13 +40,13 @@ fn measured(plan: &Plan) -> Result<ParetoReport, Error> {
 
 fn chart(report: &ParetoReport, what: &str, error: impl Fn(&Errors) -> f64) -> Chart {
     let series = |points: &[ParetoPoint]| {
-        let name = points[0].gate.as_str().to_owned();
+        let name = points[0].gate.as_str();
         let mut points: Vec<(f64, f64)> = (points.iter())
             .map(|point| (point.cost, error(&point.error)))
             .filter(|(cost, error)| *cost >= LEAST[0] && *error >= LEAST[1])
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Series { name, points, labels: Vec::new() }
+        Series::new(name, points)
     };
     let ParetoReport { instances, clip, tall_pixels, points, .. } = report;
     Chart {
@@ -66,16 +64,14 @@ fn table(points: &[ParetoPoint]) -> String {
                     |---|---:|---:|---:|---:|---:|---:|---:|\n"
         .to_owned();
     for ParetoPoint { gate, parameter, cost, concatenated_fraction, error, jump } in points {
-        writeln!(
-            text,
-            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_fraction:.3} |",
+        text += &format!(
+            "| {} | {parameter:.3} | {cost:.3} | {:.4} | {:.4} | {:.4} | {:.4} | {concatenated_fraction:.3} |\n",
             gate.as_str(),
             error.rms_pixels,
             error.p99_pixels,
             error.max_pixels,
             jump.max_pixels,
-        )
-        .expect("a string");
+        );
     }
     text
 }
@@ -86,28 +82,24 @@ fn comparison_table(comparisons: &Comparisons) -> String {
         ("bounded", "largest error in pixels", &comparisons.bounded_max_pixels),
         ("budget", "rms error in pixels", &comparisons.budget_rms_pixels),
     ] {
-        write!(
-            text,
+        text += &format!(
             "At equal cost, {what}:\n\n| cost | {name} | uniform | random | ratio to the better |\n"
-        )
-        .expect("a string");
+        );
         text += "|---:|---:|---:|---:|---:|\n";
         for AtCost { cost, gate, uniform, random, ratio } in rows {
             let ratio = ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}"));
-            writeln!(text, "| {cost:.1} | {gate:.4} | {uniform:.4} | {random:.4} | {ratio} |")
-                .expect("a string");
+            text += &format!("| {cost:.1} | {gate:.4} | {uniform:.4} | {random:.4} | {ratio} |\n");
         }
-        writeln!(text, "\n{}\n", sentence(name, rows)).expect("a string");
+        text += &format!("\n{}\n\n", sentence(name, rows));
     }
     text += "At equal largest error, interpolations of animated bones:\n\n\
              | largest error px | uniform | bounded | ratio |\n|---:|---:|---:|---:|\n";
     for AtError { max_pixels, uniform, bounded, ratio } in &comparisons.bounded_cost {
-        writeln!(text, "| {max_pixels:.3} | {uniform:.3} | {bounded:.3} | {ratio:.2} |").expect("a string");
+        text += &format!("| {max_pixels:.3} | {uniform:.3} | {bounded:.3} | {ratio:.2} |\n");
     }
     let ratios: Vec<f64> = comparisons.bounded_cost.iter().map(|row| row.ratio).collect();
     if let Some([least, most]) = ends(&ratios) {
-        writeln!(text, "\n`bounded` does {least:.2} to {most:.2} times the interpolations of `uniform`.")
-            .expect("a string");
+        text += &format!("\n`bounded` does {least:.2} to {most:.2} times the interpolations of `uniform`.\n");
     }
     text
 }

@@ -1,15 +1,15 @@
 //! Converts and checks the arguments of `relievo crowd` before a model is read.
 
-use clap::ValueEnum as _;
 use relievo::animation::Range;
 use relievo::animation::priority::Weights;
 use relievo::asset::Model;
 use relievo::{Error, InputError};
-use relievo_lab::measure::{CrowdOptions, DrawnOptions, GateMode, LodOptions, ParetoOptions, Subject};
+use relievo_lab::measure::{
+    CrowdOptions, Detail, DrawnOptions, GateMode, GateName, LodOptions, ParetoOptions, Subject,
+};
 
-use super::{Crowd, Gate, detail};
+use super::Crowd;
 use crate::arguments::Backend;
-use crate::pose::{find, open, open_bare, place};
 use crate::priorities;
 
 /// The checked arguments.
@@ -25,27 +25,35 @@ pub struct Plan {
 
 impl Plan {
     pub fn new(a: &Crowd) -> Result<Self, Error> {
-        let crowd = crowd(a)?;
-        let distances = a.distance.as_deref().map(|text| numbers("distance", text)).transpose()?;
-        let mut lod = LodOptions {
-            distances: distances.unwrap_or_else(|| crowd.sweep()),
-            crowd: crowd.clone(),
-            gate: gate(a)?,
+        let [min, max] = a.range;
+        let range = Range { min, max };
+        range.validate()?;
+        let crowd = CrowdOptions {
+            instances: a.instances.unwrap_or(if a.pareto { 25 } else { 100 }),
+            layout: a.layout,
+            seed: a.seed,
+            size: a.size,
+            spacing: a.spacing,
+            range,
+            frames: a.frames,
+            rate: a.rate,
         };
+        let distances = if a.distance.is_empty() { crowd.sweep() } else { a.distance.clone() };
+        let mut lod = LodOptions { distances, crowd: crowd.clone(), gate: gate(a)? };
         lod.validate()?;
         GateMode::Bounded { pixels: a.pixels }.validate()?;
         let weights = Weights::default();
         let mut pareto = ParetoOptions { crowd, period: a.period, weights, tall_pixels: a.tall };
         pareto.validate()?;
         let drawn = drawn(a)?;
-        let model = if a.is_drawn() { open(&a.model)? } else { open_bare(&a.model)? };
-        let clip = find(&model, &a.model, &a.clip)?;
-        pareto.weights = priorities::weights(a.weights.as_deref(), &model.skeleton, clip, true)?;
+        let model = if a.is_drawn() { a.model.open()? } else { a.model.open_bare()? };
+        let clip = a.model.clip(&model, &a.clip)?;
+        pareto.weights =
+            priorities::weights(a.weights.as_deref(), &model.skeleton, &model.clips[clip], true)?;
         if let GateMode::SkipPeriod { weights, .. } = &mut lod.gate {
             *weights = pareto.weights;
         }
-        let (name, clip) = (a.model.display().to_string(), place(&model, clip));
-        Ok(Self { name, model, clip, backend: a.backend, lod, drawn, pareto })
+        Ok(Self { name: a.model.name(), model, clip, backend: a.backend, lod, drawn, pareto })
     }
 
     /// The model and the clip to measure.
@@ -54,73 +62,90 @@ impl Plan {
     }
 }
 
-fn crowd(a: &Crowd) -> Result<CrowdOptions, InputError> {
-    let range = numbers("range", &a.range)?;
-    let [min, max] = range[..] else {
-        return Err(InputError::new("range", &a.range, "must be two distances, such as 200,1700"));
-    };
-    let range = Range { min, max };
-    range.validate()?;
-    Ok(CrowdOptions {
-        instances: a.instances.unwrap_or(if a.pareto { 25 } else { 100 }),
-        layout: a.layout.into(),
-        seed: a.seed,
-        size: a.size,
-        spacing: a.spacing,
-        range,
-        frames: a.frames,
-        rate: a.rate,
-    })
-}
-
 /// The gate that the arguments name. Weights of `analyze` are derived later, from the model.
 fn gate(a: &Crowd) -> Result<GateMode, InputError> {
-    if let Some(budget) = a.budget.filter(|_| !matches!(a.gate, Some(Gate::Budget))) {
+    let gate = a.gate.unwrap_or(GateName::Off);
+    if let Some(budget) = a.budget.filter(|_| gate != GateName::Budget) {
         return Err(InputError::new("budget", budget, "must come with --gate budget"));
     }
-    Ok(match a.gate {
-        None | Some(Gate::Off) => GateMode::Off,
-        Some(Gate::SkipPeriod) => GateMode::SkipPeriod { period: a.period, weights: Weights::default() },
-        Some(Gate::Uniform) => GateMode::Uniform,
-        Some(Gate::Random) => GateMode::Random,
-        Some(Gate::Bounded) => GateMode::Bounded { pixels: a.pixels },
-        Some(Gate::Budget) => {
-            let missing =
-                || InputError::new("budget", "not given", "must be the most bones to interpolate in a frame");
+    Ok(match gate {
+        GateName::Off => GateMode::Off,
+        GateName::SkipPeriod => GateMode::SkipPeriod { period: a.period, weights: Weights::default() },
+        GateName::Uniform => GateMode::Uniform,
+        GateName::Random => GateMode::Random,
+        GateName::Bounded => GateMode::Bounded { pixels: a.pixels },
+        GateName::Budget => {
+            let bound = "must be the most bones to interpolate in a frame";
+            let missing = || InputError::new("budget", "not given", bound);
             GateMode::Budget { bones: a.budget.ok_or_else(missing)? }
         }
     })
 }
 
 fn drawn(a: &Crowd) -> Result<DrawnOptions, InputError> {
-    match a.gate {
-        Some(gate) if a.is_drawn() && !matches!(gate, Gate::Off | Gate::Bounded) => {
-            let name = gate.to_possible_value().map_or_else(String::new, |name| name.get_name().to_owned());
+    if a.is_drawn() {
+        if let Some(gate) = a.gate.filter(|gate| ![GateName::Off, GateName::Bounded].contains(gate)) {
             let bound = "must be off or bounded with --image and --scene, which draw a scene; leave them out to measure it";
-            return Err(InputError::new("gate", name, bound));
+            return Err(InputError::new("gate", gate.as_str(), bound));
         }
-        _ => {}
-    }
-    if a.is_drawn() && a.backend == Backend::Cpu {
-        return Err(InputError::new("backend", "cpu", "must be gpu, as the crowd is drawn"));
-    }
-    for (field, given) in [("skinning", &a.skinning), ("mesh", &a.mesh)] {
-        if !a.is_drawn() && given.is_some() {
-            return Err(InputError::new(
-                field,
-                "given",
-                "must come with --image or --scene, which draw the crowd",
-            ));
+        if a.backend == Backend::Cpu {
+            return Err(InputError::new("backend", "cpu", "must be gpu, as the crowd is drawn"));
+        }
+    } else {
+        let given =
+            [("skinning", &a.skinning), ("mesh", &a.mesh)].into_iter().find(|(_, given)| given.is_some());
+        if let Some((field, _)) = given {
+            let bound = "must come with --image or --scene, which draw the crowd";
+            return Err(InputError::new(field, "given", bound));
         }
     }
     let usual = if a.scene { "bounded:0.5" } else { "full" };
-    Ok(DrawnOptions {
-        skinning: detail::skinning(a.skinning.as_deref().unwrap_or(usual))?,
-        mesh: detail::mesh(a.mesh.as_deref().unwrap_or(usual))?,
-    })
+    let [skinning, mesh] = [("skinning", &a.skinning), ("mesh", &a.mesh)]
+        .map(|(field, given)| detail(field, given.as_deref().unwrap_or(usual)));
+    Ok(DrawnOptions { skinning: skinning?, mesh: mesh? })
 }
 
-fn numbers(field: &str, text: &str) -> Result<Vec<f32>, InputError> {
-    let refused = |_| InputError::new(field, text, "must be numbers with commas between them");
-    text.split(',').map(|word| word.trim().parse().map_err(refused)).collect()
+/// Parses `--skinning` or `--mesh`.
+fn detail(field: &str, text: &str) -> Result<Detail, InputError> {
+    let refused = |bound: &str| InputError::new(field, text, bound);
+    let pixels = |number: &str| {
+        let within = number.parse().ok().filter(|pixels| (0.0..=1e6).contains(pixels));
+        within.ok_or_else(|| refused("must have 0 to 1e6 pixels after the colon"))
+    };
+    let is_mesh = field == "mesh";
+    match text.split_once(':') {
+        None if text == "full" => Ok(Detail::Full),
+        Some(("bounded", number)) => Ok(Detail::Bounded { pixels: pixels(number)? }),
+        Some(("geomorph", number)) if is_mesh => Ok(Detail::Geomorph { pixels: pixels(number)? }),
+        _ if is_mesh => Err(refused("must be full, bounded:PIXELS or geomorph:PIXELS")),
+        _ => Err(refused(
+            "must be full or bounded:PIXELS, as a scene skins; `relievo skin --influences` has the others",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        let [skinning, mesh] = ["skinning", "mesh"].map(|field| move |text: &str| detail(field, text));
+        for name in ["full", "bounded:0.25"] {
+            assert_eq!(skinning(name).expect("valid").to_string(), name);
+            assert_eq!(mesh(name).expect("valid").to_string(), name);
+        }
+        assert_eq!(mesh("geomorph:2").expect("valid").to_string(), "geomorph:2");
+        for name in ["geomorph", "geomorph:", "geomorph:-1", "geomorph:1e7"] {
+            assert_eq!(mesh(name).expect_err("refused").path, "mesh", "{name}");
+            assert!(skinning(name).is_err(), "{name}");
+        }
+        for name in ["fade", "truncate:2", "truncate:x"] {
+            assert!(skinning(name).expect_err("refused").bound.contains("relievo skin"), "{name}");
+        }
+        for name in ["", "bounded", "bounded:-1", "bounded:NaN", "bounded:x", "half", "full:1"] {
+            assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");
+            assert_eq!(mesh(name).expect_err("refused").path, "mesh", "{name}");
+        }
+    }
 }

@@ -1,21 +1,19 @@
 //! Measures a crowd at several distances, and writes the report, a table and plots.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use image::RgbaImage;
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
 use relievo_lab::harness::TimedBy;
-use relievo_lab::measure::{AnimationReport, AnimationRow, Errors, animation, drawn};
+use relievo_lab::measure::{AnimationReport, AnimationRow, Errors, Setting, animation, drawn};
+use relievo_lab::plot::{Chart, Series, grid};
 
 use super::plan::Plan;
 use super::{pareto, scene};
 use crate::Context;
-use crate::arguments::Backend;
-use crate::measuring::shown;
 use crate::output::say;
-use relievo_lab::plot::{Chart, Series, grid};
+use crate::progress::shown;
 
 /// Width and height of a plot, in pixels.
 const SIZE: (u32, u32) = (800, 500);
@@ -27,12 +25,17 @@ pub fn run(plan: &Plan, is_drawn: bool, context: &Context, out: &Path) -> Result
     for (name, chart) in charts(&report) {
         staged.write_png(name, &picture(chart)?)?;
     }
-    for (distance, picture) in plan.lod.distances.iter().zip(&pictures) {
-        staged.write_png(file_name(*distance), picture)?;
+    publish(staged, plan, &pictures)?;
+    say(table(&report).trim_end())
+}
+
+/// Writes the picture at each distance, and publishes all files of a run in the place of those of an earlier one.
+pub fn publish(mut staged: Staged, plan: &Plan, pictures: &[RgbaImage]) -> Result<(), Error> {
+    for (distance, picture) in plan.lod.distances.iter().zip(pictures) {
+        staged.write_png(format!("crowd_{distance}.png"), picture)?;
     }
     staged.remove_stale(is_ours);
-    staged.publish()?;
-    say(table(&report).trim_end())
+    staged.publish()
 }
 
 /// Measures the crowd: the report, and one picture per distance if the crowd is drawn.
@@ -41,11 +44,7 @@ pub fn measured(
     is_drawn: bool,
     context: &Context,
 ) -> Result<(AnimationReport, Vec<RgbaImage>), Error> {
-    let gpu = match plan.backend {
-        Backend::Gpu => Some(context.gpu()?),
-        Backend::Cpu => None,
-    };
-    let subject = plan.subject();
+    let (gpu, subject) = (plan.backend.gpu(context)?, plan.subject());
     shown(|listener| match &gpu {
         Some(gpu) if is_drawn => drawn(gpu, subject, &plan.lod, &plan.drawn, listener),
         gpu => Ok((animation(gpu.as_ref(), subject, &plan.lod, listener)?, Vec::new())),
@@ -61,19 +60,16 @@ pub fn clock(timed_by: TimedBy) -> &'static str {
 }
 
 fn table(report: &AnimationReport) -> String {
+    let Setting { instances, bones, clip, gate, adapter, frames, rate, timed_by, .. } = &report.setting;
     let mut text = format!(
-        "{} × {} bones, {} of them move in {:?}; {}, {}; {} frames at {} Hz; times by {}, of all bones.\n\n\
+        "{instances} × {bones} bones, {} of them move in {clip:?}; {}, {}; {frames} frames at {rate} Hz; times by {}, of all \
+         bones.\n\n\
          | distance | Ω | interpolated | concatenated | gate + sample + local to model, whole frame ns/bone | full | error rms, p99, max \
          px | max m | jump px |\n|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-        report.instances,
-        report.bones,
         report.animated_bones,
-        report.clip,
-        report.gate.name().as_str(),
-        report.adapter.as_deref().unwrap_or("CPU"),
-        report.setting.frames,
-        report.setting.rate,
-        clock(report.timed_by),
+        gate.name().as_str(),
+        adapter.as_deref().unwrap_or("CPU"),
+        clock(*timed_by),
     );
     for row in &report.distances {
         let times = &row.nanoseconds_per_bone;
@@ -84,38 +80,34 @@ fn table(report: &AnimationReport) -> String {
             _ => format!("{:.2}", times.total),
         };
         let Errors { rms_pixels, p99_pixels, max_pixels, max_metres, .. } = row.error;
-        writeln!(
-            text,
+        text += &format!(
             "| {} | {:.3} | {:.1} % | {:.1} % | {parts} | {:.2} | {rms_pixels:.3}, {p99_pixels:.3}, {max_pixels:.3} \
-             | {max_metres:.4} | {:.3} |",
+             | {max_metres:.4} | {:.3} |\n",
             row.distance,
             row.mean_omega,
             100.0 * row.fraction,
             100.0 * row.concatenated_fraction,
             row.full_nanoseconds_per_bone.total,
             row.jump.max_pixels,
-        )
-        .expect("a string");
+        );
     }
     text
 }
 
 /// The name of each plot's file, and its chart.
 fn charts(report: &AnimationReport) -> [(&'static str, Chart); 3] {
-    let series = |name: &str, of: &dyn Fn(&AnimationRow) -> Option<f64>| Series {
-        name: name.to_owned(),
-        points: (report.distances.iter())
-            .filter_map(|row| Some((f64::from(row.distance), of(row)?)))
-            .collect(),
-        labels: Vec::new(),
+    let series = |name: &str, of: &dyn Fn(&AnimationRow) -> Option<f64>| {
+        let point = |row: &AnimationRow| Some((f64::from(row.distance), of(row)?));
+        Series::new(name, report.distances.iter().filter_map(point).collect())
     };
+    let Setting { instances, clip, gate, .. } = &report.setting;
     let chart = |title: &str, y_label: &str, log_y: bool, series: Vec<Series>| Chart {
-        title: format!("{title}, {} × {:?}, {}", report.instances, report.clip, report.gate.name().as_str()),
+        title: format!("{title}, {instances} × {clip:?}, {}", gate.name().as_str()),
         x_label: "distance in units".to_owned(),
         y_label: y_label.to_owned(),
-        log_x: false,
         log_y,
         series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
+        ..Chart::default()
     };
     let cost = vec![
         series("without a gate", &|row| Some(row.full_nanoseconds_per_bone.total)),
@@ -142,20 +134,15 @@ fn charts(report: &AnimationReport) -> [(&'static str, Chart); 3] {
 }
 
 /// Draws one chart.
-pub fn picture(chart: Chart) -> Result<image::RgbaImage, InputError> {
-    Ok(image::DynamicImage::ImageRgb8(grid("", &[chart], 1, SIZE)?).into_rgba8())
+pub fn picture(chart: Chart) -> Result<RgbaImage, InputError> {
+    grid("", &[chart], 1, SIZE)
 }
 
 /// The names of the files that this command writes without `--pareto`.
 const FILES: [&str; 4] = ["report.json", "cost.png", "interpolations.png", "error.png"];
 
-/// The file name of the picture at a distance.
-pub fn file_name(distance: f32) -> String {
-    format!("crowd_{distance}.png")
-}
-
 /// Whether this command writes a file of this name.
-pub fn is_ours(name: &str) -> bool {
+fn is_ours(name: &str) -> bool {
     let is_picture = name.strip_prefix("crowd_").and_then(|name| name.strip_suffix(".png"));
     [&FILES[..], &pareto::FILES, &scene::FILES].concat().contains(&name)
         || is_picture.is_some_and(|distance| distance.parse::<f32>().is_ok())

@@ -1,18 +1,17 @@
 //! Times the whole frame against distance, with and without level of detail.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use relievo::Error;
 use relievo_lab::files::Staged;
-use relievo_lab::measure::{Cheaper, SceneReport, SceneRow, scene};
+use relievo_lab::measure::{Cheaper, SceneReport, SceneRow, Setting, scene};
+use relievo_lab::plot::{Chart, Series};
 
 use super::plan::Plan;
-use super::report::{clock, file_name, is_ours, picture};
+use super::report::{clock, picture, publish};
 use crate::Context;
-use crate::measuring::shown;
 use crate::output::say;
-use relievo_lab::plot::{Chart, Series};
+use crate::progress::shown;
 
 /// The names of the files that this command writes with `--scene`, besides the pictures.
 pub const FILES: [&str; 2] = ["scene.json", "scene.png"];
@@ -22,39 +21,31 @@ pub fn run(plan: &Plan, context: &Context, out: &Path) -> Result<(), Error> {
     let gpu = context.gpu()?;
     let mut staged = Staged::new(out)?;
     let (report, pictures) = shown(|listener| scene(&gpu, plan.subject(), &plan.lod, &plan.drawn, listener))?;
-    for (distance, picture) in plan.lod.distances.iter().zip(&pictures) {
-        staged.write_png(file_name(*distance), picture)?;
-    }
     let [figures, chart] = FILES;
     staged.write_json(figures, &report)?;
     staged.write_png(chart, &picture(curves(&report))?)?;
-    staged.remove_stale(is_ours);
-    staged.publish()?;
+    publish(staged, plan, &pictures)?;
     say(lines(&report).trim_end())
 }
 
 fn lines(report: &SceneReport) -> String {
+    let Setting { adapter, instances, bones, clip, gate, frames, rate, timed_by, .. } = &report.setting;
     let mut text = format!(
-        "{} × {} bones and {} vertices in {:?}; gate {}, skinning {}, mesh {}; {}; {} frames at {} Hz; times by {}.\n\n\
+        "{instances} × {bones} bones and {} vertices in {clip:?}; gate {}, skinning {}, mesh {}; {}; {frames} frames at {rate} \
+         Hz; times by {}.\n\n\
          | distance | tall px | LOD | within px | frame ms | computed ms | drawn ms | bones | skinned | triangles | \
          displacement px | jump px |\n|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-        report.instances,
-        report.bones,
         report.vertices,
-        report.clip,
-        report.gate.name().as_str(),
+        gate.name().as_str(),
         report.skinning,
         report.mesh,
-        report.adapter,
-        report.setting.frames,
-        report.setting.rate,
-        clock(report.timed_by),
+        adapter.as_deref().unwrap_or_default(),
+        clock(*timed_by),
     );
     for row in &report.distances {
         for (name, look) in SceneRow::NAMES.iter().zip(row.costs()) {
-            writeln!(
-                text,
-                "| {} | {:.0} | {name} | {} | {:.2} | {:.2} | {:.2} | {:.0} | {:.1} % | {:.1} % | {:.3} | {:.3} |",
+            text += &format!(
+                "| {} | {:.0} | {name} | {} | {:.2} | {:.2} | {:.2} | {:.0} | {:.1} % | {:.1} % | {:.3} | {:.3} |\n",
                 row.distance,
                 row.tall_pixels,
                 look.pixels,
@@ -66,8 +57,7 @@ fn lines(report: &SceneReport) -> String {
                 100.0 * look.triangle_fraction,
                 look.displacement.largest,
                 look.displacement.jump,
-            )
-            .expect("a string");
+            );
         }
     }
     text += "\nCheaper than off by:\n\n| distance | LOD | whole frame | what is computed |\n|---:|---|---:|---:|\n";
@@ -75,7 +65,7 @@ fn lines(report: &SceneReport) -> String {
         for (name, Cheaper { frame, compute }) in
             SceneRow::NAMES[3..].iter().zip(std::iter::once(cheaper).chain(all_cheaper))
         {
-            writeln!(text, "| {distance} | {name} | {frame:.2} | {compute:.2} |").expect("a string");
+            text += &format!("| {distance} | {name} | {frame:.2} | {compute:.2} |\n");
         }
     }
     text
@@ -85,22 +75,16 @@ fn curves(report: &SceneReport) -> Chart {
     let series = |(index, name): (usize, &&str)| {
         let point =
             |row: &SceneRow| Some((f64::from(row.distance), row.costs().nth(index)?.frame_nanoseconds / 1e6));
-        let points: Vec<_> = report.distances.iter().filter_map(point).collect();
-        (!points.is_empty()).then(|| Series { name: (*name).to_owned(), points, labels: Vec::new() })
+        Series::new(*name, report.distances.iter().filter_map(point).collect())
     };
+    let all = SceneRow::NAMES.iter().enumerate().map(series);
+    let Setting { instances, clip, gate, .. } = &report.setting;
+    let (gate, SceneReport { skinning, mesh, .. }) = (gate.name().as_str(), report);
     Chart {
-        title: format!(
-            "Whole frame, {} × {:?}, gate {}, skinning {}, mesh {}",
-            report.instances,
-            report.clip,
-            report.gate.name().as_str(),
-            report.skinning,
-            report.mesh
-        ),
+        title: format!("Whole frame, {instances} × {clip:?}, gate {gate}, skinning {skinning}, mesh {mesh}"),
         x_label: "distance in units".to_owned(),
         y_label: "milliseconds".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: SceneRow::NAMES.iter().enumerate().filter_map(series).collect(),
+        series: all.filter(|series| !series.points.is_empty()).collect(),
+        ..Chart::default()
     }
 }

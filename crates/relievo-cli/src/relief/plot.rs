@@ -29,6 +29,5 @@ pub fn plot(comparison: &Comparison) -> Result<RgbaImage, InputError> {
         }
     };
     let title = "Error against cost, by angle from the normal (labels: linear steps)";
-    let charts = Comparison::ANGLES.map(chart);
-    Ok(image::DynamicImage::ImageRgb8(grid(title, &charts, 2, (1200, 900))?).into_rgba8())
+    grid(title, &Comparison::ANGLES.map(chart), 2, (1200, 900))
 }

@@ -48,7 +48,7 @@ fn depth(player: &Player, name: &str, staged: &mut Staged) -> Result<Extremes, E
     let image = ImageBuffer::<Luma<u16>, _>::from_fn(width, height, |x, y| {
         Luma([brightness(distances[(y * width + x) as usize])])
     });
-    staged.write_deep_png(format!("{name}.png"), &image)?;
+    staged.write_png(format!("{name}.png"), &image)?;
     Ok(Extremes { nearest, farthest, ..Extremes::default() })
 }
 
@@ -63,7 +63,7 @@ fn velocity(player: &Player, name: &str, staged: &mut Staged) -> Result<Extremes
         let velocity = velocities[(y * width + x) as usize];
         Rgb(velocity.map_or([0; 3], |[right, down]| [channel(right), channel(down), 32_768]))
     });
-    staged.write_deep_png(format!("{name}.png"), &image)?;
+    staged.write_png(format!("{name}.png"), &image)?;
     Ok(Extremes { fastest: Some(fastest), ..Extremes::default() })
 }
 
@@ -88,6 +88,6 @@ fn surface(player: &Player, name: &str, staged: &mut Staged) -> Result<Extremes,
     });
     staged.write_png(format!("{name}.png"), &normals)?;
     staged.write_png(format!("{name}_albedo.png"), &albedo)?;
-    staged.write_deep_png(format!("{name}_id.png"), &numbers)?;
+    staged.write_png(format!("{name}_id.png"), &numbers)?;
     Ok(Extremes::default())
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use image::{DynamicImage, RgbaImage};
+use image::RgbaImage;
 use relievo::InputError;
 use relievo_lab::measure::reduction::{ReducerComparison, ReducerLevel};
 use relievo_lab::plot::{Chart, Series, grid};
@@ -16,10 +16,9 @@ pub fn plot(comparison: &ReducerComparison) -> Result<RgbaImage, InputError> {
         log_x: true,
         log_y: true,
         series: (comparison.reducers.iter())
-            .map(|row| Series {
-                name: row.reducer.to_owned(),
-                points: row.levels.iter().map(|level| (level.triangles as f64, error(level))).collect(),
-                labels: Vec::new(),
+            .map(|row| {
+                let point = |level: &ReducerLevel| (level.triangles as f64, error(level));
+                Series::new(row.reducer, row.levels.iter().map(point).collect())
             })
             .collect(),
     };
@@ -27,5 +26,5 @@ pub fn plot(comparison: &ReducerComparison) -> Result<RgbaImage, InputError> {
         [chart("root mean square", |level| level.error_rms), chart("largest", |level| level.error_max)];
     let model = Path::new(&comparison.model).file_name().unwrap_or_default().to_string_lossy();
     let title = format!("Distance between {model} and its levels, by reducer");
-    Ok(DynamicImage::ImageRgb8(grid(&title, &charts, 2, (1200, 560))?).into_rgba8())
+    grid(&title, &charts, 2, (1200, 560))
 }

@@ -9,7 +9,6 @@ use relievo::terrain::grid::Grid;
 
 use super::Terrain;
 use super::export::{HeightImage, HeightRange};
-use crate::arguments::height_range;
 use crate::memory;
 
 impl Terrain {
@@ -25,12 +24,13 @@ impl Terrain {
         }
         if let (Some(path), Some(every)) = (&self.heights_from, self.every) {
             let image = HeightImage::from_file(path)?;
-            let range = self.heights_range.as_deref().map(height_range).transpose()?.or(image.range);
+            let range = self.heights_range.or(image.range);
             let symmetric = HeightRange { low: -config.scale_factor, high: config.scale_factor };
             // The number of samples inside both the image and the grid.
             let samples = grid.samples(width).min(image.samples.len() as u128);
             let injected = samples / u128::from(every.max(1)).pow(2);
-            memory::check(&self.patches, grid.bytes(width, injected as u64))?;
+            let [columns, rows] = self.patches;
+            memory::check(&format!("{columns}x{rows}"), grid.bytes(width, injected as u64))?;
             for file in image.features(config, grid.first, grid.size, every, range.unwrap_or(symmetric))? {
                 add(path, &file)?;
             }

@@ -39,7 +39,7 @@ use tree::Tree;
 mod bound;
 mod pieces;
 mod rms;
-mod tree;
+pub(crate) mod tree;
 
 /// Triangles of a surface.
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@ use relievo::mesh::nearest::precise_nearest_on_triangle;
 const LEAF: usize = 4;
 
 /// Triangles in a tree of boxes.
-pub(super) struct Tree {
+pub(crate) struct Tree {
     nodes: Vec<Node>,
     /// In the order of the leaves.
     triangles: Vec<[DVec3; 3]>,
@@ -33,7 +33,7 @@ impl Node {
 
 /// A triangle of a tree, and the square of a distance from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Near {
+pub(crate) struct Near {
     pub triangle: u32,
     pub squared: f64,
 }
@@ -85,6 +85,19 @@ impl Tree {
         let squared = |triangle: u32| self.squared(point, self.triangle(triangle));
         let best = Near { triangle: hint, squared: squared(hint) };
         self.search(best, 0.0, |node| node.distance_squared(point), squared)
+    }
+
+    /// The point on any triangle that is nearest to a point. `known` is one that lies on a triangle, if any is known; the
+    /// search is shorter if it is near.
+    pub fn nearest_point(&self, point: DVec3, known: Option<DVec3>) -> DVec3 {
+        // No triangle yet.
+        let triangle = u32::MAX;
+        let squared = known.map_or(f64::INFINITY, |known| known.distance_squared(point));
+        let squared_to = |triangle: u32| self.squared(point, self.triangle(triangle));
+        let found =
+            self.search(Near { triangle, squared }, 0.0, |node| node.distance_squared(point), squared_to);
+        let corners = self.triangles.get(found.triangle as usize);
+        corners.map(|corners| precise_nearest_on_triangle(point, *corners)).or(known).unwrap_or(point)
     }
 
     /// A triangle, and the distance of the point from it that is furthest from it.
@@ -183,5 +196,32 @@ mod tests {
                 (tree.nearest_to_all(&points, start, 0.0), tree.nearest_to_all(&points, start, 0.5));
             assert!(early.squared <= least.squared.max(0.5), "{early:?} {least:?}");
         }
+    }
+
+    #[test]
+    fn no_point_of_a_triangle_is_nearer() {
+        let corner = |at: usize| {
+            let turn = |rate: f64| 5.0 * libm::sin(rate * at as f64);
+            DVec3::new(turn(1.3), turn(2.9), turn(4.7))
+        };
+        let triangles: Vec<_> = (0..97)
+            .map(|at| {
+                let place = 4.0 * corner(7 * at);
+                [0, 1, 2].map(|next| place + corner(3 * at + next))
+            })
+            .collect();
+        let tree = Tree::new(&triangles);
+        for at in 0..300 {
+            let point = 6.0 * corner(11 * at + 1);
+            let least = (triangles.iter())
+                .map(|corners| precise_nearest_on_triangle(point, *corners).distance(point))
+                .fold(f64::INFINITY, f64::min);
+            assert_eq!(tree.nearest_point(point, None).distance(point), least, "{at}");
+            let known = triangles[at % 97].iter().sum::<DVec3>() / 3.0;
+            assert_eq!(tree.nearest_point(point, Some(known)).distance(point), least, "{at}");
+        }
+        let one = Tree::new(&[[DVec3::X; 3]]);
+        assert_eq!(one.nearest_point(DVec3::ZERO, None), DVec3::X);
+        assert_eq!(one.nearest_point(DVec3::ZERO, Some(DVec3::X)), DVec3::X);
     }
 }

@@ -7,18 +7,18 @@ use relievo::gpu::{Gpu, Job};
 
 use crate::harness::{Backend, Row, TimedBy, Timer};
 
-/// Repetitions that are not counted: the first dispatches of a pipeline compile it.
+/// The time after which no further round of a case begins; the first always takes place. `relievo bench` takes about as many
+/// times this as there are cases.
+const BUDGET: Duration = Duration::from_millis(1000);
+
+/// Rounds of the device alone that are not counted: the first dispatches of a pipeline compile it.
 const WARM_UP: usize = 2;
 
-/// Counted rounds of all contenders.
+/// The largest number of rounds of all contenders.
 const ROUNDS: usize = 5;
 
-/// The largest number of further rounds for the device's contenders alone, which are compared more closely and
-/// take less time.
+/// The largest number of rounds of the device's contenders, which are compared more closely and take less time.
 const DEVICE_ROUNDS: usize = 101;
-
-/// The time after which these further rounds end.
-const ENOUGH: Duration = Duration::from_millis(1200);
 
 /// Work on the device that takes longer than this, in nanoseconds, is repeated until its turns are as long as
 /// the longest of the case: on a busy machine the scheduler takes more time from long turns than from short ones.
@@ -165,31 +165,27 @@ impl<'a> Bench<'a> {
     fn repeat(&self, contenders: &mut [Contender<'_>]) -> Result<(Vec<Vec<f64>>, Vec<TimedBy>), Error> {
         let mut times = vec![Vec::new(); contenders.len()];
         let mut clocks = vec![TimedBy::Wall; contenders.len()];
-        let hosts_only = contenders.iter().all(Contender::is_host);
-        let mut start = Instant::now();
-        for round in 0..WARM_UP + DEVICE_ROUNDS {
-            if round == WARM_UP {
-                let devices: Vec<_> = (contenders.iter().zip(&times))
-                    .map(|(contender, times)| if contender.is_host() { &[][..] } else { &times[..] })
-                    .collect();
-                for (contender, repeats) in contenders.iter_mut().zip(repeats(&devices)) {
-                    contender.repeats = repeats;
-                }
-                times.iter_mut().for_each(Vec::clear);
+        for _ in 0..WARM_UP {
+            for (contender, times) in contenders.iter_mut().zip(&mut times).filter(|(own, _)| !own.is_host())
+            {
+                times.push(contender.once(self.gpu, &self.timer)?.0);
             }
-            let devices = round >= WARM_UP + ROUNDS;
-            if !devices {
-                start = Instant::now();
-            } else if hosts_only || start.elapsed() > ENOUGH {
+        }
+        for (contender, repeats) in contenders.iter_mut().zip(repeats(&times)) {
+            contender.repeats = repeats;
+        }
+        times.iter_mut().for_each(Vec::clear);
+        let start = Instant::now();
+        for round in 0..DEVICE_ROUNDS {
+            if round > 0 && start.elapsed() > BUDGET {
                 break;
             }
             for index in order(round, contenders.len()) {
-                if devices && contenders[index].is_host() {
-                    continue;
+                if round < ROUNDS || !contenders[index].is_host() {
+                    let (nanoseconds, clock) = contenders[index].once(self.gpu, &self.timer)?;
+                    times[index].push(nanoseconds);
+                    clocks[index] = clock;
                 }
-                let (nanoseconds, clock) = contenders[index].once(self.gpu, &self.timer)?;
-                times[index].push(nanoseconds);
-                clocks[index] = clock;
             }
         }
         Ok((times, clocks))
@@ -203,8 +199,8 @@ fn order(round: usize, contenders: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Repetitions per turn, given the times of single runs; 1 for work on the host.
-fn repeats(times: &[&[f64]]) -> Vec<u32> {
-    let shortest = |times: &&[f64]| times.iter().copied().reduce(f64::min).unwrap_or(0.0);
+fn repeats(times: &[Vec<f64>]) -> Vec<u32> {
+    let shortest = |times: &Vec<f64>| times.iter().copied().reduce(f64::min).unwrap_or(0.0);
     let longest = times.iter().map(shortest).fold(0.0, f64::max);
     let repeats = |own: f64| if own > LONG { (longest / own).round().clamp(1.0, REPEATS) as u32 } else { 1 };
     times.iter().map(shortest).map(repeats).collect()
@@ -242,7 +238,7 @@ mod tests {
 
     #[test]
     fn turns_are_as_long_as_the_longest() {
-        let times = [&[12e6, 11e6][..], &[9e6, 5e6], &[], &[1e6], &[1.1e6]];
+        let times = [vec![12e6, 11e6], vec![9e6, 5e6], vec![], vec![1e6], vec![1.1e6]];
         assert_eq!(repeats(&times), [1, 2, 1, 1, 8]);
     }
 
@@ -258,12 +254,12 @@ mod tests {
             Contender::host(Backend::Reference, || count(&host)),
         ];
         bench.case("both", (1, "item"), 4, contenders).expect("measured");
-        assert_eq!(host.get(), WARM_UP + ROUNDS);
+        assert_eq!(host.get(), ROUNDS);
         assert!(device.get() > host.get(), "{} rounds", device.get());
         bench
             .case("host", (1, "item"), 4, vec![Contender::host(Backend::Reference, || count(&host))])
             .expect("measured");
-        assert_eq!(host.get(), 2 * (WARM_UP + ROUNDS));
+        assert_eq!(host.get(), 2 * ROUNDS);
         let rows = bench.into_rows();
         assert_eq!(
             rows.iter().map(|row| row.beside_kernel.is_some()).collect::<Vec<_>>(),

@@ -13,7 +13,7 @@ use crate::measure::device::Device;
 use crate::measure::drawing::{Drawing, DrawnModel, FrameCost, Parts, check_frames};
 use crate::measure::errors::{Errors, Jump};
 use crate::measure::gates::GateMode;
-use crate::measure::options::{DrawnOptions, Layout, LodOptions, MeshDetail, SkinningDetail, Subject};
+use crate::measure::options::{Detail, DrawnOptions, LodOptions, Subject};
 use crate::measure::play::{Found, StageTimes, play};
 use crate::measure::progress::{Listener, Steps};
 use crate::measure::setting::Setting;
@@ -22,39 +22,19 @@ use crate::measure::stage::{Stage, animated_bones, mean_omega};
 /// What a gate saves and what it costs, by distance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AnimationReport {
-    /// The device's adapter; `None` on the CPU.
-    pub adapter: Option<String>,
-    /// The device's driver; `None` on the CPU.
-    pub driver: Option<String>,
-    /// The processor that computed: `gpu` or `cpu`.
-    pub backend: &'static str,
-    /// The clock that took the times.
-    pub timed_by: TimedBy,
-    /// The model's name.
-    pub model: String,
-    /// The clip's name.
-    pub clip: String,
-    /// The gate.
-    pub gate: GateMode,
-    /// Number of instances.
-    pub instances: usize,
-    /// How the instances are placed.
-    pub layout: Layout,
-    /// The seed of the instances' random positions and start times.
-    pub seed: u32,
-    /// Number of bones of an instance.
-    pub bones: usize,
-    /// Number of bones of an instance that the clip moves.
-    pub animated_bones: usize,
-    /// The units, the camera and the frames of the measurement.
+    /// What was measured.
     #[serde(flatten)]
     pub setting: Setting,
+    /// The processor that computed: `gpu` or `cpu`.
+    pub backend: &'static str,
+    /// Number of bones of an instance that the clip moves.
+    pub animated_bones: usize,
     /// The influences that vertices follow; only of a crowd that is drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub skinning: Option<SkinningDetail>,
+    pub skinning: Option<Detail>,
     /// The triangles that meshes have; only of a crowd that is drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<MeshDetail>,
+    pub mesh: Option<Detail>,
     /// The measurements, one row per distance.
     pub distances: Vec<AnimationRow>,
 }
@@ -153,20 +133,17 @@ pub fn drawn(
         let placements = stage.placements(row.distance);
         let mut drawing = Drawing::new(gpu, &stage, &model, &placements, &parts)?;
         let costs = drawing.run(1, || steps.step())?;
-        row.drawn = Some(drawn_row(Drawing::timed_by(gpu)?, costs[0], costs[1]));
+        let [full, gated] = [costs[0], costs[1]];
+        row.drawn = Some(DrawnRow {
+            drawn_timed_by: Drawing::timed_by(gpu)?,
+            gated,
+            full_frame_nanoseconds: full.frame_nanoseconds,
+            full_compute_nanoseconds: full.compute_nanoseconds,
+            full_draw_nanoseconds: full.draw_nanoseconds,
+        });
         pictures.push(drawing.picture(1)?);
     }
     Ok((report, pictures))
-}
-
-fn drawn_row(drawn_timed_by: TimedBy, full: FrameCost, gated: FrameCost) -> DrawnRow {
-    DrawnRow {
-        drawn_timed_by,
-        gated,
-        full_frame_nanoseconds: full.frame_nanoseconds,
-        full_compute_nanoseconds: full.compute_nanoseconds,
-        full_draw_nanoseconds: full.draw_nanoseconds,
-    }
 }
 
 /// Makes the progress counter of the frames at all distances.
@@ -186,21 +163,11 @@ fn measured(
     let steps = steps(options, options.gate.name().as_str(), listener);
     let row = |distance: &f32| row(gpu, stage, options, &gates, *distance, &steps);
     let distances = options.distances.iter().map(row).collect::<Result<_, Error>>()?;
-    let adapter = gpu.map(Gpu::adapter);
+    let timed_by = gpu.map_or(Ok(TimedBy::Wall), Device::timed_by)?;
     Ok(AnimationReport {
-        adapter: adapter.map(|adapter| adapter.name.clone()),
-        driver: adapter.map(|adapter| adapter.driver.clone()),
+        setting: Setting::new(gpu, timed_by, stage, options),
         backend: if gpu.is_some() { "gpu" } else { "cpu" },
-        timed_by: gpu.map_or(Ok(TimedBy::Wall), Device::timed_by)?,
-        model: stage.subject.name.to_owned(),
-        clip: stage.clip.name().to_owned(),
-        gate: options.gate,
-        instances: options.crowd.instances,
-        layout: options.crowd.layout,
-        seed: options.crowd.seed,
-        bones: stage.set.bones(),
         animated_bones,
-        setting: Setting::new(stage),
         skinning: None,
         mesh: None,
         distances,
@@ -227,7 +194,7 @@ fn row(
         }
         None => play(&mut Cpu::new(stage, gate, off, lods)?, stage, &placements, true, step)?,
     };
-    let Found { interpolated, concatenated, errors, jump, gated, full } = found;
+    let Found { interpolated, concatenated, errors, jump, times: [gated, full] } = found;
     let (pairs, frames) = (stage.pairs(), u64::from(options.crowd.frames));
     let moving = (stage.instances.len() * animated_bones(off)) as u64 * frames;
     Ok(AnimationRow {
@@ -238,8 +205,8 @@ fn row(
         fraction: interpolated as f64 / moving.max(1) as f64,
         concatenated,
         concatenated_fraction: concatenated as f64 / (pairs as u64 * frames) as f64,
-        nanoseconds_per_bone: gated.a_bone(pairs),
-        full_nanoseconds_per_bone: full.a_bone(pairs),
+        nanoseconds_per_bone: gated,
+        full_nanoseconds_per_bone: full,
         error: errors,
         jump,
         drawn: None,

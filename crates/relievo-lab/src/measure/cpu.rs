@@ -8,7 +8,7 @@ use relievo::asset::Affine;
 use relievo::{Error, InputError};
 
 use crate::measure::gates::{PATH, frame};
-use crate::measure::play::{FrameTimes, Play, Played, Times, Timing};
+use crate::measure::play::{Play, Played, Timing, of_whole};
 use crate::measure::stage::Stage;
 
 /// The crowd under a gate, and the same crowd in full.
@@ -41,11 +41,11 @@ impl Play for Cpu<'_> {
         let gated = start.elapsed();
         self.full.advance(&frame, elapsed);
         let full = start.elapsed() - gated;
-        let [gated, full] = [gated, full].map(|time| FrameTimes::of_whole(time.as_nanos() as f64));
+        let times = [gated, full].map(|time| of_whole(time.as_nanos() as f64));
         Ok(Played {
             interpolated: work.pairs.len(),
             concatenated: work.updated_bones.iter().map(|word| word.count_ones() as usize).sum(),
-            times: (timing != Timing::None).then_some(Times { gated, full }),
+            times: (timing != Timing::None).then_some(times),
         })
     }
 

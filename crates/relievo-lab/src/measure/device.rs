@@ -12,43 +12,41 @@ use relievo::gpu::{Gpu, Job, compute_pass};
 
 use crate::harness::{TimedBy, Timer};
 use crate::measure::gates::{PATH, frame};
-use crate::measure::play::{FrameTimes, Play, Played, Times, Timing};
+use crate::measure::play::{FrameTimes, Play, Played, Timing, of_whole};
 use crate::measure::stage::Stage;
 
-/// The crowd under a gate, and the same crowd in full.
+/// The crowd under a gate, and the same crowd in full: there every bone of every instance is sampled and concatenated.
 pub(crate) struct Device {
     gpu: Gpu,
     timer: Timer,
     rate: f64,
-    pub(crate) gated: Gated,
-    pub(crate) full: Full,
+    gated: Crowd,
+    frame: GatedFrame,
+    full: Crowd,
+    cursors: KeyframeCursorJob,
+    sample: Job,
+    local_to_model: LocalToModelJob,
     stale: Vec<Affine>,
     fresh: Vec<Affine>,
 }
 
-/// The crowd under a gate.
-pub(crate) struct Gated {
-    pub(crate) crowd: Crowd,
-    pub(crate) frame: GatedFrame,
-}
-
-/// The crowd in full: every bone of every instance is sampled and concatenated.
-pub(crate) struct Full {
-    pub(crate) crowd: Crowd,
-    cursors: KeyframeCursorJob,
-    sample: Job,
-    local_to_model: LocalToModelJob,
-}
-
 impl Device {
     pub(crate) fn new(gpu: &Gpu, stage: &Stage<'_>, gate: &Gate, lods: &[Lod]) -> Result<Self, Error> {
-        let clips = ClipBuffers::new(gpu, &stage.set)?;
+        let (clips, skeleton) = (ClipBuffers::new(gpu, &stage.set)?, &stage.subject.model.skeleton);
+        let crowd = || Ok::<_, Error>(Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH));
+        let [gated, full] = [crowd()?, crowd()?];
+        let frame = GatedFrame::new(gpu, skeleton, &clips, &gated, gate)?;
+        frame.state.write_lods(gpu, lods)?;
         Ok(Self {
             gpu: gpu.clone(),
             timer: Timer::new(gpu)?,
             rate: stage.options.rate,
-            gated: Gated::new(gpu, stage, &clips, gate, lods)?,
-            full: Full::new(gpu, stage, &clips)?,
+            gated,
+            frame,
+            cursors: KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &full)?,
+            sample: SamplePass::new(gpu, PATH)?.prepare(gpu, &clips, &full)?,
+            local_to_model: LocalToModelPass::new(gpu)?.prepare(gpu, skeleton, &full)?,
+            full,
             stale: Vec::new(),
             fresh: Vec::new(),
         })
@@ -59,65 +57,60 @@ impl Device {
         Ok(Timer::new(gpu)?.timed_by())
     }
 
-    /// Sets the frame that is recorded next.
-    pub(crate) fn set(&self, number: u32) -> Result<(), Error> {
-        let (frame, elapsed) = frame(number, self.rate);
-        self.gated.frame.set(&self.gpu, &frame, elapsed)?;
-        self.full.cursors.set(&self.gpu, elapsed)
-    }
-
     fn timed(&self, dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>)) -> Result<f64, Error> {
         let record = |encoder: &mut _| dispatch(&mut compute_pass(encoder, "timed"));
         Ok(self.timer.measure(&self.gpu, record)?.nanoseconds)
     }
 
+    fn sample_full(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.cursors.dispatch(pass);
+        self.sample.dispatch(pass);
+    }
+
+    fn play_full(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.sample_full(pass);
+        self.local_to_model.dispatch(pass);
+    }
+
     /// Plays a frame of both crowds and times each as a whole.
-    fn play_whole(&self) -> Result<Times, Error> {
-        let Self { gated, full, .. } = self;
-        let frame = &gated.frame;
-        Ok(Times {
-            gated: FrameTimes::of_whole(self.timed(|pass| frame.dispatch(pass))?),
-            full: FrameTimes::of_whole(self.timed(|pass| full.dispatch(pass))?),
-        })
+    fn play_whole(&self) -> Result<[FrameTimes; 2], Error> {
+        let gated = self.timed(|pass| self.frame.dispatch(pass))?;
+        let full = self.timed(|pass| self.play_full(pass))?;
+        Ok([gated, full].map(of_whole))
     }
 
     /// Plays a frame of both crowds and times each stage.
-    fn play_stages(&self) -> Result<Times, Error> {
-        let Self { gated, full, .. } = self;
-        let frame = &gated.frame;
-        let stages = |gate, sample, local_to_model| FrameTimes { gate, sample, local_to_model, whole: None };
-        Ok(Times {
-            gated: stages(
-                Some(self.timed(|pass| frame.dispatch_gate(pass))?),
-                Some(self.timed(|pass| frame.dispatch_sample(pass))?),
-                Some(self.timed(|pass| frame.dispatch_local_to_model(pass))?),
-            ),
-            full: stages(
-                None,
-                Some(self.timed(|pass| full.dispatch_sample(pass))?),
-                Some(self.timed(|pass| full.local_to_model.dispatch(pass))?),
-            ),
-        })
+    fn play_stages(&self) -> Result<[FrameTimes; 2], Error> {
+        let frame = &self.frame;
+        let gate = self.timed(|pass| frame.dispatch_gate(pass))?;
+        let sample = self.timed(|pass| frame.dispatch_sample(pass))?;
+        let local_to_model = self.timed(|pass| frame.dispatch_local_to_model(pass))?;
+        let gated = [Some(gate), Some(sample), Some(local_to_model), None];
+        let sample = self.timed(|pass| self.sample_full(pass))?;
+        let local_to_model = self.timed(|pass| self.local_to_model.dispatch(pass))?;
+        Ok([gated, [None, Some(sample), Some(local_to_model), None]])
     }
 }
 
 impl Play for Device {
     fn play(&mut self, number: u32, timing: Timing) -> Result<Played, Error> {
-        self.set(number)?;
+        let (frame, elapsed) = frame(number, self.rate);
+        self.frame.set(&self.gpu, &frame, elapsed)?;
+        self.cursors.set(&self.gpu, elapsed)?;
         let times = match timing {
             Timing::Whole => Some(self.play_whole()?),
             Timing::Stages => Some(self.play_stages()?),
             Timing::None => {
                 self.gpu.run("frame", |encoder| {
-                    self.gated.frame.record(encoder);
-                    self.full.record(encoder);
+                    self.frame.record(encoder);
+                    self.play_full(&mut compute_pass(encoder, "full"));
                 })?;
                 None
             }
         };
-        let active = &self.gated.frame.active;
-        self.stale = self.gated.crowd.model_matrices().read_blocking(&self.gpu)?;
-        self.fresh = self.full.crowd.model_matrices().read_blocking(&self.gpu)?;
+        self.stale = self.gated.model_matrices().read_blocking(&self.gpu)?;
+        self.fresh = self.full.model_matrices().read_blocking(&self.gpu)?;
+        let active = &self.frame.active;
         let bits = active.bits.read_blocking(&self.gpu)?;
         let updated_bones = &bits[active.updated_words()];
         Ok(Played {
@@ -133,51 +126,5 @@ impl Play for Device {
 
     fn fresh(&self) -> &[Affine] {
         &self.fresh
-    }
-}
-
-impl Gated {
-    fn new(
-        gpu: &Gpu,
-        stage: &Stage<'_>,
-        clips: &ClipBuffers,
-        gate: &Gate,
-        lods: &[Lod],
-    ) -> Result<Self, Error> {
-        let skeleton = &stage.subject.model.skeleton;
-        let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
-        let frame = GatedFrame::new(gpu, skeleton, clips, &crowd, gate)?;
-        frame.state.write_lods(gpu, lods)?;
-        Ok(Self { crowd, frame })
-    }
-}
-
-impl Full {
-    fn new(gpu: &Gpu, stage: &Stage<'_>, clips: &ClipBuffers) -> Result<Self, Error> {
-        let crowd = Crowd::new(gpu, &stage.set, &stage.instances)?.with_path(PATH);
-        Ok(Self {
-            cursors: KeyframeCursorPass::new(gpu)?.prepare(gpu, clips, &crowd)?,
-            sample: SamplePass::new(gpu, PATH)?.prepare(gpu, clips, &crowd)?,
-            local_to_model: LocalToModelPass::new(gpu)?.prepare(
-                gpu,
-                &stage.subject.model.skeleton,
-                &crowd,
-            )?,
-            crowd,
-        })
-    }
-
-    fn dispatch_sample(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.cursors.dispatch(pass);
-        self.sample.dispatch(pass);
-    }
-
-    fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.dispatch_sample(pass);
-        self.local_to_model.dispatch(pass);
-    }
-
-    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch(&mut compute_pass(encoder, "full"));
     }
 }

@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
-use glam::{DMat4, DQuat, DVec4};
 use relievo::Error;
 use relievo::asset::Affine;
-use relievo::scene::{Camera, InstanceId, Placement};
+use relievo::scene::{Camera, Placement};
 use relievo::scene_file::WorldObject;
 use serde::Serialize;
 
+use crate::measure::displacement::{matrix, placed};
 use crate::measure::player::Player;
 
 /// Describes the numbers that [`CharacterDump::add`] writes: for each frame, for each instance of each character, for each
@@ -92,9 +92,19 @@ impl CharacterDump {
                 seen.extend(world.scene.seen(view, object.object)?);
             }
             for (instance, bones) in world.scene.drawn_bones(object.object)? {
-                let placement = world.scene.placement(instance)?;
+                let (placement, time) = (world.scene.placement(instance)?, world.scene.clip_time(instance)?);
                 write(numbers, &placement, &bones).map_err(|error| Error::output("characters.f32", error))?;
-                instances.push(described(player, character, instance, &placement, seen.contains(&instance))?);
+                let Placement { cell, offset, turn, scale } = placement;
+                instances.push(Instance {
+                    character,
+                    drawn: seen.contains(&instance),
+                    cell,
+                    at: offset.into(),
+                    turn: turn.into(),
+                    scale: scale.into(),
+                    clip: time.map_or(0, |time| time.clip),
+                    clip_seconds: time.map_or(0.0, |time| time.seconds),
+                });
             }
         }
         let Camera { cell, view_from_cell, clip_from_view, viewport, .. } = player.camera();
@@ -106,34 +116,11 @@ impl CharacterDump {
     }
 }
 
-fn described(
-    player: &Player,
-    character: usize,
-    instance: InstanceId,
-    placement: &Placement,
-    drawn: bool,
-) -> Result<Instance, Error> {
-    let time = player.world().scene.clip_time(instance)?;
-    let Placement { cell, offset, turn, scale } = *placement;
-    Ok(Instance {
-        character,
-        drawn,
-        cell,
-        at: offset.into(),
-        turn: turn.into(),
-        scale: scale.into(),
-        clip: time.map_or(0, |time| time.clip),
-        clip_seconds: time.map_or(0.0, |time| time.seconds),
-    })
-}
-
 /// Writes the matrices of an instance's bones, in the world.
 fn write(numbers: &mut impl Write, placement: &Placement, bones: &[Affine]) -> std::io::Result<()> {
-    let turn = DQuat::from_array(placement.turn.to_array().map(f64::from)).normalize();
-    let world = DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, placement.world());
+    let world = placed(placement, [0; 3]);
     for bone in bones {
-        let [x, y, z] = bone.map(|row| DVec4::from(row.map(f64::from)));
-        let matrix = world * DMat4::from_cols(x, y, z, DVec4::W).transpose();
+        let matrix = world * matrix(bone);
         for row in 0..3 {
             for value in matrix.row(row).to_array() {
                 numbers.write_all(&(value as f32).to_le_bytes())?;

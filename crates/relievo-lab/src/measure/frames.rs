@@ -1,7 +1,6 @@
 //! Plays the frames of a scene file: what each draws and costs and, beside the same frame at full detail, what its level of
 //! detail shows.
 
-use image::RgbaImage;
 use relievo::Error;
 use relievo::gpu::{Gpu, GpuError};
 use relievo::scene::{LevelStatistics, ObjectId, Quality, StageTimes};
@@ -11,6 +10,7 @@ use serde::Serialize;
 use crate::measure::displacement::{Displacement, DisplacementMeter};
 use crate::measure::flip::mean_flip;
 use crate::measure::player::{FrameTimes, Player, Rendering};
+use crate::measure::play::middle;
 
 /// An object of a scene, as reports name it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,21 +49,6 @@ pub struct DrawnLevel {
     pub triangles: u64,
 }
 
-/// The milliseconds of the stages of a frame's compute work, by the device's clock.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Stages {
-    /// Culling, levels of detail and lists.
-    pub select: f64,
-    /// The decision which bones are sampled.
-    pub gate: f64,
-    /// Samples of bones, and weights of morph targets.
-    pub sample: f64,
-    /// Model matrices.
-    pub local_to_model: f64,
-    /// Pages, palettes, morph targets and skinning.
-    pub skin: f64,
-}
-
 /// A frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrameReport {
@@ -73,9 +58,9 @@ pub struct FrameReport {
     pub pixels: f32,
     /// What it cost, by the host's clock.
     pub milliseconds: FrameTimes,
-    /// The stages of its compute work, once their times have arrived ([`ScenePlay::stages`]).
+    /// The milliseconds of the stages of its compute work, by the device's clock, once they have arrived ([`ScenePlay::stages`]).
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub stages: Option<Stages>,
+    pub stages: Option<StageTimes>,
     /// What it drew, object by object.
     pub objects: Vec<ObjectFrame>,
     /// The comparison with the same frame at full detail.
@@ -164,20 +149,10 @@ impl ScenePlay {
         Ok(FrameReport { seconds: time, pixels, milliseconds, stages: None, objects, compared })
     }
 
-    /// The stages of a frame whose times have arrived since, with its number, counted from 0. They take a frame or two, and
-    /// need a device with timestamps.
-    pub fn stages(&mut self) -> Option<(u64, Stages)> {
-        let times = *self.player.world_mut().scene.stage_times()?;
-        let StageTimes { frame, select, gate, sample, local_to_model, skin } = times;
-        Some((frame, Stages { select, gate, sample, local_to_model, skin }))
-    }
-
-    /// The colours of the last frame at full detail, if frames are compared.
-    ///
-    /// # Errors
-    /// As [`Player::picture`].
-    pub fn full_picture(&self) -> Result<Option<RgbaImage>, Error> {
-        self.full.as_ref().map(|full| full.player.picture()).transpose()
+    /// The stages of a frame whose times have arrived since; frames count from 0. They take a frame or two, and need a device
+    /// with timestamps.
+    pub fn stages(&mut self) -> Option<StageTimes> {
+        self.player.world_mut().scene.stage_times().copied()
     }
 }
 
@@ -200,17 +175,16 @@ impl FullDetail {
 
     fn compare(&mut self, player: &Player, seconds: f32, objects: &[ObjectFrame]) -> Result<Compared, Error> {
         let full_milliseconds = self.player.frame(seconds)?;
-        let mut displacement: Option<Displacement> = None;
+        let pixels = player.rendering().quality.pixels;
+        let mut displacement = Displacement { pixels, ..Displacement::default() };
         for (meter, view) in self.meters.iter_mut().zip(player.views()) {
-            let found = meter.measure(&player.world().scene, view)?;
-            displacement = Some(displacement.map_or(found, |all| all.and(found)));
+            displacement = displacement.and(meter.measure(&player.world().scene, view)?);
         }
-        let none = || Displacement::none(player.rendering().quality.pixels);
         Ok(Compared {
             full_milliseconds,
             triangles: triangles(objects),
             full_triangles: triangles(&drawn(&mut self.player)?),
-            displacement: displacement.unwrap_or_else(none),
+            displacement,
             flip: mean_flip(&player.picture()?, &self.player.picture()?)?,
         })
     }
@@ -295,10 +269,10 @@ impl FrameSummary {
     pub fn new(frames: &[FrameReport]) -> Self {
         let times = |of: fn(&FrameReport) -> Option<FrameTimes>| {
             let all = || frames.iter().filter_map(of);
-            FrameTimes {
-                compute: median(all().map(|times| times.compute).collect()),
-                draw: median(all().map(|times| times.draw).collect()),
-            }
+            let [compute, draw] =
+                [all().map(|times| times.compute).collect(), all().map(|times| times.draw).collect()]
+                    .map(|times| middle(times).unwrap_or(0.0));
+            FrameTimes { compute, draw }
         };
         let compared = || frames.iter().filter_map(|frame| frame.compared.as_ref());
         let most = |of: fn(&Compared) -> f64| compared().map(of).fold(0.0, f64::max);
@@ -317,10 +291,4 @@ impl FrameSummary {
                 / sum(|frame| frame.full_triangles).max(1) as f64,
         }
     }
-}
-
-/// The middle of values, 0 without any.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

@@ -1,13 +1,9 @@
 //! The gates that can be measured, by name, with their parameters.
 
 use relievo::InputError;
-use relievo::animation::order::Order;
-use relievo::animation::priority::{USER_DEFAULT, Weights};
-use relievo::animation::{
-    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, PriorityTable, priority,
-};
+use relievo::animation::Frame;
+use relievo::animation::priority::Weights;
 use relievo::asset::keyframe::RotationPath;
-use relievo::asset::{Clip, Skeleton};
 use serde::Serialize;
 
 use crate::measure::bounds::check;
@@ -111,41 +107,6 @@ impl GateMode {
     /// The error that may show, in pixels.
     pub(crate) fn pixels(&self) -> f32 {
         if let Self::Bounded { pixels } = *self { pixels } else { 0.0 }
-    }
-}
-
-/// The model, the clip and the tables that gates are made from.
-pub(crate) struct Source<'a> {
-    pub skeleton: &'a Skeleton,
-    pub clip: &'a Clip,
-    pub order: &'a Order,
-    pub set: &'a ClipSet,
-    /// For each bone, the largest distance of points that follow it from its origin, in metres.
-    pub radii: &'a [f32],
-}
-
-impl Source<'_> {
-    /// Makes the gate with its table.
-    pub(crate) fn gate(&self, mode: &GateMode) -> Result<Gate, InputError> {
-        let Self { skeleton, clip, order, set, radii } = self;
-        let clips = [*clip];
-        let animated_bones = || AnimatedBones::new(order, set, &clips);
-        Ok(match mode {
-            GateMode::Off => Gate::Off(animated_bones()?),
-            GateMode::Uniform => Gate::Uniform(animated_bones()?),
-            GateMode::Random => Gate::Random(animated_bones()?),
-            GateMode::SkipPeriod { period, weights } => {
-                let user = vec![USER_DEFAULT; skeleton.len()];
-                let priorities = priority::Priorities::new(skeleton, clip, true, weights, &user)?;
-                let table = PriorityTable::new(order, set, &clips, &[priorities])?;
-                Gate::SkipPeriod { table, period: (period * f64::from(TICKS)).round() as u32 }
-            }
-            GateMode::Budget { bones } => {
-                let table = ExpectationTable::new(skeleton, set, &clips, radii, PATH)?;
-                Gate::Budget { table, bones: *bones }
-            }
-            GateMode::Bounded { .. } => Gate::Bounded(BoundTable::new(skeleton, set, &clips, radii, PATH)?),
-        })
     }
 }
 

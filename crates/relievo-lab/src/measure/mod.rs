@@ -54,14 +54,10 @@ pub use drawing::FrameCost;
 pub use dump::CharacterDump;
 pub use errors::{Errors, Jump};
 pub use flip::mean_flip;
-pub use frames::{
-    Compared, DrawnLevel, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay, Stages,
-};
+pub use frames::{Compared, DrawnLevel, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay};
 pub use gates::{GateMode, GateName};
 pub use levels::LevelReport;
-pub use options::{
-    CrowdOptions, DrawnOptions, Layout, LodOptions, MeshDetail, ParetoOptions, SkinningDetail, Subject,
-};
+pub use options::{CrowdOptions, Detail, DrawnOptions, Layout, LodOptions, ParetoOptions, Subject};
 pub use pareto::{AtCost, AtError, Comparisons, ParetoPoint, ParetoReport, pareto};
 pub use play::StageTimes;
 pub use player::{FrameTimes, Player, Rendering, SurfacePixel};

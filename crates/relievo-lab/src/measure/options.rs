@@ -144,49 +144,65 @@ impl LodOptions {
     }
 }
 
-/// Which influences vertices follow.
+/// How much of the influences of vertices, or of the triangles of meshes, is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SkinningDetail {
-    /// All influences of each vertex.
+pub enum Detail {
+    /// All of them.
     Full,
-    /// They fade only as far as that takes no vertex further away than a number of pixels.
+    /// Influences fade only as far as that takes no vertex further away than a number of pixels; meshes have the coarsest level
+    /// of detail whose surface is no further off.
     Bounded {
         /// The number of pixels, in 0..=1e6.
         pixels: f32,
     },
-}
-
-/// Which triangles meshes have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum MeshDetail {
-    /// All triangles of each mesh.
-    Full,
-    /// The coarsest level of detail whose surface is no further off than a number of pixels.
-    Bounded {
-        /// The number of pixels, in 0..=1e6.
-        pixels: f32,
-    },
-    /// The same, but levels move into each other ([`Transition::Geomorph`](relievo::scene::Transition::Geomorph)).
+    /// Of meshes: the same, but levels move into each other
+    /// ([`Transition::Geomorph`](relievo::scene::Transition::Geomorph)).
     Geomorph {
         /// The number of pixels, in 0..=1e6.
         pixels: f32,
     },
 }
 
+impl Detail {
+    /// The number of pixels by which what is drawn may be off.
+    pub fn pixels(self) -> f32 {
+        match self {
+            Self::Full => 0.0,
+            Self::Bounded { pixels } | Self::Geomorph { pixels } => pixels,
+        }
+    }
+}
+
+impl fmt::Display for Detail {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full => f.write_str("full"),
+            Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
+            Self::Geomorph { pixels } => write!(f, "geomorph:{pixels}"),
+        }
+    }
+}
+
+impl Serialize for Detail {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 /// How a crowd is skinned and drawn. Its scene permits the sum of these pixels and those of the gate, and divides them by
 /// [`Shares`](relievo::scene::Shares) in proportion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawnOptions {
-    /// The influences that vertices follow. Default: those that half a pixel permits.
-    pub skinning: SkinningDetail,
+    /// The influences that vertices follow; no geomorph. Default: those that half a pixel permits.
+    pub skinning: Detail,
     /// The triangles that meshes have. Default: those that half a pixel permits.
-    pub mesh: MeshDetail,
+    pub mesh: Detail,
 }
 
 impl Default for DrawnOptions {
     fn default() -> Self {
-        let pixels = 0.5;
-        Self { skinning: SkinningDetail::Bounded { pixels }, mesh: MeshDetail::Bounded { pixels } }
+        let half = Detail::Bounded { pixels: 0.5 };
+        Self { skinning: half, mesh: half }
     }
 }
 
@@ -194,17 +210,13 @@ impl DrawnOptions {
     /// Checks both options.
     ///
     /// # Errors
-    /// [`InputError`] for pixels out of their range.
+    /// [`InputError`] for pixels out of their range, and for influences with a geomorph.
     pub fn validate(&self) -> Result<(), InputError> {
-        if let SkinningDetail::Bounded { pixels } = self.skinning {
-            check("skinning.pixels", pixels.into(), 0.0..=1e6)?;
+        if let Detail::Geomorph { .. } = self.skinning {
+            return Err(InputError::new("skinning", self.skinning, "must be full or bounded"));
         }
-        match self.mesh {
-            MeshDetail::Bounded { pixels } | MeshDetail::Geomorph { pixels } => {
-                check("mesh.pixels", pixels.into(), 0.0..=1e6)
-            }
-            MeshDetail::Full => Ok(()),
-        }
+        check("skinning.pixels", self.skinning.pixels().into(), 0.0..=1e6)?;
+        check("mesh.pixels", self.mesh.pixels().into(), 0.0..=1e6)
     }
 }
 
@@ -237,37 +249,6 @@ impl ParetoOptions {
         self.crowd.validate()?;
         GateMode::SkipPeriod { period: self.period, weights: self.weights }.validate()?;
         check("tall_pixels", self.tall_pixels.into(), 1.0..=1e4)
-    }
-}
-
-impl fmt::Display for SkinningDetail {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Full => f.write_str("full"),
-            Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
-        }
-    }
-}
-
-impl fmt::Display for MeshDetail {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Full => f.write_str("full"),
-            Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
-            Self::Geomorph { pixels } => write!(f, "geomorph:{pixels}"),
-        }
-    }
-}
-
-impl Serialize for SkinningDetail {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl Serialize for MeshDetail {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
     }
 }
 

@@ -18,8 +18,8 @@ pub(crate) struct Played {
     pub interpolated: usize,
     /// Number of bones whose matrices were computed.
     pub concatenated: usize,
-    /// The times of the frame, if it was timed.
-    pub times: Option<Times>,
+    /// The times of the frame under the gate and in full, if it was timed.
+    pub times: Option<[FrameTimes; 2]>,
 }
 
 /// How a frame is timed.
@@ -45,27 +45,17 @@ impl Timing {
     }
 }
 
-/// The times of a frame, in nanoseconds.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Times {
-    /// The crowd under the gate.
-    pub gated: FrameTimes,
-    /// The crowd in full.
-    pub full: FrameTimes,
+/// The times of a frame in nanoseconds, as far as they were taken: gate, sample, local to model, and the whole.
+pub(crate) type FrameTimes = [Option<f64>; 4];
+
+/// The times of a frame that was timed only as a whole.
+pub(crate) fn of_whole(nanoseconds: f64) -> FrameTimes {
+    [None, None, None, Some(nanoseconds)]
 }
 
-/// The times that were measured of a frame, in nanoseconds.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct FrameTimes {
-    pub gate: Option<f64>,
-    pub sample: Option<f64>,
-    pub local_to_model: Option<f64>,
-    pub whole: Option<f64>,
-}
-
-/// Times by stage and of the whole frame, in nanoseconds; on the CPU only the whole is measured. Medians over
-/// the frames that were timed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+/// Times by stage and of the whole frame, in nanoseconds per bone of the crowd; on the CPU only the whole is measured.
+/// Medians over the frames that were timed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct StageTimes {
     /// The search for clip clocks, the decision of the gate, and the lists of active bones.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -96,9 +86,8 @@ pub(crate) struct Found {
     pub concatenated: u64,
     pub errors: Errors,
     pub jump: Jump,
-    /// Median times of the crowd under the gate.
-    pub gated: StageTimes,
-    pub full: StageTimes,
+    /// Median times of the crowd under the gate, and in full.
+    pub times: [StageTimes; 2],
 }
 
 /// Plays all frames, and measures all but the first. Calls `step` after each frame.
@@ -124,42 +113,20 @@ pub(crate) fn play(
         step();
     }
     let (errors, jump) = meter.finish();
-    let [gated, full] = [|times: &Times| times.gated, |times: &Times| times.full]
-        .map(|of| medians(&times.iter().map(of).collect::<Vec<_>>()));
-    Ok(Found { interpolated, concatenated, errors, jump, gated, full })
+    let pairs = stage.pairs() as f64;
+    let medians = |crowd: usize| {
+        let all: Vec<FrameTimes> = times.iter().map(|both: &[FrameTimes; 2]| both[crowd]).collect();
+        let median = |at: usize| Some(middle(all.iter().filter_map(|times| times[at]).collect())? / pairs);
+        let [gate, sample, local_to_model, whole] = std::array::from_fn(median);
+        // If no whole frame was timed, the sum of the stages stands for it.
+        let sum = || [gate, sample, local_to_model].into_iter().flatten().sum();
+        StageTimes { gate, sample, local_to_model, total: whole.unwrap_or_else(sum) }
+    };
+    Ok(Found { interpolated, concatenated, errors, jump, times: [0, 1].map(medians) })
 }
 
 /// The median of the times; `None` without times.
 pub(crate) fn middle(mut times: Vec<f64>) -> Option<f64> {
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied()
-}
-
-fn medians(times: &[FrameTimes]) -> StageTimes {
-    let median = |of: &dyn Fn(&FrameTimes) -> Option<f64>| middle(times.iter().filter_map(of).collect());
-    let [gate, sample, local_to_model] =
-        [median(&|taken| taken.gate), median(&|taken| taken.sample), median(&|taken| taken.local_to_model)];
-    // If no whole frame was timed, the sum of the stages stands for it.
-    let sum = [gate, sample, local_to_model].into_iter().flatten().sum();
-    StageTimes { gate, sample, local_to_model, total: median(&|taken| taken.whole).unwrap_or(sum) }
-}
-
-impl FrameTimes {
-    /// The times of a frame that was timed only as a whole.
-    pub(crate) fn of_whole(nanoseconds: f64) -> Self {
-        Self { whole: Some(nanoseconds), ..Self::default() }
-    }
-}
-
-impl StageTimes {
-    /// Divides all times by the number of bones.
-    pub(crate) fn a_bone(&self, bones: usize) -> Self {
-        let each = |time: Option<f64>| time.map(|time| time / bones as f64);
-        Self {
-            gate: each(self.gate),
-            sample: each(self.sample),
-            local_to_model: each(self.local_to_model),
-            total: self.total / bones as f64,
-        }
-    }
 }

@@ -6,12 +6,10 @@ use relievo::Error;
 use relievo::gpu::Gpu;
 use serde::Serialize;
 
-use crate::harness::TimedBy;
 use crate::measure::animation::steps;
 use crate::measure::drawing::{Drawing, DrawnModel, FrameCost, Parts, check_frames};
-use crate::measure::gates::GateMode;
 use crate::measure::levels::LevelReport;
-use crate::measure::options::{DrawnOptions, Layout, LodOptions, MeshDetail, SkinningDetail, Subject};
+use crate::measure::options::{Detail, DrawnOptions, LodOptions, Subject};
 use crate::measure::progress::Listener;
 use crate::measure::setting::Setting;
 use crate::measure::stage::Stage;
@@ -19,37 +17,17 @@ use crate::measure::stage::Stage;
 /// What level of detail saves of whole frames, by distance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SceneReport {
-    /// The device's adapter.
-    pub adapter: String,
-    /// The device's driver.
-    pub driver: String,
-    /// The clock that took the times.
-    pub timed_by: TimedBy,
-    /// The model's name.
-    pub model: String,
-    /// The clip's name.
-    pub clip: String,
-    /// The gate.
-    pub gate: GateMode,
-    /// The influences that vertices follow.
-    pub skinning: SkinningDetail,
-    /// The triangles that meshes have.
-    pub mesh: MeshDetail,
-    /// The levels of detail of the character, itself included.
-    pub levels: Vec<LevelReport>,
-    /// Number of instances.
-    pub instances: usize,
-    /// How the instances are placed.
-    pub layout: Layout,
-    /// The seed of the instances' random positions and start times.
-    pub seed: u32,
-    /// Number of bones of an instance.
-    pub bones: usize,
-    /// Number of vertices of an instance.
-    pub vertices: usize,
-    /// The units, the camera and the frames of the measurement.
+    /// What was measured.
     #[serde(flatten)]
     pub setting: Setting,
+    /// The influences that vertices follow.
+    pub skinning: Detail,
+    /// The triangles that meshes have.
+    pub mesh: Detail,
+    /// The levels of detail of the character, itself included.
+    pub levels: Vec<LevelReport>,
+    /// Number of vertices of an instance.
+    pub vertices: usize,
     /// The measurements, one row per distance.
     pub distances: Vec<SceneRow>,
 }
@@ -131,8 +109,8 @@ impl SceneRow {
 /// does not move.
 ///
 /// # Errors
-/// [`InputError`](relievo::InputError) for options out of their ranges, a gate that is neither [`GateMode::Off`] nor
-/// [`GateMode::Bounded`], fewer than 4 frames, a clip that the model lacks or that lasts more than an hour, and a model
+/// [`InputError`](relievo::InputError) for options out of their ranges, a gate that is neither [`GateMode::Off`](crate::measure::GateMode::Off) nor
+/// [`GateMode::Bounded`](crate::measure::GateMode::Bounded), fewer than 4 frames, a clip that the model lacks or that lasts more than an hour, and a model
 /// without meshes; errors of the device.
 pub fn scene(
     gpu: &Gpu,
@@ -156,7 +134,15 @@ pub fn scene(
         pictures.push(drawing.picture(ways.len() - 1)?);
         rows.push(SceneRow::new(&stage, *distance, &costs));
     }
-    Ok((report(gpu, &stage, (options, drawn), model.levels, rows)?, pictures))
+    let report = SceneReport {
+        setting: Setting::new(Some(gpu), Drawing::timed_by(gpu)?, &stage, options),
+        skinning: drawn.skinning,
+        mesh: drawn.mesh,
+        levels: model.levels,
+        vertices: subject.model.meshes.iter().map(|mesh| mesh.positions.len()).sum(),
+        distances: rows,
+    };
+    Ok((report, pictures))
 }
 
 /// The ways to draw in the order of [`SceneRow::NAMES`].
@@ -168,35 +154,8 @@ fn ways(all: &Parts, drawn: &DrawnOptions) -> Vec<Parts> {
         Parts { influences, ..Parts::NONE },
         Parts { mesh: 0.0, ..*all },
     ];
-    if drawn.mesh != MeshDetail::Full {
+    if drawn.mesh != Detail::Full {
         ways.push(*all);
     }
     ways
-}
-
-fn report(
-    gpu: &Gpu,
-    stage: &Stage<'_>,
-    (options, drawn): (&LodOptions, &DrawnOptions),
-    levels: Vec<LevelReport>,
-    distances: Vec<SceneRow>,
-) -> Result<SceneReport, Error> {
-    Ok(SceneReport {
-        adapter: gpu.adapter().name.clone(),
-        driver: gpu.adapter().driver.clone(),
-        timed_by: Drawing::timed_by(gpu)?,
-        model: stage.subject.name.to_owned(),
-        clip: stage.clip.name().to_owned(),
-        gate: options.gate,
-        skinning: drawn.skinning,
-        mesh: drawn.mesh,
-        levels,
-        instances: options.crowd.instances,
-        layout: options.crowd.layout,
-        seed: options.crowd.seed,
-        bones: stage.set.bones(),
-        vertices: stage.subject.model.meshes.iter().map(|mesh| mesh.positions.len()).sum(),
-        setting: Setting::new(stage),
-        distances,
-    })
 }

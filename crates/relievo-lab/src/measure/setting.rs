@@ -1,12 +1,35 @@
-//! The part of the reports over distances that describes units, camera and frames.
+//! The part of the reports over distances that says what was measured.
 
+use relievo::gpu::Gpu;
 use serde::Serialize;
 
+use crate::measure::gates::GateMode;
+use crate::measure::options::{Layout, LodOptions};
 use crate::measure::stage::Stage;
 
-/// The units, the camera and the frames of a measurement.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// What was measured, and how.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setting {
+    /// The device's adapter; `None` on the CPU.
+    pub adapter: Option<String>,
+    /// The device's driver; `None` on the CPU.
+    pub driver: Option<String>,
+    /// The clock that took the times.
+    pub timed_by: TimedBy,
+    /// The model's name.
+    pub model: String,
+    /// The clip's name.
+    pub clip: String,
+    /// The gate.
+    pub gate: GateMode,
+    /// Number of instances.
+    pub instances: usize,
+    /// How the instances are placed.
+    pub layout: Layout,
+    /// The seed of the instances' random positions and start times.
+    pub seed: u32,
+    /// Number of bones of an instance.
+    pub bones: usize,
     /// Number of units in the model's largest extent.
     pub size: f32,
     /// Length of a unit in metres of the model.
@@ -24,15 +47,25 @@ pub struct Setting {
 }
 
 impl Setting {
-    pub(crate) fn new(stage: &Stage<'_>) -> Self {
-        let options = stage.options;
+    pub(crate) fn new(gpu: Option<&Gpu>, timed_by: TimedBy, stage: &Stage<'_>, options: &LodOptions) -> Self {
+        let (adapter, crowd) = (gpu.map(Gpu::adapter), stage.options);
         Self {
-            size: options.size,
+            adapter: adapter.map(|adapter| adapter.name.clone()),
+            driver: adapter.map(|adapter| adapter.driver.clone()),
+            timed_by,
+            model: stage.subject.name.to_owned(),
+            clip: stage.clip.name().to_owned(),
+            gate: options.gate,
+            instances: crowd.instances,
+            layout: crowd.layout,
+            seed: crowd.seed,
+            bones: stage.set.bones(),
+            size: crowd.size,
             metres_a_unit: stage.metres_a_unit,
-            spacing: options.spacing,
-            range: [options.range.min, options.range.max],
-            frames: options.frames,
-            rate: options.rate,
+            spacing: crowd.spacing,
+            range: [crowd.range.min, crowd.range.max],
+            frames: crowd.frames,
+            rate: crowd.rate,
             focal_pixels: stage.projection.focal_pixels,
         }
     }

@@ -5,10 +5,13 @@ use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::animation::lod::OMEGA_ONE;
 use relievo::animation::order::Order;
-use relievo::animation::{ClipSet, Gate, Lod, Projection, Sampling};
+use relievo::animation::priority::{Priorities, USER_DEFAULT};
+use relievo::animation::{
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Gate, Lod, PriorityTable, Projection, Sampling,
+};
 use relievo::asset::{Affine, Clip, bone_radii};
 
-use crate::measure::gates::{GateMode, Source};
+use crate::measure::gates::{GateMode, PATH, TICKS};
 use crate::measure::options::{CrowdOptions, NEAR, Subject};
 use crate::measure::placement::{Placements, chance};
 
@@ -75,10 +78,27 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// Makes a gate for the clip.
+    /// Makes a gate for the clip, with its table.
     pub(crate) fn gate(&self, mode: &GateMode) -> Result<Gate, InputError> {
-        let Self { subject, clip, order, set, watched, .. } = self;
-        Source { skeleton: &subject.model.skeleton, clip, order, set, radii: watched }.gate(mode)
+        let (skeleton, clips) = (&self.subject.model.skeleton, [self.clip]);
+        let Self { order, set, watched, .. } = self;
+        let animated_bones = || AnimatedBones::new(order, set, &clips);
+        Ok(match *mode {
+            GateMode::Off => Gate::Off(animated_bones()?),
+            GateMode::Uniform => Gate::Uniform(animated_bones()?),
+            GateMode::Random => Gate::Random(animated_bones()?),
+            GateMode::SkipPeriod { period, weights } => {
+                let user = vec![USER_DEFAULT; skeleton.len()];
+                let priorities = Priorities::new(skeleton, self.clip, true, &weights, &user)?;
+                let table = PriorityTable::new(order, set, &clips, &[priorities])?;
+                Gate::SkipPeriod { table, period: (period * f64::from(TICKS)).round() as u32 }
+            }
+            GateMode::Budget { bones } => {
+                let table = ExpectationTable::new(skeleton, set, &clips, watched, PATH)?;
+                Gate::Budget { table, bones }
+            }
+            GateMode::Bounded { .. } => Gate::Bounded(BoundTable::new(skeleton, set, &clips, watched, PATH)?),
+        })
     }
 
     /// Number of bones of all instances.

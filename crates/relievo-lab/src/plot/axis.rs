@@ -127,21 +127,12 @@ impl ValueFormatter<f64> for Axis {
 
 /// Formats a number with at most three significant digits.
 fn number(value: f64) -> String {
-    let size = value.abs();
-    if size < 1e-12 {
-        return "0".to_owned();
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        size if size < 1e-12 => "0".to_owned(),
+        size if (1e-3..1e5).contains(&size) => rounded.to_string(),
+        _ => format!("{rounded:e}"),
     }
-    let text = if (1e-3..1e5).contains(&size) {
-        let decimals = (2 - size.log10().floor() as i32).max(0) as usize;
-        let text = format!("{value:.decimals$}");
-        return match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
-        };
-    } else {
-        format!("{value:.1e}")
-    };
-    text.replace(".0e", "e")
 }
 
 /// The least of 1, 2, 5, 10, 20, … that is not below `step`.

@@ -1,10 +1,11 @@
 //! Pictures side by side, each above its caption.
 
-use image::{Rgb, RgbImage, RgbaImage};
+use image::{DynamicImage, Rgb, RgbImage, RgbaImage};
 use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use relievo::InputError;
 
-use crate::plot::letters::{Align, Letters};
+use crate::plot::letters::{register, style};
 
 /// The size of the letters, and the distance of lines, in pixels.
 const TEXT: f64 = 15.0;
@@ -25,7 +26,7 @@ pub fn strip(
     pictures: &[RgbaImage],
     captions: &[Vec<String>],
     columns: usize,
-) -> Result<RgbImage, InputError> {
+) -> Result<RgbaImage, InputError> {
     let Some(first) = pictures.first().filter(|_| columns > 0) else {
         let (path, value) = if columns == 0 { ("columns", columns) } else { ("pictures.len", 0) };
         return Err(InputError::new(path, value, "must be at least 1"));
@@ -53,38 +54,33 @@ pub fn strip(
     let mut all = RgbImage::from_pixel(width, height, Rgb([255; 3]));
     for (at, picture) in pictures.iter().enumerate() {
         let [left, top] = corner(at);
-        for (x, y, texel) in picture.enumerate_pixels() {
-            let [r, g, b, _] = texel.0;
-            all.put_pixel(left + x, top + y, Rgb([r, g, b]));
-        }
+        let rgb = DynamicImage::ImageRgba8(picture.clone()).into_rgb8();
+        image::imageops::replace(&mut all, &rgb, left.into(), top.into());
     }
-    let middle = |at: usize| {
+    let places = (0..pictures.len()).map(|at| {
         let [left, top] = corner(at);
         ((left + first.width() / 2) as i32, (top + first.height()) as i32 + LINE)
-    };
-    write(&mut all, captions, middle)
-        .map_err(|reason| InputError::new("captions", captions.len(), reason))?;
-    Ok(all)
+    });
+    write(&mut all, captions.iter().zip(places))
+        .map_err(|reason| InputError::new("captions", captions.len(), reason.to_string()))?;
+    Ok(DynamicImage::ImageRgb8(all).into_rgba8())
 }
 
-/// Writes captions centered below the given positions.
-fn write(
+/// Writes lines of text, each of which is centered at its place or below.
+fn write<'a>(
     all: &mut RgbImage,
-    captions: &[Vec<String>],
-    middle: impl Fn(usize) -> (i32, i32),
-) -> Result<(), String> {
-    let (size, letters) = (all.dimensions(), Letters::new());
+    captions: impl Iterator<Item = (&'a Vec<String>, (i32, i32))>,
+) -> Result<(), Box<dyn std::error::Error>> {
+    register();
+    let size = all.dimensions();
     let area = BitMapBackend::with_buffer(all, size).into_drawing_area();
-    for (at, lines) in captions.iter().enumerate() {
+    let style = style(TEXT, HPos::Center, RGBColor(40, 40, 40));
+    for (lines, (x, y)) in captions {
         for (line, text) in (0..).zip(lines) {
-            let (x, y) = middle(at);
-            let position = (x, y + line * LINE);
-            let written =
-                letters.write(&area, text, position, (TEXT, Align::Center, false), RGBColor(40, 40, 40));
-            written.map_err(|error| error.to_string())?;
+            area.draw(&Text::new(text.as_str(), (x, y + line * LINE), style.clone()))?;
         }
     }
-    area.present().map_err(|error| error.to_string())
+    Ok(area.present()?)
 }
 
 #[cfg(test)]

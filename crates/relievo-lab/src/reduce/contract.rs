@@ -9,7 +9,7 @@ use plan::Plan;
 use relievo::mesh::simplify::{Stopped, Surface};
 
 use crate::reduce::Reduced;
-use crate::reduce::mesh::{Corner, Mesh, normal};
+use crate::reduce::mesh::{Corner, Mesh, normal, unique};
 use crate::reduce::plane_quadric::PlaneQuadric;
 use crate::reduce::steps::{Solid, Steps};
 
@@ -81,11 +81,8 @@ impl Contraction {
 
     /// The points with which a point makes a pair, ascending.
     fn others(&self, point: u32) -> Vec<u32> {
-        let mut others = self.solid.mesh.neighbors(point);
-        others.extend(&self.partners[point as usize]);
-        others.sort_unstable();
-        others.dedup();
-        others
+        let neighbors = self.solid.mesh.neighbors(point);
+        unique(neighbors.into_iter().chain(self.partners[point as usize].iter().copied()))
     }
 
     /// Puts a pair into the queue, or among the refused ones.
@@ -242,14 +239,9 @@ impl Steps for Contraction {
             self.push([plan.keep, other]);
         }
         // What was refused may be legal now.
-        let mut changed = self.solid.mesh.neighbors(plan.keep);
-        changed.extend(around);
-        changed.sort_unstable();
-        changed.dedup();
+        let changed = unique(self.solid.mesh.neighbors(plan.keep).into_iter().chain(around));
         for point in changed.into_iter().filter(|point| ![plan.keep, plan.gone].contains(point)) {
-            let mut others = std::mem::take(&mut self.refused[point as usize]);
-            others.sort_unstable();
-            others.dedup();
+            let others = unique(std::mem::take(&mut self.refused[point as usize]));
             let known = self.others(point);
             for other in others.into_iter().filter(|other| *other != plan.keep && known.contains(other)) {
                 self.push([point, other]);

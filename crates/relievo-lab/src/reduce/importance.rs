@@ -2,11 +2,9 @@
 //! with floating cells (Low and Tan, "Model Simplification Using Vertex-Clustering", I3D 1997): cells are balls around the
 //! points of the highest grades.
 
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
-
 use glam::DVec3;
 use relievo::mesh::simplify::{Stopped, Surface, weld};
+use rustc_hash::FxHashMap;
 
 use crate::reduce::mesh::Mesh;
 use crate::reduce::{Limits, Reduced};
@@ -17,27 +15,8 @@ const STEPS: usize = 20;
 /// The number of edges of a point that its grade compares with each other; of more, every second, third, … one.
 const MAX_EDGES: usize = 64;
 
-/// The centers in each cell of a grid.
-type Grid = HashMap<[i64; 3], Vec<u32>, BuildHasherDefault<CellHasher>>;
-
-/// A hash of three coordinates that takes a product for each of them: most of the time goes into looking up cells.
-#[derive(Default)]
-struct CellHasher(u64);
-
-impl Hasher for CellHasher {
-    fn finish(&self) -> u64 {
-        self.0 ^ (self.0 >> 29)
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        for part in bytes.chunks(8) {
-            let mut word = [0; 8];
-            word[..part.len()].copy_from_slice(part);
-            let mixed = self.0.rotate_left(21) ^ u64::from_le_bytes(word);
-            self.0 = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        }
-    }
-}
+/// The points in each cell of a grid of cubes. Most of the time goes into looking up cells.
+pub(super) type Grid = FxHashMap<[i64; 3], Vec<u32>>;
 
 /// The mesh, and its points from the highest grade to the lowest.
 pub(super) struct Graded<'a> {
@@ -166,8 +145,8 @@ impl<'a> Graded<'a> {
     }
 }
 
-/// The centers in a cell of a grid and in those around it.
-fn around(grid: &Grid, [x, y, z]: [i64; 3]) -> impl Iterator<Item = u32> {
+/// The points in a cell of a grid and in those around it.
+pub(super) fn around(grid: &Grid, [x, y, z]: [i64; 3]) -> impl Iterator<Item = u32> {
     let cells = (0..27).map(move |at| {
         [x.saturating_add(at % 3 - 1), y.saturating_add(at / 3 % 3 - 1), z.saturating_add(at / 9 - 1)]
     });

@@ -132,19 +132,12 @@ impl Mesh {
 
     /// The points that share an edge with a point, ascending.
     pub(super) fn neighbors(&self, point: u32) -> Vec<u32> {
-        let mut found: Vec<u32> =
-            self.ring(point).flat_map(|ring| [ring.next.point, ring.last.point]).collect();
-        found.sort_unstable();
-        found.dedup();
-        found
+        unique(self.ring(point).flat_map(|ring| [ring.next.point, ring.last.point]))
     }
 
     /// The wedges of a point that triangles use, ascending.
     pub(super) fn wedges(&self, point: u32) -> Vec<u32> {
-        let mut found: Vec<u32> = self.ring(point).map(|ring| ring.vertex).collect();
-        found.sort_unstable();
-        found.dedup();
-        found
+        unique(self.ring(point).map(|ring| ring.vertex))
     }
 
     /// The triangles around a point in order. `None` if it has none, or if it is not manifold: three triangles meet at one of
@@ -189,6 +182,14 @@ impl Mesh {
         let is_filled = self.ring(a).any(is_across) && self.ring(b).any(is_across);
         !is_alone && !is_filled
     }
+}
+
+/// Each value once, ascending.
+pub(super) fn unique<T: Ord>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut all: Vec<T> = values.into_iter().collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// The squared sine of the angle between two edges up to which a triangle counts as having no area. Coordinates are rounded to

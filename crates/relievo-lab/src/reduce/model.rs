@@ -13,6 +13,7 @@ use relievo::skinning::attribute_weights::{NORMAL, TextureArea, shown_uv};
 
 use crate::distance;
 use crate::distance::{Distance, Triangles};
+use crate::reduce::mesh::unique;
 use crate::reduce::{Limits, Reduced, Reducer};
 
 /// What normals of a reduced model are.
@@ -286,9 +287,7 @@ impl<'a> Input<'a> {
 
     /// A mesh of `corners`, three a triangle, with a vertex for all that are equal.
     fn mesh(&self, mesh: &Mesh, corners: &[Corner], reduced: &Reduced) -> Result<Mesh, InputError> {
-        let mut used: Vec<Corner> = corners.to_vec();
-        used.sort_unstable();
-        used.dedup();
+        let used = unique(corners.iter().copied());
         let slots: HashMap<Corner, u32> = used.iter().copied().zip(0..).collect();
         let indices: Vec<u32> = corners.iter().map(|corner| slots[corner]).collect();
         let positions: Vec<[f32; 3]> =

@@ -7,52 +7,50 @@ use crate::verify::Report;
 impl Report {
     /// As text: a line a kernel and kind of comparison, what is left out, and every fault.
     pub fn summary(&self) -> String {
-        summary(self)
-    }
-}
-
-fn summary(report: &Report) -> String {
-    let mut groups: Vec<(&str, &str, Vec<&CaseResult>)> = Vec::new();
-    for case in &report.cases {
-        let unit = case.comparison.unit;
-        match groups.iter_mut().find(|(stem, group, _)| *stem == case.stem && *group == unit) {
-            Some((_, _, cases)) => cases.push(case),
-            None => groups.push((case.stem, unit, vec![case])),
+        let mut groups: Vec<(&str, &str, Vec<&CaseResult>)> = Vec::new();
+        for case in &self.cases {
+            let unit = case.comparison.unit;
+            match groups.iter_mut().find(|(stem, group, _)| *stem == case.stem && *group == unit) {
+                Some((_, _, cases)) => cases.push(case),
+                None => groups.push((case.stem, unit, vec![case])),
+            }
         }
-    }
-    let mut text =
-        format!("{:<18} {:>6} {:>12} {:>11} {:>11}  {}\n", "kernel", "cases", "values", "error", "bound", "");
-    for (stem, unit, cases) in &groups {
-        let values: usize = cases.iter().map(|case| case.comparison.values).sum();
-        let error = cases.iter().map(|case| case.comparison.error).fold(0.0, f64::max);
-        let bound = cases.iter().map(|case| case.comparison.bound).fold(0.0, f64::max);
-        let holds = if cases.iter().all(|case| case.comparison.holds) { "holds" } else { "FAILS" };
-        text += &format!(
-            "{stem:<18} {:>6} {values:>12} {:>11} {:>11}  {unit}: {holds}\n",
-            cases.len(),
-            number(error),
-            number(bound)
+        let mut text = format!(
+            "{:<18} {:>6} {:>12} {:>11} {:>11}  {}\n",
+            "kernel", "cases", "values", "error", "bound", ""
         );
-        text += &spread(cases);
+        for (stem, unit, cases) in &groups {
+            let values: usize = cases.iter().map(|case| case.comparison.values).sum();
+            let error = cases.iter().map(|case| case.comparison.error).fold(0.0, f64::max);
+            let bound = cases.iter().map(|case| case.comparison.bound).fold(0.0, f64::max);
+            let holds = if cases.iter().all(|case| case.comparison.holds) { "holds" } else { "FAILS" };
+            text += &format!(
+                "{stem:<18} {:>6} {values:>12} {:>11} {:>11}  {unit}: {holds}\n",
+                cases.len(),
+                number(error),
+                number(bound)
+            );
+            text += &spread(cases);
+        }
+        text += &left_out(self);
+        for case in self.cases.iter().filter(|case| !case.comparison.holds) {
+            text += &format!(
+                "FAILS {} {}: {}\n",
+                case.stem,
+                case.case,
+                case.comparison.fault.as_deref().unwrap_or("")
+            );
+        }
+        let failed = self.cases.iter().filter(|case| !case.comparison.holds).count();
+        text += &match failed {
+            0 => format!("all {} cases hold\n", self.cases.len()),
+            _ => format!(
+                "{failed} of {} cases fail: do not trust this driver with these kernels\n",
+                self.cases.len()
+            ),
+        };
+        text
     }
-    text += &left_out(report);
-    for case in report.cases.iter().filter(|case| !case.comparison.holds) {
-        text += &format!(
-            "FAILS {} {}: {}\n",
-            case.stem,
-            case.case,
-            case.comparison.fault.as_deref().unwrap_or("")
-        );
-    }
-    let failed = report.cases.iter().filter(|case| !case.comparison.holds).count();
-    text += &match failed {
-        0 => format!("all {} cases hold\n", report.cases.len()),
-        _ => format!(
-            "{failed} of {} cases fail: do not trust this driver with these kernels\n",
-            report.cases.len()
-        ),
-    };
-    text
 }
 
 /// A line on the errors of values that have a bound each.

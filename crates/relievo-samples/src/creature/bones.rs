@@ -16,10 +16,6 @@ impl Side {
     pub fn sign(self) -> f64 {
         if self == Self::Left { 1.0 } else { -1.0 }
     }
-
-    fn name(self) -> &'static str {
-        if self == Self::Left { "left" } else { "right" }
-    }
 }
 
 /// The role of a bone; numbers count away from the trunk.
@@ -54,36 +50,20 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// The variant and its fields in snake case, such as `finger_left_0_1`.
     pub fn name(self) -> String {
-        let sided = |name: &str, side: Side| format!("{name}_{}", side.name());
-        match self {
-            Self::Root => "root".to_owned(),
-            Self::Pelvis => "pelvis".to_owned(),
-            Self::Head => "head".to_owned(),
-            Self::Jaw => "jaw".to_owned(),
-            Self::Spine(at) => format!("spine_{at}"),
-            Self::Crest(at) => format!("crest_{at}"),
-            Self::Belly(at) => format!("belly_{at}"),
-            Self::Neck(at) => format!("neck_{at}"),
-            Self::Tongue(at) => format!("tongue_{at}"),
-            Self::Tail(at) => format!("tail_{at}"),
-            Self::Eye(side) => sided("eye", side),
-            Self::Ear(side, at) => format!("{}_{at}", sided("ear", side)),
-            Self::Feeler(side, at) => format!("{}_{at}", sided("feeler", side)),
-            Self::Clavicle(side) => sided("clavicle", side),
-            Self::UpperArm(side) => sided("upper_arm", side),
-            Self::UpperArmTwist(side) => sided("upper_arm_twist", side),
-            Self::Forearm(side) => sided("forearm", side),
-            Self::ForearmTwist(side) => sided("forearm_twist", side),
-            Self::Hand(side) => sided("hand", side),
-            Self::Finger(side, digit, at) => format!("{}_{digit}_{at}", sided("finger", side)),
-            Self::Thigh(side) => sided("thigh", side),
-            Self::ThighTwist(side) => sided("thigh_twist", side),
-            Self::Shin(side) => sided("shin", side),
-            Self::ShinTwist(side) => sided("shin_twist", side),
-            Self::Foot(side) => sided("foot", side),
-            Self::Toe(side, digit, at) => format!("{}_{digit}_{at}", sided("toe", side)),
+        let mut name = String::new();
+        for letter in format!("{self:?}").chars() {
+            match letter {
+                'A'..='Z' if !name.is_empty() && !name.ends_with('_') => {
+                    name.extend(['_', letter.to_ascii_lowercase()]);
+                }
+                '(' | ',' => name.push('_'),
+                ')' | ' ' => {}
+                _ => name.push(letter.to_ascii_lowercase()),
+            }
         }
+        name
     }
 }
 

@@ -7,7 +7,7 @@
 //! fewer than three tracks, and some have none.
 
 use bones::{Part, parts};
-use motion::Action;
+use motion::CLIPS;
 use relievo::InputError;
 use relievo::asset::clip::Clip;
 use relievo::asset::model::Model;
@@ -34,9 +34,9 @@ pub fn creature() -> Result<Model, InputError> {
         bones: (0..skeleton.len() as u32).collect(),
         inverse_binds: models.iter().map(|model| model.inverse().to_cols_array().map(|x| x as f32)).collect(),
     };
-    let clips = [Action::Walk, Action::Idle, Action::Wave].map(|action| {
-        let keys: Vec<_> = parts.iter().map(|part| motion::keys(action, part)).collect();
-        Clip::new(action.name(), &skeleton, &keys, 0.0)
+    let clips = CLIPS.map(|(name, duration, motion)| {
+        let keys: Vec<_> = parts.iter().map(|part| motion(part.kind).keys(duration, part)).collect();
+        Clip::new(name, &skeleton, &keys, 0.0)
     });
     Ok(Model {
         skeleton,

@@ -6,32 +6,9 @@ use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 
 use super::bones::{Kind, Part, Side, turn};
 
-/// A clip of the creature.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Action {
-    Walk,
-    Idle,
-    Wave,
-}
-
-impl Action {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Walk => "walk",
-            Self::Idle => "idle",
-            Self::Wave => "wave",
-        }
-    }
-
-    /// Duration in seconds.
-    fn duration(self) -> f64 {
-        match self {
-            Self::Walk => 1.0,
-            Self::Idle => 4.0,
-            Self::Wave => 2.0,
-        }
-    }
-}
+/// The clips of the creature: their names, their durations in seconds, and how each bone moves.
+pub const CLIPS: [(&str, f64, fn(Kind) -> Motion); 3] =
+    [("walk", 1.0, walk), ("idle", 4.0, idle), ("wave", 2.0, greet)];
 
 /// A sine `offset + amplitude · sin(2π(cycles·t + phase))` along or about an axis, with t from 0 to 1 over the
 /// clip.
@@ -67,52 +44,49 @@ fn wave(axis: [f64; 3], amplitude: f64, phase: f64) -> Wave {
     Wave { axis, offset: 0.0, amplitude, cycles: 1.0, phase }
 }
 
-/// The motion of one bone in a clip: waves, each with the number of segments between keys.
+/// Waves, and the number of segments between keys; 0 without a track.
+type Waves = (usize, Vec<Wave>);
+
+/// The motion of one bone in a clip.
 #[derive(Default)]
-struct Motion {
-    turns: Vec<Wave>,
-    turn_keys: usize,
-    moves: Vec<Wave>,
-    move_keys: usize,
-    swells: Vec<Wave>,
-    swell_keys: usize,
+pub struct Motion {
+    turns: Waves,
+    moves: Waves,
+    swells: Waves,
     blinks: bool,
 }
 
 impl Motion {
     fn turning(keys: usize, turns: impl Into<Vec<Wave>>) -> Self {
-        Self { turns: turns.into(), turn_keys: keys, ..Self::default() }
+        Self { turns: (keys, turns.into()), ..Self::default() }
     }
 
     fn moving(self, keys: usize, moves: impl Into<Vec<Wave>>) -> Self {
-        Self { moves: moves.into(), move_keys: keys, ..self }
+        Self { moves: (keys, moves.into()), ..self }
     }
 
     /// Swelling is smooth, so it uses splines.
     fn swelling(self, keys: usize, swells: impl Into<Vec<Wave>>) -> Self {
-        Self { swells: swells.into(), swell_keys: keys, ..self }
+        Self { swells: (keys, swells.into()), ..self }
     }
-}
 
-/// The tracks of a bone in a clip.
-pub fn keys(action: Action, part: &Part) -> BoneKeys {
-    let motion = match action {
-        Action::Walk => walk(part.kind),
-        Action::Idle => idle(part.kind),
-        Action::Wave => greet(part.kind),
-    };
-    let duration = action.duration();
-    let [translation, scale] = [part.rest.translation, part.rest.scale].map(|rest| rest.map(f64::from));
-    BoneKeys {
-        translation: (motion.move_keys > 0)
-            .then(|| line(duration, motion.move_keys, |t| along(translation, &motion.moves, t))),
-        rotation: (motion.turn_keys > 0)
-            .then(|| line(duration, motion.turn_keys, |t| turned(part.rest.rotation, &motion.turns, t))),
-        scale: match motion.blinks {
-            true => Some(blink(duration)),
-            false => (motion.swell_keys > 0)
-                .then(|| spline(duration, motion.swell_keys, |t| along(scale, &motion.swells, t))),
-        },
+    /// The tracks of a bone in a clip of `duration` seconds.
+    pub fn keys(&self, duration: f64, part: &Part) -> BoneKeys {
+        let [translation, scale] = [part.rest.translation, part.rest.scale].map(|rest| rest.map(f64::from));
+        let Self {
+            turns: (turned_by, turns),
+            moves: (moved_by, moves),
+            swells: (swelled_by, swells),
+            blinks,
+        } = self;
+        let swelling =
+            || (*swelled_by > 0).then(|| spline(duration, *swelled_by, |t| along(scale, swells, t)));
+        BoneKeys {
+            translation: (*moved_by > 0).then(|| line(duration, *moved_by, |t| along(translation, moves, t))),
+            rotation: (*turned_by > 0)
+                .then(|| line(duration, *turned_by, |t| turned(part.rest.rotation, turns, t))),
+            scale: if *blinks { Some(blink(duration)) } else { swelling() },
+        }
     }
 }
 

@@ -23,14 +23,14 @@ use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Scene, View};
 use relievo::{Error, InputError, skinning};
 use serde::Serialize;
 use surface::{Primitive, Sample, Surface, Watched};
-use tree::Tree;
+
+use crate::distance::tree::Tree;
 
 mod eye;
 mod surface;
-mod tree;
 
 /// How far the instances of a frame are drawn from their places, in one view.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Displacement {
     /// The number of pixels that the view permits.
     pub pixels: f32,
@@ -70,10 +70,7 @@ type FoundInMeshes = Vec<(usize, Found)>;
 /// What was found in some samples.
 #[derive(Default)]
 struct Found {
-    largest: f64,
-    largest_in_world: f64,
-    samples: u64,
-    left_out: u64,
+    all: Displacement,
     /// The offsets of vertices.
     offsets: Vec<(u32, DVec2)>,
 }
@@ -130,7 +127,7 @@ impl DisplacementMeter {
             return Err(InputError::new("view.camera", "none", "must be set").into());
         };
         let eye = Eye::new(camera)?;
-        let mut frame = Displacement::none(view.quality().pixels);
+        let mut frame = Displacement { pixels: view.quality().pixels, ..Displacement::default() };
         let mut offsets = HashMap::new();
         for watched in &mut self.watched {
             let all = scene.drawn_instances(view, watched.object)?;
@@ -143,7 +140,7 @@ impl DisplacementMeter {
             }
             for (instance, found) in found_of(scene, watched, &measured, (camera, &eye))? {
                 for (mesh, found) in found {
-                    frame.add(&found, instance.drawn.is_some());
+                    frame = frame.and(found.all);
                     let vertex = |(vertex, offset)| ((instance.instance, mesh, vertex), offset);
                     offsets.extend(found.offsets.into_iter().map(vertex));
                 }
@@ -157,27 +154,6 @@ impl DisplacementMeter {
 }
 
 impl Displacement {
-    pub(super) fn none(pixels: f32) -> Self {
-        Self {
-            pixels,
-            largest: 0.0,
-            largest_in_world: 0.0,
-            jump: 0.0,
-            samples: 0,
-            left_out: 0,
-            missing: 0,
-            levels: [0; OBJECT_LEVELS as usize],
-        }
-    }
-
-    fn add(&mut self, found: &Found, is_drawn: bool) {
-        self.largest = self.largest.max(found.largest);
-        self.largest_in_world = self.largest_in_world.max(found.largest_in_world);
-        self.samples += found.samples;
-        self.left_out += found.left_out;
-        self.missing += if is_drawn { 0 } else { found.samples };
-    }
-
     /// The same figures for both of two frames: the largest displacements, and sums of samples and instances.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
@@ -271,16 +247,17 @@ impl<'a> Side<'a> {
             }
             _ => {
                 let same = self.surface.has(sample).then(|| sample.position(self.points));
-                self.tree.as_ref().map(|tree| tree.nearest(point, same))
+                self.tree.as_ref().map(|tree| tree.nearest_point(point, same))
             }
         }
     }
 }
 
-/// Counts the samples inside the view volume.
+/// Counts the samples inside the view volume, none of which is drawn.
 fn inside(side: &Side<'_>) -> Found {
     let samples = side.surface.samples.iter().filter(|sample| side.seen(sample).is_some()).count() as u64;
-    Found { samples, ..Found::default() }
+    let all = Displacement { samples, missing: samples, ..Displacement::default() };
+    Found { all, offsets: Vec::new() }
 }
 
 /// Compares the samples of one surface with their partners on the other. A sample without any counts as infinitely far.
@@ -289,15 +266,15 @@ fn compared(eye: &Eye, from: &Side<'_>, to: &Side<'_>) -> Found {
         let Some((point, clip)) = from.seen(sample) else { return found };
         let partner = to.partner(sample, point);
         let off = partner.map_or(f64::INFINITY, |partner| partner.distance(point));
-        found.samples += 1;
+        found.all.samples += 1;
         if off.is_finite() && eye.is_too_near(point, off) {
-            found.left_out += 1;
+            found.all.left_out += 1;
             return found;
         }
         let offset = partner
             .map_or(DVec2::INFINITY, |partner| eye.pixel(*to.clip * partner.extend(1.0)) - eye.pixel(clip));
-        found.largest = found.largest.max(offset.length());
-        found.largest_in_world = found.largest_in_world.max(off);
+        found.all.largest = found.all.largest.max(offset.length());
+        found.all.largest_in_world = found.all.largest_in_world.max(off);
         if let Sample::Vertex(vertex) = sample {
             found.offsets.push((*vertex, offset));
         }
@@ -309,17 +286,13 @@ fn compared(eye: &Eye, from: &Side<'_>, to: &Side<'_>) -> Found {
 
 impl Found {
     fn and(mut self, mut other: Self) -> Self {
-        self.largest = self.largest.max(other.largest);
-        self.largest_in_world = self.largest_in_world.max(other.largest_in_world);
-        self.samples += other.samples;
-        self.left_out += other.left_out;
         self.offsets.append(&mut other.offsets);
-        self
+        Self { all: self.all.and(other.all), ..self }
     }
 }
 
 /// The transform from the model's space to the corner of a cell.
-fn placed(placement: &Placement, cell: [i32; 3]) -> DMat4 {
+pub(super) fn placed(placement: &Placement, cell: [i32; 3]) -> DMat4 {
     let cells = |axis: usize| f64::from(placement.cell[axis]) - f64::from(cell[axis]);
     let corner = DVec3::from([0, 1, 2].map(cells)) * f64::from(Placement::CELL);
     let [x, y, z, w] = placement.turn.to_array().map(f64::from);
@@ -328,7 +301,8 @@ fn placed(placement: &Placement, cell: [i32; 3]) -> DMat4 {
     DMat4::from_scale_rotation_translation(placement.scale.as_dvec3(), turn, at)
 }
 
-fn matrix(rows: &Affine) -> DMat4 {
+/// A matrix of three rows.
+pub(super) fn matrix(rows: &Affine) -> DMat4 {
     let [x, y, z] = rows.map(|row| DVec4::from(row.map(f64::from)));
     DMat4::from_cols(x, y, z, DVec4::W).transpose()
 }

@@ -16,7 +16,7 @@ use relievo::skinning::skin::reference::skin;
 use relievo::skinning::{Blend, InstanceLod, Vertex};
 use relievo::{Error, InputError, animation};
 
-use crate::measure::displacement::tree::Tree;
+use crate::distance::tree::Tree;
 
 /// An object of a scene, and the model from which it was made.
 pub(super) struct Watched {
@@ -204,7 +204,7 @@ impl Surface {
     /// The triangles between points.
     pub fn tree(&self, points: &[DVec3]) -> Option<Tree> {
         let corners = self.triangles.iter().map(|corners| corners.map(|vertex| points[vertex as usize]));
-        (!self.triangles.is_empty()).then(|| Tree::new(corners.collect()))
+        (!self.triangles.is_empty()).then(|| Tree::new(&corners.collect::<Vec<_>>()))
     }
 }
 

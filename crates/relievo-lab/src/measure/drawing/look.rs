@@ -46,7 +46,7 @@ struct Counted {
     triangles: u64,
     /// Of the last frame.
     levels: [DrawnLevel; OBJECT_LEVELS as usize],
-    displacement: Option<Displacement>,
+    displacement: Displacement,
 }
 
 impl Look {
@@ -112,8 +112,7 @@ impl Look {
         if begins {
             self.meter.forget_last();
         }
-        let found = self.meter.measure(&self.scene, &self.view)?;
-        counted.displacement = Some(counted.displacement.map_or(found, |all| all.and(found)));
+        counted.displacement = counted.displacement.and(self.meter.measure(&self.scene, &self.view)?);
         Ok(())
     }
 
@@ -134,7 +133,7 @@ impl Look {
             skinned_fraction: fraction(clusters, drawn.clusters),
             triangle_fraction: fraction(triangles, drawn.triangles()),
             levels: *levels,
-            displacement: displacement.unwrap_or_else(|| Displacement::none(pixels)),
+            displacement: Displacement { pixels, ..*displacement },
         }
     }
 }

@@ -4,7 +4,7 @@ use relievo::InputError;
 use relievo::scene::{Quality, Shares};
 
 use crate::measure::gates::GateMode;
-use crate::measure::options::{DrawnOptions, MeshDetail, SkinningDetail};
+use crate::measure::options::DrawnOptions;
 
 /// Pixels for bones that keep an old pose, for influences that are left out, and for coarser meshes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,26 +28,14 @@ impl Parts {
                 return Err(InputError::new("gate", other.name().as_str(), bound));
             }
         };
-        let influences = match drawn.skinning {
-            SkinningDetail::Full => 0.0,
-            SkinningDetail::Bounded { pixels } => pixels,
-        };
-        let mesh = match drawn.mesh {
-            MeshDetail::Full => 0.0,
-            MeshDetail::Bounded { pixels } | MeshDetail::Geomorph { pixels } => pixels,
-        };
-        Ok(Self { bones, influences, mesh })
-    }
-
-    fn sum(&self) -> f32 {
-        self.bones + self.influences + self.mesh
+        Ok(Self { bones, influences: drawn.skinning.pixels(), mesh: drawn.mesh.pixels() })
     }
 
     /// The quality of a view, and the shares of its scene.
     pub fn quality(&self) -> (Quality, Shares) {
-        let pixels = self.sum();
-        let share = |part: f32| if pixels > 0.0 { part / pixels } else { 0.0 };
         let Self { bones, influences, mesh } = *self;
+        let pixels = bones + influences + mesh;
+        let share = |part: f32| if pixels > 0.0 { part / pixels } else { 0.0 };
         let shares = Shares { mesh: share(mesh), bones: share(bones), influences: share(influences) };
         (Quality { pixels }, shares)
     }

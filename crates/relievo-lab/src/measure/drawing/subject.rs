@@ -10,7 +10,7 @@ use relievo::skinning::clusters::Clusters;
 use relievo::skinning::{add_levels, poses_of};
 
 use crate::measure::levels::LevelReport;
-use crate::measure::options::{MeshDetail, Subject};
+use crate::measure::options::{Detail, Subject};
 use crate::measure::progress::{Listener, during};
 
 /// A model that is drawn.
@@ -26,7 +26,7 @@ pub(crate) struct DrawnModel {
 
 impl DrawnModel {
     /// Prepares a model for one of its clips; with levels of detail unless `detail` is full.
-    pub fn new(subject: Subject<'_>, detail: MeshDetail, listener: Listener<'_>) -> Result<Self, InputError> {
+    pub fn new(subject: Subject<'_>, detail: Detail, listener: Listener<'_>) -> Result<Self, InputError> {
         let clip = subject.clip()?;
         if subject.model.meshes.is_empty() {
             let bound = "must be at least 1";
@@ -37,11 +37,10 @@ impl DrawnModel {
         model.meshes.iter_mut().for_each(|mesh| of_clip(mesh, subject.clip));
         clothe(&mut model);
         let poses = poses_of(clip)?;
-        match detail {
-            MeshDetail::Full => model.meshes.iter_mut().for_each(|mesh| mesh.levels.clear()),
-            MeshDetail::Bounded { .. } | MeshDetail::Geomorph { .. } => {
-                during(listener, "simplifying", || add_levels(&mut model, &[0], poses)).map(drop)?;
-            }
+        if detail == Detail::Full {
+            model.meshes.iter_mut().for_each(|mesh| mesh.levels.clear());
+        } else {
+            during(listener, "simplifying", || add_levels(&mut model, &[0], poses))?;
         }
         let merged = moving_merged(&model)?;
         let clusters = |mesh: &Mesh| {
@@ -49,7 +48,7 @@ impl DrawnModel {
             Ok(u64::from(clusters.level(0).clusters))
         };
         let clusters = merged.model.meshes.iter().map(clusters).sum::<Result<u64, InputError>>()?;
-        let morphs = matches!(detail, MeshDetail::Geomorph { .. }) && !merged.errors.is_empty();
+        let morphs = matches!(detail, Detail::Geomorph { .. }) && !merged.errors.is_empty();
         let transition = if morphs { Transition::Geomorph } else { Transition::Hard };
         Ok(Self { clusters, levels: LevelReport::of(&merged), transition, model })
     }

@@ -1,6 +1,5 @@
 //! All reducers beside each other, with the sizes that B measures of levels on the wire (B table 5.1).
 
-use std::fmt::Write as _;
 use std::io::Write as _;
 
 use crate::distance::Options;
@@ -139,23 +138,17 @@ impl ReducerLevel {
     }
 
     fn row(&self, reducer: &str, seconds: Option<f64>) -> String {
-        let mut text = String::new();
         let [slow, fast] = self.download_seconds;
-        let kib = |bytes: usize| bytes as f64 / 1024.0;
+        let [json, gzip] = [self.json_bytes, self.gzip_bytes].map(|bytes| bytes as f64 / 1024.0);
         let seconds = seconds.map_or(String::new(), |seconds| format!("{seconds:.3}"));
-        writeln!(
-            text,
-            "| {reducer} | {} % | {} | {} | {:.4e} | {:.4e} | {:.1} | {:.1} | {slow:.4} s | {fast:.4} s | {seconds} |",
+        format!(
+            "| {reducer} | {} % | {} | {} | {:.4e} | {:.4e} | {json:.1} | {gzip:.1} | {slow:.4} s | {fast:.4} s | {seconds} |\n",
             100.0 * self.share,
             self.triangles,
             self.vertices,
             self.error_rms,
             self.error_max,
-            kib(self.json_bytes),
-            kib(self.gzip_bytes),
         )
-        .expect("a string");
-        text
     }
 }
 

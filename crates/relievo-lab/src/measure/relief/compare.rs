@@ -1,7 +1,5 @@
 //! Error and cost of every ray-height method, at several angles.
 
-use std::fmt::Write as _;
-
 use relievo::gpu::Gpu;
 use relievo::surface::{March, Measured, Method, Ray, SquareView};
 use relievo::{Error, InputError};
@@ -132,13 +130,13 @@ impl Comparison {
         text += "\nThe cheapest method for a mean error:\n\n| angle |";
         let bounds = [10.0, 1.0, 0.25, 0.05, 0.01];
         for bound in bounds {
-            write!(text, " ≤ {bound} texel |").expect("a string");
+            text += &format!(" ≤ {bound} texel |");
         }
         text += "\n|---:|---|---|---|---|---|\n";
         for angle in Self::ANGLES {
-            write!(text, "| {angle}° |").expect("a string");
+            text += &format!("| {angle}° |");
             for bound in bounds {
-                write!(text, " {} |", self.cheapest(angle, bound)).expect("a string");
+                text += &format!(" {} |", self.cheapest(angle, bound));
             }
             text.push('\n');
         }

@@ -1,10 +1,9 @@
 //! Pairs of points that no edge joins: points of different parts of a mesh that lie close to each other.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 
-use crate::reduce::mesh::Mesh;
+use crate::reduce::importance::{Grid, around};
+use crate::reduce::mesh::{Mesh, unique};
 
 /// For each point those with which it makes a pair, ascending: with each point, the nearest one of another part within a
 /// fraction of the diagonal of all places; of several the lowest. A part is what edges connect.
@@ -20,7 +19,7 @@ pub(super) fn near(mesh: &Mesh, places: &[DVec3], fraction: f32) -> Vec<Vec<u32>
     // A quarter more, so that rounding cannot put a near point two cells away. Places lie within ±1.
     let edge = (distance * 1.25).max(1e-6);
     let cell = |place: DVec3| (place / edge).floor().as_i64vec3().to_array();
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut cells = Grid::default();
     let used = || (0..places.len() as u32).filter(|point| mesh.ring(*point).next().is_some());
     for point in used() {
         cells.entry(cell(places[point as usize])).or_default().push(point);
@@ -28,7 +27,7 @@ pub(super) fn near(mesh: &Mesh, places: &[DVec3], fraction: f32) -> Vec<Vec<u32>
     for point in used() {
         let at = places[point as usize];
         let mut best = (distance * distance, u32::MAX);
-        for other in neighbors(&cells, cell(at)) {
+        for other in around(&cells, cell(at)) {
             let key = (at.distance_squared(places[other as usize]), other);
             if parts[other as usize] != parts[point as usize] && key <= best {
                 best = key;
@@ -39,17 +38,7 @@ pub(super) fn near(mesh: &Mesh, places: &[DVec3], fraction: f32) -> Vec<Vec<u32>
             partners[best.1 as usize].push(point);
         }
     }
-    for others in &mut partners {
-        others.sort_unstable();
-        others.dedup();
-    }
-    partners
-}
-
-/// The points in a cell and in those around it.
-fn neighbors(cells: &HashMap<[i64; 3], Vec<u32>>, [x, y, z]: [i64; 3]) -> impl Iterator<Item = u32> {
-    let around = (0..27).map(move |at| [x + at % 3 - 1, y + at / 3 % 3 - 1, z + at / 9 - 1]);
-    around.filter_map(|cell| cells.get(&cell)).flatten().copied()
+    partners.into_iter().map(unique).collect()
 }
 
 /// The lowest point of the part to which each point belongs.

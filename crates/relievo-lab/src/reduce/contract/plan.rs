@@ -1,6 +1,7 @@
 //! How a pair of points would be contracted: which of them stays, where it goes, and what becomes of wedges.
 
 use crate::reduce::contract::{Contraction, Pairs};
+use crate::reduce::mesh::unique;
 
 /// A contraction.
 #[derive(Debug, Clone)]
@@ -68,10 +69,7 @@ impl Contraction {
     /// The wedges of two points that belong to the same side of an edge between them, one by one.
     fn matches(&self, gone: u32, keep: u32) -> Vec<[u32; 2]> {
         let shared = self.solid.mesh.ring(gone).filter(|ring| ring.has(keep));
-        let mut met: Vec<[u32; 2]> =
-            shared.filter_map(|ring| Some([ring.vertex, ring.vertex_of(keep)?])).collect();
-        met.sort_unstable();
-        met.dedup();
+        let met = unique(shared.filter_map(|ring| Some([ring.vertex, ring.vertex_of(keep)?])));
         let is_alone = |[from, to]: &[u32; 2]| {
             met.iter().filter(|other| other[0] == *from || other[1] == *to).count() == 1
         };

@@ -9,7 +9,7 @@ use relievo::lod::select::reference::{
 use relievo::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
 use relievo::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
 use relievo::shared::lod::object::{
-    MORPH_STEPS, decision_list, decision_morph, decision_word, morph_level, morph_steps,
+    MORPH_STEPS, decision_list, decision_morph, decision_word, morph_level, morph_steps, morph_word,
 };
 use relievo::shared::lod::view::POSITION_SLACK;
 
