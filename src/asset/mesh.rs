@@ -222,14 +222,10 @@ mod tests {
             uv: vec![[0.0; 2]; 3],
             positions,
             indices: vec![0, 1, 2],
-            double_sided: false,
-            material: None,
             influences: Influences::new("w", 2, [one(0), one(0), both]).expect("valid"),
             targets: vec![MorphTarget { vertices: vec![2], deltas: vec![delta] }],
             weights: vec![-3.0],
-            weight_keys: vec![],
-            levels: vec![],
-            partners: vec![],
+            ..Mesh::default()
         };
         (mesh, vec![skin])
     }
