@@ -53,7 +53,7 @@ pub struct Relief {
     #[arg(long, value_name = "PNG")]
     height: Option<PathBuf>,
     /// A built-in map of heights and colours instead of files: bricks, cobbles, text or posts.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["height", "albedo"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["height", "albedo"], value_parser = built_in)]
     builtin: Option<BuiltInMap>,
     /// Texels along an edge of a built-in map.
     #[arg(long, value_name = "N", default_value_t = 512, conflicts_with_all = ["height", "albedo"])]
@@ -265,6 +265,10 @@ impl Relief {
 /// decoded.
 fn open(path: &Path) -> Result<RgbaImage, Error> {
     Ok(relievo::surface::map::open(path)?.into_rgba8())
+}
+
+fn built_in(name: &str) -> Result<BuiltInMap, InputError> {
+    name.parse().map_err(|error| InputError { path: "builtin".into(), ..error })
 }
 
 fn steps(text: &str) -> Result<[u32; 2], InputError> {

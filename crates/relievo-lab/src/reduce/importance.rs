@@ -2,9 +2,12 @@
 //! with floating cells (Low and Tan, "Model Simplification Using Vertex-Clustering", I3D 1997): cells are balls around the
 //! points of the highest grades.
 
+use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
+
 use glam::DVec3;
 use relievo::mesh::simplify::{Stopped, Surface, weld};
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHasher;
 
 use crate::reduce::mesh::Mesh;
 use crate::reduce::{Limits, Reduced};
@@ -16,7 +19,7 @@ const STEPS: usize = 20;
 const MAX_EDGES: usize = 64;
 
 /// The points in each cell of a grid of cubes. Most of the time goes into looking up cells.
-pub(super) type Grid = FxHashMap<[i64; 3], Vec<u32>>;
+pub(super) type Grid = HashMap<[i64; 3], Vec<u32>, BuildHasherDefault<FxHasher>>;
 
 /// The mesh, and its points from the highest grade to the lowest.
 pub(super) struct Graded<'a> {
