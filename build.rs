@@ -10,6 +10,8 @@ mod packed;
 
 #[path = "build/bindings.rs"]
 mod bindings;
+#[path = "build/entries.rs"]
+mod entries;
 #[path = "build/prefix.rs"]
 mod prefix;
 #[path = "build/sources.rs"]
@@ -29,6 +31,7 @@ mod shaders {
     use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
 
     use crate::bindings::Bindings;
+    use crate::entries::{KindText, OutputText, entries, exports};
     use crate::{modules, packed, prefix};
 
     pub fn build() {
@@ -42,7 +45,7 @@ mod shaders {
         let mut all = Vec::new();
         for (folder, prefix) in [("kernels", ""), ("wgsl/render", "render/")] {
             for file in shader_files(&root.join(folder)) {
-                if folder != "kernels" && is_module(&file) {
+                if folder != "kernels" && !is_kind(&file) {
                     continue;
                 }
                 let stem = file.strip_prefix(root.join(folder)).expect("found below it").with_extension("");
@@ -94,12 +97,49 @@ mod shaders {
         .expect("a string");
     }
 
-    /// Whether a file of WGSL has no entry point, and is there to be imported.
-    fn is_module(file: &Path) -> bool {
+    /// Whether a file of WGSL declares a kind of object, whose entry points are generated.
+    pub fn is_kind(file: &Path) -> bool {
         let text = std::fs::read_to_string(file).unwrap_or_default();
-        !text
-            .lines()
-            .any(|line| ["@vertex", "@fragment", "@compute"].iter().any(|stage| line.starts_with(stage)))
+        KindText::declared(&text).unwrap_or_else(|why| refuse(file, &why)).is_some()
+    }
+
+    /// The outputs of surfaces: name, file below `wgsl/render/`, and whether they need motion.
+    pub const OUTPUTS: &[(&str, &str, bool)] = &[
+        ("color", "output_color", false),
+        ("transparent", "output_color", false),
+        ("surface", "output_surface", false),
+        ("velocity", "output_velocity", true),
+        ("measure", "output_measure", false),
+    ];
+
+    /// The file of an output.
+    pub fn output_file(root: &Path, file: &str) -> PathBuf {
+        root.join(format!("wgsl/render/{file}.wgsl"))
+    }
+
+    /// The root of a kind's shader: its entry points, with what these import.
+    fn kind_root(root: &Path, relative: &Path, kind: &KindText<'_>) -> String {
+        let files: Vec<_> =
+            OUTPUTS.iter().filter(|(name, ..)| kind.blends || *name != "transparent").collect();
+        let read = |file| std::fs::read_to_string(output_file(root, file)).unwrap_or_default();
+        let texts: Vec<String> = files.iter().map(|(_, file, _)| read(file)).collect();
+        let outputs: Vec<_> = (files.iter().zip(&texts))
+            .map(|((name, _, moves), text)| OutputText { name, text, moves: *moves })
+            .collect();
+        let mut text = String::from(
+            "import package::wgsl::render::scene_kind::SceneFragment;\nimport package::wgsl::render::scene_view::view;\n",
+        );
+        if kind.deep {
+            text += "import package::wgsl::render::output_depth::depth_behind;\n";
+        }
+        for (output, (_, file, _)) in outputs.iter().zip(files) {
+            let (targets, name) = (output.targets(), output.name);
+            writeln!(text, "import package::wgsl::render::{file}::{{{targets}, {name}_write}};")
+                .expect("a string");
+        }
+        let module = module_path(relative);
+        writeln!(text, "import {module}::{{{}}};\n", exports(kind).join(", ")).expect("a string");
+        text + &entries(kind, &outputs)
     }
 
     fn shader_files(folder: &Path) -> Vec<PathBuf> {
@@ -152,7 +192,8 @@ mod shaders {
         });
         compiler.set_mangler(mangler);
         compiler.set_missing_feature_behavior(wesl::Feature::Error);
-        match compiler.compile(&module_path(relative)) {
+        let path = if is_kind(file) { Path::new("entries").join(relative) } else { relative.to_owned() };
+        match compiler.compile(&module_path(&path)) {
             Ok(result) => result.to_string(),
             Err(error) => refuse(relative, &error.to_string()),
         }
@@ -165,6 +206,10 @@ mod shaders {
             let relative = file.strip_prefix(root).expect("below the root");
             let text =
                 std::fs::read_to_string(&file).unwrap_or_else(|error| refuse(relative, &error.to_string()));
+            if let Some(kind) = KindText::declared(&text).unwrap_or_else(|why| refuse(relative, &why)) {
+                let path = module_path(&Path::new("entries").join(relative));
+                resolver.add_module(path, kind_root(root, relative, &kind).into());
+            }
             let text = packed::expanded(text).unwrap_or_else(|why| refuse(relative, &why));
             resolver.add_module(module_path(relative), text.into());
         }
@@ -393,7 +438,10 @@ mod shaders {
                     .map(|(_, entry)| format!("Stage::{:?}", entry.stage))
                     .collect::<Vec<_>>();
                 stages.dedup();
-                let stages = stages.join(", ");
+                // All kinds share the layout of the view.
+                let is_shared = binding.group == 0 && self.takes_shading();
+                let stages =
+                    if is_shared { "Stage::Vertex, Stage::Fragment".to_owned() } else { stages.join(", ") };
                 let name = variable.name.as_deref().unwrap_or_default();
                 let (group, binding) = (binding.group, binding.binding);
                 let ty = self.type_name(variable.ty);

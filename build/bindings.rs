@@ -10,7 +10,7 @@ use std::path::Path;
 
 use naga::{AddressSpace, Handle, TypeInner};
 
-use crate::shaders::{Shader, refuse};
+use crate::shaders::{OUTPUTS, Shader, is_kind, output_file, refuse};
 use crate::sources::Sources;
 use crate::types::{Use, constant_text, literal_text, scalar_name};
 
@@ -28,7 +28,11 @@ pub struct Bindings {
 impl Bindings {
     /// Adds the items that a shader shares with the host.
     pub fn add(&mut self, root: &Path, file: &Path, shader: &Shader) {
-        let sources = Sources::of(root, file);
+        let mut sources = Sources::of(root, file);
+        if is_kind(file) {
+            let outputs = OUTPUTS.iter().map(|(_, output, _)| *output).chain(["output_depth"]);
+            outputs.for_each(|output| sources.follow(root, &output_file(root, output)));
+        }
         let bindings = ShaderBindings { root, file, shader, sources: &sources };
         bindings.constants(&mut self.shared);
         for (path, file, words) in sources.packed(root) {

@@ -15,7 +15,8 @@ impl Sources {
         found
     }
 
-    fn follow(&mut self, root: &Path, file: &Path) {
+    /// Adds a file, with what it imports.
+    pub fn follow(&mut self, root: &Path, file: &Path) {
         if self.0.iter().any(|(known, _)| known == file) {
             return;
         }

@@ -40,6 +40,18 @@ pub enum Layer {
 }
 
 impl Layer {
+    /// What the names of its entry points in shaders begin with.
+    pub(crate) fn entry(self) -> &'static str {
+        match self {
+            Self::Color => "color",
+            Self::Transparent => "transparent",
+            Self::Depth => "depth",
+            Self::Surface => "surface",
+            Self::Velocity => "velocity",
+            Self::Measure => "measure",
+        }
+    }
+
     /// Whether surfaces are shaded.
     pub(crate) fn is_shaded(self) -> bool {
         matches!(self, Self::Color | Self::Transparent)

@@ -92,7 +92,7 @@ impl Renderer {
     /// structs, constants and private variables, and resources in bind group 3, whose layout is `layout`, visible to the
     /// fragment stage; before [`Renderer::draw`] the caller sets that group. Calls come from uniform control flow. The
     /// text must not discard, and none of its names may begin with `relievo_`. Of WebGPU's default limits for the fragment
-    /// stage, the crate's pipelines use up to 2 storage buffers, 4 uniform buffers, 5 textures and 3 samplers.
+    /// stage, the crate's pipelines use up to 4 storage buffers, 4 uniform buffers, 5 textures and 3 samplers.
     ///
     /// These are the two structs and the crate's own function:
     ///

@@ -14,7 +14,7 @@ struct Surface {
     uv: vec2<f32>,
     // Linear red, green and blue of the material, its texture and the instance's tint.
     color: vec3<f32>,
-    // The alpha of the same in the layer of transparent surfaces, in others 1.
+    // The alpha of the same in the layer of transparent surfaces; 1 in the colour of opaque ones.
     alpha: f32,
     // The fraction of the light, 0..1, that reaches the point: less than 1 where a relief shades itself.
     sunlit: f32,
@@ -27,6 +27,16 @@ struct Surface {
     instance: u32,
     // The position in the target in pixels, from its upper left corner.
     pixel: vec2<f32>,
+    // Linear red, green and blue that the surface sends out by itself. It is added to the shaded colour.
+    emission: vec3<f32>,
+    // Where the sun's shadow is looked up: `position`, on a relief the point where the light enters it.
+    light_position: vec3<f32>,
+    // The position in the last frame, relative to the corner of this frame's cell. Only velocities need it.
+    last_position: vec3<f32>,
+    // Pixels whose alpha is below it are not drawn.
+    cutoff: f32,
+    // The depth, 0 to 1; on a relief that of the point that the ray met.
+    depth: f32,
 }
 
 // A view of the scene.

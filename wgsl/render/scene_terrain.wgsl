@@ -1,11 +1,17 @@
-// Draws patches of terrain of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8): an indexed patch for
-// each visible one, zone textures blended by height, slope and their own height maps, a directional light.
+// The kind `terrain`: patches of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8), an indexed patch for
+// each visible one, with zone textures blended by height, slope and their own height maps, or as a wireframe.
+// kind terrain:
+import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, scene_surface};
 import package::wgsl::render::scene_shade::Surface;
-import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
-import package::wgsl::render::scene_view::{MeasureTargets, SurfaceTargets, scene_measure_targets, scene_place, scene_shaded, scene_surface, scene_surface_targets, scene_velocity, view};
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_uv, triplanar_weight, triplanar_weights, varied};
 import package::wgsl::terrain::zones::{Zone, steepness, zone_blend, zone_blended, zone_color};
+
+// Whether the edges of triangles are drawn, on ground that no light reaches.
+override WIREFRAME: bool = false;
+
+const LINE_COLOR: vec3<f32> = vec3<f32>(0.35, 0.75, 0.5);
+const DARK_COLOR: vec3<f32> = vec3<f32>(0.01, 0.014, 0.02);
 
 // Where the samples of a terrain lie in a view. Positions are counted from a sample near the view, so that they are
 // precise far from the terrain's origin, and equal samples give equal bits, whichever patch they belong to.
@@ -62,74 +68,9 @@ struct TerrainPatch {
 @group(2) @binding(4) var textures: texture_2d_array<f32>;
 @group(2) @binding(5) var texture_sampler: sampler;
 
-struct Vertex {
-    // Equal samples give equal bits, so that patches that share an edge leave no crack.
-    @invariant @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    @location(1) uv: vec2<f32>,
-    @location(2) height: f32,
-}
-
-// A vertex with everything that there is to know of a surface.
-struct WholeVertex {
-    @invariant @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    @location(1) uv: vec2<f32>,
-    @location(2) height: f32,
-    // Relative to the corner of the view's cell.
-    @location(3) position: vec3<f32>,
-    // The index of the patch.
-    @location(4) @interpolate(flat) instance: u32,
-}
-
-@vertex
-fn vertex(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> Vertex {
-    let out = placed(vertex, instance);
-    return Vertex(out.clip, out.normal, out.uv, out.height);
-}
-
-@vertex
-fn vertex_whole(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> WholeVertex {
-    return placed(vertex, instance);
-}
-
-// A vertex with what there is to know of its motion: the camera's.
-struct MovingVertex {
-    @invariant @builtin(position) clip: vec4<f32>,
-    // Its places on the screen in this frame and in the last.
-    @location(0) now: vec3<f32>,
-    @location(1) last: vec3<f32>,
-}
-
-@vertex
-fn vertex_moving(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> MovingVertex {
-    let out = placed(vertex, instance);
-    let last = view.last_clip_from_world * vec4<f32>(out.position, 1.0);
-    return MovingVertex(out.clip, scene_place(out.clip), scene_place(last));
-}
-
-// A vertex of a wireframe.
-struct WiredVertex {
-    @invariant @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    @location(1) uv: vec2<f32>,
-    @location(2) height: f32,
-    @location(3) position: vec3<f32>,
-    @location(4) @interpolate(flat) instance: u32,
-    // 1 at one corner of each triangle, 0 at the others.
-    @location(5) corner: vec3<f32>,
-}
-
-@vertex
-fn vertex_wired(@builtin(vertex_index) vertex: u32, @location(0) instance: u32) -> WiredVertex {
-    let out = placed(vertex, instance);
-    // All triangles of a patch give a vertex the same corner.
-    var corner = vec3<f32>(0.0);
-    corner[(vertex % terrain.size + 2u * (vertex / terrain.size)) % 3u] = 1.0;
-    return WiredVertex(out.clip, out.normal, out.uv, out.height, out.position, out.instance, corner);
-}
-
-fn placed(vertex: u32, instance: u32) -> WholeVertex {
+// Equal samples give equal bits, so that patches that share an edge leave no crack. The values of a vertex: 1 at one corner of
+// each triangle and 0 at the others, and the height in units. The first word: the index of the patch.
+fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let patch_of = patches[instance];
     let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
     let margin = (terrain.in_width - terrain.size) / 2u;
@@ -142,13 +83,17 @@ fn placed(vertex: u32, instance: u32) -> WholeVertex {
     let sample_index = vec2<f32>(patch_of.origin + vec2<i32>(at) - ground.base);
     let position = ground.rest
         + vec3<f32>(sample_index.x * terrain.spacing, height, sample_index.y * terrain.spacing);
-    return WholeVertex(
-        view.clip_from_world * vec4<f32>(position, 1.0),
-        slope_normal(gradient, terrain.run),
-        patch_of.uv + vec2<f32>(at) * terrain.tiling,
-        height,
-        position,
-        instance);
+    // All triangles of a patch give a vertex the same corner.
+    var values = vec4<f32>(0.0, 0.0, 0.0, height);
+    values[(at.x + 2u * at.y) % 3u] = 1.0;
+    return SceneVertex(
+        position, slope_normal(gradient, terrain.run), vec4<f32>(1.0, 0.0, 0.0, 1.0),
+        vec4<f32>(patch_of.uv + vec2<f32>(at) * terrain.tiling, 0.0, 0.0), values, vec4<u32>(instance, 0u, 0u, 0u));
+}
+
+// The ground stands still.
+fn terrain_last_position(instance: u32, vertex: u32) -> vec3<f32> {
+    return terrain_place(instance, vertex).position;
 }
 
 // The colour of the ground at texture coordinates, a height in units, and a unit normal.
@@ -178,63 +123,17 @@ fn ground_color(uv: vec2<f32>, height: f32, normal: vec3<f32>) -> vec3<f32> {
     return varied(color, color_variation(uv), terrain.variation);
 }
 
-@fragment
-fn fragment(in: Vertex) -> @location(0) vec4<f32> {
-    let normal = normalize(in.normal);
-    return scene_shaded(scene_surface(ground_color(in.uv, in.height, normal), normal));
-}
-
-fn whole_surface(in: WholeVertex) -> Surface {
-    return colored_surface(in, ground_color(in.uv, in.height, normalize(in.normal)));
-}
-
-fn colored_surface(in: WholeVertex, color: vec3<f32>) -> Surface {
-    let normal = normalize(in.normal);
-    return Surface(
-        in.position, normal, normal, in.uv, color, 1.0, 1.0, vec4<f32>(1.0), 0u, ground.object,
-        terrain.first_patch + in.instance, in.clip.xy);
-}
-
-// A surface in the shadow of the sun, if the scene has one.
-fn in_shadow(lit: Surface) -> Surface {
-    var shadowed = lit;
-    if SHADOWED {
-        shadowed.sunlit = scene_sunlit(lit.position, lit.geometric_normal);
+fn terrain_surface(in: SceneFragment) -> Surface {
+    var surface = scene_surface(in);
+    if WIREFRAME {
+        let edge = in.values.xyz / max(fwidth(in.values.xyz), vec3<f32>(1e-6));
+        let near = clamp(1.2 - min(edge.x, min(edge.y, edge.z)), 0.0, 1.0);
+        surface.color = LINE_COLOR * near;
+        surface.emission = DARK_COLOR * (1.0 - near);
+    } else {
+        surface.color = ground_color(in.uv.xy, in.values.w, surface.normal);
     }
-    return shadowed;
+    surface.object = ground.object;
+    surface.instance = terrain.first_patch + in.words.x;
+    return surface;
 }
-
-// The edges of triangles, by the crate's or the caller's shading, on ground that no light reaches.
-@fragment
-fn shaded_wired(in: WiredVertex) -> @location(0) vec4<f32> {
-    let edge = in.corner / max(fwidth(in.corner), vec3<f32>(1e-6));
-    let near = clamp(1.2 - min(edge.x, min(edge.y, edge.z)), 0.0, 1.0);
-    let vertex = WholeVertex(in.clip, in.normal, in.uv, in.height, in.position, in.instance);
-    let line = scene_shaded(in_shadow(colored_surface(vertex, vec3<f32>(0.35, 0.75, 0.5))));
-    return mix(vec4<f32>(0.01, 0.014, 0.02, 1.0), line, near);
-}
-
-// Colour by the caller's shading, or in the shadow of the sun.
-@fragment
-fn shaded_whole(in: WholeVertex) -> @location(0) vec4<f32> {
-    return scene_shaded(in_shadow(whole_surface(in)));
-}
-
-@fragment
-fn surface_whole(in: WholeVertex) -> SurfaceTargets {
-    return scene_surface_targets(whole_surface(in));
-}
-
-@fragment
-fn measure_whole(in: WholeVertex) -> MeasureTargets {
-    return scene_measure_targets(whole_surface(in));
-}
-
-@fragment
-fn velocity_moving(in: MovingVertex) -> @location(0) vec4<f32> {
-    return scene_velocity(in.now, in.last);
-}
-
-// Only depth is written, where a pass has colour attachments as well.
-@fragment
-fn depth_opaque() {}

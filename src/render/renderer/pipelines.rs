@@ -10,19 +10,14 @@ use crate::render::shading::{PREFIX, Shading};
 use crate::scene::TerrainStyle;
 use crate::scene::drawable::{MeshMaterials, MeshPart, SurfaceKind};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::Alike;
+use crate::scene::material::PartMaterials;
 use crate::surface::{ReliefOptions, Shadow};
 
 /// What a surface needs of a pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     /// A mesh with materials.
-    Mesh {
-        surface: SurfaceKind,
-        normal_mapped: bool,
-        /// What the materials of an opaque part without a normal map have in common; `None` for other parts.
-        alike: Option<Alike>,
-    },
+    Mesh { surface: SurfaceKind, normal_mapped: bool, textured: bool },
     /// A mesh with relief.
     Relief { double_sided: bool, options: ReliefOptions },
     /// Patches of terrain, seen from both sides.
@@ -33,9 +28,8 @@ impl Kind {
     pub fn of(part: &MeshPart) -> Self {
         match &part.materials {
             MeshMaterials::Plain(materials) => {
-                let (surface, normal_mapped) = (part.surface, materials.normal_mapped);
-                let is_plain = !surface.cut_out && !surface.blended && !normal_mapped;
-                Self::Mesh { surface, normal_mapped, alike: materials.alike.filter(|_| is_plain) }
+                let PartMaterials { normal_mapped, textured, .. } = *materials;
+                Self::Mesh { surface: part.surface, normal_mapped, textured }
             }
             MeshMaterials::Relief(relief) => {
                 Self::Relief { double_sided: part.surface.double_sided, options: relief.options }
@@ -52,9 +46,9 @@ impl Kind {
     /// The same with both sides of triangles.
     pub fn two_sided(self) -> Self {
         match self {
-            Self::Mesh { surface, normal_mapped, alike } => {
+            Self::Mesh { surface, normal_mapped, textured } => {
                 let surface = SurfaceKind { double_sided: true, ..surface };
-                Self::Mesh { surface, normal_mapped, alike }
+                Self::Mesh { surface, normal_mapped, textured }
             }
             Self::Relief { options, .. } => Self::Relief { double_sided: true, options },
             Self::Terrain { style } => Self::Terrain { style },
@@ -66,10 +60,10 @@ impl Kind {
         let is_lit = layer.is_shaded();
         let has_normals = is_lit || layer == Layer::Surface;
         match self {
-            Self::Mesh { surface, normal_mapped, alike } => Self::Mesh {
+            Self::Mesh { surface, normal_mapped, textured } => Self::Mesh {
                 surface,
                 normal_mapped: normal_mapped && has_normals,
-                alike: alike.filter(|_| layer == Layer::Color),
+                textured: textured && (has_normals || surface.cut_out),
             },
             Self::Relief { double_sided, options } => {
                 let shadow = if is_lit { options.shadow } else { Shadow::None };
@@ -80,6 +74,20 @@ impl Kind {
                 Self::Terrain { style: if is_lit { style } else { TerrainStyle::Textured } }
             }
         }
+    }
+
+    /// Whether pixels are left out by their alpha.
+    pub fn discards(self) -> bool {
+        match self {
+            Self::Mesh { surface, .. } => surface.cut_out,
+            Self::Relief { options, .. } => options.silhouette,
+            Self::Terrain { .. } => false,
+        }
+    }
+
+    /// Whether a layer writes the depth of the surface and not that of the triangles.
+    pub fn is_deep(self, layer: Layer) -> bool {
+        matches!(self, Self::Relief { options, .. } if options.depth || layer == Layer::Depth)
     }
 
     /// Whether triangles that turn away are seen.
@@ -112,15 +120,7 @@ impl PipelineKey {
 
     /// The same in the shadow of a sun, if its layer is shaded, or without.
     pub fn shadowed(self, is_shadowed: bool) -> Self {
-        let is_shadowed = is_shadowed && self.layer.is_shaded();
-        let kind = match self.kind {
-            // There is one program with the positions that shadows need.
-            Kind::Mesh { surface, normal_mapped, .. } if is_shadowed => {
-                Kind::Mesh { surface, normal_mapped, alike: None }
-            }
-            kind => kind,
-        };
-        Self { kind, is_shadowed, ..self }
+        Self { is_shadowed: is_shadowed && self.layer.is_shaded(), ..self }
     }
 
     /// Compiles it, with the caller's shading if there is any.
@@ -135,7 +135,7 @@ impl PipelineKey {
         shading: Option<&Shading>,
     ) -> Result<wgpu::RenderPipeline, GpuError> {
         let shading = shading.filter(|_| self.layer.is_shaded());
-        let program = Program::new(self.layer, self.kind, format, [shading.is_some(), self.is_shadowed]);
+        let program = Program::new(self.layer, self.kind, format, self.is_shadowed);
         let groups = match self.kind {
             Kind::Mesh { .. } => layouts.of_mesh(),
             Kind::Relief { .. } => layouts.of_relief(),
@@ -162,7 +162,7 @@ impl PipelineKey {
         let targets = format.targets(self.layer);
         let layout = wgpu::PipelineLayoutDescriptor { label, bind_group_layouts: groups, immediate_size: 0 };
         let vertex = format!("{PREFIX}{}", program.vertex);
-        let fragment = program.fragment.map(|entry| format!("{PREFIX}{entry}"));
+        let fragment = program.fragment.as_ref().map(|entry| format!("{PREFIX}{entry}"));
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label,
             layout: Some(&device.create_pipeline_layout(&layout)),

@@ -27,8 +27,8 @@ pub(crate) struct PartMaterials {
     pub normal_mapped: bool,
     /// Whether alpha decides which pixels of one of them are drawn.
     pub cut_out: bool,
-    /// What they have in common; `None` if they show several textures, or some show one and others none.
-    pub alike: Option<Alike>,
+    /// Whether one of them shows a texture.
+    pub textured: bool,
     /// The material of each entry of the table.
     materials: Vec<Option<usize>>,
     entries: Buffer<SceneMaterial>,
@@ -36,28 +36,6 @@ pub(crate) struct PartMaterials {
     normals: Layers,
     /// Of colours and of normal maps.
     samplings: [Sampling; 2],
-}
-
-/// Materials that need only one texture, or none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct Alike {
-    /// Whether they show the texture in layer 0.
-    pub textured: bool,
-    /// Whether there are several, with colours of their own.
-    pub several: bool,
-}
-
-impl Alike {
-    /// What the materials of a table have in common.
-    fn of(table: &[SceneMaterial]) -> Option<Self> {
-        let textured = match table.first()?.layer {
-            NO_LAYER => false,
-            0 => true,
-            _ => return None,
-        };
-        let is_alike = table.iter().all(|entry| entry.layer == table[0].layer);
-        is_alike.then_some(Self { textured, several: table.len() > 1 })
-    }
 }
 
 /// A texture of a material.
@@ -99,7 +77,7 @@ impl PartMaterials {
             group: group.bind(gpu, &layouts.mesh)?,
             normal_mapped: false,
             cut_out: false,
-            alike: None,
+            textured: false,
             materials: materials.to_vec(),
             entries,
             colors,
@@ -114,7 +92,7 @@ impl PartMaterials {
         Self {
             normal_mapped: table.iter().any(|entry| entry.normal_layer != NO_LAYER),
             cut_out: table.iter().any(|entry| entry.cutoff != CUTOFF_OPAQUE),
-            alike: Alike::of(table),
+            textured: table.iter().any(|entry| entry.layer != NO_LAYER),
             ..self
         }
     }

@@ -3,6 +3,7 @@
 use relievo::gpu::Gpu;
 use serde::Serialize;
 
+use crate::harness::TimedBy;
 use crate::measure::gates::GateMode;
 use crate::measure::options::{Layout, LodOptions};
 use crate::measure::stage::Stage;

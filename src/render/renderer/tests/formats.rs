@@ -13,7 +13,6 @@ use crate::render::{Layer, Renderer};
 use crate::scene::TerrainStyle;
 use crate::scene::drawable::SurfaceKind;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::Alike;
 use crate::surface::{Green, Method, ReliefOptions, Shadow};
 
 /// Kinds that take every entry point and both values of every flag.
@@ -23,11 +22,8 @@ fn kinds() -> Vec<Kind> {
         flags().map(move |double_sided| SurfaceKind { cut_out, blended: false, morphed: false, double_sided })
     });
     let meshes = surfaces.flat_map(|surface| {
-        let mesh = move |normal_mapped, alike| Kind::Mesh { surface, normal_mapped, alike };
-        let alike =
-            flags().flat_map(|textured| flags().map(move |several| Some(Alike { textured, several })));
-        let plain = alike.filter(move |_| !surface.cut_out).map(move |alike| mesh(false, alike));
-        flags().map(move |normal_mapped| mesh(normal_mapped, None)).chain(plain)
+        let mesh = move |normal_mapped, textured| Kind::Mesh { surface, normal_mapped, textured };
+        flags().flat_map(move |textured| flags().map(move |normal_mapped| mesh(normal_mapped, textured)))
     });
     let reliefs = Method::ALL.into_iter().flat_map(|method| {
         [

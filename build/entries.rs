@@ -1,0 +1,203 @@
+//! Generates the entry points with which a kind of object is drawn into outputs, as WGSL.
+//!
+//! A kind is WGSL with a line such as `// kind mesh: discards, blends`, and exports `mesh_place`, `mesh_last_position` and
+//! `mesh_surface` (`wgsl/render/scene_kind.wgsl`). An output exports a struct of its targets and a function: `SurfaceTargets`
+//! and `surface_write(Surface) -> SurfaceTargets`.
+
+use std::fmt::Write as _;
+
+/// What the parts of a kind may need.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct KindText<'a> {
+    /// What the names of its exports begin with.
+    pub name: &'a str,
+    /// Whether parts may leave out pixels whose alpha is below `Surface.cutoff`.
+    pub discards: bool,
+    /// Whether parts may be blended with what is behind them.
+    pub blends: bool,
+    /// Whether parts may write `Surface.depth`.
+    pub deep: bool,
+}
+
+impl<'a> KindText<'a> {
+    /// The kind that a text declares, if it declares one.
+    ///
+    /// # Errors
+    /// The word that is no property of a kind.
+    pub fn declared(text: &'a str) -> Result<Option<Self>, String> {
+        let Some(line) = text.lines().find_map(|line| line.strip_prefix("// kind ")) else { return Ok(None) };
+        let (name, properties) = line.split_once(':').ok_or("// kind NAME: needs a colon")?;
+        let mut kind = Self { name, discards: false, blends: false, deep: false };
+        for property in properties.split(',').map(str::trim).filter(|property| !property.is_empty()) {
+            match property {
+                "discards" => kind.discards = true,
+                "blends" => kind.blends = true,
+                "deep" => kind.deep = true,
+                other => return Err(format!("// kind {name}: `{other}` is not discards, blends or deep")),
+            }
+        }
+        Ok(Some(kind))
+    }
+}
+
+/// An output of surfaces. `depth`, which needs no surface of parts that are drawn whole, is generated beside these.
+#[derive(Debug, Clone, Copy)]
+pub struct OutputText<'a> {
+    /// What the names of its exports begin with, and the name of its entry point.
+    pub name: &'a str,
+    /// The text that declares them.
+    pub text: &'a str,
+    /// Whether it needs `Surface.last_position`.
+    pub moves: bool,
+}
+
+impl OutputText<'_> {
+    /// The struct of its targets.
+    pub fn targets(&self) -> String {
+        let (first, rest) = self.name.split_at(1);
+        format!("{}{rest}Targets", first.to_uppercase())
+    }
+
+    /// The members of that struct: name, and the line that declares it.
+    fn members(&self) -> Vec<(&str, &str)> {
+        let head = format!("struct {} {{", self.targets());
+        let body = self
+            .text
+            .split_once(&head)
+            .and_then(|(_, rest)| rest.split_once('}'))
+            .map_or("", |(body, _)| body);
+        let lines = body.lines().map(str::trim).filter(|line| line.starts_with("@location"));
+        lines.filter_map(|line| Some((line.split_once(':')?.0.rsplit(' ').next()?, line))).collect()
+    }
+}
+
+/// The name of the fragment entry of an output: for parts that discard, and for those that write their own depth.
+/// `src/render/renderer/programs.rs` knows it.
+fn fragment_entry(output: &str, discards: bool, deep: bool) -> String {
+    format!("{output}{}{}", if discards { "_cut" } else { "" }, if deep { "_deep" } else { "" })
+}
+
+/// The names that the entries of a kind use of its own text.
+pub fn exports(kind: &KindText<'_>) -> [String; 3] {
+    ["place", "last_position", "surface"].map(|name| format!("{}_{name}", kind.name))
+}
+
+/// The entry points of a kind: `vertex`, `vertex_moving` with the last position, `vertex_depth` with the position alone, and
+/// the fragment entries of `depth` and of each output.
+pub fn entries(kind: &KindText<'_>, outputs: &[OutputText<'_>]) -> String {
+    let name = kind.name;
+    let mut text = String::new();
+    for (varyings, entry, more) in [("Varyings", "vertex", ""), ("MovingVaryings", "vertex_moving", MOVING)] {
+        let last =
+            if more.is_empty() { String::new() } else { format!(", {name}_last_position(entry, vertex)") };
+        write!(
+            text,
+            "struct {varyings} {{{VARYINGS}{more}
+}}
+
+@vertex
+fn {entry}(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> {varyings} {{
+    let placed = {name}_place(entry, vertex);
+    return {varyings}(
+        view.clip_from_world * vec4<f32>(placed.position, 1.0), placed.position, placed.normal, placed.tangent, placed.uv,
+        placed.values, placed.words{last});
+}}
+
+"
+        )
+        .expect("a string");
+    }
+    write!(
+        text,
+        "struct Position {{
+    @invariant @builtin(position) clip: vec4<f32>,
+}}
+
+@vertex
+fn vertex_depth(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> Position {{
+    return Position(view.clip_from_world * vec4<f32>({name}_place(entry, vertex).position, 1.0));
+}}
+
+@fragment
+fn depth() {{}}
+
+"
+    )
+    .expect("a string");
+    if kind.discards && !kind.deep {
+        let seen = seen(name, false);
+        write!(text, "@fragment\nfn depth_cut({ARGUMENTS}) {{\n{seen}{DISCARD}}}\n\n").expect("a string");
+    }
+    if kind.deep {
+        for discards in [false, true] {
+            let entry = fragment_entry("depth", discards, true);
+            let (seen, discard) = (seen(name, false), if discards { DISCARD } else { "" });
+            write!(
+                text,
+                "@fragment\nfn {entry}({ARGUMENTS}) -> @builtin(frag_depth) f32 {{\n    let slope = fwidth(in.clip.z);\n\
+                 {seen}{discard}    return depth_behind(surface.depth, in.clip.z, slope);\n}}\n\n"
+            )
+            .expect("a string");
+        }
+    }
+    for output in outputs {
+        for deep in [false, true].into_iter().filter(|deep| kind.deep || !deep) {
+            for discards in [false, true].into_iter().filter(|discards| kind.discards || !discards) {
+                text += &fragment(kind, output, discards, deep);
+            }
+        }
+    }
+    text
+}
+
+/// A fragment entry of an output.
+fn fragment(kind: &KindText<'_>, output: &OutputText<'_>, discards: bool, deep: bool) -> String {
+    let entry = fragment_entry(output.name, discards, deep);
+    let (seen, discard) = (seen(kind.name, output.moves), if discards { DISCARD } else { "" });
+    let (targets, varyings) = (output.targets(), if output.moves { "MovingVaryings" } else { "Varyings" });
+    let write = format!("{}_write(surface)", output.name);
+    let arguments = ARGUMENTS.replace("Varyings", varyings);
+    if !deep {
+        return format!(
+            "@fragment\nfn {entry}({arguments}) -> {targets} {{\n{seen}    let targets = {write};\n{discard}    return targets;\n}}\n\n"
+        );
+    }
+    let members = output.members();
+    let declared: String = members.iter().map(|(_, line)| format!("    {line}\n")).collect();
+    let values: String = members.iter().map(|(member, _)| format!("targets.{member}, ")).collect();
+    let structure = if discards { "Cut" } else { "" };
+    format!(
+        "struct {targets}Deep{structure} {{\n{declared}    @builtin(frag_depth) depth: f32,\n}}\n\n\
+         @fragment\nfn {entry}({arguments}) -> {targets}Deep{structure} {{\n{seen}    let targets = {write};\n{discard}    \
+         return {targets}Deep{structure}({values}surface.depth);\n}}\n\n"
+    )
+}
+
+/// The line that gets the surface of a fragment.
+fn seen(kind: &str, moves: bool) -> String {
+    let last = if moves { "in.last" } else { "in.position" };
+    format!(
+        "    let surface = {kind}_surface(SceneFragment(
+        in.position, in.normal, in.tangent, in.uv, in.values, in.words, {last}, in.clip, is_front));
+"
+    )
+}
+
+const ARGUMENTS: &str = "in: Varyings, @builtin(front_facing) is_front: bool";
+
+/// After everything that needs derivatives.
+const DISCARD: &str = "    if surface.alpha < surface.cutoff {\n        discard;\n    }\n";
+
+/// What every vertex hands over. Pipelines of one view give equal bits.
+const VARYINGS: &str = "
+    @invariant @builtin(position) clip: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec4<f32>,
+    @location(3) uv: vec4<f32>,
+    @location(4) values: vec4<f32>,
+    @location(5) @interpolate(flat) words: vec4<u32>,";
+
+/// What vertices of outputs with motion hand over besides.
+const MOVING: &str = "
+    @location(6) last: vec3<f32>,";

@@ -1,0 +1,31 @@
+// The outputs `color` and `transparent`: the shaded colour of surfaces, through which all light goes.
+import package::wgsl::render::scene_shade::{Surface, shade};
+import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
+import package::wgsl::render::scene_view::scene_seen_by;
+
+struct ColorTargets {
+    @location(0) color: vec4<f32>,
+}
+
+struct TransparentTargets {
+    @location(0) color: vec4<f32>,
+}
+
+fn lit(given: Surface) -> vec4<f32> {
+    var surface = given;
+    if SHADOWED {
+        surface.sunlit *= scene_sunlit(surface.light_position, surface.geometric_normal);
+    }
+    return shade(surface, scene_seen_by()) + vec4<f32>(surface.emission, 0.0);
+}
+
+// Ignores alpha: pixels are drawn whole or not at all.
+fn color_write(given: Surface) -> ColorTargets {
+    var surface = given;
+    surface.alpha = 1.0;
+    return ColorTargets(lit(surface));
+}
+
+fn transparent_write(surface: Surface) -> TransparentTargets {
+    return TransparentTargets(lit(surface));
+}

@@ -1,0 +1,13 @@
+// The output `measure`: where surfaces are.
+import package::wgsl::render::scene_shade::Surface;
+
+struct MeasureTargets {
+    // The position relative to the corner of the view's cell; w: 1.
+    @location(0) position: vec4<f32>,
+    // The numbers of the object and the instance.
+    @location(1) id: vec2<u32>,
+}
+
+fn measure_write(surface: Surface) -> MeasureTargets {
+    return MeasureTargets(vec4<f32>(surface.position, 1.0), vec2<u32>(surface.object, surface.instance));
+}
