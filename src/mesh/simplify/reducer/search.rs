@@ -80,24 +80,23 @@ impl Reducer<'_> {
 
     /// The most frequent reason why points that are left cannot collapse; [`Stopped::Topology`] if there are none.
     pub(super) fn hindrance(&mut self) -> Stopped {
-        let mut counts =
-            [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance]
-                .map(|reason| (reason, 0_usize));
+        const REASONS: [Stopped; 5] =
+            [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance];
+        let mut counts = [0_usize; Stopped::Distance as usize + 1];
         for point in 0..self.points.len() as u32 {
             self.topology.refresh(point);
             if !self.topology.ring(point).is_empty() {
-                let hindrance = self.hindrance_of(point);
-                for (reason, count) in &mut counts {
-                    *count += usize::from(*reason == hindrance);
-                }
+                counts[self.hindrance_of(point) as usize] += 1;
             }
         }
-        // `max_by_key` finds the last of equal ones, and the reversed list ends with the first.
-        counts
-            .into_iter()
-            .rev()
-            .max_by_key(|(_, count)| *count)
-            .map_or(Stopped::Topology, |(reason, _)| reason)
+        // The first of equally frequent ones.
+        let mut most = Stopped::Topology;
+        for reason in REASONS {
+            if counts[reason as usize] > counts[most as usize] {
+                most = reason;
+            }
+        }
+        most
     }
 
     /// The reason why the cheapest collapse of a point is illegal.
