@@ -2,7 +2,7 @@
 //! rest. It prints the triangles and errors of the levels too.
 //!
 //! ```sh
-//! cargo bench --no-default-features --features samples --bench levels                  # creature, rock and helmet
+//! cargo bench --no-default-features --bench levels                  # creature, rock and helmet
 //! cargo bench … -- helmet model.glb          # of these alone: names of the three above, and files
 //! ```
 

@@ -3,7 +3,7 @@
 //! `all of one run` has its time beside theirs.
 //!
 //! ```sh
-//! cargo bench --no-default-features --features samples --bench simplify                 # generated terrain
+//! cargo bench --no-default-features --bench simplify                 # generated terrain
 //! cargo bench … -- --elevation map.png --mesh spot.obj --mesh creature.glb --grass      # of your files
 //! cargo bench … -- --out DIR      # the levels as OBJ, which tests/truth/simplify.py measures
 //! cargo bench … -- --terrain --torus --helmet  # meshes of its own

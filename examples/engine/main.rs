@@ -2,7 +2,7 @@
 //! stand on it, statues and relief walls are drawn in the program's own pass, with 4 samples, and a cube of the program
 //! between them. Writes `engine.png`. What an engine has anyway (targets, a cube, saving a picture) is in `own.rs`.
 //!
-//! `cargo run --release --features samples --example engine`
+//! `cargo run --release --example engine`
 
 mod own;
 

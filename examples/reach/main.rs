@@ -1,5 +1,5 @@
 //! A creature waves, and its left hand stays on a ball that circles beside it: inverse kinematics on two bones, on top of a
-//! clip. Prints where the device has the hand. `cargo run --features samples --example reach`
+//! clip. Prints where the device has the hand. `cargo run --example reach`
 
 mod two_bones;
 

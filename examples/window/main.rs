@@ -2,7 +2,7 @@
 //! all that this program says to relievo; `targets.rs` (the window's surface, 4 samples, depth), `eye.rs` (the camera) and
 //! this file (events and frames) are wgpu and winit, as in any engine.
 //!
-//! `cargo run --release --features samples --example window -- [--frames N] [--picture FILE]`
+//! `cargo run --release --example window -- [--frames N] [--picture FILE]`
 //!
 //! Drag with the left button to turn, scroll to come nearer or go farther, W, A, S, D, Q and E to move (with Shift, faster),
 //! Escape to end. `--frames` ends after so many frames of a sixtieth of a second each, and `--picture` saves the last one.

@@ -35,7 +35,20 @@ pub(crate) struct Own<'a> {
     values: &'a [f32],
 }
 
-impl Own<'_> {
+/// The sum of several vertices at one place.
+#[derive(Default)]
+pub(crate) struct Joint<'a> {
+    record: Vec<Vec4>,
+    values: &'a [f32],
+}
+
+impl<'a> Own<'a> {
+    #[inline]
+    fn new(record: &'a [Vec4], values: &'a [f32]) -> Self {
+        let (head, sums) = record.split_at(HEAD);
+        Self { head: [head[0], head[1], head[2]], sums, values }
+    }
+
     /// The sum of the mean of a point's quadric and of the part of this one that does not depend on the replacement's
     /// attributes.
     #[inline]
@@ -165,8 +178,7 @@ impl<'a> Attributes<'a> {
     #[inline]
     pub(crate) fn of(&self, vertex: u32) -> Own<'_> {
         let len = HEAD + self.stride;
-        let (head, sums) = self.records[vertex as usize * len..][..len].split_at(HEAD);
-        Own { head: [head[0], head[1], head[2]], sums, values: self.values_of(vertex) }
+        Own::new(&self.records[vertex as usize * len..][..len], self.values_of(vertex))
     }
 
     /// What it costs if the triangles of these vertices vanish: their area times the variance of their attributes.
@@ -185,25 +197,45 @@ impl<'a> Attributes<'a> {
 
     /// Replaces `vertex` by `target`, which is `d` away.
     pub(crate) fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
-        let (d, len, values) = (d.as_vec3(), HEAD + self.stride, self.values_of(target));
-        let own = self.of(vertex);
-        let ([first, second, _], cost, mut slope) = (own.head, own.cost(values, d), own.slope(d).extend(0.0));
-        let own_values = self.values_of(vertex);
+        let len = HEAD + self.stride;
+        let (own, values) = (self.values_of(vertex), self.values_of(target));
         let [from, to] = [vertex, target].map(|vertex| vertex as usize * len);
         let Ok([from, to]) = self.records.get_disjoint_mut([from..from + len, to..to + len]) else { return };
-        let sums = from[HEAD..].iter().zip(&mut to[HEAD..]);
-        for ((to_value, from_value), (sum, to_sum)) in values.iter().zip(own_values).zip(sums) {
-            let s = to_value - from_value;
-            slope -= *sum * s;
-            let mut more = *sum;
-            more.w = at(*sum, d) - second.w * s;
-            *to_sum += more;
-        }
-        slope.w = 0.0;
-        let mut middle = second;
-        middle.z = cost;
-        to.iter_mut().zip([first, middle, slope]).for_each(|(sum, more)| *sum += more);
+        add_moved(to, &Own::new(from, own), values, d.as_vec3());
     }
+
+    /// The sum of several vertices at one place, as if they were one vertex with the attributes of the first.
+    pub(crate) fn join(&self, vertices: impl IntoIterator<Item = u32>, joint: &mut Joint<'a>) {
+        joint.record.clear();
+        joint.record.resize(HEAD + self.stride, Vec4::ZERO);
+        for (at, vertex) in vertices.into_iter().enumerate() {
+            if at == 0 {
+                joint.values = self.values_of(vertex);
+            }
+            add_moved(&mut joint.record, &self.of(vertex), joint.values, Vec3::ZERO);
+        }
+    }
+
+    /// As [`Self::cost`], of several vertices at once.
+    pub(crate) fn joint_cost(&self, joint: &Joint<'a>, target: u32, d: DVec3) -> f64 {
+        f64::from(Own::new(&joint.record, joint.values).cost(self.values_of(target), d.as_vec3()))
+    }
+}
+
+/// Adds a vertex, replaced by one with these attributes that is `d` away, to the record of that one.
+fn add_moved(record: &mut [Vec4], own: &Own<'_>, values: &[f32], d: Vec3) {
+    let ([first, mut second, _], mut slope) = (own.head, own.slope(d).extend(0.0));
+    let sums = own.sums.iter().zip(&mut record[HEAD..]);
+    for ((to_value, from_value), (sum, to_sum)) in values.iter().zip(own.values).zip(sums) {
+        let s = to_value - from_value;
+        slope -= *sum * s;
+        let mut more = *sum;
+        more.w = at(*sum, d) - second.w * s;
+        *to_sum += more;
+    }
+    slope.w = 0.0;
+    second.z = own.cost(values, d);
+    record.iter_mut().zip([first, second, slope]).for_each(|(sum, more)| *sum += more);
 }
 
 #[cfg(test)]
@@ -249,5 +281,27 @@ mod tests {
         attributes.merge(3, 1, position(1) - position(3));
         let cost = attributes.cost(1, 2, position(2) - position(1));
         assert!(close(cost, 2.0 * off(2, 2)), "{cost}");
+    }
+
+    /// Vertices at one place cost together what they cost one by one.
+    #[test]
+    fn several_vertices_are_replaced_at_once() {
+        let turn = |at: f32| [at.cos(), at.sin(), 0.1 * at];
+        let positions: Vec<[f32; 3]> =
+            (0..24).map(|at| if at < 12 { [0.0; 3] } else { turn(at as f32 * 0.5) }).collect();
+        let values: Vec<f32> = (0..48).map(|at| ((at * 7) % 11) as f32 * 0.25).collect();
+        let indices: Vec<u32> = (0..11).flat_map(|at| [at, at + 12, at + 13]).collect();
+        let poses = [positions];
+        let points = Points::new(&poses);
+        let surface = Surface { poses: &poses, indices: &indices, attributes: &values, stride: 2 };
+        let attributes = Attributes::new(&surface, &points);
+        let mut joint = Joint::default();
+        attributes.join(0..11, &mut joint);
+        for target in 12..23 {
+            let d = points.position(points.of(target), 0);
+            let sum: f64 = (0..11).map(|vertex| attributes.cost(vertex, target, d)).sum();
+            let together = attributes.joint_cost(&joint, target, d);
+            assert!(sum > 1.0 && (together - sum).abs() < 1e-5 * sum, "{together} and {sum}");
+        }
     }
 }

@@ -45,6 +45,12 @@ impl Neighbor {
     fn meets(&self) -> &[Meet] {
         &self.meets[..self.triangles.min(2) as usize]
     }
+
+    /// The neighbour's vertex, if triangles at the edge have only one.
+    pub(crate) fn only_target(&self) -> Option<u32> {
+        let first = self.meets[0].other;
+        self.meets().iter().all(|meet| meet.other == first).then_some(first)
+    }
 }
 
 /// The point's vertex and the neighbour's vertex in one triangle.

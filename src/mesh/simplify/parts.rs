@@ -177,7 +177,11 @@ impl Parts {
             for &[next, last] in topology.ring(point) {
                 if point < next && point < last {
                     let corners = [point, next, last].map(|point| points.position(point, pose));
-                    nearest = nearest.min(precise_nearest_on_triangle(from, corners).distance_squared(from));
+                    // Most triangles have a box that is further than the nearest so far.
+                    if around(corners, from) < nearest {
+                        let on = precise_nearest_on_triangle(from, corners);
+                        nearest = nearest.min(on.distance_squared(from));
+                    }
                 }
             }
         }
@@ -216,6 +220,12 @@ fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
         parts.push(part);
     }
     parts
+}
+
+/// The square of the distance of a place from the box around a triangle.
+#[inline]
+fn around([a, b, c]: [DVec3; 3], from: DVec3) -> f64 {
+    from.clamp(a.min(b).min(c), a.max(b).max(c)).distance_squared(from)
 }
 
 /// The box around the points of a part, in each pose.

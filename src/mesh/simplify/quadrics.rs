@@ -1,7 +1,7 @@
 //! The quadric cost: the quadrics of every point in each pose, and of every vertex's attributes.
 
 use super::Surface;
-use super::attributes::Attributes;
+use super::attributes::{Attributes, Joint};
 use super::neighbors::{Neighbor, Neighbors, Wedge};
 use super::points::{NO_BODY, Points};
 use super::quadric::Quadric;
@@ -16,6 +16,10 @@ const BORDER: f64 = 10.0;
 /// With more of it, models of many hard-edged parts are further off.
 const SEAM: f64 = 0.25;
 
+/// Number of wedges of a point from which on the attributes of all are summed once, and not for each neighbour. The pole of a
+/// sphere has a wedge for each neighbour.
+const JOINED: usize = 8;
+
 /// The quadrics of a mesh.
 pub(crate) struct Quadrics<'a> {
     /// Quadrics of positions, point by point, each in all poses.
@@ -23,6 +27,8 @@ pub(crate) struct Quadrics<'a> {
     /// The rigid body on which all planes of a point lie, or [`NO_BODY`].
     bodies: Vec<u32>,
     attributes: Option<Attributes<'a>>,
+    /// The wedges of the point that was joined last.
+    joint: Joint<'a>,
 }
 
 impl<'a> Quadrics<'a> {
@@ -37,7 +43,7 @@ impl<'a> Quadrics<'a> {
             }
         }
         let attributes = (surface.stride > 0).then(|| Attributes::new(surface, points));
-        Self { shape, bodies, attributes }
+        Self { shape, bodies, attributes, joint: Joint::default() }
     }
 
     /// Whether attributes count.
@@ -127,6 +133,13 @@ impl<'a> Quadrics<'a> {
         }
     }
 
+    /// Prepares [`Self::attribute_cost`] for a point with these neighbours.
+    pub(crate) fn join(&mut self, points: &Points, neighbors: &Neighbors) {
+        if let Some(attributes) = self.attributes.as_ref().filter(|_| is_joined(points, neighbors)) {
+            attributes.join(neighbors.wedges().iter().map(|wedge| wedge.vertex), &mut self.joint);
+        }
+    }
+
     /// The sum of squared differences in attributes, by area, if a point collapses and each of its wedges is replaced by the
     /// cheapest vertex allowed; or a part of it that is above `most`.
     pub(crate) fn attribute_cost(
@@ -138,7 +151,11 @@ impl<'a> Quadrics<'a> {
         most: f64,
     ) -> f64 {
         let mut sum = 0.0;
-        if self.attributes.is_some() {
+        if let Some(attributes) = &self.attributes {
+            if let Some(target) = neighbor.only_target().filter(|_| is_joined(points, neighbors)) {
+                let d = points.position(neighbor.point, 0) - points.position(point, 0);
+                return attributes.joint_cost(&self.joint, target, d);
+            }
             for wedge in neighbors.wedges() {
                 sum += self.target(points, neighbors, point, neighbor, wedge).1;
                 // Rounding to f32 makes no number that is larger than another one smaller than it.
@@ -190,6 +207,12 @@ impl<'a> Quadrics<'a> {
             moved.iter().for_each(|[from, to]| attributes.merge(*from, *to, d));
         }
     }
+}
+
+/// Whether all wedges of a point become the same vertex wherever a neighbour has one, and are so many that their sum is
+/// worth while.
+fn is_joined(points: &Points, neighbors: &Neighbors) -> bool {
+    neighbors.wedges().len() >= JOINED && !neighbors.is_split() && !points.has_charts()
 }
 
 /// The cheapest collapse of several.

@@ -34,8 +34,14 @@ const LEAST: f64 = 0.0625;
 
 /// The square of the largest distance of a point from the planes of its triangles after a collapse, in any pose. `None` if
 /// the collapse turns a triangle by more than 75°, or takes its area away, in any pose. Triangles that have no area before
-/// may turn.
-pub(crate) fn deviation(topology: &Topology, points: &Points, point: u32, neighbor: u32) -> Option<f64> {
+/// may turn. The search begins with the triangle number `first` of the point, and leaves there the one that turns: what turns
+/// for one neighbour mostly does for the next.
+pub(crate) fn deviation(
+    topology: &Topology,
+    points: &Points,
+    [point, neighbor]: [u32; 2],
+    first: &mut usize,
+) -> Option<f64> {
     let mut worst = 0.0_f64;
     let body = points.common_body(&[point, neighbor]);
     let is_rigid = topology.ring(point).iter().all(|others| points.common_body(others) == body);
@@ -43,7 +49,10 @@ pub(crate) fn deviation(topology: &Topology, points: &Points, point: u32, neighb
     for pose in 0..poses {
         let (from, to) = (points.position(point, pose), points.position(neighbor, pose));
         let moved = from - to;
-        for &[next, last] in topology.ring(point) {
+        let ring = topology.ring(point);
+        let start = (*first).min(ring.len());
+        for at in (start..ring.len()).chain(0..start) {
+            let [next, last] = ring[at];
             if next == neighbor || last == neighbor {
                 continue;
             }
@@ -56,6 +65,7 @@ pub(crate) fn deviation(topology: &Topology, points: &Points, point: u32, neighb
                 if is_flat(before.length_squared(), [next - from, last - from]) {
                     continue;
                 }
+                *first = at;
                 return None;
             }
             if is_flat(before.length_squared(), [next - from, last - from]) {

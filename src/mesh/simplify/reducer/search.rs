@@ -42,8 +42,16 @@ impl Reducer<'_> {
         Some(Best { neighbor, cost, base: cost, is_second: false, is_measured: false })
     }
 
-    fn find_any(&mut self, point: u32) -> Option<Best> {
+    /// Collects the neighbours of a point, and prepares the costs of collapses into them.
+    fn look(&mut self, point: u32) {
         self.neighbors.look(&self.topology, &self.points, point, &mut self.marks);
+        if let Some(quadrics) = &mut self.quadrics {
+            quadrics.join(&self.points, &self.neighbors);
+        }
+    }
+
+    fn find_any(&mut self, point: u32) -> Option<Best> {
+        self.look(point);
         let mut best: Option<(f32, u32)> = None;
         for neighbor in self.neighbors.all() {
             let most = best.map_or(f32::INFINITY, |(cost, _)| cost);
@@ -60,7 +68,7 @@ impl Reducer<'_> {
         if self.listed == Some(point) {
             return;
         }
-        self.neighbors.look(&self.topology, &self.points, point, &mut self.marks);
+        self.look(point);
         let mut costs = std::mem::take(&mut self.costs);
         costs.clear();
         let all = self.neighbors.all().iter();
@@ -72,24 +80,23 @@ impl Reducer<'_> {
 
     /// The most frequent reason why points that are left cannot collapse; [`Stopped::Topology`] if there are none.
     pub(super) fn hindrance(&mut self) -> Stopped {
-        let mut counts =
-            [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance]
-                .map(|reason| (reason, 0_usize));
+        const REASONS: [Stopped; 5] =
+            [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance];
+        let mut counts = [0_usize; Stopped::Distance as usize + 1];
         for point in 0..self.points.len() as u32 {
             self.topology.refresh(point);
             if !self.topology.ring(point).is_empty() {
-                let hindrance = self.hindrance_of(point);
-                for (reason, count) in &mut counts {
-                    *count += usize::from(*reason == hindrance);
-                }
+                counts[self.hindrance_of(point) as usize] += 1;
             }
         }
-        // `max_by_key` finds the last of equal ones, and the reversed list ends with the first.
-        counts
-            .into_iter()
-            .rev()
-            .max_by_key(|(_, count)| *count)
-            .map_or(Stopped::Topology, |(reason, _)| reason)
+        // The first of equally frequent ones.
+        let mut most = Stopped::Topology;
+        for reason in REASONS {
+            if counts[reason as usize] > counts[most as usize] {
+                most = reason;
+            }
+        }
+        most
     }
 
     /// The reason why the cheapest collapse of a point is illegal.
@@ -137,17 +144,21 @@ impl Reducer<'_> {
     /// As [`Self::find_legal`], where distances are not limited. The cost of a collapse takes longer than its tests then,
     /// and is worked out only for those that pass.
     fn find_turning_none(&mut self, point: u32) -> Option<Best> {
-        self.neighbors.look(&self.topology, &self.points, point, &mut self.marks);
+        self.look(point);
         let neighbors = std::mem::take(&mut self.neighbors);
-        let mut best: Option<Best> = None;
+        let (mut best, mut first): (Option<Best>, usize) = (None, 0);
         for neighbor in neighbors.all() {
-            let candidate = second(0.0, neighbor.point);
-            if !self.is_allowed(point, neighbor.point) || self.measure(point, candidate).is_none() {
+            let both = [point, neighbor.point];
+            // The order of a point's triangles, and by it that of equal costs, depends on when they are brought up to date:
+            // here for every neighbour, whether the next test is passed or not.
+            self.topology.refresh(neighbor.point);
+            let Some(deviation) = deviation(&self.topology, &self.points, both, &mut first) else { continue };
+            if !self.is_allowed(point, neighbor.point) {
                 continue;
             }
             let most = best.map_or(f32::INFINITY, |best| best.cost);
             let cost = self.cost_of(&neighbors, point, neighbor, most);
-            let Some(checked) = self.measure(point, Best { cost, base: cost, ..candidate }) else { continue };
+            let checked = self.with_deviation(second(cost, neighbor.point), deviation);
             let order = |best: &Best| (best.cost.to_bits(), best.base.to_bits(), best.neighbor);
             if best.is_none_or(|best| order(&checked) < order(&best)) {
                 best = Some(checked);
@@ -202,12 +213,17 @@ impl Reducer<'_> {
     /// A collapse with its whole cost, which counts how far the point would be off the planes of its triangles. `None` if
     /// it turns a triangle.
     pub(super) fn measure(&self, point: u32, best: Best) -> Option<Best> {
-        let deviation = deviation(&self.topology, &self.points, point, best.neighbor)?;
+        deviation(&self.topology, &self.points, [point, best.neighbor], &mut 0)
+            .map(|deviation| self.with_deviation(best, deviation))
+    }
+
+    /// A collapse with its whole cost, from the square of how far the point would be off the planes of its triangles.
+    fn with_deviation(&self, best: Best, deviation: f64) -> Best {
         let more = match &self.quadrics {
             None => 0.0,
             Some(quadrics) if quadrics.has_attributes() => BESIDE_ATTRIBUTES * deviation,
             Some(_) => (DEVIATION * deviation - f64::from(best.base)).max(0.0),
         };
-        Some(Best { cost: best.base + more as f32, is_measured: true, ..best })
+        Best { cost: best.base + more as f32, is_measured: true, ..best }
     }
 }
