@@ -15,6 +15,11 @@ pub struct Step {
 }
 
 impl Step {
+    /// A dispatch of `invocations` threads, numbered across all workgroups ([`Kernel::spread`]).
+    pub fn spread(gpu: &Gpu, kernel: &Kernel, groups: Vec<Group>, invocations: u32) -> Self {
+        Self { kernel: kernel.clone(), groups, workgroups: kernel.spread(gpu, invocations) }
+    }
+
     fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.kernel.pipeline);
         for (index, group) in self.groups.iter().enumerate() {

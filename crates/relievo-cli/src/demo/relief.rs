@@ -1,7 +1,7 @@
 //! The pictures of surface mapping.
 
 use relievo::Error;
-use relievo::surface::Measured;
+use relievo_lab::measure::relief::Measured;
 
 use super::{Entry, Page, entry};
 use crate::relief::Relief;

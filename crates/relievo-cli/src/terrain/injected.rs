@@ -6,9 +6,9 @@ use relievo::Error;
 use relievo::terrain::config::Config;
 use relievo::terrain::export::{HeightImage, HeightRange};
 use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::grid::Grid;
 
 use super::Terrain;
+use super::grid::Grid;
 use crate::arguments::height_range;
 use crate::memory;
 
