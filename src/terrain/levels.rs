@@ -131,10 +131,14 @@ impl HeightScratch {
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
-    /// Levels become larger: a buffer's last level is its largest. The base lattice and the output lie elsewhere.
+    /// The largest level that each buffer ever holds: coarse levels of small patches are wider than fine ones. The base lattice and
+    /// the output lie elsewhere.
     fn points(widths: &[u32], count: u32) -> [usize; 2] {
-        let mut between = widths[1..].iter().rev().skip(1);
-        [(); 2].map(|()| between.next().map_or(0, |width| points(*width, count)))
+        let mut most = [0; 2];
+        for (left, width) in widths[1..].iter().rev().skip(1).enumerate() {
+            most[left % 2] = most[left % 2].max(points(*width, count));
+        }
+        most
     }
 
     fn check(&self, widths: &[u32], count: u32) -> Result<(), InputError> {
@@ -225,6 +229,13 @@ mod tests {
         assert_eq!(points(257, 0, 0), [3 * 131 * 131, 3 * 68 * 68]);
         assert_eq!(points(3, 0, 0), [0, 0], "one dispatch");
         assert_eq!(points(5, 0, 0), [3 * 5 * 5, 0], "two");
+        // Where interpolation is smooth, the levels before the last of 3 points are 9, 12, 13, 14, 14, … points wide.
+        let smooth = Config {
+            interpolation: Interpolation::Smooth,
+            coarse_levels: 8,
+            ..Config::new(3, 1.0, "").expect("valid")
+        };
+        assert_eq!(HeightScratch::points(&level_widths(&smooth, 0), 3), [3 * 14 * 14; 2]);
     }
 
     /// The widths of levels, which are the same for all windows, cover every window, whatever its alignment.
