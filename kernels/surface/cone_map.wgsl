@@ -10,6 +10,7 @@
 // whole, so that the search takes O(log N) per cell.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
+import package::wgsl::surface::corner::corner_index;
 
 // The ratio of distance to size from which a node of the pyramid is treated as a whole. Larger values give wider
 // cones and a slower computation: 4 saves one load in twenty-five in a march, and takes half as long again to compute.
@@ -47,14 +48,7 @@ fn highest(map: u32, level: u32, node: vec2<i32>) -> f32 {
 }
 
 fn texel(map: u32, at: vec2<i32>) -> f32 {
-    let size = vec2<i32>(params.size);
-    var inside = at;
-    if params.address == SURFACE_WRAP {
-        inside = select(at, vec2<i32>(0), at >= size);
-    } else {
-        inside = clamp(at - 1, vec2<i32>(0), size - 1);
-    }
-    return heights[(map * params.size.y + u32(inside.y)) * params.size.x + u32(inside.x)];
+    return heights[corner_index(params.size, params.address, map, at)];
 }
 
 // The largest radius for which the cone stays above the corners of a leaf that is `offset` cells away. Over a

@@ -1,192 +1,190 @@
-// Hydraulic erosion of windows, one cycle of the rule in `wgsl/terrain/pipes.wgsl` after the other. Each cycle takes the outermost
-// ring of samples from a window.
-//
-// A thread makes a column of samples. It streams the rows of the window through registers and, where a dispatch makes two cycles,
-// the rows after the first cycle too. What two samples exchange is written down for each of them; compilers compute it once.
-import package::wgsl::terrain::blocks::{Block, Blocks, Thread, block_of};
-import package::wgsl::terrain::outputs::store_four;
-import package::wgsl::terrain::pipes::{Cells, Exchange, cells_of, cycle, downwards, params, row_of};
+// A cycle of hydraulic erosion of windows (virtual pipes after Mei, Decaudin and Hu 2007, in integers). Each sample has ground,
+// water, suspended sediment, and the shares of both that leave for its four neighbours. A cycle moves these shares, lets ground
+// creep and banks slide, erodes or deposits, evaporates, rains, and computes the next shares from the surfaces before the cycle.
+// Whatever moves between two samples is computed from the old state alone. Each window loses its outermost ring of samples.
+import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
+import package::wgsl::terrain::points::Thread;
+import package::wgsl::terrain::windows::{inner_point, sample_index, windows};
 
-// The cycles of a dispatch. 1: a column is four samples wide. 2: it is eight samples wide, and loads and stores, which take most
-// of the time of software adapters, are nearly half as many.
-override CYCLES: u32 = 1u;
+// The most water on a sample, in 1/65536 height units.
+const WATER_LIMIT: i32 = 0x4000000;
+// The most sediment in the water of a sample, in 1/65536 height units.
+const SEDIMENT_LIMIT: i32 = 0x4000000;
 
-@group(0) @binding(1) var<storage, read> windows: array<i32>;
+struct HydraulicParams {
+    // Windows, and samples along an edge of each. The reference, which makes one window, reads only the width.
+    count: u32,
+    in_width: u32,
+    // 0 in the first cycle, before which there is no water; else 1.
+    wet: i32,
+    // 1 in the last cycle, after which all sediment settles; else 0.
+    settles: i32,
+    // Water that falls on each sample, in 1/65536 height units.
+    rain: i32,
+    // Fractions in 1/32768.
+    evaporation: i32,
+    erosion: i32,
+    deposition: i32,
+    // Sediment for each unit of discharge at a slope of 1, in 1/256.
+    capacity: i32,
+    // The discharge up to which nothing is carried, and the most that spreads to each neighbour, in 1/65536 height units.
+    threshold: i32,
+    // The fall to the next sample at a slope of 1; steeper ones count as this.
+    steepest: i32,
+    // With factor and shift, a fall is a slope in 1/4096: ((fall >> shift) * factor) >> 15.
+    slope_shift: u32,
+    slope_factor: i32,
+    // The largest stable difference between two neighbours.
+    talus: i32,
+    // The fraction of each difference that creeps down, in 1/32768, at most 1/16.
+    creep: i32,
+}
+
+@group(0) @binding(0) var<uniform> params: HydraulicParams;
+@group(0) @binding(2) var<storage, read_write> outputs: array<i32>;
+// Water, sediment, and the shares, in 1/32768, that leave to the west, in the low half of a word, and to the east; to the north,
+// and to the south.
 @group(0) @binding(3) var<storage, read> flows: array<vec4<i32>>;
 @group(0) @binding(4) var<storage, read_write> flow_outputs: array<vec4<i32>>;
-@group(0) @binding(5) var<uniform> blocks: Blocks;
 
-// Eight samples of a row from the first one on; where a column is four wide, the last two have no meaning.
-struct Eight {
-    a: Cells,
-    b: Cells,
-}
-
-// Twelve samples of a row from the first one on, or the ten in the middle of twelve, of which `c` has two and two without meaning.
-struct Twelve {
-    a: Cells,
-    b: Cells,
-    c: Cells,
-}
-
-// What eight samples of a row exchange with those below.
-struct EightExchange {
-    a: Exchange,
-    b: Exchange,
-}
-
-// What ten do, of which `c` has two.
-struct TenExchange {
-    a: Exchange,
-    b: Exchange,
-    c: Exchange,
+struct Cell {
+    ground: i32,
+    water: i32,
+    sediment: i32,
+    // To the west, east, north and south.
+    shares: vec4<i32>,
 }
 
 @compute @workgroup_size(64)
 fn main(thread: Thread) {
-    let block = block_of(blocks, thread);
-    if !block.there {
+    let point = inner_point(params.in_width, params.count, thread);
+    if !point.there {
         return;
     }
-    if CYCLES == 1u {
-        make_one(block);
-    } else {
-        make_two(block);
-    }
+    let at = sample_index(params.in_width, point);
+    let made = cycle(cell_at(at), cell_at(at - 1u), cell_at(at + 1u), cell_at(at - params.in_width), cell_at(at + params.in_width));
+    outputs[point.index] = made.ground + made.sediment * params.settles;
+    flow_outputs[point.index] = vec4<i32>(
+        made.water, made.sediment, made.shares.x | (made.shares.y << 16u), made.shares.z | (made.shares.w << 16u));
 }
 
-// Makes a column of samples, four wide, by one cycle.
-fn make_one(block: Block) {
-    let width = params.in_width - 2u;
-    let column = 4u * block.at.x;
-    let first = blocks.rows * block.at.y;
-    let last = min(first + blocks.rows, width);
-    var source = (block.window * params.in_width + first) * params.in_width + column;
-    var row = (block.window * width + first) * width;
-    var above = eight_at(source);
-    source += params.in_width;
-    var here = eight_at(source);
-    var north = downwards(row_of(above.a, above.b).own, row_of(here.a, here.b).own);
-    for (var y = first; y < last; y++) {
-        source += params.in_width;
-        let below = eight_at(source);
-        let own = row_of(here.a, here.b);
-        let under = row_of(below.a, below.b).own;
-        let south = downwards(own.own, under);
-        store(row, column, width, cycle(own, row_of(above.a, above.b).own, under, north, south, params.rain));
-        row += width;
-        above = here;
-        here = below;
-        north = south;
-    }
-}
-
-// Makes a column of samples, eight wide, by two cycles.
-fn make_two(block: Block) {
-    let width = params.in_width - 4u;
-    let column = 8u * block.at.x;
-    let first = blocks.rows * block.at.y;
-    let rows = min(blocks.rows, width - first);
-    var source = (block.window * params.in_width + first) * params.in_width + column;
-    // The first two of the rows after one cycle make no row after two.
-    var row = (block.window * width + first) * width - 2u * width;
-    var above = twelve_at(source);
-    source += params.in_width;
-    var here = twelve_at(source);
-    var north = ten_downwards(middle(above), middle(here));
-    var next_above: Twelve;
-    var next_here: Twelve;
-    var next_north: EightExchange;
-    for (var y = 0u; y < rows + 2u; y++) {
-        source += params.in_width;
-        let below = twelve_at(source);
-        let south = ten_downwards(middle(here), middle(below));
-        let next_below = after_first(above, here, below, north, south);
-        let next_south = eight_downwards(next_here, next_below);
-        let made = after_second(next_above, next_here, next_below, next_north, next_south);
-        let stored = select(0u, width, y >= 2u);
-        store(row, column, stored, made.a);
-        store(row, column + 4u, stored, made.b);
-        row += width;
-        above = here;
-        here = below;
-        north = south;
-        next_above = next_here;
-        next_here = next_below;
-        next_north = next_south;
-    }
-}
-
-// The ten samples in the middle of twelve.
-fn middle(row: Twelve) -> Twelve {
-    return Twelve(row_of(row.a, row.b).own, row_of(row.b, row.c).own, row_of(row.c, row.c).own);
-}
-
-fn ten_downwards(above: Twelve, below: Twelve) -> TenExchange {
-    return TenExchange(downwards(above.a, below.a), downwards(above.b, below.b), downwards(above.c, below.c));
-}
-
-// What the eight samples in the middle of ten exchange with those below.
-fn eight_downwards(above: Twelve, below: Twelve) -> EightExchange {
-    return EightExchange(
-        downwards(row_of(above.a, above.b).own, row_of(below.a, below.b).own),
-        downwards(row_of(above.b, above.c).own, row_of(below.b, below.c).own));
-}
-
-// The ten samples in the middle of a row of twelve after the first of two cycles.
-fn after_first(above: Twelve, row: Twelve, below: Twelve, north: TenExchange, south: TenExchange) -> Twelve {
-    let over = middle(above);
-    let under = middle(below);
-    return Twelve(
-        cycle(row_of(row.a, row.b), over.a, under.a, north.a, south.a, params.rain),
-        cycle(row_of(row.b, row.c), over.b, under.b, north.b, south.b, params.rain),
-        cycle(row_of(row.c, row.c), over.c, under.c, north.c, south.c, params.rain));
-}
-
-// The eight samples in the middle of a row of ten after the second of two cycles.
-fn after_second(above: Twelve, row: Twelve, below: Twelve, north: EightExchange, south: EightExchange) -> Eight {
-    let over = middle(above);
-    let under = middle(below);
-    return Eight(
-        cycle(row_of(row.a, row.b), over.a, under.a, north.a, south.a, params.second_rain),
-        cycle(row_of(row.b, row.c), over.b, under.b, north.b, south.b, params.second_rain));
-}
-
-fn eight_at(first: u32) -> Eight {
-    return Eight(cells_at(first), cells_at(first + 4u));
-}
-
-fn twelve_at(first: u32) -> Twelve {
-    return Twelve(cells_at(first), cells_at(first + 4u), cells_at(first + 8u));
-}
-
-fn cells_at(first: u32) -> Cells {
-    let a = flow_at(first);
-    let b = flow_at(first + 1u);
-    let c = flow_at(first + 2u);
-    let d = flow_at(first + 3u);
-    return cells_of(
-        vec4<i32>(windows[first], windows[first + 1u], windows[first + 2u], windows[first + 3u]),
-        vec4<i32>(a.x, b.x, c.x, d.x), vec4<i32>(a.y, b.y, c.y, d.y), vec4<i32>(a.z, b.z, c.z, d.z),
-        vec4<i32>(a.w, b.w, c.w, d.w));
-}
-
-fn flow_at(at: u32) -> vec4<i32> {
+fn cell_at(at: u32) -> Cell {
     // What the buffer held before the first cycle does not count; it may be shorter then.
-    return select(vec4<i32>(0), flows[at], vec4<bool>(params.wet != 0));
+    let flow = select(vec4<i32>(0), flows[at], params.wet != 0);
+    let shares = vec4<i32>(flow.z & 0xffff, flow.z >> 16u, flow.w & 0xffff, flow.w >> 16u);
+    return Cell(windows[at], flow.x, flow.y, shares);
 }
 
-// Stores the samples `column` to `column` + 3 of a row that starts at `row` and has `width` of them.
-fn store(row: u32, column: u32, width: u32, made: Cells) {
-    store_four(row, column, width, made.ground + made.sediment * params.settles);
-    store_flow(row, column, width, vec4<i32>(made.water.x, made.sediment.x, made.across.x, made.along.x));
-    store_flow(row, column + 1u, width, vec4<i32>(made.water.y, made.sediment.y, made.across.y, made.along.y));
-    store_flow(row, column + 2u, width, vec4<i32>(made.water.z, made.sediment.z, made.across.z, made.along.z));
-    store_flow(row, column + 3u, width, vec4<i32>(made.water.w, made.sediment.w, made.across.w, made.along.w));
+// A sample after a cycle, given its neighbours. Vectors hold what belongs to the west, east, north and south.
+fn cycle(own: Cell, west: Cell, east: Cell, north: Cell, south: Cell) -> Cell {
+    let ground = vec4<i32>(west.ground, east.ground, north.ground, south.ground);
+    let water = vec4<i32>(west.water, east.water, north.water, south.water);
+    let sediment = vec4<i32>(west.sediment, east.sediment, north.sediment, south.sediment);
+    // The neighbours' shares for this sample, and all of them.
+    let shares = vec4<i32>(west.shares.y, east.shares.x, north.shares.w, south.shares.z);
+    let all_shares = vec4<i32>(sum(west.shares), sum(east.shares), sum(north.shares), sum(south.shares));
+
+    let leaving = part(vec4<i32>(own.water), own.shares);
+    let water_gone = min(leaving, water_room(water));
+    let water_come = min(part(water, shares), water_room(vec4<i32>(own.water)));
+    let room = ground_room(ground, sediment);
+    let own_room = ground_room(vec4<i32>(own.ground), vec4<i32>(own.sediment));
+    let silt_gone = min(part(vec4<i32>(own.sediment), own.shares), min(sediment_room(sediment), room));
+    let silt_come = min(part(sediment, shares), min(sediment_room(vec4<i32>(own.sediment)), own_room));
+    let steps = own.ground - ground;
+    let excess = max(abs(steps) - params.talus, vec4<i32>(0)) >> vec4<u32>(3u);
+    let sliding = excess + part(abs(steps), vec4<i32>(params.creep));
+    let slid = select(min(sliding, own_room), -min(sliding, room), steps > vec4<i32>(0));
+
+    let moved = own.water + sum(water_come - water_gone);
+    let suspended = own.sediment + sum(silt_come - silt_gone);
+    let falls = surface(vec4<i32>(own.ground), vec4<i32>(own.water)) - surface(ground, water);
+    let eighths = sum(part(water, all_shares) >> vec4<u32>(3u));
+    let carried = capacity(discharge(sum(water_gone + water_come) >> 1u, eighths), slope(falls));
+    let lifted = lifted(steps, moved, carried - suspended);
+    let next_water = min(moved - part_of(moved, params.evaporation) + params.rain, WATER_LIMIT);
+    // A pipe keeps half of its flux, and takes a sixteenth of the fall. A thirty-second of the water, below the threshold, spreads
+    // through each, so that streams do not run along rows and columns.
+    let spread = min(next_water >> 5u, params.threshold);
+    let flux = leaving - (leaving >> vec4<u32>(1u)) + (falls >> vec4<u32>(4u)) + spread;
+    let bounded = clamp(flux, vec4<i32>(0), vec4<i32>(WATER_LIMIT));
+    return Cell(own.ground + sum(slid) - lifted, next_water, suspended + lifted, next_shares(bounded, next_water));
 }
 
-fn store_flow(row: u32, column: u32, width: u32, flow: vec4<i32>) {
-    if column < width {
-        flow_outputs[row + column] = flow;
+fn sum(sides: vec4<i32>) -> i32 {
+    return sides.x + sides.y + sides.z + sides.w;
+}
+
+// The height of the water's surface.
+fn surface(ground: vec4<i32>, water: vec4<i32>) -> vec4<i32> {
+    return min(ground + water, vec4<i32>(HEIGHT_LIMIT));
+}
+
+// The most water, sediment and ground that one neighbour may add.
+fn water_room(water: vec4<i32>) -> vec4<i32> {
+    return (WATER_LIMIT - water) >> vec4<u32>(2u);
+}
+
+fn sediment_room(sediment: vec4<i32>) -> vec4<i32> {
+    return (SEDIMENT_LIMIT - sediment) >> vec4<u32>(2u);
+}
+
+fn ground_room(ground: vec4<i32>, sediment: vec4<i32>) -> vec4<i32> {
+    return (HEIGHT_LIMIT - ground - sediment) >> vec4<u32>(3u);
+}
+
+// A quarter of the discharge of a sample, and three quarters of the mean of what leaves its neighbours, given in eighths, so that
+// streams are wider than a sample and run in any direction alike.
+fn discharge(own: i32, eighths: i32) -> i32 {
+    return (own >> 2u) + eighths + (eighths >> 1u);
+}
+
+// The slope, in 1/4096, of a surface that falls so far to its neighbours. It has the length of its two components, by the larger
+// one and three eighths of the smaller one.
+fn slope(falls: vec4<i32>) -> i32 {
+    let steepest = clamp(max(falls.xz, falls.yw), vec2<i32>(0), vec2<i32>(params.steepest));
+    let slopes = ((steepest >> vec2<u32>(params.slope_shift)) * params.slope_factor) >> vec2<u32>(15u);
+    return max(slopes.x, slopes.y) + ((min(slopes.x, slopes.y) * 3) >> 3u);
+}
+
+// The sediment that a discharge carries down a slope.
+fn capacity(discharge: i32, slope: i32) -> i32 {
+    let rate = min((slope * params.capacity) >> 8u, 0x40000);
+    let driving = clamp(discharge - params.threshold, 0, WATER_LIMIT);
+    let high = driving >> 12u;
+    let low = ((driving & 4095) * rate) >> 12u;
+    // Without the one that is subtracted, the largest product would be 2^32.
+    let product = u32(high) * u32(min(rate, 0x40000 - (high >> 14u)));
+    return i32(min(product + u32(low), u32(SEDIMENT_LIMIT)));
+}
+
+// The ground that goes into suspension, or, below 0, the sediment that settles, given how much lower the neighbours are. Ground
+// sinks no deeper than its lowest neighbour, and rises no higher than its highest or the water.
+fn lifted(steps: vec4<i32>, water: i32, lacking: i32) -> i32 {
+    if lacking > 0 {
+        let deepest = max(max(max(steps.x, steps.y), max(steps.z, steps.w)), 0);
+        return min(part_of(lacking, params.erosion), deepest >> 3u);
     }
+    let highest = max(-min(min(steps.x, steps.y), min(steps.z, steps.w)), 0);
+    return -min(part_of(-lacking, params.deposition), max(highest >> 3u, water >> 2u));
+}
+
+// The shares that leave next: all together give three quarters of the water at most, so that neighbouring samples do not
+// exchange all of it from cycle to cycle.
+fn next_shares(flux: vec4<i32>, water: i32) -> vec4<i32> {
+    let whole = u32(max(max(sum(flux), water), 1));
+    let shift = 16u - min(countLeadingZeros(whole), 16u);
+    let inverse = 0x80000000u / (whole >> shift);
+    let shares = ((vec4<u32>(flux) >> vec4<u32>(shift)) * inverse) >> vec4<u32>(16u);
+    return (vec4<i32>(shares) * 3) >> vec4<u32>(2u);
+}
+
+// floor(amount * share / 32768) for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
+fn part(amounts: vec4<i32>, shares: vec4<i32>) -> vec4<i32> {
+    let bits = vec4<u32>(15u);
+    return (amounts >> bits) * shares + (((amounts & vec4<i32>(32767)) * shares) >> bits);
+}
+
+fn part_of(amount: i32, share: i32) -> i32 {
+    return (amount >> 15u) * share + (((amount & 32767) * share) >> 15u);
 }

@@ -46,15 +46,6 @@ impl ColorTexture {
         };
         upload(gpu, mips, wraps, wgpu::TextureFormat::Rgba16Float, halves)
     }
-
-    /// The same texture with another sampler. The mip levels stay those that were uploaded.
-    ///
-    /// # Errors
-    /// [`GpuError`].
-    pub fn with_sampling(self, gpu: &Gpu, sampling: &Sampling) -> Result<Self, GpuError> {
-        let sampler = sampler_of(gpu, sampling)?;
-        Ok(Self { sampler, ..self })
-    }
 }
 
 /// A sampler.

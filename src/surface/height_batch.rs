@@ -7,7 +7,7 @@ use crate::{Error, InputError};
 /// A batch of height maps of one size.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
-    /// Heights, row by row, map by map; padded to a multiple of four.
+    /// Heights, row by row, map by map.
     pub heights: Buffer<f32>,
     /// Texels of each map along x and y.
     pub size: [u32; 2],
@@ -34,12 +34,9 @@ impl HeightBatch {
             )
             .into());
         }
-        let texels: usize = size.iter().map(|edge| *edge as usize).product();
-        // Kernels load vectors of four.
-        let heights = Buffer::new(gpu, "height maps", (texels * maps.len()).next_multiple_of(4))
-            .map_err(|error| error.with_remedy(REMEDY))?;
         let all: Vec<f32> = maps.iter().flat_map(HeightMap::heights).copied().collect();
-        heights.write(gpu, &all)?;
+        let heights =
+            Buffer::from_slice(gpu, "height maps", &all).map_err(|error| error.with_remedy(REMEDY))?;
         Ok(Self { heights, size, count: maps.len() as u32 })
     }
 }

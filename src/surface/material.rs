@@ -28,7 +28,7 @@ pub enum Green {
 }
 
 /// The parameters of a relief, besides its maps, that may change without a new pipeline. Whether there are
-/// shadows and silhouettes is not among them (`surface::ReliefOptions`, `surface::picture::Scene`).
+/// shadows and silhouettes is not among them (`surface::ReliefOptions`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].

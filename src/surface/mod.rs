@@ -5,21 +5,17 @@
 #[doc(hidden)]
 pub mod color;
 pub mod cone_map;
-pub mod exact;
 #[cfg(feature = "gpu")]
 pub(crate) mod height_batch;
 pub mod height_pyramid;
 pub mod linear_image;
 pub mod map;
 mod material;
-mod measure;
 pub mod mesh;
 pub mod mips;
 mod options;
-pub mod picture;
 pub mod relief;
 pub mod tangent;
-pub mod view;
 
 #[cfg(feature = "gpu")]
 pub use color::ColorTexture;
@@ -28,7 +24,6 @@ pub use height_batch::HeightBatch;
 pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
 pub use material::{Green, Material, Shadow};
-pub use measure::Measured;
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
 #[cfg(feature = "gpu")]
@@ -37,4 +32,3 @@ pub use options::ReliefOptions;
 #[cfg(feature = "gpu")]
 pub use relief::textures::SurfaceTextures;
 pub use relief::{Hit, March, Method, Outcome, Ray};
-pub use view::SquareView;

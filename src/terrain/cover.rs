@@ -1,13 +1,8 @@
 //! What covers the ground, as shaders take it: zones, the texels of their textures at the scale of a colour map, and how these lie
 //! on the ground.
 
-use crate::hash::{LANES, threefry2x32};
-#[cfg(feature = "gpu")]
-use glam::{UVec4, Vec4};
-
 pub use crate::shared::terrain::texturing::{TILES_PERIOD, TRIPLANAR_PLANES};
-#[cfg(feature = "gpu")]
-use crate::shared::terrain::tiles::PackedZone;
+pub use crate::shared::terrain::tiles::MapZone;
 /// A zone as shaders take it ([`zone_of`]).
 pub use crate::shared::terrain::zones::Zone as ShaderZone;
 use crate::terrain::config::{
@@ -18,17 +13,6 @@ use crate::{InputError, srgb};
 
 /// 2^22 of these units are a texture tile, so that a word holds [`TILES_PERIOD`] tiles.
 const TILE_ONE: f64 = 4_194_304.0;
-
-/// A zone as the colour map uses it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MapZone {
-    /// Where it lies.
-    pub zone: ShaderZone,
-    /// The index of the first texel of its texture.
-    pub first: u32,
-    /// The texels along an edge of its texture are 2 to this power.
-    pub edge_log2: u32,
-}
 
 /// A zone in the form of the shaders.
 pub fn zone_of(zone: &Zone) -> ShaderZone {
@@ -97,25 +81,6 @@ impl Cover {
         Ok(cover)
     }
 
-    /// A cover whose zones have random texels, 4^`edge_log2` each.
-    pub fn random(zones: &[Zone], edge_log2: u32) -> Self {
-        let texels = 1_u32 << (2 * edge_log2);
-        let map_zone =
-            |(at, zone): (u32, &Zone)| MapZone { zone: zone_of(zone), first: at * texels, edge_log2 };
-        let random = |at: u32| {
-            let (first, second) = threefry2x32([5, 9], [at; LANES], [edge_log2; LANES]);
-            [first[0] as u16, (first[0] >> 16) as u16, second[0] as u16, (second[0] >> 16) as u16]
-        };
-        Self {
-            zones: (0..).zip(zones).map(map_zone).collect(),
-            texels: (0..zones.len() as u32 * texels).map(random).collect(),
-            terrain_scale: 20.0,
-            tile: 130.0,
-            variation: 0.0,
-            triplanar: false,
-        }
-    }
-
     /// Checks that there are 1 to 32 zones with valid ranges, whose texels are there, and every other field.
     ///
     /// # Errors
@@ -161,20 +126,6 @@ impl Cover {
             return Err(InputError::new(format!("{path}.first"), first, bound));
         }
         Ok(())
-    }
-
-    /// The zones as kernels read them.
-    #[cfg(feature = "gpu")]
-    pub fn packed_zones(&self) -> [PackedZone; MAX_ZONES] {
-        let mut packed =
-            [PackedZone { heights: Vec4::ZERO, slopes: Vec4::ZERO, texels: UVec4::ZERO }; MAX_ZONES];
-        for (packed, MapZone { zone, first, edge_log2 }) in packed.iter_mut().zip(&self.zones) {
-            let ([rise, level], [fall, steep]) = (zone.rise, zone.fall);
-            packed.heights = Vec4::new(zone.min, zone.max, rise, level);
-            packed.slopes = Vec4::new(fall, steep, zone.height_blend, zone.repeats);
-            packed.texels = UVec4::new(*first, *edge_log2, 0, 0);
-        }
-        packed
     }
 
     /// The texels as the colour map reads them: red and green in the halves of a word, blue and height in those of another.

@@ -8,29 +8,29 @@
 mod erosion;
 
 use crate::Error;
-use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
-use crate::terrain::config::{Border, Config, Interpolation};
+use crate::terrain::config::{Border, Interpolation};
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
-use crate::terrain::fields::{Fields, REMEDY};
-use crate::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use crate::terrain::fields::Fields;
+use crate::terrain::height::{HeightPass, HeightScratch};
 use crate::terrain::hydraulic::HydraulicPass;
+use crate::terrain::levels::LevelPass;
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::smooth::SmoothPass;
 use crate::terrain::thermal::ThermalPass;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::Window;
-use crate::terrain::wrap::{WrapBuffers, WrapJob, WrapPass};
+use crate::terrain::wrap::WrapPass;
 use erosion::after;
 
 /// Generates the fields of one recipe.
 #[derive(Debug, Clone)]
 pub struct Generator {
     recipe: Recipe,
-    windows: WindowPass,
-    wrap: WrapPass,
+    levels: LevelPass,
     border: BorderPass,
     pad: PadPass,
     despike: DespikePass,
@@ -48,8 +48,11 @@ impl Generator {
         recipe.validate(&[], 0)?;
         let (offset, injection) = (recipe.config.offset, recipe.features.injection());
         Ok(Self {
-            windows: WindowPass::new(gpu, &recipe)?,
-            wrap: WrapPass::new(gpu, offset, injection)?,
+            levels: match (recipe.config.border, recipe.config.interpolation) {
+                (Border::Seamless, Interpolation::Linear) => HeightPass::new(gpu, offset, injection)?.0,
+                (Border::Seamless, Interpolation::Smooth) => SmoothPass::new(gpu, offset, injection)?.0,
+                _ => WrapPass::new(gpu, offset, injection)?.0,
+            },
             border: BorderPass::new(gpu)?,
             pad: PadPass::new(gpu)?,
             despike: DespikePass::new(gpu, injection.is_some())?,
@@ -125,15 +128,26 @@ impl Generator {
     }
 
     async fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Fields, Error> {
-        let (config, features) = (&self.recipe.config, &self.recipe.features);
-        let count = patches.len() as u32;
-        let windows = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, count)?;
-        debug_assert_eq!(windows.heights.len(), HeightJob::output_points(config, count, apron));
         let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, apron })).sum();
-        let job = self.windows.prepare(gpu, config, [count, apron], capacity, &windows.heights)?;
-        job.set(gpu, patches, features)?;
-        gpu.run_async("terrain windows", |encoder| job.record(encoder)).await?;
-        Ok(windows)
+        self.generated(gpu, patches, apron, capacity).await
+    }
+
+    /// Fields of `patches` with `apron`, with room for so many features.
+    async fn generated(
+        &self,
+        gpu: &Gpu,
+        patches: &[[i32; 2]],
+        apron: u32,
+        capacity: usize,
+    ) -> Result<Fields, Error> {
+        let config = &self.recipe.config;
+        let count = patches.len() as u32;
+        let fields = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, count)?;
+        let scratch = HeightScratch::new(gpu, config, [count, apron])?;
+        let job = self.levels.prepare(gpu, config, [count, apron], capacity, &fields.heights, &scratch)?;
+        job.set(gpu, patches, &self.recipe.features)?;
+        gpu.run_async(self.levels.label, |encoder| job.record(encoder)).await?;
+        Ok(fields)
     }
 
     /// The number of features that a window sees, halos included: those within its base lattice and one point
@@ -198,26 +212,13 @@ impl Generator {
         let config = &self.recipe.config;
         let mut parts = Vec::new();
         for part in patches.chunks(Fields::most(gpu, config.patch_size)) {
-            parts.push(self.wrapped(gpu, part).await?);
+            parts.push(self.generated(gpu, part, 0, self.recipe.features.len()).await?);
         }
         if let Border::Blend(width) = config.border {
             let job = self.border.prepare(gpu, width, &neighbours(patches), &parts)?;
             job.run_async(gpu).await?;
         }
         Ok(parts)
-    }
-
-    async fn wrapped(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Fields, Error> {
-        let (config, features) = (&self.recipe.config, &self.recipe.features);
-        let count = patches.len() as u32;
-        let fields = Fields::new(gpu, "terrain/wrap", config.patch_size, count)?;
-        let scratch = Buffer::new(gpu, "terrain scratch", WrapJob::scratch_points(config, count))
-            .map_err(|error| error.with_remedy(REMEDY))?;
-        let buffers = WrapBuffers { output: &fields.heights, scratch: &scratch };
-        let job = self.wrap.prepare(gpu, config, count, features.len(), buffers)?;
-        job.set(gpu, patches, features)?;
-        gpu.run_async("terrain/wrap", |encoder| job.record(encoder)).await?;
-        Ok(fields)
     }
 
     /// Despikes and erodes windows, alternating between them and a second buffer.
@@ -240,7 +241,7 @@ impl Generator {
             let buffers = DespikeBuffers { windows: &both[0], features: &features, cropped: &both[1] };
             let job = self.despike.prepare(gpu, despike, buffers)?;
             gpu.run_async("terrain/despike", |encoder| job.record(encoder)).await?;
-            both = after(both, 1, 1);
+            both = after(both, 1);
         }
         both = self.slide(gpu, thermal, both).await?;
         if let (Some(hydraulic), Some(pass)) = (hydraulic, &self.hydraulic) {
@@ -261,44 +262,6 @@ impl Generator {
             injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
         })?;
         Ok(index)
-    }
-}
-
-/// What makes windows of the plane.
-#[derive(Debug, Clone)]
-enum WindowPass {
-    Linear(HeightPass),
-    Smooth(SmoothPass),
-}
-
-impl WindowPass {
-    fn new(gpu: &Gpu, recipe: &Recipe) -> Result<Self, Error> {
-        let (offset, injection) = (recipe.config.offset, recipe.features.injection());
-        Ok(match recipe.config.interpolation {
-            Interpolation::Linear => Self::Linear(HeightPass::new(gpu, offset, injection)?),
-            Interpolation::Smooth => Self::Smooth(SmoothPass::new(gpu, offset, injection)?),
-        })
-    }
-
-    /// Prepares the generation of `count` windows with `apron`, with scratch of its own.
-    fn prepare(
-        &self,
-        gpu: &Gpu,
-        config: &Config,
-        [count, apron]: [u32; 2],
-        capacity: usize,
-        output: &Buffer<i32>,
-    ) -> Result<HeightJob, Error> {
-        match self {
-            Self::Linear(pass) => {
-                let scratch = HeightScratch::new(gpu, pass, config, count, apron)?;
-                pass.prepare(gpu, config, [count, apron], capacity, output, &scratch)
-            }
-            Self::Smooth(pass) => {
-                let scratch = pass.scratch(gpu, config, [count, apron])?;
-                pass.prepare(gpu, config, [count, apron], capacity, output, &scratch)
-            }
-        }
     }
 }
 

@@ -4,14 +4,10 @@
 //! point, which devices round differently.
 
 pub mod blend;
-#[cfg(feature = "gpu")]
-#[doc(hidden)]
-pub mod blocks;
 pub mod border;
 pub mod color_maps;
 pub mod config;
 pub mod cover;
-pub mod crease;
 pub mod despike;
 pub mod export;
 pub mod features;
@@ -21,10 +17,12 @@ pub mod fields;
 pub mod fixed;
 #[cfg(feature = "gpu")]
 pub mod generator;
-pub mod grid;
 pub mod ground;
 pub mod height;
 pub mod hydraulic;
+mod lattice;
+#[cfg(feature = "gpu")]
+mod levels;
 #[cfg(feature = "gpu")]
 pub mod materials;
 pub mod mesh;

@@ -1,11 +1,13 @@
 //! A recipe for terrain: the configuration, the features, and the operations after generation.
 
+mod json;
+
 use std::path::Path;
 
-use crate::terrain::config::{Border, Config, RawErosion, RawHydraulic, RawThermal, read_text, whole};
+use crate::terrain::config::{Border, Config, read_text};
 use crate::terrain::despike::Despike;
 use crate::terrain::features::Features;
-use crate::terrain::hydraulic::{Hydraulic, MAX_ITERATIONS};
+use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::pad;
 use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
@@ -40,35 +42,6 @@ impl Recipe {
             hydraulic: None,
             thermal_after: None,
         }
-    }
-
-    /// Reads a configuration from JSON, with erosion beside it, each with its fields in a JSON object: `thermal` and
-    /// `thermalAfter` (`iterations`, `talus`), and `hydraulic` (the fields of [`Hydraulic`]); what is left out has its default.
-    ///
-    /// # Errors
-    /// [`InputError`] for text that is not such JSON, for unknown keys, and for values out of bounds.
-    pub fn from_json(text: &str) -> Result<Self, InputError> {
-        Self::of_parts(Config::with_erosion(text)?)
-    }
-
-    /// As [`Recipe::from_json`], from an object that has been read.
-    ///
-    /// # Errors
-    /// The same.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn from_value(value: &serde_json::Value) -> Result<Self, InputError> {
-        Self::of_parts(Config::with_erosion_of(value)?)
-    }
-
-    fn of_parts((config, erosion): (Config, RawErosion)) -> Result<Self, InputError> {
-        let recipe = Self {
-            thermal: erosion.thermal.map(|raw| thermal("thermal", &raw)).transpose()?,
-            hydraulic: erosion.hydraulic.map(|raw| hydraulic(&raw)).transpose()?,
-            thermal_after: erosion.thermal_after.map(|raw| thermal("thermalAfter", &raw)).transpose()?,
-            ..Self::new(config)
-        };
-        recipe.validate(&[], 0).map_err(InputError::in_json)?;
-        Ok(recipe)
     }
 
     /// Reads a JSON file. Texture paths in its zones are relative to the file.
@@ -139,28 +112,4 @@ impl Recipe {
             _ => error,
         }
     }
-}
-
-fn thermal(field: &str, raw: &RawThermal) -> Result<Thermal, InputError> {
-    let iterations = whole(&format!("{field}.iterations"), &raw.iterations, 0, 1024)?;
-    Ok(Thermal { iterations, talus: raw.talus.unwrap_or(Thermal::default().talus) })
-}
-
-fn hydraulic(raw: &RawHydraulic) -> Result<Hydraulic, InputError> {
-    let default = Hydraulic::default();
-    let iterations = raw
-        .iterations
-        .as_ref()
-        .map_or(Ok(default.iterations), |number| whole("hydraulic.iterations", number, 0, MAX_ITERATIONS))?;
-    Ok(Hydraulic {
-        iterations,
-        rain: raw.rain.unwrap_or(default.rain),
-        evaporation: raw.evaporation.unwrap_or(default.evaporation),
-        capacity: raw.capacity.unwrap_or(default.capacity),
-        threshold: raw.threshold.unwrap_or(default.threshold),
-        erosion: raw.erosion.unwrap_or(default.erosion),
-        deposition: raw.deposition.unwrap_or(default.deposition),
-        talus: raw.talus.unwrap_or(default.talus),
-        creep: raw.creep.unwrap_or(default.creep),
-    })
 }

@@ -1,5 +1,7 @@
 //! Windows onto the plane: a patch and the samples around it, level by level.
 
+use std::iter::successors;
+
 use crate::InputError;
 use crate::terrain::config::{Border, Config, Interpolation};
 
@@ -39,6 +41,11 @@ impl Span {
         Self { first: self.first.div_euclid(2) - 3, last: (self.last + 1).div_euclid(2) + 3 }
     }
 
+    /// As [`Span::coarser`] of a patch by itself, whose ends lie on both lattices.
+    fn halved(self) -> Self {
+        Self { first: self.first / 2, last: self.last / 2 }
+    }
+
     /// The number of indices in the span.
     pub(crate) fn width(self) -> usize {
         (self.last - self.first + 1) as usize
@@ -60,17 +67,18 @@ impl Window {
         })
     }
 
-    /// The columns and rows of the window at every level, the base lattice first.
+    /// The columns and rows of the window at every level, the base lattice first. Those of a patch by itself are its own, without
+    /// the apron.
     pub(crate) fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
-        let mut levels = vec![self.spans(config)];
-        let coarser = match config.interpolation {
-            Interpolation::Linear => Span::coarser,
-            Interpolation::Smooth => Span::coarser_smooth,
+        let (apron, coarser): (_, fn(Span) -> Span) = match (config.border, config.interpolation) {
+            (Border::Seamless, Interpolation::Linear) => (self.apron, Span::coarser),
+            (Border::Seamless, Interpolation::Smooth) => (self.apron, Span::coarser_smooth),
+            _ => (0, Span::halved),
         };
-        for _ in 0..config.levels() {
-            let finer = levels[levels.len() - 1];
-            levels.push(finer.map(coarser));
-        }
+        let finest = Self { apron, ..*self }.spans(config);
+        let coarser = |finer: &[Span; 2]| Some(finer.map(coarser));
+        let mut levels: Vec<_> =
+            successors(Some(finest), coarser).take(config.levels() as usize + 1).collect();
         levels.reverse();
         levels
     }
@@ -95,13 +103,7 @@ impl Window {
             return Err(InputError::new("apron", self.apron, format!("must be at most {MAX_APRON} samples")));
         }
         let base_spacing = config.sample_spacing() << config.levels();
-        let base = if config.border == Border::Seamless {
-            self.levels(config)[0]
-        } else {
-            // A patch that is generated alone has no halo.
-            self.patch.map(|patch| Span { first: patch.into(), last: i64::from(patch) + 1 })
-        };
-        for (axis, span) in base.iter().enumerate() {
+        for (axis, span) in self.levels(config)[0].iter().enumerate() {
             let inside = |index: i64| i32::try_from(index * base_spacing).is_ok();
             if !inside(span.first) || !inside(span.last) {
                 let field = format!("patchCoordinates[{axis}]");

@@ -2,8 +2,8 @@
 
 use std::cell::Cell;
 
-use relievo::surface::{Green, HeightMap, March, Material, Method, Mips, Shadow, SquareView};
-use relievo_lab::measure::relief::{Comparison, ReliefSquare};
+use relievo::surface::{Green, HeightMap, March, Material, Method, Mips, Shadow};
+use relievo_lab::measure::relief::{Comparison, ReliefSquare, SquareView};
 
 /// Ridges along v, one texel wide, between furrows a quarter as high.
 fn square(size: [u32; 2]) -> ReliefSquare {

@@ -2,7 +2,8 @@
 //! is 0.1 tiles deep, and addresses wrap.
 
 use relievo::surface::relief::reference::Surface;
-use relievo::surface::{Address, HeightMap, March, Measured, Method, Ray, SquareView};
+use relievo::surface::{Address, HeightMap, March, Method, Ray};
+use relievo_lab::measure::relief::{Measured, SquareView};
 use relievo_samples::BuiltInMap;
 
 fn rays(angle: f64) -> Vec<Ray> {

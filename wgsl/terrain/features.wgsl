@@ -42,37 +42,13 @@ fn has_feature(grid: FeatureGrid, window: u32, at: vec2<i32>) -> bool {
     return (feature_word(grid, window, at).mask & feature_bit(grid, at)) != 0u;
 }
 
-// A bit for each of 32 points of a row, starting at `at`: 0 where there is no feature. Bits of points beyond
-// the grid are unspecified.
-fn feature_bits(grid: FeatureGrid, window: u32, at: vec2<i32>) -> u32 {
-    let first = feature_word(grid, window, at).mask;
-    let last = feature_word(grid, window, at + vec2<i32>(31, 0)).mask;
-    let shift = u32(at.x + 1) % 32u;
-    return (first >> shift) | ((last << 1u) << (31u - shift));
-}
-
-// The height to inject at a point, if it has a feature.
-struct Feature {
-    there: bool,
-    height: i32,
-}
-
-fn feature_at(grid: FeatureGrid, window: u32, at: vec2<i32>) -> Feature {
+// The height of a point after injection, given the computed height.
+fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
     let word = feature_word(grid, window, at);
     let bit = feature_bit(grid, at);
     if (word.mask & bit) == 0u {
-        return Feature(false, 0);
+        return height;
     }
-    return Feature(true, feature_heights[word.first_value + countOneBits(word.mask & (bit - 1u))]);
-}
-
-// The height of a point after injection, given the computed height.
-fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
-    return injected_lanes(feature_at(grid, window, at), vec4<bool>(true), vec4<i32>(height)).x;
-}
-
-// As `injected`, for the lanes that `lanes` selects.
-fn injected_lanes(feature: Feature, lanes: vec4<bool>, heights: vec4<i32>) -> vec4<i32> {
-    let value = select(heights, vec4<i32>(0), FEATURES == FEATURES_KEEP) + vec4<i32>(feature.height);
-    return select(heights, value, lanes & vec4<bool>(feature.there));
+    let feature = feature_heights[word.first_value + countOneBits(word.mask & (bit - 1u))];
+    return select(height, 0, FEATURES == FEATURES_KEEP) + feature;
 }

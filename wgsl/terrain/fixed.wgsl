@@ -6,15 +6,12 @@ const HEIGHT_ONE: i32 = 65536;
 // The largest absolute height, in 1/65536 units.
 const HEIGHT_LIMIT: i32 = 0x3fffffff;
 
-// The mean of four heights, rounded half up, for four lanes at once.
+// The mean of four heights, rounded half up, for four lanes at once. If the sums of two pairs are 2p + x and 2q + y, it is
+// floor((p + q + 1 + x & y) / 2); no step overflows for heights of at most 2^30 - 1.
 fn mean_of_four(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
-    return mean_of_sums(a + b, c + d);
-}
-
-// The same mean from the sums of two pairs. If the sums are 2p + x and 2q + y, it is floor((p + q + 1 + x & y)
-// / 2); no step overflows for heights of at most 2^30 - 1.
-fn mean_of_sums(first: vec4<i32>, second: vec4<i32>) -> vec4<i32> {
     let one = vec4<u32>(1u);
+    let first = a + b;
+    let second = c + d;
     let carry = (first & second & vec4<i32>(1)) + vec4<i32>(1);
     return ((first >> one) + (second >> one) + carry) >> one;
 }
@@ -50,10 +47,4 @@ fn mean_of_two(a: vec4<i32>, b: vec4<i32>) -> vec4<i32> {
 // The nearest height of at most `HEIGHT_LIMIT`.
 fn limited(heights: vec4<i32>) -> vec4<i32> {
     return max(min(heights, vec4<i32>(HEIGHT_LIMIT)), vec4<i32>(-HEIGHT_LIMIT));
-}
-
-// Returns the heights unchanged, since none is less than the constant. lavapipe stores lane by lane and would
-// repeat the arithmetic of a value that is only stored for each lane; it does not split a maximum.
-fn held(heights: vec4<i32>) -> vec4<i32> {
-    return max(heights, vec4<i32>(-HEIGHT_LIMIT));
 }

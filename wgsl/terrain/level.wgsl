@@ -1,115 +1,69 @@
-// A level of subdivision for a batch of windows onto the plane: what its kernels read and write, the base lattice, and random
-// offsets.
+// A level of subdivision for a batch of windows or patches: what its kernels read and write. A thread makes the four fine points
+// that belong to a coarse one.
 import package::wgsl::hash::threefry2x32;
-import package::wgsl::terrain::blocks::Blocks;
+import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, injected};
 import package::wgsl::terrain::offset::height_offset;
-import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, feature_at, feature_bits, injected_lanes};
 
-// Whether the coarse level is the base lattice, which is computed here and not loaded.
-override FIRST: bool = false;
 // One of the constants OFFSET_*.
 override DISTRIBUTION: u32 = 0u;
 
 struct Level {
     key: vec2<u32>,
-    // Points along an edge of a window, and points per window.
+    // Windows, and points along an edge of each at the fine and at the coarse level.
+    count: u32,
     fine_width: u32,
-    fine_points: u32,
     coarse_width: u32,
-    coarse_points: u32,
-    // World coordinates between neighbouring fine samples.
-    fine_spacing: u32,
-    fine_range: u32,
-    // The range of offsets of the level between coarse and fine, if there is one.
-    middle_range: u32,
-    // The range of offsets of points on edges, where interpolation is smooth.
+    // World coordinates between neighbouring fine points.
+    spacing: u32,
+    // The range of offsets, and that of points on edges, where interpolation is smooth.
+    range: u32,
     edge_range: u32,
-    base_range: u32,
-    // Blocks of coarse cells.
-    @align(16) blocks: Blocks,
-    @align(16) fine_features: FeatureGrid,
-    @align(16) base_features: FeatureGrid,
+    @align(16) features: FeatureGrid,
 }
 
 @group(0) @binding(0) var<uniform> level: Level;
-// World coordinates of the first fine sample of each window, in units of fine_spacing.
+// World coordinates of the first fine point of each window, in units of the spacing.
 @group(0) @binding(1) var<storage, read> origins: array<vec2<i32>>;
 @group(0) @binding(2) var<storage, read> coarse: array<i32>;
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
 
-// World coordinates of the fine columns of four cells: those of coarse points, and those between them.
-struct Columns {
-    even: vec4<u32>,
-    odd: vec4<u32>,
+// Four coarse points. Those outside the window feed only fine points outside it, so any value will do.
+fn coarse_points(window: u32, x: vec4<i32>, y: vec4<i32>) -> vec4<i32> {
+    let last = vec4<i32>(i32(level.coarse_width) - 1);
+    let rows = window * level.coarse_width + vec4<u32>(clamp(y, vec4<i32>(0), last));
+    let at = rows * level.coarse_width + vec4<u32>(clamp(x, vec4<i32>(0), last));
+    return vec4<i32>(coarse[at.x], coarse[at.y], coarse[at.z], coarse[at.w]);
 }
 
-// A window at one level.
-struct Place {
-    window: u32,
-    // World coordinates of the window's first sample at this level, in units of spacing.
-    origin: vec2<i32>,
-    // How far before the window the sample at coarse point (0, 0) lies: one or two samples.
-    shift: vec2<i32>,
-    spacing: u32,
-    range: u32,
+// The random offsets of four fine points by their world coordinates, in units of the spacing.
+fn offsets(range: u32, x: vec4<i32>, y: vec4<i32>) -> vec4<i32> {
+    let words = threefry2x32(level.key, vec4<u32>(x) * level.spacing, vec4<u32>(y) * level.spacing);
+    return height_offset(DISTRIBUTION, range, words);
 }
 
-const LANES = vec4<i32>(0, 1, 2, 3);
-
-fn columns_of(place: Place, x: i32) -> Columns {
-    let even = vec4<u32>(vec4<i32>(place.origin.x + 2 * x - place.shift.x) + 2 * LANES) * place.spacing;
-    return Columns(even, even + vec4<u32>(place.spacing));
-}
-
-// The fine sample at a coarse point.
-fn fine_at(place: Place, cell: vec2<i32>) -> vec2<i32> {
-    return 2 * cell - place.shift;
-}
-
-fn offsets(place: Place, x: vec4<u32>, y: vec4<u32>) -> vec4<i32> {
-    return height_offset(DISTRIBUTION, place.range, threefry2x32(level.key, x, y));
-}
-
-fn world_y(place: Place, at: vec2<i32>) -> vec4<u32> {
-    return vec4<u32>(u32(place.origin.y + at.y) * place.spacing);
-}
-
-// Points outside the window feed only samples outside it, so any value will do.
-fn loaded(place: Place, cell: vec2<i32>) -> i32 {
-    let at = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(i32(level.coarse_width) - 1)));
-    return coarse[place.window * level.coarse_points + at.y * level.coarse_width + at.x];
-}
-
-// Four points of the base lattice, starting at coarse point `cell`.
-fn base_points(place: Place, cell: vec2<i32>) -> vec4<i32> {
-    let words = threefry2x32(level.key, columns_of(place, cell.x).even, world_y(place, fine_at(place, cell)));
-    let heights = height_offset(DISTRIBUTION, level.base_range, words);
-    if FEATURES == FEATURES_NONE {
-        return heights;
-    }
+// The heights of four points of the window after injection, given their places in the grid of features.
+fn injected_four(window: u32, x: vec4<i32>, y: vec4<i32>, heights: vec4<i32>) -> vec4<i32> {
     var result = heights;
-    for (var rest = feature_bits(level.base_features, place.window, cell) & 15u; rest != 0u; rest &= rest - 1u) {
-        let column = i32(countTrailingZeros(rest));
-        let feature = feature_at(level.base_features, place.window, cell + vec2<i32>(column, 0));
-        result = injected_lanes(feature, LANES == vec4<i32>(column), result);
+    if FEATURES != FEATURES_NONE {
+        // A loop, because one driver's compiler takes gigabytes for branches that are inlined dozens of times.
+        for (var lane = 0u; lane < 4u; lane++) {
+            result[lane] = injected(level.features, window, vec2<i32>(x[lane], y[lane]), heights[lane]);
+        }
     }
     return result;
 }
 
-// Stores every other sample of a row.
-fn store_four(place: Place, at: vec2<i32>, heights: vec4<i32>) {
-    let row = place.window * level.fine_points + u32(at.y) * level.fine_width;
-    // A row outside the window has no columns to store.
-    let width = select(0u, level.fine_width, u32(at.y) < level.fine_width);
-    let x = vec4<u32>(vec4<i32>(at.x) + 2 * LANES);
-    store(row, width, x.x, heights.x);
-    store(row, width, x.y, heights.y);
-    store(row, width, x.z, heights.z);
-    store(row, width, x.w, heights.w);
+// Stores a point, the one to its right, the one below it and the one diagonally below it, as far as they lie in the window.
+fn store_four(window: u32, at: vec2<i32>, heights: vec4<i32>) {
+    store(window, at, heights.x);
+    store(window, at + vec2<i32>(1, 0), heights.y);
+    store(window, at + vec2<i32>(0, 1), heights.z);
+    store(window, at + vec2<i32>(1, 1), heights.w);
 }
 
-fn store(row: u32, width: u32, x: u32, height: i32) {
-    if x < width {
-        fine[row + x] = height;
+fn store(window: u32, at: vec2<i32>, height: i32) {
+    let width = level.fine_width;
+    if all(vec2<u32>(at) < vec2<u32>(width)) {
+        fine[(window * width + u32(at.y)) * width + u32(at.x)] = height;
     }
 }

@@ -10,26 +10,6 @@ struct MapZone {
     edge_log2: u32,
 }
 
-// A zone as a uniform buffer holds it.
-struct PackedZone {
-    // min, max, and rise.
-    heights: vec4<f32>,
-    // fall, height_blend and repeats.
-    slopes: vec4<f32>,
-    // first and edge_log2.
-    texels: vec4<u32>,
-}
-
-// The most zones of a colour map.
-const MAX_MAP_ZONES: u32 = 32u;
-
-// The zone that a uniform buffer holds.
-fn unpacked(packed: PackedZone) -> MapZone {
-    let zone = Zone(
-        packed.heights.x, packed.heights.y, packed.heights.zw, packed.slopes.xy, packed.slopes.z, packed.slopes.w);
-    return MapZone(zone, packed.texels.x, packed.texels.y);
-}
-
 // The bits of a position in tiles behind the point; those before it are the 10 bits of TILES_PERIOD.
 const TILE_BITS: u32 = 22u;
 
@@ -51,6 +31,5 @@ fn texel_index(map_zone: MapZone, tiles: vec2<u32>) -> u32 {
     let edge_log2 = map_zone.edge_log2;
     let mask = vec2<u32>((1u << edge_log2) - 1u);
     let at = ((tiles * u32(map_zone.zone.repeats)) >> vec2<u32>(TILE_BITS - edge_log2)) & mask;
-    // No index is greater; see `held` for what the minimum is there for: lavapipe also loads lane by lane.
-    return min(map_zone.first + (at.y << edge_log2) + at.x, 0x7fffffffu);
+    return map_zone.first + (at.y << edge_log2) + at.x;
 }

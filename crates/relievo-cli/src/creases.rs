@@ -1,17 +1,19 @@
 //! `relievo creases`: how visible the lattices of terrain are.
 
+mod crease;
+
 use std::path::PathBuf;
 
 use clap::Args;
 use relievo::Error;
 use relievo::terrain::config::{Config, Interpolation};
-use relievo::terrain::crease::{Crease, creases, hill_shaded};
 use relievo::terrain::features::Features;
 use relievo::terrain::field::generate;
 use relievo_lab::files::Staged;
 use serde::Serialize;
 
 use crate::output::say;
+use crease::{Crease, creases, hill_shaded};
 
 /// Prints how much terrain bends along the lines of each lattice, as a multiple of the finest, for both ways to interpolate
 /// ("interpolation" of a configuration): where the ratio is large, shading shows a crease.

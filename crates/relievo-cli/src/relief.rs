@@ -8,13 +8,12 @@ use std::time::Instant;
 use clap::Args;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::surface::view::towards_light;
-use relievo::surface::{
-    Address, Green, HeightMap, March, Material, Measured, Method, Mips, Outcome, Shadow, SquareView,
-};
+use relievo::surface::{Address, Green, HeightMap, March, Material, Method, Mips, Outcome, Shadow};
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
-use relievo_lab::measure::relief::{Comparison, Drawn, ReliefSquare, Seconds};
+use relievo_lab::measure::relief::{
+    Comparison, Drawn, Measured, ReliefSquare, Seconds, SquareView, towards_light,
+};
 use relievo_samples::BuiltInMap;
 use serde::Serialize;
 

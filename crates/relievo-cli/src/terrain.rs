@@ -3,6 +3,7 @@
 mod erosion;
 pub mod export;
 mod frames;
+mod grid;
 mod injected;
 mod look;
 mod target;
@@ -22,7 +23,6 @@ use relievo::terrain::field::field_with;
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::generator::Generator;
-use relievo::terrain::grid::Grid;
 use relievo::terrain::recipe::Recipe;
 use relievo::terrain::texture::Texture;
 use relievo::{Error, InputError};
@@ -38,6 +38,7 @@ use crate::progress::bar;
 use erosion::Erosion;
 use export::{Batch, HeightRange, PatchReport};
 use frames::Frame;
+use grid::Grid;
 use look::Look;
 use target::{Target, TargetArguments, Way};
 

@@ -59,8 +59,7 @@ impl PyramidLayout {
         self.len() == 0
     }
 
-    /// The index of a node in the plane. The padding, which follows each row of level 0 up to a multiple of
-    /// four and lies wherever there is no level, may have any value.
+    /// The index of a node in the plane. The padding, which lies wherever there is no level, may have any value.
     pub fn index(&self, level: u32, node: [u32; 2]) -> usize {
         let first = self.first(level);
         ((first[1] + node[1]) * self.pitch + first[0] + node[0]) as usize

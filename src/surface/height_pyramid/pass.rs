@@ -49,28 +49,19 @@ impl Pyramids {
     }
 }
 
-/// Computes pyramids, two or three levels per dispatch.
+/// Computes pyramids, a level per dispatch.
 #[derive(Debug, Clone)]
 pub struct HeightPyramidPass {
-    leaves: Kernel,
-    aligned_leaves: Kernel,
-    nodes: Kernel,
+    kernel: Kernel,
 }
 
 impl HeightPyramidPass {
-    /// Compiles the pipelines.
+    /// Compiles the pipeline.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |from_heights, is_aligned| {
-            bindings::kernel(gpu, &bindings::Constants { from_heights, is_aligned })
-        };
-        Ok(Self {
-            leaves: kernel(true, false)?,
-            aligned_leaves: kernel(true, true)?,
-            nodes: kernel(false, false)?,
-        })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the pyramids of a batch.
@@ -80,47 +71,28 @@ impl HeightPyramidPass {
     pub fn prepare(&self, gpu: &Gpu, maps: &HeightBatch, pyramids: &Pyramids) -> Result<Job, Error> {
         pyramids.check(maps)?;
         let layout = pyramids.layout;
-        let is_aligned = maps.size[0].is_multiple_of(4) && pyramids.address == Address::Wrap;
-        let leaves = if is_aligned { &self.aligned_leaves } else { &self.leaves };
-        let mut steps = vec![self.step(gpu, leaves, maps, pyramids, 0)?];
-        let mut level = 2;
-        while level + 1 < layout.levels {
-            steps.push(self.step(gpu, &self.nodes, maps, pyramids, level)?);
-            level += 2;
-        }
+        let step = |level| {
+            let params = PyramidParams {
+                size: UVec2::from(layout.size),
+                cells: UVec2::from(layout.cells),
+                pitch: layout.pitch,
+                rows: layout.rows,
+                address: pyramids.address.code(),
+                level,
+            };
+            let group = bindings::Group {
+                params: &Uniform::new(gpu, "pyramid", &params)?,
+                heights: maps.heights.slice(),
+                pyramids: pyramids.nodes.slice(),
+            };
+            let [columns, rows] = layout.nodes(level);
+            Ok(Step {
+                kernel: self.kernel.clone(),
+                groups: vec![group.bind(gpu, &self.kernel)?],
+                workgroups: [self.kernel.groups_for(columns), rows, maps.count],
+            })
+        };
+        let steps = (0..layout.levels).map(step).collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "surface/height_pyramid", steps)?)
-    }
-
-    fn step(
-        &self,
-        gpu: &Gpu,
-        kernel: &Kernel,
-        maps: &HeightBatch,
-        pyramids: &Pyramids,
-        level: u32,
-    ) -> Result<Step, GpuError> {
-        let layout = pyramids.layout;
-        let [columns, rows] = layout.nodes(level + 2);
-        let params = PyramidParams {
-            size: UVec2::from(layout.size),
-            cells: UVec2::from(layout.cells),
-            pitch: layout.pitch,
-            rows: layout.rows,
-            address: pyramids.address.code(),
-            levels: layout.levels,
-            level,
-        };
-        let uniform = Uniform::new(gpu, "pyramid", &params)?;
-        let group = bindings::Group {
-            params: &uniform,
-            heights: maps.heights.slice().cast(),
-            pyramids: pyramids.nodes.slice(),
-        };
-        let [x, y, _] = kernel.spread(gpu, rows * columns.next_power_of_two());
-        Ok(Step {
-            kernel: kernel.clone(),
-            groups: vec![group.bind(gpu, kernel)?],
-            workgroups: [x, y, maps.count],
-        })
     }
 }

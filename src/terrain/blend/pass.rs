@@ -6,7 +6,6 @@ use crate::gpu::bindings::terrain::blend as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::blend::MapParams;
 use crate::shared::terrain::light::Light;
-use crate::terrain::blocks::{Blocks, Columns, Order};
 use crate::terrain::config::HEIGHT_ONE;
 use crate::terrain::cover::{Cover, planes};
 use crate::terrain::fields::Fields;
@@ -14,9 +13,7 @@ use crate::terrain::fields::Fields;
 /// Draws the top-down colour maps of patches.
 #[derive(Debug, Clone)]
 pub struct BlendPass {
-    /// By whether textures lie on the ground from the sides too, and by whether there is a variation of colour.
-    kernels: [[Kernel; 2]; 2],
-    order: Order,
+    kernel: Kernel,
 }
 
 /// The buffers of a job of [`BlendPass`].
@@ -31,25 +28,12 @@ pub struct BlendBuffers<'a> {
 }
 
 impl BlendPass {
-    /// Compiles the pipelines.
+    /// Compiles the pipeline.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::with_order(gpu, Order::of(gpu.tuning()))
-    }
-
-    /// As [`BlendPass::new`], with blocks in the given order.
-    pub fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
-        let kernel = |triplanar, varied| {
-            let downwards = order.downwards;
-            bindings::kernel(
-                gpu,
-                &bindings::Constants { quads: 1, downwards, planes: planes(triplanar), varied },
-            )
-        };
-        let of_planes = |triplanar| Ok::<_, GpuError>([kernel(triplanar, false)?, kernel(triplanar, true)?]);
-        Ok(Self { kernels: [of_planes(false)?, of_planes(true)?], order })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the colour maps of windows, which it uploads the cover for.
@@ -70,38 +54,32 @@ impl BlendPass {
         windows.check("windows", 1)?;
         places.check_holds("places", windows.count as usize)?;
         pixels.check_holds("pixels", windows.points(1))?;
-        let columns = Columns { quads: 1, order: self.order };
-        let blocks = columns.blocks(windows);
-        let uniform = Uniform::new(gpu, "colour map", &params(cover, shading, windows.width, blocks))?;
-        let zones = Uniform::new(gpu, "zones", &cover.packed_zones())?;
+        let zones = Buffer::from_slice(gpu, "zones", &cover.zones)?;
         let texels = Buffer::from_slice(gpu, "texels", &cover.packed_texels())?;
         let group = bindings::Group {
-            params: &uniform,
-            windows: windows.heights.slice().cast(),
-            zones: &zones,
+            params: &Uniform::new(gpu, "colour map", &params(cover, shading, windows))?,
+            windows: windows.heights.slice(),
+            zones: zones.slice(),
             texels: texels.slice(),
             places: places.slice(),
             pixels: pixels.slice(),
         };
-        let kernel = &self.kernels[usize::from(cover.triplanar)][usize::from(cover.variation != 0.0)];
-        let step = Step {
-            kernel: kernel.clone(),
-            groups: vec![group.bind(gpu, kernel)?],
-            workgroups: blocks.workgroups(gpu, kernel),
-        };
+        let groups = vec![group.bind(gpu, &self.kernel)?];
+        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
         Ok(Job::new(gpu, "terrain/blend", vec![step])?)
     }
 }
 
-fn params(cover: &Cover, shading: &Shading, in_width: u32, blocks: Blocks) -> MapParams {
+fn params(cover: &Cover, shading: &Shading, windows: &Fields) -> MapParams {
     let [tiles_per_sample, tiles_per_unit] = cover.steps();
     MapParams {
         light: Light { direction: shading.light.into(), ambient: shading.ambient },
-        blocks,
-        in_width,
+        count: windows.count,
+        width: windows.width,
         run: (2.0 * cover.terrain_scale * HEIGHT_ONE) as f32,
         zone_count: cover.zones.len() as u32,
         additive: shading.weights.code(),
+        planes: planes(cover.triplanar),
         tiles_per_sample,
         tiles_per_unit,
         variation: cover.variation,

@@ -5,8 +5,7 @@ use super::Neighbours;
 use super::visits::{Visit, visits};
 use crate::gpu::bindings::terrain::border as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::terrain::border::{BLOCK_WIDTH, BorderParams, NONE};
-use crate::terrain::blocks::{Blocks, rows};
+use crate::shared::terrain::border::{BorderParams, NONE};
 use crate::terrain::fields::{Fields, places};
 use crate::{Error, InputError};
 
@@ -53,16 +52,12 @@ impl BorderPass {
         let visits = visits(neighbours, &places)?;
         let entries: Vec<_> =
             (0..parts.len()).map(|part| Entries::new(gpu, part, &visits)).collect::<Result<_, _>>()?;
-        // Where the strips along two borders meet, there is nothing between them.
-        let rim = if 2 * width < size { width } else { 0 };
         let mut starts = vec![0; parts.len()];
         let mut steps = Vec::new();
         for Visit { part, source, entries: visited } in &visits {
             let count = visited.len() as u32;
-            let blocks = Blocks::with_rim([rim, size - 2 * rim], BLOCK_WIDTH, rows(gpu.tuning()), count);
-            let params = BorderParams { blocks, size, width, points: size * size, start: starts[*part], rim };
+            let params = BorderParams { count, size, width, start: starts[*part] };
             starts[*part] += count;
-            let uniform = Uniform::new(gpu, "border", &params)?;
             let Entries { neighbours, order } = &entries[*part];
             // A buffer that is bound for writing cannot be bound a second time; the kernel never reads the one
             // that stands in for it.
@@ -72,15 +67,14 @@ impl BorderPass {
                 (&self.across, parts[*source].heights.slice())
             };
             let group = bindings::Group {
-                params: &uniform,
+                params: &Uniform::new(gpu, "border", &params)?,
                 heights: parts[*part].heights.slice(),
                 neighbours: neighbours.slice(),
                 order: order.slice(),
                 others,
             };
             let groups = vec![group.bind(gpu, kernel)?];
-            let workgroups = blocks.workgroups(gpu, kernel);
-            steps.push(Step { kernel: kernel.clone(), groups, workgroups });
+            steps.push(Step::spread(gpu, kernel, groups, count * size * size));
         }
         Ok(Job::new(gpu, "terrain/border", steps)?)
     }

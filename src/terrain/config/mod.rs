@@ -3,7 +3,9 @@
 mod json;
 mod zones;
 
-pub(crate) use json::{RawErosion, RawHydraulic, RawThermal, from_json_object, read_text, whole};
+#[cfg(feature = "gpu")]
+pub(crate) use json::from_json_value;
+pub(crate) use json::{Object, from_json_object, named, read_text, whole};
 pub(crate) use zones::check_range;
 pub use zones::{BuiltIn, MAX_REPEATS, MAX_ZONES, Slope, Zone, ZoneTexture};
 

@@ -127,19 +127,12 @@ pub struct Zone {
     #[serde(default, rename = "heightBlend")]
     pub height_blend: f64,
     /// How many times the texture repeats in a texture tile, 1 to 16. Default 1.
-    #[serde(default = "once", deserialize_with = "repeats")]
+    #[serde(default = "once", deserialize_with = "whole::<_, 1, MAX_REPEATS>")]
     pub repeats: u32,
 }
 
 fn once() -> u32 {
     1
-}
-
-/// A whole number, as JSON may write it; [`Zone::validate`] checks its bounds.
-fn repeats<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
-    let number = serde_json::Number::deserialize(deserializer)?;
-    let refused = |_| serde::de::Error::custom(format!("expected a whole number in 1..={MAX_REPEATS}"));
-    whole("repeats", &number, 0, u32::MAX).map_err(refused)
 }
 
 fn slope<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Slope, D::Error> {

@@ -4,7 +4,6 @@ use super::Despike;
 use crate::gpu::bindings::terrain::despike as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::despike::DespikeParams;
-use crate::terrain::blocks::Columns;
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
@@ -24,7 +23,6 @@ pub struct DespikeBuffers<'a> {
 #[derive(Debug, Clone)]
 pub struct DespikePass {
     kernel: Kernel,
-    columns: Columns,
 }
 
 impl DespikePass {
@@ -34,17 +32,8 @@ impl DespikePass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu, with_features: bool) -> Result<Self, GpuError> {
-        Self::with_columns(gpu, with_features, Columns::of(gpu.tuning()))
-    }
-
-    /// As [`DespikePass::new`], with the given columns.
-    pub fn with_columns(gpu: &Gpu, with_features: bool, columns: Columns) -> Result<Self, GpuError> {
-        let constants = bindings::Constants {
-            quads: columns.quads,
-            downwards: columns.order.downwards,
-            features: with_features.into(),
-        };
-        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
+        let constants = bindings::Constants { features: with_features.into() };
+        Ok(Self { kernel: bindings::kernel(gpu, &constants)? })
     }
 
     /// Prepares the despiking of windows.
@@ -62,22 +51,21 @@ impl DespikePass {
             let bound = format!("must be that of the windows, {}", windows.width);
             return Err(InputError::new("features.width", grid.width, bound).into());
         }
-        let blocks = self.columns.blocks(windows);
-        let threshold = despike.fixed_threshold();
-        let params = DespikeParams { blocks, features: grid, in_width: windows.width, threshold };
-        let uniform = Uniform::new(gpu, "despike", &params)?;
+        let params = DespikeParams {
+            features: grid,
+            count: windows.count,
+            width: windows.width,
+            threshold: despike.fixed_threshold(),
+        };
         let group = bindings::Group {
-            params: &uniform,
-            windows: windows.heights.slice().cast(),
+            params: &Uniform::new(gpu, "despike", &params)?,
+            windows: windows.heights.slice(),
             outputs: cropped.heights.slice(),
         };
         let injected =
             bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?, injected.bind(gpu, &self.kernel)?],
-            workgroups: blocks.workgroups(gpu, &self.kernel),
-        };
+        let groups = vec![group.bind(gpu, &self.kernel)?, injected.bind(gpu, &self.kernel)?];
+        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
         Ok(Job::new(gpu, "terrain/despike", vec![step])?)
     }
 }

@@ -19,7 +19,7 @@ impl Generator {
         let buffers = ThermalBuffers { windows: &both[0], other: &both[1] };
         let job = self.thermal.prepare(gpu, thermal, self.recipe.config.terrain_scale, buffers)?;
         job.run_async(gpu).await?;
-        Ok(after(both, thermal.iterations, thermal.iterations))
+        Ok(after(both, thermal.iterations))
     }
 
     /// Hydraulic erosion of the first of two buffers.
@@ -39,13 +39,13 @@ impl Generator {
         let buffers = HydraulicBuffers { windows, other, flows: &flows, other_flows: &other_flows };
         let job = pass.prepare(gpu, hydraulic, self.recipe.config.terrain_scale, buffers)?;
         job.run_async(gpu).await?;
-        Ok(after(both, hydraulic.iterations, pass.dispatches(hydraulic.iterations)))
+        Ok(after(both, hydraulic.iterations))
     }
 }
 
-/// Two buffers after so many iterations, whose dispatches alternate between them: the one with the result first.
-pub(super) fn after([windows, other]: [Fields; 2], iterations: u32, dispatches: u32) -> [Fields; 2] {
+/// Two buffers after so many iterations that alternate between them: the one with the result first.
+pub(super) fn after([windows, other]: [Fields; 2], iterations: u32) -> [Fields; 2] {
     let width = windows.cropped(iterations).width;
-    let [made, rest] = if dispatches.is_multiple_of(2) { [windows, other] } else { [other, windows] };
+    let [made, rest] = if iterations.is_multiple_of(2) { [windows, other] } else { [other, windows] };
     [Fields { width, ..made }, Fields { width: width.saturating_sub(2), ..rest }]
 }

@@ -33,7 +33,7 @@ impl HeightBatch {
         Window { patch: [0, 0], apron }.validate(config)?;
         let largest = Fields::most(gpu, config.patch_size + 2 * apron) as u32;
         let parts = count.div_ceil(largest).max(1);
-        let scratch = HeightScratch::new(gpu, pass, config, count.div_ceil(parts), apron)?;
+        let scratch = HeightScratch::new(gpu, config, [count.div_ceil(parts), apron])?;
         let (mut jobs, mut fields) = (Vec::new(), Vec::new());
         for part in 0..parts {
             let size = count * (part + 1) / parts - count * part / parts;

@@ -4,18 +4,12 @@
 #[cfg(feature = "gpu")]
 mod batch;
 #[cfg(feature = "gpu")]
-mod job;
-#[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
+pub use crate::terrain::levels::{HeightJob, HeightScratch};
+#[cfg(feature = "gpu")]
 pub use batch::HeightBatch;
-#[cfg(feature = "gpu")]
-pub use job::{HeightJob, HeightScratch};
-#[cfg(feature = "gpu")]
-pub(in crate::terrain) use job::{LevelInputs, level_widths};
-#[cfg(feature = "gpu")]
-pub use pass::Blocks;
 #[cfg(feature = "gpu")]
 pub use pass::HeightPass;

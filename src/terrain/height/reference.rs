@@ -1,10 +1,9 @@
-//! Heights of a window onto the plane: the CPU reference of `kernels/terrain/height.wgsl`. It streams rows of
-//! coarse points as the kernel does; where a thread of the kernel handles four cells, it handles a whole row.
+//! Heights of a window onto the plane: the CPU reference of `kernels/terrain/height.wgsl`, row by row of coarse points.
 
 use crate::terrain::config::Config;
 use crate::terrain::features::Features;
-use crate::terrain::fixed::{Draw, inject, mean_of_four};
-use crate::terrain::window::Lattice;
+use crate::terrain::fixed::{Draw, mean_of_four};
+use crate::terrain::lattice::{Injected, base_lattice, world};
 use crate::terrain::window::{Span, Window};
 
 /// The heights of a window, rows of `window.width(config)` samples. The window must be valid.
@@ -12,7 +11,7 @@ pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> 
     let levels = window.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();
-    let mut grid = base_lattice(config, features, &draw, levels[0], base_spacing);
+    let mut grid = base_lattice(config, features, window.patch, levels[0]);
     for (level, pair) in levels.windows(2).enumerate() {
         let lattice = Fine {
             features,
@@ -25,77 +24,6 @@ pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> 
         grid = lattice.subdivide(&grid, pair[0]);
     }
     grid
-}
-
-pub(in crate::terrain) fn base_lattice(
-    config: &Config,
-    features: &Features,
-    draw: &Draw,
-    spans: [Span; 2],
-    spacing: i64,
-) -> Vec<i32> {
-    let injected = Injected::new(features, spans, spacing, (1, false));
-    let width = spans[0].width();
-    let mut grid = vec![0; width * spans[1].width()];
-    for (row, heights) in grid.chunks_exact_mut(width).enumerate() {
-        let y = spans[1].first + row as i64;
-        draw.add_row(
-            heights,
-            config.level_range(0),
-            world(spans[0].first, spacing),
-            spacing as u32,
-            world(y, spacing),
-        );
-        injected.inject_row(features, y, spans[0].first, 1, heights);
-    }
-    grid
-}
-
-pub(in crate::terrain) fn world(index: i64, spacing: i64) -> u32 {
-    (index * spacing) as u32
-}
-
-/// The features of one level, indexed by row.
-pub(in crate::terrain) struct Injected {
-    points: Vec<(u32, u32, i32)>,
-    origin: [i64; 2],
-}
-
-impl Injected {
-    /// Those on a lattice that has `rim` points more than the window on every side: points outside of it, of which others
-    /// are computed, see features too. With `new_only`, points of the coarser lattice are left out.
-    pub(in crate::terrain) fn new(
-        features: &Features,
-        spans: [Span; 2],
-        spacing: i64,
-        (rim, new_only): (u32, bool),
-    ) -> Self {
-        let origin = spans.map(|span| span.first - i64::from(rim));
-        let width = spans[0].width().max(spans[1].width()) as u32 + 2 * rim;
-        let lattice = Lattice { origin: origin.map(|index| index * spacing), width, spacing };
-        Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
-    }
-
-    /// Injects into each `heights[i]`, which is the point (x + i·step, y) in units of the lattice.
-    pub(in crate::terrain) fn inject_row(
-        &self,
-        features: &Features,
-        y: i64,
-        x: i64,
-        step: i64,
-        heights: &mut [i32],
-    ) {
-        let row = (y - self.origin[1]) as u32;
-        let start = self.points.partition_point(|point| point.1 < row);
-        for &(column, _, height) in self.points[start..].iter().take_while(|point| point.1 == row) {
-            let distance = i64::from(column) + self.origin[0] - x;
-            if distance.rem_euclid(step) == 0
-                && let Some(computed) = usize::try_from(distance / step).ok().and_then(|i| heights.get_mut(i))
-            {
-                *computed = inject(features.mode, *computed, height);
-            }
-        }
-    }
 }
 
 /// The finer lattice that one subdivision makes.

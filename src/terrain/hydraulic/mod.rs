@@ -1,15 +1,16 @@
 //! Hydraulic erosion: rain collects in rivers, which carry ground away and leave it where they slow down (virtual pipes after
 //! Mei, Decaudin and Hu, "Fast hydraulic erosion simulation and visualization on GPU", Pacific Graphics 2007), in integers.
 
+use serde::Deserialize;
+
 use crate::InputError;
-use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
+use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite, whole};
 
 #[cfg(feature = "gpu")]
-#[doc(hidden)]
-pub mod pass;
+mod pass;
 pub mod reference;
 
-pub use crate::shared::terrain::pipes::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
+pub use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
 #[cfg(feature = "gpu")]
 pub use pass::{HydraulicBuffers, HydraulicPass};
 
@@ -27,9 +28,11 @@ pub const MAX_ITERATIONS: u32 = 2048;
 ///
 /// No configuration overflows: a sample holds at most 1024 height units of water and of sediment. What would exceed this, or
 /// the largest height, stays where it came from, and rain beyond it is lost.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct Hydraulic {
     /// Number of cycles, at most [`MAX_ITERATIONS`]. Default 300.
+    #[serde(deserialize_with = "whole::<_, 0, MAX_ITERATIONS>")]
     pub iterations: u32,
     /// Depth of the rain in a cycle, in spacings of samples, 0 to 1. Default 0.001.
     pub rain: f64,
@@ -104,11 +107,11 @@ impl Hydraulic {
         let slope_shift = 17_u32.saturating_sub(steepest.leading_zeros());
         let raining = cycle < self.iterations - self.iterations / 4;
         HydraulicParams {
+            count: 1,
             in_width,
             wet: (cycle > 0).into(),
             settles: (cycle + 1 == self.iterations).into(),
             rain: if raining { fixed(self.rain * spacing, WATER_LIMIT) } else { 0 },
-            second_rain: 0,
             evaporation: fraction(self.evaporation),
             erosion: fraction(self.erosion),
             deposition: fraction(self.deposition),

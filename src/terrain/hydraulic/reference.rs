@@ -1,7 +1,7 @@
 //! Hydraulic erosion: the CPU reference of `kernels/terrain/hydraulic.wgsl`.
 
 use crate::shared::terrain::fixed::HEIGHT_LIMIT;
-use crate::shared::terrain::pipes::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
+use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
 
 /// Water and suspended sediment, both in 1/65536 height units, and the shares of both that leave in the next cycle, in 1/32768:
 /// to the west in the low half of the third word and to the east in its high half, to the north and to the south in the fourth.

@@ -4,7 +4,6 @@ use crate::Error;
 use crate::gpu::bindings::terrain::normals as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::normals::NormalsParams;
-use crate::terrain::blocks::Columns;
 use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
 
@@ -12,7 +11,6 @@ use crate::terrain::fields::Fields;
 #[derive(Debug, Clone)]
 pub struct NormalsPass {
     kernel: Kernel,
-    columns: Columns,
 }
 
 impl NormalsPass {
@@ -21,13 +19,7 @@ impl NormalsPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::with_columns(gpu, Columns::of(gpu.tuning()))
-    }
-
-    /// As [`NormalsPass::new`], with the given columns.
-    pub fn with_columns(gpu: &Gpu, columns: Columns) -> Result<Self, GpuError> {
-        let constants = bindings::Constants { quads: columns.quads, downwards: columns.order.downwards };
-        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the slopes of `windows`, whose samples are `terrain_scale` world units apart. For every sample
@@ -48,22 +40,16 @@ impl NormalsPass {
         windows.check("windows", 1)?;
         gradients.check_holds("gradients", windows.points(1))?;
         normals.check_holds("normals", 3 * windows.points(1))?;
-        let blocks = self.columns.blocks_of_whole_vectors(windows);
         let run = (2.0 * terrain_scale * HEIGHT_ONE) as f32;
-        let points = windows.points(1) as u32;
-        let params = NormalsParams { blocks, in_width: windows.width, points, run };
-        let uniform = Uniform::new(gpu, "normals", &params)?;
+        let params = NormalsParams { count: windows.count, width: windows.width, run };
         let group = bindings::Group {
-            params: &uniform,
-            windows: windows.heights.slice().cast(),
-            gradients: gradients.slice().cast(),
-            normals: normals.slice().cast(),
+            params: &Uniform::new(gpu, "normals", &params)?,
+            windows: windows.heights.slice(),
+            gradients: gradients.slice(),
+            normals: normals.slice(),
         };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: blocks.workgroups(gpu, &self.kernel),
-        };
+        let groups = vec![group.bind(gpu, &self.kernel)?];
+        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
         Ok(Job::new(gpu, "terrain/normals", vec![step])?)
     }
 }

@@ -3,8 +3,7 @@
 use super::{Surround, validate};
 use crate::gpu::bindings::terrain::pad as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::terrain::pad::{BLOCK_WIDTH, ELSEWHERE, NONE, PadParams};
-use crate::terrain::blocks::{Blocks, Order};
+use crate::shared::terrain::pad::{ELSEWHERE, NONE, PadParams};
 use crate::terrain::fields::{Fields, Place, places};
 use crate::{Error, InputError};
 
@@ -12,7 +11,6 @@ use crate::{Error, InputError};
 #[derive(Debug, Clone)]
 pub struct PadPass {
     kernel: Kernel,
-    order: Order,
 }
 
 impl PadPass {
@@ -21,13 +19,7 @@ impl PadPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::with_order(gpu, Order::of(gpu.tuning()))
-    }
-
-    /// As [`PadPass::new`], with blocks in the given order.
-    pub fn with_order(gpu: &Gpu, order: Order) -> Result<Self, GpuError> {
-        let constants = bindings::Constants { downwards: order.downwards };
-        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, order })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares windows that extend `apron` samples beyond their patches, one for each of `surrounds`. It reads
@@ -47,13 +39,12 @@ impl PadPass {
     ) -> Result<Job, Error> {
         let size = parts.first().map_or(0, |part| part.width);
         validate(size, apron)?;
-        let width = size + 2 * apron;
         let places = places(parts, size)?;
         check_surrounds(surrounds, places.len())?;
-        windows.check_holds("windows", surrounds.len() * (width as usize).pow(2))?;
+        let points = surrounds.len() * (size as usize + 2 * apron as usize).pow(2);
+        windows.check_holds("windows", points)?;
         let tiles: Vec<_> = surrounds.iter().flatten().map(|tile| tile.map(|patch| places[patch])).collect();
-        let blocks = Blocks::with_rim([apron, size], BLOCK_WIDTH, self.order.rows, surrounds.len() as u32);
-        let uniform = Uniform::new(gpu, "pad", &PadParams { blocks, size, apron })?;
+        let uniform = Uniform::new(gpu, "pad", &PadParams { count: surrounds.len() as u32, size, apron })?;
         let mut steps = Vec::new();
         for (part, patches) in parts.iter().enumerate() {
             let Some(around) = tiles_in(part, &tiles) else { continue };
@@ -64,11 +55,8 @@ impl PadPass {
                 around: around.slice(),
                 outputs: windows.slice(),
             };
-            steps.push(Step {
-                kernel: self.kernel.clone(),
-                groups: vec![group.bind(gpu, &self.kernel)?],
-                workgroups: blocks.workgroups(gpu, &self.kernel),
-            });
+            let groups = vec![group.bind(gpu, &self.kernel)?];
+            steps.push(Step::spread(gpu, &self.kernel, groups, points as u32));
         }
         Ok(Job::new(gpu, "terrain/pad", steps)?)
     }

@@ -1,10 +1,10 @@
-//! Heights of a window onto the smooth plane: the CPU reference of `kernels/terrain/smooth.wgsl`. Where a thread of the kernel
-//! handles four cells and a few rows, it handles the whole window.
+//! Heights of a window onto the smooth plane: the CPU reference of `kernels/terrain/smooth.wgsl`, the whole
+//! window at once.
 
-use crate::terrain::config::{Config, HEIGHT_LIMIT};
+use crate::terrain::config::Config;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, four_point, mean_of_two};
-use crate::terrain::height::reference::{Injected, base_lattice, world};
+use crate::terrain::lattice::{Injected, base_lattice, limited, world};
 use crate::terrain::window::{SMOOTH_RIM, Span, Window};
 
 /// The heights of a window, rows of `window.width(config)` samples. The window must be valid, and the interpolation smooth.
@@ -12,8 +12,7 @@ pub fn smooth(config: &Config, features: &Features, window: Window) -> Vec<i32> 
     let levels = window.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();
-    let mut grid = base_lattice(config, features, &draw, levels[0], base_spacing);
-    grid.iter_mut().for_each(|height| *height = limited(*height));
+    let mut grid = base_lattice(config, features, window.patch, levels[0]);
     for (level, pair) in (0..).zip(levels.windows(2)) {
         let spacing = base_spacing >> (level + 1);
         let step = Subdivision {
@@ -29,10 +28,6 @@ pub fn smooth(config: &Config, features: &Features, window: Window) -> Vec<i32> 
         grid = step.made(&grid);
     }
     grid
-}
-
-fn limited(height: i32) -> i32 {
-    height.clamp(-HEIGHT_LIMIT as i32, HEIGHT_LIMIT as i32)
 }
 
 /// The finer lattice that one subdivision makes.

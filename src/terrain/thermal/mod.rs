@@ -1,7 +1,9 @@
 //! Thermal erosion: material slides down slopes that are steeper than the talus angle.
 
+use serde::Deserialize;
+
 use crate::InputError;
-use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
+use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite, whole};
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -13,12 +15,19 @@ pub use pass::{ThermalBuffers, ThermalPass};
 /// In every iteration, each pair of 4-neighbours whose heights differ by more than the talus angle allows moves
 /// an eighth of the excess downhill. Mass is conserved to the last bit. An iteration reads samples at most one
 /// sample away.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Thermal {
     /// Number of iterations, at most 1024.
+    #[serde(deserialize_with = "whole::<_, 0, 1024>")]
     pub iterations: u32,
     /// The steepest stable slope, in degrees, 0 to 89. Default 35.
+    #[serde(default = "talus")]
     pub talus: f64,
+}
+
+fn talus() -> f64 {
+    Thermal::default().talus
 }
 
 impl Default for Thermal {

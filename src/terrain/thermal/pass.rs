@@ -5,7 +5,6 @@ use crate::Error;
 use crate::gpu::bindings::terrain::thermal as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::thermal::ThermalParams;
-use crate::terrain::blocks::Columns;
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
 
@@ -22,7 +21,6 @@ pub struct ThermalBuffers<'a> {
 #[derive(Debug, Clone)]
 pub struct ThermalPass {
     kernel: Kernel,
-    columns: Columns,
 }
 
 impl ThermalPass {
@@ -31,13 +29,7 @@ impl ThermalPass {
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::with_columns(gpu, Columns::of(gpu.tuning()))
-    }
-
-    /// As [`ThermalPass::new`], with the given columns.
-    pub fn with_columns(gpu: &Gpu, columns: Columns) -> Result<Self, GpuError> {
-        let constants = bindings::Constants { quads: columns.quads, downwards: columns.order.downwards };
-        Ok(Self { kernel: bindings::kernel(gpu, &constants)?, columns })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares all iterations, which alternate between `windows` and `other`. Each iteration drops the outermost
@@ -64,20 +56,14 @@ impl ThermalPass {
         for iteration in 0..thermal.iterations {
             let (from, to) = if iteration % 2 == 0 { (windows, other) } else { (other, windows) };
             let at = windows.cropped(iteration);
-            let blocks = self.columns.blocks(&at);
-            let params = ThermalParams { blocks, in_width: at.width, threshold };
-            let uniform = Uniform::new(gpu, "thermal", &params)?;
+            let params = ThermalParams { count: at.count, width: at.width, threshold };
             let group = bindings::Group {
-                params: &uniform,
-                windows: from.heights.slice().cast(),
+                params: &Uniform::new(gpu, "thermal", &params)?,
+                windows: from.heights.slice(),
                 outputs: to.heights.slice(),
             };
             let groups = vec![group.bind(gpu, &self.kernel)?];
-            steps.push(Step {
-                kernel: self.kernel.clone(),
-                groups,
-                workgroups: blocks.workgroups(gpu, &self.kernel),
-            });
+            steps.push(Step::spread(gpu, &self.kernel, groups, at.points(1) as u32));
         }
         Ok(Job::new(gpu, "terrain/thermal", steps)?)
     }

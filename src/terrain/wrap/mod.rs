@@ -6,4 +6,4 @@ mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::{WrapBuffers, WrapJob, WrapPass};
+pub use pass::WrapPass;

@@ -3,7 +3,8 @@
 use crate::terrain::config::{Config, PATCH_EDGE};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject, mean_of_four};
-use crate::terrain::window::Lattice;
+use crate::terrain::lattice::base_lattice;
+use crate::terrain::window::{Lattice, Window};
 
 /// The heights of one patch, in rows of `patch_size` samples.
 pub fn wrap(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
@@ -17,9 +18,10 @@ pub fn wrap(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
         mode: features.mode,
     };
     let mut grid = vec![0; size * size];
-    for (corner, height) in config.fixed_corners().into_iter().enumerate() {
-        let (x, y) = (corner % 2 * torus.last, corner / 2 * torus.last);
-        grid[y * size + x] = torus.injected(x, y, height);
+    let window = Window { patch, apron: 0 };
+    for (corner, height) in base_lattice(config, features, patch, window.levels(config)[0]).iter().enumerate()
+    {
+        grid[corner / 2 * torus.last * size + corner % 2 * torus.last] = *height;
     }
     for level in 0..config.levels() {
         torus.subdivide(&mut grid, config.level_range(level), torus.last >> level);

@@ -2,8 +2,9 @@
 
 use image::RgbaImage;
 use relievo::InputError;
-use relievo::surface::{Measured, Method};
+use relievo::surface::Method;
 use relievo_lab::measure::relief::Comparison;
+use relievo_lab::measure::relief::Measured;
 use relievo_lab::plot::{Chart, Series, grid};
 
 /// Draws one panel per angle.

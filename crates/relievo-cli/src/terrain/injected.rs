@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use relievo::Error;
 use relievo::terrain::config::Config;
 use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::grid::Grid;
 
 use super::Terrain;
 use super::export::{HeightImage, HeightRange};
+use super::grid::Grid;
 use crate::memory;
 
 impl Terrain {

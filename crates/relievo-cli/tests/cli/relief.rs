@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use relievo::surface::exact::exact;
 use relievo::surface::{Address, HeightMap, Ray};
+use relievo_lab::measure::relief::exact::exact;
 use serde_json::Value;
 
 use crate::harness::{Difference, relievo};

@@ -69,7 +69,7 @@ const CONFIGS: &[(&str, &[&str])] = &[
             "hydraulic": {"rain": 0.01, "threshold": 1}, "thermal": {"iterations": 2}, "thermalAfter": {"iterations": 1}}"#,
         &["--patches", "2x2", "--origin", "-2,-1", "--hydraulic", "21", "--thermal-after", "3"],
     ),
-    // An even number of cycles, and an odd number of dispatches where each makes two.
+    // An even number of cycles.
     (
         r#"{"patchSize": 33, "scaleFactor": 9, "seed": "e", "hydraulic": {"rain": 0.01}}"#,
         &["--hydraulic", "6"],

@@ -5,27 +5,21 @@ use relievo::gpu::bindings::baseline::texels as bindings;
 use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use relievo::shared::baseline::texels::TexelsParams;
 use relievo::terrain::blend::BlendBuffers;
-use relievo::terrain::blocks::{Columns, Order};
 use relievo::terrain::cover::{Cover, planes};
 
 /// Loads the texels of colour maps.
 #[derive(Debug, Clone)]
 pub struct TexelsPass {
-    /// By whether textures lie on the ground from the sides too.
-    kernels: [Kernel; 2],
+    kernel: Kernel,
 }
 
 impl TexelsPass {
-    /// Compiles the pipelines.
+    /// Compiles the pipeline.
     ///
     /// # Errors
     /// What the driver's compiler reports.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let Order { downwards, .. } = Order::of(gpu.tuning());
-        let kernel = |triplanar| {
-            bindings::kernel(gpu, &bindings::Constants { quads: 1, downwards, planes: planes(triplanar) })
-        };
-        Ok(Self { kernels: [kernel(false)?, kernel(true)?] })
+        Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
     /// Prepares the loads of the colour maps of a cover; each pixel becomes a word.
@@ -39,31 +33,27 @@ impl TexelsPass {
         windows.check("windows", 1)?;
         places.check_holds("places", windows.count as usize)?;
         pixels.check_holds("pixels", windows.points(1))?;
-        let blocks = Columns { quads: 1, order: Order::of(gpu.tuning()) }.blocks(windows);
         let [tiles_per_sample, tiles_per_unit] = cover.steps();
         let params = TexelsParams {
-            blocks,
-            in_width: windows.width,
+            count: windows.count,
+            width: windows.width,
             zone_count: cover.zones.len() as u32,
+            planes: planes(cover.triplanar),
             tiles_per_sample,
             tiles_per_unit,
         };
-        let zones = Uniform::new(gpu, "zones", &cover.packed_zones())?;
+        let zones = Buffer::from_slice(gpu, "zones", &cover.zones)?;
         let texels = Buffer::from_slice(gpu, "texels", &cover.packed_texels())?;
         let group = bindings::Group {
             params: &Uniform::new(gpu, "texels", &params)?,
-            windows: windows.heights.slice().cast(),
-            zones: &zones,
+            windows: windows.heights.slice(),
+            zones: zones.slice(),
             texels: texels.slice(),
             places: places.slice(),
             words: pixels.slice(),
         };
-        let kernel = &self.kernels[usize::from(cover.triplanar)];
-        let step = Step {
-            kernel: kernel.clone(),
-            groups: vec![group.bind(gpu, kernel)?],
-            workgroups: blocks.workgroups(gpu, kernel),
-        };
+        let groups = vec![group.bind(gpu, &self.kernel)?];
+        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
         Ok(Job::new(gpu, "baseline/texels", vec![step])?)
     }
 }

@@ -5,13 +5,11 @@ use relievo::gpu::Buffer;
 use relievo::terrain::blend::BlendBuffers;
 use relievo::terrain::config::{Config, Zone};
 use relievo::terrain::cover::Cover;
-use relievo::terrain::fields::Fields;
 use relievo::terrain::texture::Texture;
 
 use crate::baseline::texels::TexelsPass;
 use crate::baseline::texels::reference::texels;
-use crate::cases::terrain::{copy_of, random_heights, some_windows};
-use crate::harness::compare::exact;
+use crate::cases::terrain::{check_exact, copy_of, random_cover, random_windows, some_windows};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
 
@@ -27,10 +25,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         for (zones, edge_log2, triplanar) in [(1, 3, false), (4, 0, true), (5, 4, true)] {
             let zone = |at: u32| Zone { repeats: 1 + 3 * at, ..Zone::new(0.0, 1.0, None) };
             let zones: Vec<_> = (0..zones).map(zone).collect();
-            let cover = Cover { triplanar, ..Cover::random(&zones, edge_log2) };
-            let heights = random_heights(width, (width * width * count) as usize, 60 << 16);
-            let windows = Fields::new(gpu, "windows", width, count)?;
-            windows.heights.write(gpu, &heights)?;
+            let cover = Cover { triplanar, ..random_cover(&zones, edge_log2) };
+            let (heights, windows) = random_windows(gpu, [width, count], 60 << 16)?;
             let places: Vec<_> =
                 (0..count as i32).map(|index| cover.place([index, -3 * index - 1], width - 2)).collect();
             let place_buffer = Buffer::from_slice(gpu, "places", &places)?;
@@ -42,7 +38,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 .flat_map(|(window, place)| texels(window, width as usize, &cover, *place))
                 .collect();
             let name = format!("{width}×{width} × {count}, {} zones, {} texels", zones.len(), 1 << edge_log2);
-            cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
+            check_exact(cases, name, &output, &expected).await?;
         }
     }
     Ok(())

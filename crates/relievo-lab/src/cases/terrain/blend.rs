@@ -6,30 +6,18 @@ use relievo::Error;
 use relievo::gpu::Buffer;
 use relievo::terrain::blend::reference::{blend, totals};
 use relievo::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
-use relievo::terrain::blocks::Order;
 use relievo::terrain::config::{Config, Slope, Zone};
 use relievo::terrain::cover::Cover;
-use relievo::terrain::fields::Fields;
 use relievo::terrain::texture::Texture;
 
 use crate::baseline::texels::TexelsPass;
-use crate::cases::terrain::{copy_of, random_heights, some_windows};
+use crate::cases::terrain::{copy_of, random_cover, random_windows, some_windows};
 use crate::harness::compare::{Comparison, LeftOut, levels};
 use crate::harness::poison::Poisoned;
 use crate::harness::{Backend, Bench, Cases, Contender};
 
 /// One pixel in this many may differ: rounding changes 1 in 50, and a curve that is 1/20 of a level wrong 1 in 10.
 const MOST_DIFFER: usize = 20;
-
-/// One case: its zones, how many samples and windows, and the order of threads.
-struct Ground {
-    name: String,
-    cover: Cover,
-    weights: WeightMode,
-    width: u32,
-    count: u32,
-    order: Order,
-}
 
 /// The cases cover one to 32 zones, overlapping and apart, both weight modes, heights beyond every zone, slopes, height maps,
 /// textures of every size, triplanar mapping and variation.
@@ -39,52 +27,48 @@ struct Ground {
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for weights in [WeightMode::Normalized, WeightMode::Additive] {
         for (zone_count, gap) in [(1, 0.0), (2, 50.0), (4, 0.0), (4, 9.0), (32, -1.0)] {
-            for (width, count, order) in
-                [(3, 1, Order::HARDWARE), (66, 3, Order::SOFTWARE), (67, 2, Order::HARDWARE)]
-            {
+            for size in [[3, 1], [66, 3], [67, 2]] {
                 let zones: Vec<_> = (0..zone_count).map(|zone| striped(zone, gap)).collect();
                 let name = format!("{zone_count} zones {gap} apart, {weights:?}");
-                compare(
-                    cases,
-                    Ground { name, cover: Cover::random(&zones, 0), weights, width, count, order },
-                )
-                .await?;
+                compare(cases, name, &random_cover(&zones, 0), weights, size).await?;
             }
         }
         for (triplanar, variation) in [(false, 0.0), (true, 0.0), (false, 1.0), (true, 0.4)] {
             for edge_log2 in [0, 3, 9] {
                 let zones: Vec<_> = (0..4).map(sloped).collect();
-                let cover = Cover { triplanar, variation, ..Cover::random(&zones, edge_log2) };
+                let cover = Cover { triplanar, variation, ..random_cover(&zones, edge_log2) };
                 let name =
                     format!("slopes, {} texels, {triplanar}, {variation}, {weights:?}", 1 << edge_log2);
-                compare(cases, Ground { name, cover, weights, width: 67, count: 2, order: Order::SOFTWARE })
-                    .await?;
+                compare(cases, name, &cover, weights, [67, 2]).await?;
             }
         }
     }
     Ok(())
 }
 
-async fn compare(cases: &mut Cases<'_>, ground: Ground) -> Result<(), Error> {
+async fn compare(
+    cases: &mut Cases<'_>,
+    name: String,
+    cover: &Cover,
+    weights: WeightMode,
+    [width, count]: [u32; 2],
+) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let Ground { name, cover, weights, width, count, order } = ground;
-    let heights = random_heights(width, (width * width * count) as usize, 60 << 16);
-    let windows = Fields::new(gpu, "windows", width, count)?;
-    windows.heights.write(gpu, &heights)?;
-    let output = Poisoned::new(gpu, (width - 2).pow(2) as usize * count as usize)?;
+    let (heights, windows) = random_windows(gpu, [width, count], 60 << 16)?;
+    let output = Poisoned::new(gpu, windows.points(1))?;
     let shading = Shading { weights, ..Shading::default() };
     let places: Vec<_> =
         (0..count as i32).map(|index| cover.place([index, -3 * index - 1], width - 2)).collect();
     let place_buffer = Buffer::from_slice(gpu, "places", &places)?;
     let buffers = BlendBuffers { windows: &windows, places: &place_buffer, pixels: &output.buffer };
-    let job = BlendPass::with_order(gpu, order)?.prepare(gpu, &cover, &shading, buffers)?;
+    let job = BlendPass::new(gpu)?.prepare(gpu, cover, &shading, buffers)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
     let maps = || heights.chunks_exact((width * width) as usize).zip(&places);
     let expected: Vec<u32> =
-        maps().flat_map(|(window, place)| blend(window, width as usize, &cover, &shading, *place)).collect();
+        maps().flat_map(|(window, place)| blend(window, width as usize, cover, &shading, *place)).collect();
     // Where weights nearly vanish the bound does not hold; there are few such pixels.
     let is_left_out: Vec<bool> = maps()
-        .flat_map(|(window, _)| totals(window, width as usize, &cover))
+        .flat_map(|(window, _)| totals(window, width as usize, cover))
         .map(|total| total > 0.0 && total < MIN_TOTAL)
         .collect();
     let left_out = is_left_out.iter().filter(|left_out| **left_out).count();
@@ -147,7 +131,7 @@ fn case(bench: &mut Bench<'_>, name: &str, config: &Config) -> Result<(), Error>
     let gpu = bench.gpu;
     let (width, count) = (259_u32, 64);
     let (host, windows) = some_windows(gpu, width, count)?;
-    let points = (width as usize - 2).pow(2) * count as usize;
+    let points = windows.points(1);
     let pixels = Buffer::new(gpu, "pixels", points)?;
     let cover = Cover::new(config, &Texture::of_zones(&config.zones)?)?;
     let places = Buffer::from_slice(gpu, "places", &vec![[0_u32; 2]; count as usize])?;

@@ -1,15 +1,15 @@
 //! Parity and benchmark cases of `kernels/terrain/border.wgsl`.
 
 use relievo::Error;
-use relievo::gpu::Buffer;
 use relievo::terrain::border::reference::border;
-use relievo::terrain::border::{BorderPass, neighbours};
+use relievo::terrain::border::{BorderPass, Neighbours, neighbours};
 use relievo::terrain::fields::Fields;
 
-use crate::cases::terrain::{LIMIT, copy_of, random_heights, some_heights};
-use crate::harness::compare::exact;
+use crate::cases::terrain::{
+    LIMIT, check_exact, measure, random_heights, some_heights, some_patches, uploaded,
+};
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// The cases cover widths up to overlapping transitions, orders of generation with up to four neighbours,
 /// heights at the limit, and batches in one buffer and in several.
@@ -17,12 +17,11 @@ use crate::harness::{Backend, Bench, Cases, Contender};
 /// # Errors
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let pass = BorderPass::new(cases.gpu)?;
     let grid: Vec<[i32; 2]> = (0..9).map(|i| [i % 3 - 1, i / 3]).collect();
     let surrounded = vec![[1, 0], [0, 1], [2, 1], [1, 2], [1, 1]];
     for (patches, most) in [(&grid, 9), (&grid, 4), (&surrounded, 5), (&surrounded, 2), (&vec![[5, 5]], 1)] {
         for (size, width) in [(3, 1), (5, 4), (33, 1), (33, 16), (33, 20), (65, 7), (129, 64)] {
-            case(cases, &pass, patches, most, [size, width]).await?;
+            case(cases, patches, most, [size, width]).await?;
         }
     }
     Ok(())
@@ -31,7 +30,6 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 /// Compares `patches`, stored with at most `most` to a buffer.
 async fn case(
     cases: &mut Cases<'_>,
-    pass: &BorderPass,
     patches: &[[i32; 2]],
     most: usize,
     [size, width]: [u32; 2],
@@ -48,21 +46,27 @@ async fn case(
         parts.push(Fields { heights: output.buffer.clone(), width: size, count });
         outputs.push(output);
     }
-    let job = pass.prepare(gpu, width, &around, &parts)?;
+    let job = BorderPass::new(gpu)?.prepare(gpu, width, &around, &parts)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
-    for (index, around) in around.iter().enumerate() {
-        let (earlier, rest) = expected.split_at_mut(index * points);
-        let around = around.map(|at| at.map(|at| &earlier[at * points..(at + 1) * points]));
-        border(&mut rest[..points], size as usize, width, around);
-    }
+    moved(&mut expected, size, width, &around);
     for (part, (output, expected)) in outputs.iter().zip(expected.chunks(most * points)).enumerate() {
         let mut name = format!("{size}×{size} × {} patches, {width} samples", patches.len());
         if outputs.len() > 1 {
             name += &format!(", buffer {part}");
         }
-        cases.add(name, output.check(gpu, |actual| exact(actual, expected)).await?);
+        check_exact(cases, name, output, expected).await?;
     }
     Ok(())
+}
+
+/// Moves a batch of patches of `size`² heights, one after the other.
+fn moved(heights: &mut [i32], size: u32, width: u32, around: &[Neighbours]) {
+    let points = (size * size) as usize;
+    for (index, around) in around.iter().enumerate() {
+        let (earlier, rest) = heights.split_at_mut(index * points);
+        let around = around.map(|at| at.map(|at| &earlier[at * points..(at + 1) * points]));
+        border(&mut rest[..points], size as usize, width, around);
+    }
 }
 
 /// Measures a grid of 8 × 8 patches. `copy` moves whole patches, though a kernel must only touch the strips along borders that
@@ -72,25 +76,17 @@ async fn case(
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let (size, width) = (257_u32, 16);
-    let patches: Vec<_> = (0..64).map(|i| [i % 8, i / 8]).collect();
-    let around = neighbours(&patches);
-    let points = (size * size) as usize;
-    let mut host = some_heights(points * patches.len());
-    let fields = Fields { heights: Buffer::from_slice(gpu, "heights", &host)?, width: size, count: 64 };
-    let job = BorderPass::new(gpu)?.prepare(gpu, width, &around, &[fields])?;
-    let copied = copy_of(gpu, host.len())?;
-    let (total, bytes) = (host.len(), 8 * host.len() as u64);
-    let contenders = vec![
-        Contender::job(Backend::Gpu, &job),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, || {
-            for (index, around) in around.iter().enumerate() {
-                let (earlier, rest) = host.split_at_mut(index * points);
-                let around = around.map(|at| at.map(|at| &earlier[at * points..(at + 1) * points]));
-                border(&mut rest[..points], size as usize, width, around);
-            }
-        }),
-    ];
-    bench.case(format!("{size}x{size} batch 64, 16 samples"), (total, "point"), bytes, contenders)
+    let (size, width, count) = (257, 16, 64);
+    let around = neighbours(&some_patches(count));
+    let mut host = some_heights((size * size * count) as usize);
+    let job = BorderPass::new(gpu)?.prepare(gpu, width, &around, &[uploaded(gpu, size, &host)?])?;
+    measure(
+        bench,
+        "257x257 batch 64, 16 samples",
+        (host.len(), 8),
+        |encoder| job.record(encoder),
+        || {
+            moved(&mut host, size, width, &around);
+        },
+    )
 }

@@ -1,43 +1,28 @@
 //! Parity and benchmark cases of `kernels/terrain/despike.wgsl`.
 
+use std::hint::black_box;
+
 use relievo::Error;
-use relievo::terrain::blocks::Columns;
 use relievo::terrain::despike::reference::despike;
 use relievo::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use relievo::terrain::features::FeatureIndex;
 use relievo::terrain::fields::Fields;
 
-use crate::cases::terrain::{LIMIT, copy_of, random_heights, random_words, some_windows};
-use crate::harness::compare::exact;
+use crate::cases::terrain::{LIMIT, check_exact, measure, random_windows, random_words, some_windows};
 use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::harness::{Bench, Cases};
 
 /// The cases cover thresholds from 0 up, widths around workgroup boundaries, with and without features.
 ///
 /// # Errors
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
-    for columns in Columns::ALL {
-        with_columns(cases, columns).await?;
-    }
-    Ok(())
-}
-
-async fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Error> {
+    let sizes = [(3, 1), (5, 3), (34, 2), (65, 5), (66, 4), (67, 3), (131, 2)];
     for with_features in [false, true] {
-        let pass = DespikePass::with_columns(cases.gpu, with_features, columns)?;
-        for (case, (width, count)) in
-            [(3, 1), (5, 3), (34, 2), (65, 5), (66, 4), (67, 3), (131, 2)].into_iter().enumerate()
-        {
+        for (case, (width, count)) in (0..).zip(sizes) {
             for threshold in [0.0, 0.5, 300.0, 16383.0] {
-                check(
-                    cases,
-                    (&pass, columns),
-                    with_features.then_some(case as u32),
-                    Despike { threshold },
-                    [width, count],
-                )
-                .await?;
+                let features = with_features.then_some(case);
+                check(cases, features, Despike { threshold }, [width, count]).await?;
             }
         }
     }
@@ -46,7 +31,6 @@ async fn with_columns(cases: &mut Cases<'_>, columns: Columns) -> Result<(), Err
 
 async fn check(
     cases: &mut Cases<'_>,
-    (pass, columns): (&DespikePass, Columns),
     features: Option<u32>,
     params: Despike,
     [width, count]: [u32; 2],
@@ -54,10 +38,8 @@ async fn check(
     let gpu = cases.gpu;
     let (edge, points) = (width as usize, (width * width) as usize);
     let limit = if params.threshold > 1.0 { LIMIT } else { 1 << 17 };
-    let heights = random_heights(width, points * count as usize, limit);
-    let windows = Fields::new(gpu, "windows", width, count)?;
-    windows.heights.write(gpu, &heights)?;
-    let output = Poisoned::new(gpu, (edge - 2).pow(2) * count as usize)?;
+    let (heights, windows) = random_windows(gpu, [width, count], limit)?;
+    let output = Poisoned::new(gpu, windows.points(1))?;
     let cropped = Fields { heights: output.buffer.clone(), width: width - 2, count };
     // A third of all points are features, those of the outermost ring included.
     let marks: Vec<Vec<bool>> = (0..count)
@@ -66,27 +48,22 @@ async fn check(
             words.into_iter().map(|word| word.is_multiple_of(3)).collect()
         })
         .collect();
-    let index = FeatureIndex::new(gpu, &[width], count, features.map_or(0, |_| points * count as usize))?;
+    let index = FeatureIndex::new(gpu, &[width], count, features.map_or(0, |_| heights.len()))?;
     index.write(gpu, count, |_, window| {
         let marked = marks[window as usize].iter().enumerate().filter(|(_, marked)| **marked);
         marked.map(|(at, _)| (at as u32 % width + 1, at as u32 / width + 1, 7)).collect()
     })?;
     let buffers = DespikeBuffers { windows: &windows, features: &index, cropped: &cropped };
-    let job = pass.prepare(gpu, params, buffers)?;
+    let job = DespikePass::new(gpu, features.is_some())?.prepare(gpu, params, buffers)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> = (heights.chunks_exact(points).zip(&marks))
         .flat_map(|(window, marks)| {
             despike(window, edge, params.fixed_threshold(), |x, y| marks[y * edge + x])
         })
         .collect();
-    let name = format!(
-        "{width}×{width} × {count}, threshold {}, {} wide{}",
-        params.threshold,
-        4 * columns.quads,
-        features.map_or("", |_| ", a third injected")
-    );
-    cases.add(name, output.check(gpu, |actual| exact(actual, &expected)).await?);
-    Ok(())
+    let injected = features.map_or("", |_| ", a third injected");
+    let name = format!("{width}×{width} × {count}, threshold {}{injected}", params.threshold);
+    check_exact(cases, name, &output, &expected).await
 }
 
 /// Measures a batch of 64 patches.
@@ -95,24 +72,22 @@ async fn check(
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let (width, count) = (259_u32, 64);
+    let (width, count) = (259, 64);
     let (host, windows) = some_windows(gpu, width, count)?;
     let cropped = Fields::new(gpu, "cropped", width - 2, count)?;
     let features = FeatureIndex::new(gpu, &[width], count, 0)?;
     let params = Despike { threshold: 1.0 };
     let buffers = DespikeBuffers { windows: &windows, features: &features, cropped: &cropped };
     let job = DespikePass::new(gpu, false)?.prepare(gpu, params, buffers)?;
-    let copied = copy_of(gpu, cropped.heights.len())?;
-    let contenders = vec![
-        Contender::job(Backend::Gpu, &job),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, || {
+    measure(
+        bench,
+        "257x257 batch 64",
+        (windows.points(1), 8),
+        |encoder| job.record(encoder),
+        || {
             for window in host.chunks_exact((width * width) as usize) {
-                let field = despike(window, width as usize, params.fixed_threshold(), |_, _| false);
-                drop(std::hint::black_box(field));
+                drop(black_box(despike(window, width as usize, params.fixed_threshold(), |_, _| false)));
             }
-        }),
-    ];
-    let points = cropped.heights.len();
-    bench.case("257x257 batch 64", (points, "point"), 8 * points as u64, contenders)
+        },
+    )
 }

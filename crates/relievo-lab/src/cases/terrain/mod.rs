@@ -5,6 +5,7 @@ pub mod border;
 pub mod despike;
 pub mod height;
 pub mod hydraulic;
+mod levels;
 pub mod morph;
 pub mod normals;
 pub mod pad;
@@ -12,15 +13,21 @@ pub mod smooth;
 pub mod thermal;
 pub mod wrap;
 
+use std::fmt::Debug;
+
 use relievo::gpu::{Buffer, Gpu, Job};
 use relievo::hash::threefry2x32;
-use relievo::terrain::config::{Config, HEIGHT_LIMIT};
+use relievo::terrain::config::{Config, HEIGHT_LIMIT, Zone};
+use relievo::terrain::cover::{Cover, MapZone, zone_of};
 use relievo::terrain::features::{FeatureFile, Features};
 use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::{Error, InputError};
 
 use crate::baseline::copy::{CopyBuffers, CopyPass};
+use crate::harness::compare::exact;
+use crate::harness::poison::Poisoned;
+use crate::harness::{Backend, Bench, Cases, Contender};
 
 /// The random words of a test case, the same on every machine.
 pub fn random_words(case: u32, count: usize) -> Vec<u32> {
@@ -69,22 +76,6 @@ pub(crate) fn scattered(
     Features::new(config, &files, mode)
 }
 
-/// Reads a configuration from JSON that is known to be valid.
-///
-/// # Errors
-/// None, for valid JSON.
-pub(crate) fn config(json: &serde_json::Value) -> Result<Config, Error> {
-    Ok(Config::from_json(&json.to_string())?)
-}
-
-/// The name of a case of windows: their size, what is special about them, how many, and where the first is.
-pub(crate) fn case_name(config: &Config, features: &Features, patches: &[[i32; 2]], apron: u32) -> String {
-    let (size, offset, k) = (config.patch_size, config.offset, config.coarse_levels);
-    let features =
-        features.injection().map_or(String::new(), |mode| format!(" {mode:?} {} features", features.len()));
-    format!("{size}×{size} {offset:?} k={k} apron {apron} × {} at {:?}{features}", patches.len(), patches[0])
-}
-
 /// The device's own copy of `words` words, rounded up to a multiple of four, as a baseline.
 pub(crate) fn copy_of(gpu: &Gpu, words: usize) -> Result<Job, Error> {
     let words = words.next_multiple_of(4);
@@ -104,7 +95,73 @@ pub(crate) fn some_heights(points: usize) -> Vec<i32> {
 /// Plausible windows of `width`² samples, on the host and on the device.
 pub(crate) fn some_windows(gpu: &Gpu, width: u32, count: u32) -> Result<(Vec<i32>, Fields), Error> {
     let host = some_heights((width * width * count) as usize);
-    let windows = Fields::new(gpu, "windows", width, count)?;
-    windows.heights.write(gpu, &host)?;
-    Ok((host, windows))
+    Ok((host.clone(), uploaded(gpu, width, &host)?))
+}
+
+/// Windows of `width`² random heights of at most `limit` in size, on the host and on the device.
+pub(crate) fn random_windows(
+    gpu: &Gpu,
+    [width, count]: [u32; 2],
+    limit: i32,
+) -> Result<(Vec<i32>, Fields), Error> {
+    let host = random_heights(width, (width * width * count) as usize, limit);
+    Ok((host.clone(), uploaded(gpu, width, &host)?))
+}
+
+/// Fields of `width`² samples.
+pub(crate) fn uploaded(gpu: &Gpu, width: u32, heights: &[i32]) -> Result<Fields, Error> {
+    let count = heights.len() as u32 / (width * width);
+    Ok(Fields { heights: Buffer::from_slice(gpu, "windows", heights)?, width, count })
+}
+
+/// A cover whose zones have random texels, 4^`edge_log2` each.
+pub(crate) fn random_cover(zones: &[Zone], edge_log2: u32) -> Cover {
+    let texels = 1_u32 << (2 * edge_log2);
+    let map_zone = |(at, zone): (u32, &Zone)| MapZone { zone: zone_of(zone), first: at * texels, edge_log2 };
+    let words = random_words(edge_log2, 2 * zones.len() * texels as usize);
+    let texel =
+        |words: &[u32]| [words[0] as u16, (words[0] >> 16) as u16, words[1] as u16, (words[1] >> 16) as u16];
+    Cover {
+        zones: (0..).zip(zones).map(map_zone).collect(),
+        texels: words.chunks_exact(2).map(texel).collect(),
+        terrain_scale: 20.0,
+        tile: 130.0,
+        variation: 0.0,
+        triplanar: false,
+    }
+}
+
+/// The patches of a benchmark.
+pub(crate) fn some_patches(count: u32) -> Vec<[i32; 2]> {
+    (0..count as i32).map(|index| [index % 8, index / 8]).collect()
+}
+
+/// Compares an output, which has been computed, with what is expected to the bit.
+pub(crate) async fn check_exact<T: bytemuck::Pod + PartialEq + Debug>(
+    cases: &mut Cases<'_>,
+    name: String,
+    output: &Poisoned<T>,
+    expected: &[T],
+) -> Result<(), Error> {
+    let comparison = output.check(cases.gpu, |actual| exact(actual, expected)).await?;
+    cases.add(name, comparison);
+    Ok(())
+}
+
+/// Measures work that reads and writes `bytes` bytes for each point, its reference, and a copy of as many bytes.
+pub(crate) fn measure(
+    bench: &mut Bench<'_>,
+    name: &str,
+    (points, bytes): (usize, usize),
+    record: impl Fn(&mut wgpu::CommandEncoder),
+    reference: impl FnMut(),
+) -> Result<(), Error> {
+    // A copy reads half of the bytes that it moves, and writes the other half.
+    let copied = copy_of(bench.gpu, points * bytes / 8)?;
+    let contenders = vec![
+        Contender::recorded(Backend::Gpu, record),
+        Contender::job(Backend::Copy, &copied),
+        Contender::host(Backend::Reference, reference),
+    ];
+    bench.case(name, (points, "point"), (bytes * points) as u64, contenders)
 }

@@ -5,10 +5,9 @@ use relievo::gpu::Buffer;
 use relievo::terrain::morph::reference::morph;
 use relievo::terrain::morph::{Morph, MorphBuffers, MorphPass};
 
-use crate::cases::terrain::{LIMIT, copy_of, random_heights, some_heights};
-use crate::harness::compare::exact;
-use crate::harness::poison::Poisoned;
-use crate::harness::{Backend, Bench, Cases, Contender};
+use crate::cases::terrain::{LIMIT, check_exact, measure, random_heights, some_heights};
+use crate::harness::poison::{POISON, Poisoned};
+use crate::harness::{Bench, Cases};
 
 /// The cases cover both ends and times between, lengths around workgroup boundaries, heights at the limit.
 ///
@@ -28,22 +27,19 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 pass.prepare(gpu, MorphBuffers { from: &buffers[0], to: &buffers[1], heights: &heights })?;
             let params = Morph { time };
             job.set(gpu, params)?;
-            heights.write(gpu, &vec![crate::harness::poison::POISON as i32; from.len()])?;
+            heights.write(gpu, &vec![POISON as i32; from.len()])?;
             gpu.submit("verify", |encoder| {
                 job.record(encoder);
                 encoder.copy_buffer_to_buffer(heights.raw(), 0, output.buffer.raw(), 0, 4 * u64::from(len));
             })?;
             let expected = morph(&from, &to, params.fixed_time());
-            cases.add(
-                format!("{len} heights at {time}"),
-                output.check(gpu, |actual| exact(actual, &expected)).await?,
-            );
+            check_exact(cases, format!("{len} heights at {time}"), &output, &expected).await?;
         }
     }
     Ok(())
 }
 
-/// Measures as many points as a batch of 64 patches of 257² has.
+/// Measures as many points as a batch of 64 patches of 257² has: the kernel reads two words and writes one per point.
 ///
 /// # Errors
 /// What the device reports.
@@ -57,14 +53,13 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let job = MorphPass::new(gpu)?.prepare(gpu, buffers)?;
     let params = Morph { time: 0.3 };
     job.set(gpu, params)?;
-    // The kernel reads two words and writes one per point, which is one and a half copies.
-    let copied = copy_of(gpu, points * 3 / 2)?;
-    let contenders = vec![
-        Contender::recorded(Backend::Gpu, |encoder| job.record(encoder)),
-        Contender::job(Backend::Copy, &copied),
-        Contender::host(Backend::Reference, || {
-            drop(std::hint::black_box(morph(&from, &to, params.fixed_time())))
-        }),
-    ];
-    bench.case("257x257 batch 64", (points, "point"), 12 * points as u64, contenders)
+    measure(
+        bench,
+        "257x257 batch 64",
+        (points, 12),
+        |encoder| job.record(encoder),
+        || {
+            drop(std::hint::black_box(morph(&from, &to, params.fixed_time())));
+        },
+    )
 }

@@ -1,12 +1,12 @@
 //! Error and cost of every ray-height method, at several angles.
 
 use relievo::gpu::Gpu;
-use relievo::surface::{March, Measured, Method, Ray, SquareView};
+use relievo::surface::{March, Method, Ray};
 use relievo::{Error, InputError};
 use serde::Serialize;
 
-use crate::measure::relief::ReliefSquare;
 use crate::measure::relief::tracer::Tracer;
+use crate::measure::relief::{Measured, ReliefSquare, SquareView};
 
 /// The numbers of linear steps that are tried at every angle, for methods that have linear steps.
 const STEPS: [u32; 8] = [4, 8, 16, 32, 64, 128, 256, 512];

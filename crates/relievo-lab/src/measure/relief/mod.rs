@@ -2,20 +2,24 @@
 //! cost of every method against the exact intersection.
 
 pub use compare::{Comparison, Entry};
+pub use measured::Measured;
 use std::time::Instant;
 
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::surface::{
-    Green, HeightMap, Hit, March, Material, Measured, Method, Mips, Ray, Shadow, SquareView,
-};
+use relievo::surface::{Green, HeightMap, Hit, March, Material, Method, Mips, Ray, Shadow};
 use relievo::{Error, InputError};
 use serde::Serialize;
 use tracer::Tracer;
+pub use view::{SquareView, towards_light};
 
 mod compare;
+pub mod exact;
+mod measured;
+mod picture;
 pub(crate) mod square;
 mod tracer;
+mod view;
 
 /// A square of relief under a parallel projection, so that every pixel sees the square at the same angle.
 #[derive(Debug, Clone)]

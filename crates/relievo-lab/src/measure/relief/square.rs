@@ -6,10 +6,10 @@ use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
 use relievo::surface::{
-    Address, ColorTexture, Material, ReliefMaps, ReliefOptions, SquareView, SurfaceMesh, SurfaceTextures,
+    Address, ColorTexture, Material, ReliefMaps, ReliefOptions, SurfaceMesh, SurfaceTextures,
 };
 
-use crate::measure::relief::ReliefSquare;
+use crate::measure::relief::{ReliefSquare, SquareView};
 
 impl ReliefSquare {
     /// The square as a scene, with textures of a method. Colours and normals are linear half floats, so that drivers differ by

@@ -5,12 +5,12 @@ use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::render::Offscreen;
 use relievo::render::target::LINEAR_FORMAT;
-use relievo::surface::picture::Scene;
 use relievo::surface::relief::ReliefPass;
 use relievo::surface::relief::reference::Surface;
 use relievo::surface::{Address, HeightMap, Hit, March, Method, Ray, SurfaceTextures};
 
 use crate::measure::relief::ReliefSquare;
+use crate::measure::relief::picture::Scene;
 use crate::measure::relief::square::camera;
 
 /// Largest number of rays of a list: the hits of so many rays fit a binding of any device.

@@ -3,17 +3,16 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::asset::light::lambert;
-use crate::srgb::linear;
-use crate::surface::linear_image::LinearImage;
-use crate::surface::map::Address;
-use crate::surface::mips::Mips;
-use crate::surface::relief::reference::Surface;
-use crate::surface::relief::reference::height::height;
-use crate::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
-use crate::surface::relief::{Hit, March, Method, Ray};
-use crate::surface::view::SquareView;
-use crate::surface::{Green, Material, Shadow};
+use super::view::SquareView;
+use relievo::srgb::linear;
+use relievo::surface::linear_image::LinearImage;
+use relievo::surface::map::Address;
+use relievo::surface::mips::Mips;
+use relievo::surface::relief::reference::Surface;
+use relievo::surface::relief::reference::height::height;
+use relievo::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
+use relievo::surface::relief::{Hit, March, Method, Ray};
+use relievo::surface::{Green, Material, Shadow};
 
 /// The scene of a picture.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +73,8 @@ impl Scene<'_> {
         let facing = Vec3::from(facing).dot(light.into());
         let direct = facing.max(0.0) * self.sunlit(&hit);
         let ambient = self.material.ambient;
-        Some([0, 1, 2].map(|i| color[i] * lambert(ambient, direct)))
+        // Lambert's cosine, and the ambient part.
+        Some(color.map(|channel| channel * (ambient + (1.0 - ambient) * direct)))
     }
 
     fn sunlit(&self, hit: &Hit) -> f32 {

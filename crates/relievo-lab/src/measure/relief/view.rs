@@ -1,8 +1,8 @@
 //! A square of relief under a parallel projection: every pixel sees it at the same angle, so that errors and
 //! costs can be attributed to that angle.
 
-use crate::InputError;
-use crate::surface::relief::Ray;
+use relievo::InputError;
+use relievo::surface::relief::Ray;
 
 /// The view of a textured square. In tangent space u points right, v down the image, and the normal towards the
 /// viewer.
@@ -194,7 +194,7 @@ mod tests {
             (0.0, f64::NAN, "light.elevation", "NaN", "must be in 0..=90 degrees"),
             (f64::INFINITY, 91.0, "light.azimuth", "inf", "must be a finite number of degrees"),
         ] {
-            let expected = crate::InputError::new(path, value, bound);
+            let expected = relievo::InputError::new(path, value, bound);
             assert_eq!(towards_light(azimuth, elevation), Err(expected));
         }
     }

@@ -2,7 +2,7 @@
 
 use image::{Rgba, RgbaImage};
 
-use crate::InputError;
+use relievo::InputError;
 
 /// A rectangle of patches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 
 use rayon::prelude::*;
 
-use crate::surface::exact::exact;
-use crate::surface::map::{Address, HeightMap};
-use crate::surface::relief::{Hit, Outcome, Ray};
+use super::exact::exact;
+use relievo::surface::map::{Address, HeightMap};
+use relievo::surface::relief::{Hit, Outcome, Ray};
 
 /// Statistics of a list of traced rays.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

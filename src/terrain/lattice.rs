@@ -1,0 +1,88 @@
+//! Lattices of points in world coordinates: the base lattice, from which subdivision starts, and the features of a lattice.
+
+use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, Interpolation, PATCH_EDGE};
+use crate::terrain::features::Features;
+use crate::terrain::fixed::{Draw, inject};
+use crate::terrain::window::{Lattice, Span};
+
+/// The heights of the base lattice of a patch: random ones on the points of `spans` or, for a patch by itself, its corners.
+pub(crate) fn base_lattice(
+    config: &Config,
+    features: &Features,
+    patch: [i32; 2],
+    spans: [Span; 2],
+) -> Vec<i32> {
+    if config.border != Border::Seamless {
+        return corners(config, features, patch);
+    }
+    let draw = Draw::new(config);
+    let spacing = config.sample_spacing() << config.levels();
+    let injected = Injected::new(features, spans, spacing, (1, false));
+    let width = spans[0].width();
+    let mut grid = vec![0; width * spans[1].width()];
+    for (y, heights) in (spans[1].first..).zip(grid.chunks_exact_mut(width)) {
+        let [x, world_y] = [spans[0].first, y].map(|index| world(index, spacing));
+        draw.add_row(heights, config.level_range(0), x, spacing as u32, world_y);
+        injected.inject_row(features, y, spans[0].first, 1, heights);
+    }
+    if config.interpolation == Interpolation::Smooth {
+        grid.iter_mut().for_each(|height| *height = limited(*height));
+    }
+    grid
+}
+
+fn corners(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
+    let mut corners = config.fixed_corners().to_vec();
+    let lattice = Lattice { origin: [0, 0], width: 2, spacing: PATCH_EDGE };
+    for (x, y, height) in features.on_lattice(Features::world_of(config, patch), lattice, false) {
+        let corner = &mut corners[(2 * y + x) as usize];
+        *corner = inject(features.mode, *corner, height);
+    }
+    corners
+}
+
+/// The nearest height of at most [`HEIGHT_LIMIT`].
+pub(crate) fn limited(height: i32) -> i32 {
+    height.clamp(-HEIGHT_LIMIT as i32, HEIGHT_LIMIT as i32)
+}
+
+/// The world coordinate of a point of a lattice.
+pub(crate) fn world(index: i64, spacing: i64) -> u32 {
+    (index * spacing) as u32
+}
+
+/// The features of one level, indexed by row.
+pub(crate) struct Injected {
+    points: Vec<(u32, u32, i32)>,
+    origin: [i64; 2],
+}
+
+impl Injected {
+    /// Those on a lattice that has `rim` points more than the window on every side: points outside of it, of which others
+    /// are computed, see features too. With `new_only`, points of the coarser lattice are left out.
+    pub(crate) fn new(
+        features: &Features,
+        spans: [Span; 2],
+        spacing: i64,
+        (rim, new_only): (u32, bool),
+    ) -> Self {
+        let origin = spans.map(|span| span.first - i64::from(rim));
+        let width = spans[0].width().max(spans[1].width()) as u32 + 2 * rim;
+        let lattice = Lattice { origin: origin.map(|index| index * spacing), width, spacing };
+        Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
+    }
+
+    /// Injects into each `heights[i]`, which is the point (x + i·step, y) in units of the lattice.
+    pub(crate) fn inject_row(&self, features: &Features, y: i64, x: i64, step: i64, heights: &mut [i32]) {
+        let row = (y - self.origin[1]) as u32;
+        let start = self.points.partition_point(|point| point.1 < row);
+        for &(column, _, height) in self.points[start..].iter().take_while(|point| point.1 == row) {
+            let distance = i64::from(column) + self.origin[0] - x;
+            if distance.rem_euclid(step) == 0
+                && let Some(computed) = usize::try_from(distance / step).ok().and_then(|i| heights.get_mut(i))
+            {
+                *computed = inject(features.mode, *computed, height);
+            }
+        }
+    }
+}
