@@ -48,10 +48,11 @@ struct AssignParams {
 // length: instances
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
 
-// The coarsest level whose error is within its fraction.
+// The coarsest level whose error is within its fraction; `within` is at least 0. Where uniforms alone decide loops and branches,
+// lavapipe compiles the kernel anew in each submission.
 fn level_within(within: f32) -> u32 {
     var level = 0u;
-    for (var coarser = 1u; coarser < min(params.levels, OBJECT_LEVELS); coarser++) {
+    for (var coarser = 1u; coarser < select(0u, min(params.levels, OBJECT_LEVELS), within >= 0.0); coarser++) {
         if params.errors[coarser >> 2u][coarser & 3u] <= params.mesh_fraction * within {
             level = coarser;
         }
@@ -61,10 +62,8 @@ fn level_within(within: f32) -> u32 {
 
 // How far influences may fade: the whole way if that displaces nothing.
 fn fade_within(within: f32) -> f32 {
-    if params.stray <= 0.0 {
-        return 1.0;
-    }
-    return floor(FADE_STEPS * min(params.influence_fraction * within / params.stray, 1.0)) / FADE_STEPS;
+    let faded = floor(FADE_STEPS * min(params.influence_fraction * within / params.stray, 1.0)) / FADE_STEPS;
+    return select(faded, 1.0, params.stray <= 0.0);
 }
 
 @compute @workgroup_size(64)

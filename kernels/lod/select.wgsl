@@ -160,7 +160,8 @@ fn main(
     workgroupBarrier();
     let index = BLOCK * block + lane;
     let decision = decide(index, objects[owner]);
-    if view.last_levels != 0u {
+    // No decision has all bits: a branch over uniforms alone would let lavapipe compile the kernel anew in each submission.
+    if view.last_levels != 0u && decision != 0xffffffffu {
         rows[view.last_levels + index] = level_told(select(0u, decisions[index], view.is_next != 0u));
     }
     decisions[index] = decision;

@@ -26,7 +26,6 @@ mod readback;
 mod readback_ring;
 pub mod shaders;
 mod shared;
-mod tuning;
 mod upload;
 mod wait;
 
@@ -44,7 +43,6 @@ pub(crate) use kernel::{Layouts, rows_of_workgroups};
 pub use memory::Memory;
 pub(crate) use pending::PendingUploads;
 pub use readback_ring::ReadbackRing;
-pub use tuning::Tuning;
 pub(crate) use upload::StagingStream;
 pub use upload::{Staged, StagingRing, Upload};
 
@@ -60,7 +58,6 @@ pub struct Gpu {
     queue: wgpu::Queue,
     identity: Identity,
     summary: AdapterSummary,
-    tuning: Tuning,
     errors: Errors,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
@@ -114,10 +111,10 @@ impl Gpu {
     }
 
     fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
-        let (summary, tuning) = (AdapterSummary::of(info), Tuning::of(info));
+        let summary = AdapterSummary::of(info);
         let (errors, memory, kernels) = Default::default();
         let identity = Identity::of(&device);
-        Self { device, queue, identity, summary, tuning, errors, memory, kernels, pending: None }
+        Self { device, queue, identity, summary, errors, memory, kernels, pending: None }
     }
 
     /// Whether another handle is of the same device.
@@ -164,11 +161,6 @@ impl Gpu {
     /// Name, kind and driver of the adapter.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.summary
-    }
-
-    /// What is fastest on the adapter.
-    pub fn tuning(&self) -> Tuning {
-        self.tuning
     }
 
     /// The bytes that relievo's storage buffers hold on this device.

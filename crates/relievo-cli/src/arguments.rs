@@ -12,7 +12,6 @@ use relievo_samples::creature;
 use serde::Serialize;
 
 use crate::Context;
-use crate::terrain::export::HeightRange;
 
 /// The processor that computes.
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]

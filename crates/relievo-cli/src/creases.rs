@@ -19,6 +19,8 @@ use crease::{Crease, creases, hill_shaded};
 /// ("interpolation" of a configuration): where the ratio is large, shading shows a crease.
 ///
 /// Writes `linear.png` and `smooth.png`, one patch lit from the north-west at 45 degrees, and `report.json`.
+///
+/// relievo creases --out creases
 #[derive(Args)]
 pub struct Creases {
     /// Samples along the edge of a patch: 2^n + 1.

@@ -65,6 +65,10 @@ const LAYOUTS: [(&str, Layout); 2] = [("grid", Layout::Grid), ("random", Layout:
 /// With --pareto, the command instead compares error against cost for every gate, at one distance (--tall), on the
 /// CPU. All instances stand at one place, each turned by another angle. It writes pareto_max.png, pareto_rms.png
 /// and DIR/pareto.json.
+///
+/// relievo crowd --model builtin --clip walk --gate bounded --out crowd
+/// relievo crowd --model builtin --clip walk --gate bounded --pixels 0.25 --scene --out frames
+/// relievo crowd --model builtin --clip walk --pareto --out gates
 #[derive(Args)]
 #[command(verbatim_doc_comment)]
 pub struct Crowd {

@@ -26,6 +26,8 @@ pub const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clam
 /// node in its parent node's space, with the rotation as a quaternion x, y, z, w. "model" is its global transform
 /// in the scene, including all nodes above it, as a 4 × 4 matrix, column by column. "time" is the time inside the
 /// clip in seconds. "clip" and "time" are null at rest.
+///
+/// relievo pose --model builtin --clip walk --time 0.3 --out pose.json
 #[derive(Args)]
 pub struct Pose {
     #[command(flatten)]

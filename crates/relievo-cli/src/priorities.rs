@@ -21,6 +21,8 @@ use crate::pose::WRAPS;
 /// A key has six terms from 0 to 1: how far its bone moves, turns and scales until the next key, each as a share of the
 /// clip's largest; how many bones lie below it; how near it is to the root; and the user's own term, one half for all
 /// bones. The priority is the weighted mean of these terms.
+///
+/// relievo priorities --model builtin --clip walk --weights analyze
 #[derive(Args)]
 pub struct Priorities {
     #[command(flatten)]

@@ -45,7 +45,9 @@ const ADDRESSES: [(&str, Address); 2] = [("wrap", Address::Wrap), ("clamp", Addr
 /// With `--compare`, measures every method at 0, 30, 60 and 80 degrees instead, and writes `compare.json`,
 /// `compare.md` and `compare.png`.
 ///
-/// Start with `relievo relief --builtin bricks --method quadtree --shadow hard --out relief`.
+/// relievo relief --builtin bricks --method quadtree --shadow hard --out relief
+///
+/// relievo relief --height map.png --compare --out compared
 #[derive(Args)]
 pub struct Relief {
     /// The height map: the brightness of a PNG or JPEG, from 0 to 1.

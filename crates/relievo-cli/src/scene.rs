@@ -40,6 +40,8 @@ const DEPTHS: [(&str, Depth); 2] = [("forward", Depth::Forward), ("reversed", De
 ///
 /// relievo scene examples/scenes/ruins.json --out ruins
 ///
+/// relievo scene examples/scenes/herd.json --frames 240 --compare --out herd
+///
 /// A mistake in the file is refused with its path (characters[1].scatter.count), and nothing is written.
 #[derive(Args)]
 pub struct Scene {

@@ -49,7 +49,9 @@ const BUILT_IN: &str = "builtin:";
 /// With --compare, every reducer makes levels of 50, 20, 10 and 2 % of the triangles instead. compare.json, compare.md and
 /// compare.png have their errors, times, and sizes on the wire.
 ///
-/// Start with `relievo simplify --model builtin:rock --share 0.5 0.1 --out levels`.
+/// relievo simplify --model builtin:rock --share 0.5 0.1 --out levels
+///
+/// relievo simplify --model cow.obj --compare --out compared
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").required(true).multiple(true).args(["triangles", "share", "error", "compare"])))]
 pub struct Simplify {

@@ -30,6 +30,10 @@ use crate::progress::during;
 /// the file's order; after them come the vertices that are duplicated because the triangles around them have
 /// different tangents. Points and lines have no faces. skin.png shows all meshes, lit, with the base colours and
 /// textures of their materials; a mesh without a material is clay.
+///
+/// relievo skin --model fox.glb --clip Run --time 0.3 --out fox
+///
+/// relievo skin --model house.glb --out house
 #[derive(Args)]
 pub struct Skin {
     #[command(flatten)]

@@ -59,7 +59,9 @@ const WEIGHT_MODES: [(&str, WeightMode); 2] =
 /// coarseLevels, offset, interpolation, border, corners, terrainScale, textureTile, triplanar, variation, zones, and erosion:
 /// thermal and thermalAfter, such as {"iterations": 20, "talus": 35}, and hydraulic, such as {"iterations": 300}, with rain,
 /// evaporation, capacity, threshold, erosion, deposition, talus and creep. A feature file: {"patchCoordinates": [0, 0],
-/// "precomputedHeights": [x, y, height, …]}.
+/// "precomputedHeights": [x, y, height, …]}. docs/terrain.md describes every field.
+///
+/// relievo terrain --config examples/terrain.json --patches 3x3 --out terrain
 #[derive(Args)]
 pub struct Terrain {
     /// The configuration, a JSON file.

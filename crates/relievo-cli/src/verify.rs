@@ -14,6 +14,8 @@ use crate::progress::spinner;
 
 /// Compares every kernel with its CPU reference on your adapter, and prints which of them agree. Exits with 1
 /// if one does not.
+///
+/// relievo verify --only terrain/thermal
 #[derive(Args)]
 pub struct Verify {
     /// Compares only kernels whose name contains this text, such as `terrain/height` or `thermal`.

@@ -1,4 +1,4 @@
-//! The Rust of README.md, block by block, each in a function that takes what the block leaves out. It is compiled and not run.
+//! The Rust of README.md and docs/*.md, block by block, each in a function that takes what the block leaves out. It is compiled and not run.
 //! `tests/readme.rs` compares the lines between the two marks of a function with those of the document.
 #![allow(dead_code, unused_variables, reason = "they are compiled, not run")]
 
@@ -20,6 +20,24 @@ mod own {
     pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 }
 
+/// A scene in the render pass of a program.
+#[rustfmt::skip]
+fn draw(
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    (mut encoder, mut pass): (wgpu::CommandEncoder, wgpu::RenderPass<'_>),
+    (mut scene, mut view, camera): (Scene, View, Camera),
+) -> Result<(), Error> {
+    // begin README.md
+    let gpu = Gpu::from_wgpu(device.clone(), queue.clone());             // WebGPU's default limits suffice
+    let mut renderer = Renderer::new(&gpu, &TargetFormat::new(own::COLOR).with_samples(4))?;
+    renderer.prepare(&scene)?;                                           // compiles the pipelines
+    view.set(camera)?;                                                   // per frame: your own matrices
+    scene.record(&mut encoder, &mut [&mut view])?;                       // compute passes; no submission, no wait
+    renderer.draw(&mut pass, &scene, &view, Layer::Color)?;              // your render pass
+    // end
+    Ok(())
+}
+
 /// A scene in a program, with what that has already.
 #[rustfmt::skip]
 fn scene(
@@ -29,7 +47,7 @@ fn scene(
     (model, place, at): (Model, Placement, usize),
     camera: Camera,
 ) -> Result<(), Error> {
-    // begin README.md
+    // begin docs/embedding.md
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());              // yours; WebGPU's default limits suffice
     let mut scene = Scene::new(&gpu)?;                                    // x east, y up, z south
     let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches))?;
@@ -37,9 +55,9 @@ fn scene(
     let walker = scene.spawn(crowd, place.turned(0.9 * at as f32).scaled(2.0))?; // about +Y, radians; twice as large
     let format = TargetFormat::new(own::COLOR).with_samples(4);           // of your targets
     let mut renderer = Renderer::new(&gpu, &format)?;
-    renderer.prepare(&scene)?;                                            // compiles, again when objects were added
+    renderer.prepare(&scene)?;                                            // compiles; again after objects were added
     let mut eye = scene.view(Default::default())?;                        // at most a pixel off
-    eye.set(camera)?;                                                     // a frame: your own matrices
+    eye.set(camera)?;                                                     // per frame: your own matrices
     scene.advance(0.5)?;                                                  // seconds
     scene.record(&mut encoder, &mut [&mut eye])?;                         // all views; no submission, no wait
     renderer.draw(&mut pass, &scene, &eye, Layer::Color)?;                // your pass
@@ -50,9 +68,9 @@ fn scene(
 /// The shadow of a light.
 #[rustfmt::skip]
 fn shadow((mut scene, mut eye): (Scene, View), mut encoder: wgpu::CommandEncoder) -> Result<(), Error> {
-    // begin README.md
+    // begin docs/embedding.md
     let mut shadow = SunShadow::new(&mut scene, 2048)?;                   // texels along an edge; then prepare renderers
-    shadow.fit(&scene, &mut [&mut eye], 120.0)?;                          // a frame: up to 120 units ahead of the eye
+    shadow.fit(&scene, &mut [&mut eye], 120.0)?;                          // per frame: up to 120 units ahead of the eye
     scene.record(&mut encoder, &mut [&mut eye, shadow.view()])?;          // casters outside of the eye's view, too
     shadow.draw(&mut encoder, &scene)?;                                   // its map
     // end
@@ -62,13 +80,13 @@ fn shadow((mut scene, mut eye): (Scene, View), mut encoder: wgpu::CommandEncoder
 /// A scene in a browser.
 #[rustfmt::skip]
 async fn browser(config: Config, mut renderer: Renderer) -> Result<(), Error> {
-    // begin README.md
+    // begin docs/embedding.md
     let gpu = Gpu::headless_async(&Options::default()).await?;            // or Gpu::from_wgpu
     let mut scene = Scene::new_async(&gpu).await?;
     let land = scene.add_terrain_async(&TerrainSource::new(config)).await?;
     let walkers = scene.add_character_async(&creature()?, 3).await?;
     renderer.prepare_async(&scene).await?;
-    scene.health()?;                                                      // a frame
+    scene.health()?;                                                      // per frame
     // end
     Ok(())
 }
@@ -80,7 +98,7 @@ fn heights(
     (patches, mut encoder): (Vec<[i32; 2]>, wgpu::CommandEncoder),
     mut scene: Scene,
 ) -> Result<(), Error> {
-    // begin README.md
+    // begin docs/embedding.md
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());              // yours, or Gpu::headless
     let config = Config::new(257, 40.0, "any text")?;
     let pass = HeightPass::new(&gpu, Offset::Signed, None)?;              // compiles once
@@ -89,7 +107,7 @@ fn heights(
     let land = scene.add_terrain(&land)?;
     batch.set(&gpu, &patches, &Features::default())?;                     // which patches, and their features
     batch.record(&mut encoder);                                           // your encoder: no submission, wait or allocation
-    scene.set_patches(land, &patches, [-80.0, 80.0])?;                    // what the heights show, and between which they lie
+    scene.set_patches(land, &patches, [-80.0, 80.0])?;                    // the patches, and the range of their heights
     // end
     Ok(())
 }
@@ -101,10 +119,10 @@ fn skinning(
     (fox, matrices): (Model, &ModelMatrices),
     lods: &[InstanceLod],
 ) -> Result<(), Error> {
-    // begin README.md
+    // begin docs/embedding.md
     let skin = SkinFrame::new(&gpu, &fox, 0, matrices, 1000, Blend::Linear)?; // a mesh of 1000 instances
     skin.crowd.instance_lods.write(&gpu, lods)?;                          // who is seen, how coarse
-    skin.record_updated_bones(&mut encoder);                              // a frame: clusters with a bone that moved
+    skin.record_updated_bones(&mut encoder);                              // per frame: clusters with a bone that moved
     let (vertices, triangles) = (&skin.skinned, &skin.mesh.indices);      // instance · vertices + index
     // end
     Ok(())

@@ -1,4 +1,4 @@
-//! What README.md and docs/*.md name in their prose, each for the compiler to find: an item, a method, a field or a variant.
+//! What README.md, CONTRIBUTING.md and docs/*.md name in their prose, each for the compiler to find: an item, a method, a field or a variant.
 //! The comment of a line is the name as it stands there; `tests/readme.rs` compares these with the documents.
 #![allow(dead_code, unused_imports, reason = "it is compiled, not run")]
 
@@ -19,6 +19,9 @@ fn items() {
     use relievo_lab::reduce::Reducer as _; // reduce::Reducer
     use relievo::mesh::Stopped as _; // mesh::Stopped
     use relievo::mesh::simplify as _; // mesh::simplify
+    use relievo::mesh::simplify_within as _; // mesh::simplify_within
+    use relievo::scene::TerrainSource as _; // TerrainSource
+    use relievo::terrain::thermal as _; // terrain::thermal
     use relievo::skinning::Extent as _; // skinning::Extent
     use relievo::skinning::add_levels as _; // skinning::add_levels
     use relievo::skinning::collapse_bones as _; // skinning::collapse_bones
@@ -57,6 +60,29 @@ fn members() {
     let _ = Scene::set_material; // Scene::set_material
     let _ = Scene::set_transition; // Scene::set_transition
     let _ = Simplified::hash; // Simplified::hash
+    let _ = Layer::Color; // Layer::Color
+    let _ = Layer::Depth; // Layer::Depth
+    let _ = Renderer::draw; // Renderer::draw
+    let _ = Scene::add_character; // Scene::add_character
+    let _ = Scene::add_character_with; // Scene::add_character_with
+    let _ = Scene::add_relief; // Scene::add_relief
+    let _ = Scene::add_terrain; // Scene::add_terrain
+    let _ = Scene::attach; // Scene::attach
+    let _ = Scene::bounds; // Scene::bounds
+    let _ = Scene::drive; // Scene::drive
+    let _ = Scene::ground; // Scene::ground
+    let _ = Scene::pick; // Scene::pick
+    let _ = Scene::pose; // Scene::pose
+    let _ = Scene::rebuild_all; // Scene::rebuild_all
+    let _ = Scene::stage_times; // Scene::stage_times
+    let _ = Scene::statistics; // Scene::statistics
+    let _ = Scene::tight_bounds; // Scene::tight_bounds
+    let _ = Scene::watched_bones; // Scene::watched_bones
+    let _ = TargetFormat::measure; // TargetFormat::measure
+    let _ = TargetFormat::new; // TargetFormat::new
+    let _ = TargetFormat::surface; // TargetFormat::surface
+    let _ = relievo::terrain::config::Config::from_json; // Config::from_json
+    let _ = |scene: &mut Scene, encoder: &mut wgpu::CommandEncoder| scene.record_with(encoder, &mut [], |_, _| Ok(())); // Scene::record_with
     let _ = TargetFormat::velocity; // TargetFormat::velocity
     let _ = Extent::fade_range; // Extent::fade_range
     let _ = |projection: &Projection, extent: &Extent| extent.level_ranges(projection, 1.0, [0.0]); // Extent::level_ranges

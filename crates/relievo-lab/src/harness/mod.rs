@@ -1,7 +1,7 @@
 //! Tools that verify and measure operations, independent of any operation: comparators, poisoned buffers and
 //! parity cases; repetition, clocks and tables.
 
-pub use cases::{CaseResult, Cases, Skipped};
+pub use cases::{CaseResult, Cases};
 pub use measure::{Bench, Contender};
 pub use row::{Backend, Row};
 pub use table::table;

@@ -33,6 +33,9 @@ pub const COLORS: [RGBColor; 8] = [
 const SHAPES: [(u32, f64); 8] =
     [(24, 0.0), (4, 45.0), (3, -90.0), (4, 0.0), (3, 90.0), (6, 0.0), (5, -90.0), (3, 0.0)];
 
+/// For each entry the index of its name and its horizontal position.
+type LegendLine = Vec<(usize, i32)>;
+
 type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn Error>>;
 
@@ -82,9 +85,9 @@ impl<'a> Picture<'a> {
         style(fraction * f64::from(self.text), side, color)
     }
 
-    /// The lines of the legend: for each entry the index of its name and its horizontal position.
-    fn legend(&self, area: &Area<'_>, width: i32) -> Result<Vec<Vec<(usize, i32)>>, Box<dyn Error>> {
-        let mut lines: Vec<Vec<(usize, i32)>> = Vec::new();
+    /// The lines of the legend.
+    fn legend(&self, area: &Area<'_>, width: i32) -> Result<Vec<LegendLine>, Box<dyn Error>> {
+        let mut lines: Vec<LegendLine> = Vec::new();
         let mut left = width;
         for (index, name) in self.names.iter().enumerate() {
             let (own, _) = area.estimate_text_size(name, &self.style(1.0, HPos::Left, INK))?;

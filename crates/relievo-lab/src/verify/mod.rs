@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cases::{Operation, selected};
 use crate::harness::compare::Comparison;
-use crate::harness::{CaseResult, Cases, Skipped};
+use crate::harness::{CaseResult, Cases};
 
 mod summary;
 
@@ -22,8 +22,6 @@ pub struct Report {
     pub holds: bool,
     /// The results, case by case.
     pub cases: Vec<CaseResult>,
-    /// The cases that this device cannot run.
-    pub skipped: Vec<Skipped>,
 }
 
 /// Runs the cases of every selected kernel, and calls `progress` with each result. Blocks.
@@ -56,23 +54,15 @@ pub async fn run_operations<'a>(
     operations: impl IntoIterator<Item = &'a Operation>,
     progress: &mut dyn FnMut(&CaseResult),
 ) -> Result<Report, Error> {
-    let (mut all, mut skipped) = (Vec::new(), Vec::new());
+    let mut all = Vec::new();
     for operation in operations {
-        let mut cases =
-            Cases { gpu, stem: operation.name, results: Vec::new(), skipped: Vec::new(), progress };
+        let mut cases = Cases { gpu, stem: operation.name, results: Vec::new(), progress };
         (operation.parity)(&mut cases).await?;
         if cases.results.is_empty() {
             cases.add("no case", Comparison::failed(0, "the kernel has no parity case".to_owned()));
         }
         all.append(&mut cases.results);
-        skipped.append(&mut cases.skipped);
     }
     let holds = !all.is_empty() && all.iter().all(|result| result.comparison.holds);
-    Ok(Report {
-        adapter: gpu.adapter().clone(),
-        version: env!("CARGO_PKG_VERSION"),
-        holds,
-        cases: all,
-        skipped,
-    })
+    Ok(Report { adapter: gpu.adapter().clone(), version: env!("CARGO_PKG_VERSION"), holds, cases: all })
 }

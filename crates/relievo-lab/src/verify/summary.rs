@@ -83,10 +83,6 @@ fn left_out(report: &Report) -> String {
         if count > 0 {
             text += &format!("{stem}: {count} of {of} left out, as rounding may decide them either way\n");
         }
-        let skipped: Vec<_> = report.skipped.iter().filter(|case| case.stem == stem).collect();
-        if let Some(first) = skipped.first() {
-            text += &format!("{stem}: {} cases cannot run here: {}\n", skipped.len(), first.reason);
-        }
     }
     text
 }

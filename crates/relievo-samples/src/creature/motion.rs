@@ -6,8 +6,11 @@ use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 
 use super::bones::{Kind, Part, Side, turn};
 
+/// The motion of a bone in a clip.
+type MotionOf = fn(Kind) -> Motion;
+
 /// The clips of the creature: their names, their durations in seconds, and how each bone moves.
-pub const CLIPS: [(&str, f64, fn(Kind) -> Motion); 3] =
+pub const CLIPS: [(&str, f64, MotionOf); 3] =
     [("walk", 1.0, walk), ("idle", 4.0, idle), ("wave", 2.0, greet)];
 
 /// A sine `offset + amplitude · sin(2π(cycles·t + phase))` along or about an axis, with t from 0 to 1 over the

@@ -1,0 +1,49 @@
+//! Creatures walk over generated terrain, in the light of a low sun.
+
+use glam::{DVec3, Vec3};
+use relievo::asset::Light;
+use relievo::gpu::{Gpu, Options};
+use relievo::render::{Layer, Offscreen, Renderer, SunShadow};
+use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainSource};
+use relievo::skinning::add_levels;
+use relievo::terrain::config::Config;
+use relievo_samples::creature;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let gpu = Gpu::headless(&Options::default())?;
+    let mut scene = Scene::new(&gpu)?;
+    let config = Config::from_json(include_str!("terrain.json"))?;
+    let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3, at / 3]).collect();
+    let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches))?;
+    let ground = |scene: &Scene, x: f64, z: f64| {
+        let point = scene.ground(land, x, z).ok().flatten();
+        DVec3::new(x, point.map_or(0.0, |point| point.height), z)
+    };
+    let mut model = creature()?;
+    add_levels(&mut model, &[0], 60)?; // levels of detail for the first clip, from 60 of its poses
+    let crowd = scene.add_character(&model, 40)?;
+    for at in 0..40 {
+        let place = ground(&scene, 100.0 + 4.0 * f64::from(at % 5), 600.0 + 5.0 * f64::from(at / 5));
+        let walker = scene.spawn(crowd, Placement::at_world(place).turned(0.4).scaled(1.8))?;
+        scene.play(walker, &Play { start: -0.31 * f64::from(at), ..Play::new("walk") })?;
+    }
+    let direction = Vec3::new(-0.7, 0.45, 0.3); // towards the light
+    scene.set_light(Light { direction, color: Vec3::new(1.4, 1.3, 1.1), ambient: 0.22 })?;
+
+    let target = Offscreen::new(&gpu, [960, 540], true, 4, false)?; // with colour, 4 samples a pixel
+    let mut shadow = SunShadow::new(&mut scene, 4096)?; // texels along an edge of its map
+    let mut renderer = Renderer::new(&gpu, target.format())?;
+    renderer.prepare(&scene)?;
+    let mut view = scene.view(Quality { pixels: 1.0 })?; // at most a pixel off
+    let (eye, focus) = (ground(&scene, 110.0, 655.0) + 6.0 * DVec3::Y, ground(&scene, 110.0, 580.0));
+    view.set(Camera::looking_at_world(eye, focus, 0.8, [0.1, 2000.0], target.size()))?;
+
+    let (mut encoder, sky) = (gpu.encoder("frame"), [0.42, 0.58, 0.8]);
+    shadow.fit(&scene, &mut [&mut view], 150.0)?; // up to 150 units ahead of the eye
+    scene.record(&mut encoder, &mut [&mut view, shadow.view()])?;
+    shadow.draw(&mut encoder, &scene)?;
+    target.record(&mut encoder, sky, |pass| renderer.draw(pass, &scene, &view, Layer::Color))?;
+    gpu.queue().submit([encoder.finish()]);
+    target.read(&gpu)?.save("first.png")?;
+    Ok(())
+}
