@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     add_levels(&mut model, &[0], 60)?; // levels of detail for the first clip, from 60 of its poses
     let crowd = scene.add_character(&model, 40)?;
     for at in 0..40 {
-        let place = ground(&scene, 100.0 + 4.0 * f64::from(at % 5), 600.0 + 5.0 * f64::from(at / 5));
+        let place = ground(&scene, 650.0 + 4.0 * f64::from(at % 5), 600.0 + 5.0 * f64::from(at / 5));
         let walker = scene.spawn(crowd, Placement::at_world(place).turned(0.4).scaled(1.8))?;
         scene.play(walker, &Play { start: -0.31 * f64::from(at), ..Play::new("walk") })?;
     }
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut renderer = Renderer::new(&gpu, target.format())?;
     renderer.prepare(&scene)?;
     let mut view = scene.view(Quality { pixels: 1.0 })?; // at most a pixel off
-    let (eye, focus) = (ground(&scene, 110.0, 655.0) + 6.0 * DVec3::Y, ground(&scene, 110.0, 580.0));
+    let (eye, focus) = (ground(&scene, 660.0, 655.0) + 6.0 * DVec3::Y, ground(&scene, 660.0, 580.0));
     view.set(Camera::looking_at_world(eye, focus, 0.8, [0.1, 2000.0], target.size()))?;
 
     let (mut encoder, sky) = (gpu.encoder("frame"), [0.42, 0.58, 0.8]);
