@@ -62,7 +62,7 @@ fn members() {
     let _ = Simplified::hash; // Simplified::hash
     let _ = Layer::Color; // Layer::Color
     let _ = Layer::Depth; // Layer::Depth
-    let _ = Renderer::draw; // Renderer::draw
+    let _ = |renderer: &'static Renderer, pass: &mut wgpu::RenderPass<'static>, scene, view| Renderer::draw(renderer, pass, scene, view, Layer::Color); // Renderer::draw
     let _ = Scene::add_character; // Scene::add_character
     let _ = Scene::add_character_with; // Scene::add_character_with
     let _ = Scene::add_relief; // Scene::add_relief
