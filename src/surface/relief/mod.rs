@@ -115,7 +115,7 @@ impl Ray {
     }
 
     /// uv at a parameter.
-    pub(crate) fn at(&self, parameter: f32) -> [f32; 2] {
+    pub fn at(&self, parameter: f32) -> [f32; 2] {
         [self.origin[0] + parameter * self.slope[0], self.origin[1] + parameter * self.slope[1]]
     }
 }
