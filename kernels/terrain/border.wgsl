@@ -53,7 +53,8 @@ fn towards(ours: i32, neighbour: u32, at: vec2<u32>, distance: u32) -> i32 {
     let width = i32(params.width);
     let difference = ours - theirs;
     // The quotient is rounded down, so that the rest is not negative.
-    let quotient = difference / width - select(0, 1, difference % width < 0);
+    let truncated = difference / width;
+    let quotient = truncated - select(0, 1, difference < truncated * width);
     let rest = difference - quotient * width;
     return theirs + quotient * i32(distance) + (rest * i32(distance) + width / 2) / width;
 }
