@@ -83,11 +83,18 @@ impl<'a> Packed<'a> {
         let name = &self.name;
         let arguments = self.list(", ", |field| format!("{}: u32", field.name));
         let packed = self.packed("u");
-        let mut text = format!("\nfn {name}_word({arguments}) -> u32 {{\n    return {packed};\n}}\n");
+        let mut text = format!(
+            "\n// Packs a word: {}.\nfn {name}_word({arguments}) -> u32 {{\n    return {packed};\n}}\n",
+            self.comment
+        );
         for field in &self.fields {
             let value = Self::unpacked(field, "u");
-            write!(text, "\nfn {name}_{}(word: u32) -> u32 {{\n    return {value};\n}}\n", field.name)
-                .expect("a string");
+            let Field { name: of, first, width } = field;
+            write!(
+                text,
+                "\n// The {width} bits of a {name} word from bit {first} on.\nfn {name}_{of}(word: u32) -> u32 {{\n    return {value};\n}}\n"
+            )
+            .expect("a string");
         }
         text
     }

@@ -1,12 +1,10 @@
 // Loads the texels that a colour map blends (`terrain/blend`), and makes nothing of them but one word a pixel: the exclusive or
 // of their words. This is the cost of the loads alone.
-import package::wgsl::terrain::points::Thread;
 import package::wgsl::terrain::tiles::{MapZone, plane_tiles, texel_index, tiles_up};
-import package::wgsl::terrain::windows::{inner_point, sample_index, windows};
+import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
 struct TexelsParams {
     // As in the colour map.
-    count: u32,
     width: u32,
     zone_count: u32,
     planes: u32,
@@ -22,13 +20,12 @@ struct TexelsParams {
 @group(0) @binding(5) var<storage, read_write> words: array<u32>;
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = inner_point(params.width, params.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !is_inner(params.width, id) {
         return;
     }
-    let height = windows[sample_index(params.width, point)];
-    let place = places[point.field] + point.at * params.tiles_per_sample;
+    let height = windows[sample_index(params.width, id)];
+    let place = places[id.z] + id.xy * params.tiles_per_sample;
     let tiles = vec3<u32>(place.x, tiles_up(height, params.tiles_per_unit), place.y);
     var word = 0u;
     for (var z = 0u; z < params.zone_count; z++) {
@@ -38,5 +35,5 @@ fn main(thread: Thread) {
             word ^= texel.x ^ texel.y;
         }
     }
-    words[point.index] = word;
+    words[inner_index(params.width, id)] = word;
 }

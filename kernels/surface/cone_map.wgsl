@@ -9,8 +9,7 @@
 // first and skipped when they cannot narrow the cone. Nodes that look small from the cell are treated as a
 // whole, so that the search takes O(log N) per cell.
 import package::wgsl::surface::ray::SURFACE_WRAP;
-import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
-import package::wgsl::surface::corner::corner_index;
+import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index, surface_levels};
 
 // The ratio of distance to size from which a node of the pyramid is treated as a whole. Larger values give wider
 // cones and a slower computation: 4 saves one load in twenty-five in a march, and takes half as long again to compute.
@@ -48,7 +47,7 @@ fn highest(map: u32, level: u32, node: vec2<i32>) -> f32 {
 }
 
 fn texel(map: u32, at: vec2<i32>) -> f32 {
-    return heights[corner_index(params.size, params.address, map, at)];
+    return heights[surface_corner_index(params.size, params.address, map, at)];
 }
 
 // The largest radius for which the cone stays above the corners of a leaf that is `offset` cells away. Over a

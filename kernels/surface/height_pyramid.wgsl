@@ -1,7 +1,6 @@
 // A level of the max-mip pyramids of a batch of height maps (B section 2.3.4). A leaf is the highest corner of a bilinear cell,
 // and a node the highest of its four children. A thread computes a node.
-import package::wgsl::surface::atlas::surface_atlas_at;
-import package::wgsl::surface::corner::corner_index;
+import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index};
 
 struct PyramidParams {
     // Texels and cells of a map along x and y.
@@ -49,7 +48,7 @@ fn place(map: u32, level: u32, at: vec2<i32>) -> u32 {
 }
 
 fn corner(map: u32, at: vec2<i32>) -> f32 {
-    return heights[corner_index(params.size, params.address, map, at)];
+    return heights[surface_corner_index(params.size, params.address, map, at)];
 }
 
 // A node of the next finer level, or one at the edge: that does not change the maximum.

@@ -2,17 +2,15 @@
 // per sample. The kernel reads windows that extend one sample beyond the patch.
 import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::light::{Light, lit};
-import package::wgsl::terrain::points::Thread;
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_weight, triplanar_weights, varied};
 import package::wgsl::terrain::tiles::{MapZone, plane_tiles, texel_index, tiles_up};
-import package::wgsl::terrain::windows::{gradient_at, inner_point, sample_index, windows};
+import package::wgsl::terrain::windows::{gradient_at, inner_index, is_inner, sample_index, windows};
 import package::wgsl::terrain::zones::{steepness, zone_blend, zone_blended, zone_color};
 
 struct MapParams {
     light: Light,
-    // Windows, and samples along an edge of each.
-    count: u32,
+    // Samples along an edge of a window.
     width: u32,
     // Twice the distance between samples, in 1/65536 units.
     run: f32,
@@ -37,18 +35,17 @@ struct MapParams {
 @group(0) @binding(5) var<storage, read_write> pixels: array<u32>;
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = inner_point(params.width, params.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !is_inner(params.width, id) {
         return;
     }
-    let sample = sample_index(params.width, point);
+    let sample = sample_index(params.width, id);
     let fixed_height = windows[sample];
     let height = f32(fixed_height) / f32(HEIGHT_ONE);
     let normal = slope_normal(gradient_at(params.width, sample), params.run);
     let steep = steepness(normal);
     // The place in 2^-22 tiles: east, up, south.
-    let place = places[point.field] + point.at * params.tiles_per_sample;
+    let place = places[id.z] + id.xy * params.tiles_per_sample;
     let tiles = vec3<u32>(place.x, tiles_up(fixed_height, params.tiles_per_unit), place.y);
     var weights = vec3<f32>(1.0, 0.0, 0.0);
     if params.planes == TRIPLANAR_PLANES {
@@ -66,7 +63,7 @@ fn main(thread: Thread) {
     // 14 bits behind the point fit an f32.
     let variation = color_variation(vec2<f32>(tiles.xz >> vec2<u32>(8u)) / 16384.0);
     let albedo = varied(zone_color(blend, params.additive != 0u), variation, params.variation);
-    pixels[point.index] = pack4x8unorm(vec4<f32>(srgb(lit(params.light, normal, albedo)), 1.0));
+    pixels[inner_index(params.width, id)] = pack4x8unorm(vec4<f32>(srgb(lit(params.light, normal, albedo)), 1.0));
 }
 
 // The linear colour and height of a texel, 0 to 1.

@@ -1,14 +1,12 @@
 // B's transition area (section 3.3.1): samples within `width` of a border move towards the patch that already
 // exists on its other side. The left and right borders are handled first, then the upper and lower ones on
-// their result.
-import package::wgsl::terrain::points::{Thread, point_of};
+// their result. A thread moves a sample: `id` has its column, its row and the patch among those of the dispatch.
 
 // Whether the neighbours lie in `others`, a separate buffer of patches, and not in `heights`.
 override OTHERS: bool = false;
 
 struct BorderParams {
-    // Patches of this dispatch, and samples along an edge of each.
-    count: u32,
+    // Samples along an edge of a patch.
     size: u32,
     width: u32,
     // Index of the first entry of this dispatch in `order` and `neighbours`.
@@ -27,22 +25,19 @@ struct BorderParams {
 const NONE = 0xffffffffu;
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = point_of(params.size, params.count, thread);
-    if !point.there {
-        return;
-    }
-    let entry = params.start + point.field;
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     // The distances from the left, right, upper and lower border.
-    let distances = vec4<u32>(point.at.x, params.size - 1u - point.at.x, point.at.y, params.size - 1u - point.at.y);
-    let around = select(vec4<u32>(NONE), neighbours[entry], distances < vec4<u32>(params.width));
-    if all(around == vec4<u32>(NONE)) {
+    let distances = vec4<u32>(id.x, params.size - 1u - id.x, id.y, params.size - 1u - id.y);
+    let is_near = distances < vec4<u32>(params.width);
+    if any(id.xy >= vec2<u32>(params.size)) || !any(is_near) {
         return;
     }
-    let at = sample_index(order[entry], point.at.x, point.at.y);
+    let entry = params.start + id.z;
+    let around = select(vec4<u32>(NONE), neighbours[entry], is_near);
+    let at = sample_index(order[entry], id.x, id.y);
     // The neighbour's sample at the same distance on the other side of the border.
-    let across = vec2<u32>(distances.y, point.at.y);
-    let along = vec2<u32>(point.at.x, distances.w);
+    let across = vec2<u32>(distances.y, id.y);
+    let along = vec2<u32>(id.x, distances.w);
     var height = towards(heights[at], around.x, across, distances.x);
     height = towards(height, around.y, across, distances.y);
     height = towards(height, around.z, along, distances.z);
@@ -58,7 +53,8 @@ fn towards(ours: i32, neighbour: u32, at: vec2<u32>, distance: u32) -> i32 {
     let width = i32(params.width);
     let difference = ours - theirs;
     // The quotient is rounded down, so that the rest is not negative.
-    let quotient = difference / width - select(0, 1, difference % width < 0);
+    let truncated = difference / width;
+    let quotient = truncated - select(0, 1, difference < truncated * width);
     let rest = difference - quotient * width;
     return theirs + quotient * i32(distance) + (rest * i32(distance) + width / 2) / width;
 }

@@ -1,15 +1,13 @@
 // Replaces every point that is further than the threshold from the mean of its four neighbours by that mean (B
 // figure 5.10). Injected points are left alone. Each window loses its outermost ring of samples.
-import package::wgsl::terrain::points::Thread;
-import package::wgsl::terrain::windows::{inner_point, sample_index, windows};
+import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, has_feature};
 
 struct DespikeParams {
     // The index of the injected points of the windows.
     features: FeatureGrid,
-    // Windows, and samples along an edge of each.
-    count: u32,
+    // Samples along an edge of a window.
     width: u32,
     threshold: i32,
 }
@@ -18,19 +16,18 @@ struct DespikeParams {
 @group(0) @binding(2) var<storage, read_write> outputs: array<i32>;
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = inner_point(params.width, params.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !is_inner(params.width, id) {
         return;
     }
-    let at = sample_index(params.width, point);
+    let at = sample_index(params.width, id);
     let height = windows[at];
     let mean = mean_of_four(
         vec4<i32>(windows[at - 1u]), vec4<i32>(windows[at + 1u]),
         vec4<i32>(windows[at - params.width]), vec4<i32>(windows[at + params.width])).x;
     var is_spike = abs(height - mean) > params.threshold;
     if FEATURES != FEATURES_NONE {
-        is_spike = is_spike && !has_feature(params.features, point.field, vec2<i32>(point.at + vec2<u32>(1u)));
+        is_spike = is_spike && !has_feature(params.features, id.z, vec2<i32>(id.xy + vec2<u32>(1u)));
     }
-    outputs[point.index] = select(height, mean, is_spike);
+    outputs[inner_index(params.width, id)] = select(height, mean, is_spike);
 }

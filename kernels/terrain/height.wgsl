@@ -1,20 +1,17 @@
 // One level of diamond-square subdivision for a batch of windows onto the plane (B section 3.3.1). A thread computes the centers
 // to the left of its coarse point and above it a second time, so that threads need no barrier and a level is one dispatch.
 import package::wgsl::terrain::fixed::mean_of_four;
-import package::wgsl::terrain::level::{coarse_points, injected_four, level, offsets, origins, store_four};
-import package::wgsl::terrain::points::{Thread, point_of};
+import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    // A window may start anywhere in its first cell.
-    let point = point_of(level.fine_width / 2u + 1u, level.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !has_point(id) {
         return;
     }
-    let window = point.field;
+    let window = id.z;
     // The coarse window begins one or two fine points before the fine one.
     let shift = 2 - (origins[window] & vec2<i32>(1));
-    let cell = vec2<i32>(point.at) + shift - 1;
+    let cell = vec2<i32>(id.xy) + shift - 1;
     let at = 2 * cell - shift;
     // The centers of the cell whose first corner is the coarse point, of the cell to its left, and of the one above it.
     let x = cell.x - vec4<i32>(0, 1, 0, 0);

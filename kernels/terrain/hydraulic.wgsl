@@ -3,8 +3,7 @@
 // creep and banks slide, erodes or deposits, evaporates, rains, and computes the next shares from the surfaces before the cycle.
 // Whatever moves between two samples is computed from the old state alone. Each window loses its outermost ring of samples.
 import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
-import package::wgsl::terrain::points::Thread;
-import package::wgsl::terrain::windows::{inner_point, sample_index, windows};
+import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
 // The most water on a sample, in 1/65536 height units.
 const WATER_LIMIT: i32 = 0x4000000;
@@ -12,8 +11,7 @@ const WATER_LIMIT: i32 = 0x4000000;
 const SEDIMENT_LIMIT: i32 = 0x4000000;
 
 struct HydraulicParams {
-    // Windows, and samples along an edge of each. The reference, which makes one window, reads only the width.
-    count: u32,
+    // Samples along an edge of a window.
     in_width: u32,
     // 0 in the first cycle, before which there is no water; else 1.
     wet: i32,
@@ -56,15 +54,15 @@ struct Cell {
 }
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = inner_point(params.in_width, params.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !is_inner(params.in_width, id) {
         return;
     }
-    let at = sample_index(params.in_width, point);
+    let at = sample_index(params.in_width, id);
     let made = cycle(cell_at(at), cell_at(at - 1u), cell_at(at + 1u), cell_at(at - params.in_width), cell_at(at + params.in_width));
-    outputs[point.index] = made.ground + made.sediment * params.settles;
-    flow_outputs[point.index] = vec4<i32>(
+    let index = inner_index(params.in_width, id);
+    outputs[index] = made.ground + made.sediment * params.settles;
+    flow_outputs[index] = vec4<i32>(
         made.water, made.sediment, made.shares.x | (made.shares.y << 16u), made.shares.z | (made.shares.w << 16u));
 }
 

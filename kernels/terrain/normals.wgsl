@@ -1,11 +1,9 @@
 // Central differences (exact) and unit normals of windows. Each window loses its outermost ring of samples.
-import package::wgsl::terrain::points::Thread;
 import package::wgsl::terrain::slope::slope_normal;
-import package::wgsl::terrain::windows::{gradient_at, inner_point, sample_index};
+import package::wgsl::terrain::windows::{gradient_at, inner_index, is_inner, sample_index};
 
 struct NormalsParams {
-    // Windows, and samples along an edge of each.
-    count: u32,
+    // Samples along an edge of a window.
     width: u32,
     // Twice the distance between samples, in 1/65536 units.
     run: f32,
@@ -17,15 +15,15 @@ struct NormalsParams {
 @group(0) @binding(3) var<storage, read_write> normals: array<f32>;
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = inner_point(params.width, params.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !is_inner(params.width, id) {
         return;
     }
-    let gradient = gradient_at(params.width, sample_index(params.width, point));
+    let gradient = gradient_at(params.width, sample_index(params.width, id));
     let normal = slope_normal(gradient, params.run);
-    gradients[point.index] = gradient;
-    normals[3u * point.index] = normal.x;
-    normals[3u * point.index + 1u] = normal.y;
-    normals[3u * point.index + 2u] = normal.z;
+    let index = inner_index(params.width, id);
+    gradients[index] = gradient;
+    normals[3u * index] = normal.x;
+    normals[3u * index + 1u] = normal.y;
+    normals[3u * index + 2u] = normal.z;
 }

@@ -1,10 +1,7 @@
 // Windows around the patches of a batch, gathered from the patches themselves and their neighbours. There is
-// one dispatch for each buffer of patches; it writes the samples that come from that buffer.
-import package::wgsl::terrain::points::{Thread, point_of};
+// one dispatch for each buffer of patches; it writes the samples that come from that buffer. A thread copies a sample: `id` has its column, its row and the window.
 
 struct PadParams {
-    // Windows.
-    count: u32,
     // Samples along an edge of a patch, and around it in its window.
     size: u32,
     apron: u32,
@@ -21,20 +18,20 @@ const NONE = 0xffffffffu;
 const ELSEWHERE = 0xfffffffeu;
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = point_of(params.size + 2u * params.apron, params.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let width = params.size + 2u * params.apron;
+    if any(id.xy >= vec2<u32>(width)) {
         return;
     }
-    let at = vec2<i32>(point.at) - i32(params.apron);
+    let at = vec2<i32>(id.xy) - i32(params.apron);
     let last = i32(params.size) - 1;
     let tile = vec2<i32>(1) - vec2<i32>(at < vec2<i32>(0)) + vec2<i32>(at > vec2<i32>(last));
-    let provider = provider_of(point.field, tile);
-    let index = around_at(point.field, provider);
+    let provider = provider_of(id.z, tile);
+    let index = around_at(id.z, provider);
     if index != ELSEWHERE {
         // Where a patch is missing, the samples at the edge of another are repeated.
         let local = vec2<u32>(clamp(at - last * (provider - 1), vec2<i32>(0), vec2<i32>(last)));
-        outputs[point.index] = patches[(index * params.size + local.y) * params.size + local.x];
+        outputs[(id.z * width + id.y) * width + id.x] = patches[(index * params.size + local.y) * params.size + local.x];
     }
 }
 

@@ -2,47 +2,55 @@
 // in both directions, with random offsets. A thread computes the centers of the cells around its coarse point that the points
 // on edges depend on, so that threads need no barrier and a level is one dispatch.
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
-import package::wgsl::terrain::level::{coarse_points, injected_four, level, offsets, origins, store_four};
-import package::wgsl::terrain::points::{Thread, point_of};
+import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
 // The features of a level are listed for two points more on every side than those of `terrain/height`: centers up to
 // three points outside of a window belong to its edges.
 const FEATURE_SHIFT = 2;
 
+// A row of coarse points, seen from one of them.
+struct Row {
+    own: i32,
+    // The values in the middle of cells, from two before the own one to the next after it.
+    along: vec4<i32>,
+}
+
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    // A window may start anywhere in its first cell.
-    let point = point_of(level.fine_width / 2u + 1u, level.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !has_point(id) {
         return;
     }
-    let window = point.field;
+    let window = id.z;
     // The coarse window begins three points before the one at its first sample or the one before that.
-    let cell = vec2<i32>(point.at) + 3;
-    let at = 2 * vec2<i32>(point.at) - (origins[window] & vec2<i32>(1));
-    // Of each of seven rows the point in the own column, and the values in the middle of cells, from two before the own one to
-    // the next after it.
-    var own: array<i32, 7>;
-    var along: array<vec4<i32>, 7>;
-    for (var row = 0; row < 7; row++) {
-        let y = vec4<i32>(cell.y + row - 3);
-        let left = coarse_points(window, cell.x + vec4<i32>(-3, -2, -1, 0), y);
-        own[row] = left.w;
-        along[row] = between(left, coarse_points(window, cell.x + vec4<i32>(1, 2, 3, 3), y));
-    }
+    let cell = vec2<i32>(id.xy) + 3;
+    let at = 2 * vec2<i32>(id.xy) - (origins[window] & vec2<i32>(1));
+    // The coarse rows from three above the own one to three below it.
+    let a = row_of(window, cell - vec2<i32>(0, 3));
+    let b = row_of(window, cell - vec2<i32>(0, 2));
+    let c = row_of(window, cell - vec2<i32>(0, 1));
+    let d = row_of(window, cell);
+    let e = row_of(window, cell + vec2<i32>(0, 1));
+    let f = row_of(window, cell + vec2<i32>(0, 2));
+    let g = row_of(window, cell + vec2<i32>(0, 3));
     // The centers of the cells from two before the own one to the next after it, in its column and in its row.
     let steps = vec4<i32>(-3, -1, 1, 3);
     let column = drawn(window, level.range, vec4<i32>(at.x + 1), at.y + steps, between(
-        vec4<i32>(along[0].z, along[1].z, along[2].z, along[3].z), vec4<i32>(along[4].z, along[5].z, along[6].zz)));
+        vec4<i32>(a.along.z, b.along.z, c.along.z, d.along.z), vec4<i32>(e.along.z, f.along.z, g.along.zz)));
     let across = drawn(window, level.range, at.x + steps, vec4<i32>(at.y + 1), four_point(
-        along[2], along[3], along[4], along[5]));
+        c.along, d.along, e.along, f.along));
     // Between the four centers of the column, the four points of the own column, and the four centers of the row.
     let middles = four_point(
-        vec4<i32>(column.x, own[2], across.xx), vec4<i32>(column.y, own[3], across.yy),
-        vec4<i32>(column.z, own[4], across.zz), vec4<i32>(column.w, own[5], across.ww));
+        vec4<i32>(column.x, c.own, across.xx), vec4<i32>(column.y, d.own, across.yy),
+        vec4<i32>(column.z, e.own, across.zz), vec4<i32>(column.w, f.own, across.ww));
     let edges = drawn(window, level.edge_range, at.x + vec4<i32>(1, 0, 0, 0), at.y + vec4<i32>(0, 1, 0, 0), mean_of_two(
-        vec4<i32>(along[3].z, middles.yyy), middles.xzzz));
-    store_four(window, at, vec4<i32>(own[3], edges.x, edges.y, across.z));
+        vec4<i32>(d.along.z, middles.yyy), middles.xzzz));
+    store_four(window, at, vec4<i32>(d.own, edges.x, edges.y, across.z));
+}
+
+fn row_of(window: u32, cell: vec2<i32>) -> Row {
+    let y = vec4<i32>(cell.y);
+    let before = coarse_points(window, cell.x + vec4<i32>(-3, -2, -1, 0), y);
+    return Row(before.w, between(before, coarse_points(window, cell.x + vec4<i32>(1, 2, 3, 3), y)));
 }
 
 // The values between every four of seven; the last lane of `after` does not count.

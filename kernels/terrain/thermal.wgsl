@@ -1,12 +1,10 @@
 // One iteration of thermal erosion: between each pair of 4-neighbours, an eighth of the difference beyond the
 // stable one slides downhill. All pairs read the same old field. Each window loses its outermost ring of
 // samples.
-import package::wgsl::terrain::points::Thread;
-import package::wgsl::terrain::windows::{inner_point, sample_index, windows};
+import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
 struct ThermalParams {
-    // Windows, and samples along an edge of each.
-    count: u32,
+    // Samples along an edge of a window.
     width: u32,
     threshold: i32,
 }
@@ -15,14 +13,13 @@ struct ThermalParams {
 @group(0) @binding(2) var<storage, read_write> outputs: array<i32>;
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = inner_point(params.width, params.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !is_inner(params.width, id) {
         return;
     }
-    let at = sample_index(params.width, point);
+    let at = sample_index(params.width, id);
     let height = windows[at];
-    outputs[point.index] = height + slide(windows[at - 1u] - height) + slide(windows[at + 1u] - height)
+    outputs[inner_index(params.width, id)] = height + slide(windows[at - 1u] - height) + slide(windows[at + 1u] - height)
         + slide(windows[at - params.width] - height) + slide(windows[at + params.width] - height);
 }
 

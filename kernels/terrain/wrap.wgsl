@@ -1,17 +1,15 @@
 // One level of diamond-square subdivision for a batch of patches that are generated alone and whose neighbours wrap around (B
 // section 3.3.1). A thread computes the centers to the left of its coarse point and above it a second time.
 import package::wgsl::terrain::fixed::mean_of_four;
-import package::wgsl::terrain::level::{coarse_points, injected_four, level, offsets, origins, store_four};
-import package::wgsl::terrain::points::{Thread, point_of};
+import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
 @compute @workgroup_size(64)
-fn main(thread: Thread) {
-    let point = point_of(level.coarse_width, level.count, thread);
-    if !point.there {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if !has_point(id) {
         return;
     }
-    let patch_index = point.field;
-    let at = vec2<i32>(point.at);
+    let patch_index = id.z;
+    let at = vec2<i32>(id.xy);
     // The number of cells along an edge is a power of two. Behind the last cell comes the first.
     let mask = i32(level.coarse_width) - 2;
     let cell = at & vec2<i32>(mask);

@@ -72,3 +72,14 @@ impl<T> Buffer<T> {
         Slice { raw: &self.raw, element: PhantomData }
     }
 }
+
+impl<T: bytemuck::Pod> Buffer<T> {
+    /// The same buffer with elements of the type that a shader sees, as [`Slice::cast`].
+    pub fn cast<U>(&self) -> Buffer<U>
+    where
+        T: SeenAs<U>,
+    {
+        self.slice().cast::<U>();
+        self.of_elements()
+    }
+}

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use encase::internal::WriteInto;
 use encase::{ShaderSize, UniformBuffer};
 
-use super::bind::SeenAs;
 use super::memory::Held;
 use super::readback::Readback;
 use super::{Gpu, GpuError};
@@ -154,12 +153,8 @@ impl<T: bytemuck::Pod> Buffer<T> {
         self.len == 0
     }
 
-    /// The same buffer with elements of the type that a shader sees, as [`Slice::cast`](super::bind::Slice::cast).
-    pub fn cast<U>(&self) -> Buffer<U>
-    where
-        T: SeenAs<U>,
-    {
-        self.slice().cast::<U>();
+    /// The same bytes as elements of another type.
+    pub(super) fn of_elements<U>(&self) -> Buffer<U> {
         let len = self.len * size_of::<T>() / size_of::<U>();
         Buffer { raw: self.raw.clone(), _held: self._held.clone(), len, element: PhantomData }
     }

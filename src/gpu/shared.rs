@@ -59,20 +59,20 @@ mod tests {
     #[test]
     fn a_device_compiles_a_pipeline_once() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
-        let height = |gpu: &Gpu, features| {
-            kernel(gpu, &Constants { features, ..Constants::default() }).expect("compiled").pipeline
+        let height = |gpu: &Gpu, distribution| {
+            kernel(gpu, &Constants { distribution, ..Constants::default() }).expect("compiled").pipeline
         };
-        let first = height(&gpu, 0);
-        assert!(height(&gpu, 0) == first && height(&gpu.clone(), 0) == first);
+        let first = height(&gpu, 2);
+        assert!(height(&gpu, 2) == first && height(&gpu.clone(), 2) == first);
         assert!(height(&gpu, 1) != first, "other constants, another pipeline");
     }
 
     #[test]
     fn programs_differ_by_shader_and_bits() {
-        let program = |value| Program::new(&shaders::TERRAIN_HEIGHT, &[("CELL_ROWS", value)]);
+        let program = |value| Program::new(&shaders::TERRAIN_HEIGHT, &[("DISTRIBUTION", value)]);
         assert_eq!(program(2.0), program(2.0));
         assert_ne!(program(0.0), program(-0.0));
-        assert_ne!(program(2.0), Program::new(&shaders::TERRAIN_MORPH, &[("CELL_ROWS", 2.0)]));
+        assert_ne!(program(2.0), Program::new(&shaders::TERRAIN_MORPH, &[("DISTRIBUTION", 2.0)]));
         assert_ne!(program(2.0), Program::new(&shaders::TERRAIN_HEIGHT, &[]));
     }
 }

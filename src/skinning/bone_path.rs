@@ -1,8 +1,8 @@
 //! Where a bone carries a sphere through a clip.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3Swizzles as _};
 
-use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of, poses, stretch};
+use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of, poses};
 use crate::animation::bounds::reference::bounds;
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::asset::{Affine, Model};
@@ -43,9 +43,18 @@ impl BonePath {
     }
 }
 
+/// An upper bound on how much a matrix with these rows stretches: the square root of the largest row sum of the
+/// products of columns (Gershgorin), or of the sum of their squares, whichever is less. Up to rounding it is
+/// exact for a rotation combined with any scale before it.
+fn stretch(rows: [Vec3; 3]) -> f32 {
+    let squares: Vec3 = rows.iter().map(|row| row * row).sum();
+    let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();
+    (squares + mixed + mixed.zxy()).max_element().min(squares.element_sum()).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::Mat3;
+    use glam::{Mat3, Quat};
 
     use super::*;
 
@@ -81,5 +90,25 @@ mod tests {
         let sheared = of(Mat3::from_cols(Vec3::X, Vec3::new(2.0, 1.0, 0.0), Vec3::Z));
         // The golden ratio's relative: 1 + √2.
         assert!((2.414..=2.65).contains(&sheared), "{sheared}");
+    }
+
+    #[test]
+    fn no_matrix_stretches_further() {
+        let unit = |at: usize| {
+            let at = at as f32;
+            Vec3::new(libm::sinf(1.3 * at), libm::cosf(2.1 * at), libm::sinf(0.7 * at + 1.0)).normalize()
+        };
+        let turn = |at: usize| Mat3::from_quat(Quat::from_axis_angle(unit(at), 0.37 * at as f32));
+        let of = |matrix: Mat3| stretch(matrix.transpose().to_cols_array_2d().map(Vec3::from));
+        for at in 0..100 {
+            let scale = Vec3::new(0.2 + 0.02 * at as f32, -1.0, 1.5);
+            // A scale followed by a rotation is bounded exactly; a scale between two rotations shears.
+            assert!((of(turn(at) * Mat3::from_diagonal(scale)) - scale.abs().max_element()).abs() < 1e-5);
+            let sheared = turn(at) * Mat3::from_diagonal(scale) * turn(3 * at + 1);
+            let found = of(sheared);
+            let longest = (0..500).map(|to| (sheared * unit(to)).length()).fold(0.0, f32::max);
+            assert!(longest <= found + 1e-5, "{longest} of {found}");
+            assert!(found < 1.8 * longest, "{longest} of {found}");
+        }
     }
 }

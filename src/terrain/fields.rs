@@ -107,6 +107,12 @@ impl Fields {
         self.width.saturating_sub(crop.saturating_mul(2))
     }
 
+    /// The threads of a kernel that makes a sample each, when the fields are `crop` samples smaller on every side.
+    pub fn threads(&self, crop: u32) -> [u32; 3] {
+        let width = self.inner_width(crop);
+        [width, width, self.count]
+    }
+
     /// Number of samples in all fields when they are `crop` samples smaller on every side.
     pub fn points(&self, crop: u32) -> usize {
         (self.inner_width(crop) as usize).pow(2) * self.count as usize

@@ -57,7 +57,6 @@ impl LevelPass {
             let left = grids.len() - 1 - level;
             let params = Level {
                 key: config.key().into(),
-                count,
                 fine_width: widths[level + 1],
                 coarse_width: widths[level],
                 spacing: (config.sample_spacing() << left) as u32,
@@ -75,8 +74,8 @@ impl LevelPass {
             };
             let groups = (self.bind)(gpu, &self.kernel, buffers)?;
             // A thread for each coarse point: a window may start anywhere in its first cell.
-            let threads = (params.fine_width / 2 + 1).pow(2) * count;
-            steps.push(Step::spread(gpu, &self.kernel, groups, threads));
+            let edge = params.fine_width / 2 + 1;
+            steps.push(Step::covering(&self.kernel, groups, [edge, edge, count]));
             origins.push(starts);
         }
         let job = Job::new(gpu, self.label, steps)?;

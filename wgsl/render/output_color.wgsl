@@ -16,7 +16,7 @@ fn lit(given: Surface) -> vec4<f32> {
     if SHADOWED {
         surface.sunlit *= scene_sunlit(surface.light_position, surface.geometric_normal);
     }
-    return shade(surface, scene_seen_by()) + vec4<f32>(surface.emission, 0.0);
+    return mix(shade(surface, scene_seen_by()), vec4<f32>(surface.unlit.rgb, 1.0), surface.unlit.w);
 }
 
 // Ignores alpha: pixels are drawn whole or not at all.

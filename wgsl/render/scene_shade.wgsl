@@ -27,8 +27,8 @@ struct Surface {
     instance: u32,
     // The position in the target in pixels, from its upper left corner.
     pixel: vec2<f32>,
-    // Linear red, green and blue that the surface sends out by itself. It is added to the shaded colour.
-    emission: vec3<f32>,
+    // Linear red, green and blue that no light changes; w: the fraction of the pixel that it covers, 0..1.
+    unlit: vec4<f32>,
     // Where the sun's shadow is looked up: `position`, on a relief the point where the light enters it.
     light_position: vec3<f32>,
     // The position in the last frame, relative to the corner of this frame's cell. Only velocities need it.

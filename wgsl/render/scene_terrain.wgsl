@@ -128,8 +128,8 @@ fn terrain_surface(in: SceneFragment) -> Surface {
     if WIREFRAME {
         let edge = in.values.xyz / max(fwidth(in.values.xyz), vec3<f32>(1e-6));
         let near = clamp(1.2 - min(edge.x, min(edge.y, edge.z)), 0.0, 1.0);
-        surface.color = LINE_COLOR * near;
-        surface.emission = DARK_COLOR * (1.0 - near);
+        surface.color = LINE_COLOR;
+        surface.unlit = vec4<f32>(DARK_COLOR, 1.0 - near);
     } else {
         surface.color = ground_color(in.uv.xy, in.values.w, surface.normal);
     }

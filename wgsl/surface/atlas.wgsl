@@ -1,6 +1,7 @@
 // The arrangement of a max-mip pyramid's nodes in one plane. Level 0 lies at the left; the other levels lie
 // below each other at its right, from a column that is a multiple of four. Every level has ⌈cells / 2^level⌉
 // nodes per axis.
+import package::wgsl::surface::ray::SURFACE_WRAP;
 
 // Number of levels, from one node per cell up to a single node.
 fn surface_levels(cells: vec2<u32>) -> u32 {
@@ -16,4 +17,13 @@ fn surface_atlas_at(cells: vec2<u32>, level: u32, index: vec2<i32>) -> vec2<i32>
     // At least the number of rows of the levels in between: (r >> 1) + 1 ≥ ⌈r / 2⌉ for the rest at each level.
     let above = cells.y - (cells.y >> (level - 1u)) + level - 1u;
     return index + vec2<i32>(vec2<u32>((cells.x + 3u) & ~3u, above));
+}
+
+// The index, among the texels of all maps of a batch, of the texel at the first corner of a cell, up to one cell beyond the last.
+fn surface_corner_index(size: vec2<u32>, address: u32, map: u32, cell: vec2<i32>) -> u32 {
+    let texels = vec2<i32>(size);
+    let wrapped = select(cell, vec2<i32>(0), cell >= texels);
+    let clamped = clamp(cell - 1, vec2<i32>(0), texels - 1);
+    let at = vec2<u32>(select(clamped, wrapped, address == SURFACE_WRAP));
+    return (map * size.y + at.y) * size.x + at.x;
 }

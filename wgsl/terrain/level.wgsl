@@ -1,5 +1,5 @@
 // A level of subdivision for a batch of windows or patches: what its kernels read and write. A thread makes the four fine points
-// that belong to a coarse one.
+// that belong to a coarse one: its `id` has the column and row of the coarse point, and the window.
 import package::wgsl::hash::threefry2x32;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, injected};
 import package::wgsl::terrain::offset::height_offset;
@@ -9,8 +9,7 @@ override DISTRIBUTION: u32 = 0u;
 
 struct Level {
     key: vec2<u32>,
-    // Windows, and points along an edge of each at the fine and at the coarse level.
-    count: u32,
+    // Points along an edge of a window at the fine and at the coarse level.
     fine_width: u32,
     coarse_width: u32,
     // World coordinates between neighbouring fine points.
@@ -26,6 +25,11 @@ struct Level {
 @group(0) @binding(1) var<storage, read> origins: array<vec2<i32>>;
 @group(0) @binding(2) var<storage, read> coarse: array<i32>;
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
+
+// Whether a thread has something to do, wherever the window starts in its first cell.
+fn has_point(id: vec3<u32>) -> bool {
+    return all(id.xy <= vec2<u32>(level.fine_width / 2u));
+}
 
 // Four coarse points. Those outside the window feed only fine points outside it, so any value will do.
 fn coarse_points(window: u32, x: vec4<i32>, y: vec4<i32>) -> vec4<i32> {

@@ -1,19 +1,24 @@
-// Windows of heights, and their samples without the outermost ring.
-import package::wgsl::terrain::points::{Point, Thread, point_of};
+// Windows of heights, and their inner samples: those that are not on the outermost ring. A thread makes an inner sample of a window:
+// `id` has its column, its row and the window.
 
 @group(0) @binding(1) var<storage, read> windows: array<i32>;
 
-// The inner sample of a thread, for `count` windows of `width` × `width` samples.
-fn inner_point(width: u32, count: u32, thread: Thread) -> Point {
-    return point_of(width - 2u, count, thread);
+// Whether there is an inner sample for a thread, where windows are `width` samples wide.
+fn is_inner(width: u32, id: vec3<u32>) -> bool {
+    return all(id.xy < vec2<u32>(width - 2u));
+}
+
+// The index of an inner sample among the inner samples of all windows.
+fn inner_index(width: u32, id: vec3<u32>) -> u32 {
+    return (id.z * (width - 2u) + id.y) * (width - 2u) + id.x;
 }
 
 // The index of an inner sample among all samples of the windows.
-fn sample_index(width: u32, inner: Point) -> u32 {
-    return (inner.field * width + inner.at.y + 1u) * width + inner.at.x + 1u;
+fn sample_index(width: u32, id: vec3<u32>) -> u32 {
+    return (id.z * width + id.y + 1u) * width + id.x + 1u;
 }
 
-// The central differences along x and y at a sample that is not on the outermost ring.
+// The central differences along x and y at an inner sample.
 fn gradient_at(width: u32, sample: u32) -> vec2<i32> {
     return vec2<i32>(windows[sample + 1u] - windows[sample - 1u], windows[sample + width] - windows[sample - width]);
 }

@@ -86,14 +86,9 @@ impl ConeMapPass {
             pyramids: pyramids.nodes.slice(),
             cones: cones.cones.slice(),
         };
-        let [width, height, _] = self.kernel.workgroup_size();
         let [columns, rows] = layout.cells;
-        let [x, y] = [columns.div_ceil(width), rows.div_ceil(height)];
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: [x, y, maps.count],
-        };
+        let groups = vec![group.bind(gpu, &self.kernel)?];
+        let step = Step::covering(&self.kernel, groups, [columns, rows, maps.count]);
         Ok(Job::new(gpu, "surface/cone_map", vec![step])?)
     }
 }

@@ -86,11 +86,8 @@ impl HeightPyramidPass {
                 pyramids: pyramids.nodes.slice(),
             };
             let [columns, rows] = layout.nodes(level);
-            Ok(Step {
-                kernel: self.kernel.clone(),
-                groups: vec![group.bind(gpu, &self.kernel)?],
-                workgroups: [self.kernel.groups_for(columns), rows, maps.count],
-            })
+            let groups = vec![group.bind(gpu, &self.kernel)?];
+            Ok(Step::covering(&self.kernel, groups, [columns, rows, maps.count]))
         };
         let steps = (0..layout.levels).map(step).collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "surface/height_pyramid", steps)?)

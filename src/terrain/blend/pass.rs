@@ -65,7 +65,7 @@ impl BlendPass {
             pixels: pixels.slice(),
         };
         let groups = vec![group.bind(gpu, &self.kernel)?];
-        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
+        let step = Step::covering(&self.kernel, groups, windows.threads(1));
         Ok(Job::new(gpu, "terrain/blend", vec![step])?)
     }
 }
@@ -74,7 +74,6 @@ fn params(cover: &Cover, shading: &Shading, windows: &Fields) -> MapParams {
     let [tiles_per_sample, tiles_per_unit] = cover.steps();
     MapParams {
         light: Light { direction: shading.light.into(), ambient: shading.ambient },
-        count: windows.count,
         width: windows.width,
         run: (2.0 * cover.terrain_scale * HEIGHT_ONE) as f32,
         zone_count: cover.zones.len() as u32,

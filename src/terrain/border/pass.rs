@@ -56,7 +56,7 @@ impl BorderPass {
         let mut steps = Vec::new();
         for Visit { part, source, entries: visited } in &visits {
             let count = visited.len() as u32;
-            let params = BorderParams { count, size, width, start: starts[*part] };
+            let params = BorderParams { size, width, start: starts[*part] };
             starts[*part] += count;
             let Entries { neighbours, order } = &entries[*part];
             // A buffer that is bound for writing cannot be bound a second time; the kernel never reads the one
@@ -74,7 +74,7 @@ impl BorderPass {
                 others,
             };
             let groups = vec![group.bind(gpu, kernel)?];
-            steps.push(Step::spread(gpu, kernel, groups, count * size * size));
+            steps.push(Step::covering(kernel, groups, [size, size, count]));
         }
         Ok(Job::new(gpu, "terrain/border", steps)?)
     }

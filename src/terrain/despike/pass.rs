@@ -51,12 +51,8 @@ impl DespikePass {
             let bound = format!("must be that of the windows, {}", windows.width);
             return Err(InputError::new("features.width", grid.width, bound).into());
         }
-        let params = DespikeParams {
-            features: grid,
-            count: windows.count,
-            width: windows.width,
-            threshold: despike.fixed_threshold(),
-        };
+        let params =
+            DespikeParams { features: grid, width: windows.width, threshold: despike.fixed_threshold() };
         let group = bindings::Group {
             params: &Uniform::new(gpu, "despike", &params)?,
             windows: windows.heights.slice(),
@@ -65,7 +61,7 @@ impl DespikePass {
         let injected =
             bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
         let groups = vec![group.bind(gpu, &self.kernel)?, injected.bind(gpu, &self.kernel)?];
-        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
+        let step = Step::covering(&self.kernel, groups, windows.threads(1));
         Ok(Job::new(gpu, "terrain/despike", vec![step])?)
     }
 }

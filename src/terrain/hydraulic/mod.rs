@@ -107,7 +107,6 @@ impl Hydraulic {
         let slope_shift = 17_u32.saturating_sub(steepest.leading_zeros());
         let raining = cycle < self.iterations - self.iterations / 4;
         HydraulicParams {
-            count: 1,
             in_width,
             wet: (cycle > 0).into(),
             settles: (cycle + 1 == self.iterations).into(),

@@ -1,7 +1,7 @@
 //! The GPU pass of `kernels/terrain/hydraulic.wgsl`, one cycle per dispatch.
 
+use super::Hydraulic;
 use super::reference::Flow;
-use super::{Hydraulic, HydraulicParams};
 use crate::Error;
 use crate::gpu::bindings::terrain::hydraulic as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
@@ -71,14 +71,14 @@ impl HydraulicPass {
             let at = windows.cropped(cycle);
             let params = hydraulic.params(terrain_scale, cycle, at.width);
             let group = bindings::Group {
-                params: &Uniform::new(gpu, "hydraulic", &HydraulicParams { count: at.count, ..params })?,
+                params: &Uniform::new(gpu, "hydraulic", &params)?,
                 windows: from.0.heights.slice(),
                 outputs: to.0.heights.slice(),
                 flows: from.1.slice(),
                 flow_outputs: to.1.slice(),
             };
             let groups = vec![group.bind(gpu, &self.kernel)?];
-            Ok(Step::spread(gpu, &self.kernel, groups, at.points(1) as u32))
+            Ok(Step::covering(&self.kernel, groups, at.threads(1)))
         });
         let steps = steps.collect::<Result<_, GpuError>>()?;
         Ok(Job::new(gpu, "terrain/hydraulic", steps)?)

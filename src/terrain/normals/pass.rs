@@ -41,7 +41,7 @@ impl NormalsPass {
         gradients.check_holds("gradients", windows.points(1))?;
         normals.check_holds("normals", 3 * windows.points(1))?;
         let run = (2.0 * terrain_scale * HEIGHT_ONE) as f32;
-        let params = NormalsParams { count: windows.count, width: windows.width, run };
+        let params = NormalsParams { width: windows.width, run };
         let group = bindings::Group {
             params: &Uniform::new(gpu, "normals", &params)?,
             windows: windows.heights.slice(),
@@ -49,7 +49,7 @@ impl NormalsPass {
             normals: normals.slice(),
         };
         let groups = vec![group.bind(gpu, &self.kernel)?];
-        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
+        let step = Step::covering(&self.kernel, groups, windows.threads(1));
         Ok(Job::new(gpu, "terrain/normals", vec![step])?)
     }
 }

@@ -41,10 +41,10 @@ impl PadPass {
         validate(size, apron)?;
         let places = places(parts, size)?;
         check_surrounds(surrounds, places.len())?;
-        let points = surrounds.len() * (size as usize + 2 * apron as usize).pow(2);
-        windows.check_holds("windows", points)?;
+        let width = size + 2 * apron;
+        windows.check_holds("windows", surrounds.len() * (width as usize).pow(2))?;
         let tiles: Vec<_> = surrounds.iter().flatten().map(|tile| tile.map(|patch| places[patch])).collect();
-        let uniform = Uniform::new(gpu, "pad", &PadParams { count: surrounds.len() as u32, size, apron })?;
+        let uniform = Uniform::new(gpu, "pad", &PadParams { size, apron })?;
         let mut steps = Vec::new();
         for (part, patches) in parts.iter().enumerate() {
             let Some(around) = tiles_in(part, &tiles) else { continue };
@@ -56,7 +56,7 @@ impl PadPass {
                 outputs: windows.slice(),
             };
             let groups = vec![group.bind(gpu, &self.kernel)?];
-            steps.push(Step::spread(gpu, &self.kernel, groups, points as u32));
+            steps.push(Step::covering(&self.kernel, groups, [width, width, surrounds.len() as u32]));
         }
         Ok(Job::new(gpu, "terrain/pad", steps)?)
     }

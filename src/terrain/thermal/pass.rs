@@ -56,14 +56,14 @@ impl ThermalPass {
         for iteration in 0..thermal.iterations {
             let (from, to) = if iteration % 2 == 0 { (windows, other) } else { (other, windows) };
             let at = windows.cropped(iteration);
-            let params = ThermalParams { count: at.count, width: at.width, threshold };
+            let params = ThermalParams { width: at.width, threshold };
             let group = bindings::Group {
                 params: &Uniform::new(gpu, "thermal", &params)?,
                 windows: from.heights.slice(),
                 outputs: to.heights.slice(),
             };
             let groups = vec![group.bind(gpu, &self.kernel)?];
-            steps.push(Step::spread(gpu, &self.kernel, groups, at.points(1) as u32));
+            steps.push(Step::covering(&self.kernel, groups, at.threads(1)));
         }
         Ok(Job::new(gpu, "terrain/thermal", steps)?)
     }

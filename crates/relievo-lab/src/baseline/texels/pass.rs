@@ -35,7 +35,6 @@ impl TexelsPass {
         pixels.check_holds("pixels", windows.points(1))?;
         let [tiles_per_sample, tiles_per_unit] = cover.steps();
         let params = TexelsParams {
-            count: windows.count,
             width: windows.width,
             zone_count: cover.zones.len() as u32,
             planes: planes(cover.triplanar),
@@ -53,7 +52,7 @@ impl TexelsPass {
             words: pixels.slice(),
         };
         let groups = vec![group.bind(gpu, &self.kernel)?];
-        let step = Step::spread(gpu, &self.kernel, groups, windows.points(1) as u32);
+        let step = Step::covering(&self.kernel, groups, windows.threads(1));
         Ok(Job::new(gpu, "baseline/texels", vec![step])?)
     }
 }
