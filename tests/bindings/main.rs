@@ -1,7 +1,7 @@
 //! What generated bindings refuse: a buffer that is forgotten, and one of another element type, do not compile.
 //!
 //! The bindings are private, so they are compiled here as a crate of their own: the files that `build.rs` wrote and
-//! `src/gpu/bind.rs`, with empty types in place of the device's and of wgpu's and glam's. And what they check on a device:
+//! `src/gpu/bind.rs`, with empty types in place of the device's and of wgpu's, glam's and bytemuck's. And what they check on a device:
 //! lengths, and the widths of packed words.
 
 #[path = "../../build/packed.rs"]
@@ -47,7 +47,7 @@ fn compile(folder: &Path, name: &str, source: &str, others: &[&str]) -> Result<(
 /// Compiles a bind group of `surface/relief`, in a folder of its own.
 fn bound(group: &str) -> Result<(), String> {
     let folder = tempfile::tempdir().expect("a folder");
-    for (name, source) in [("glam", &*vectors()), ("wgpu", RESOURCES)] {
+    for (name, source) in [("glam", &*vectors()), ("wgpu", RESOURCES), ("bytemuck", "pub trait Pod {}")] {
         compile(folder.path(), name, source, &[]).expect("a stand-in compiles");
     }
     let source =
@@ -57,7 +57,7 @@ fn bound(group: &str) -> Result<(), String> {
         .replace("<ROOT>", &ROOT.replace('\\', "/"))
         .replace("<SHADERS>", &shaders())
         .replace("<GROUP>", group);
-    compile(folder.path(), "scratch", &source, &["glam", "wgpu"])
+    compile(folder.path(), "scratch", &source, &["glam", "wgpu", "bytemuck"])
 }
 
 /// Stubs of wgpu's types.

@@ -23,6 +23,7 @@ fn items() {
     use relievo::scene::TerrainSource as _; // TerrainSource
     use relievo::terrain::thermal as _; // terrain::thermal
     use relievo::skinning::Extent as _; // skinning::Extent
+    use relievo::skinning::FadeRange as _; // skinning::FadeRange
     use relievo::skinning::add_levels as _; // skinning::add_levels
     use relievo::skinning::collapse_bones as _; // skinning::collapse_bones
     use relievo::skinning::frame::SkinFrame as _; // skinning::frame::SkinFrame
