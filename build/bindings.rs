@@ -31,10 +31,8 @@ impl Bindings {
         let sources = Sources::of(root, file);
         let bindings = ShaderBindings { root, file, shader, sources: &sources };
         bindings.constants(&mut self.shared);
-        for (path, file, words) in sources.packed(root) {
-            for word in words.unwrap_or_else(|why| refuse(file, &why)) {
-                self.shared.entry(path.clone()).or_default().extend(word.rust());
-            }
+        for (path, word) in sources.packed(root) {
+            self.shared.entry(path).or_default().extend(word.rust());
         }
         let text = bindings.module(&mut self.shared);
         self.shaders.insert(shader.name.clone(), text);

@@ -59,24 +59,34 @@ impl<'a> Packed<'a> {
         Ok(Self { name: snake(name), comment, fields })
     }
 
+    /// The fields of `word`, packed; `suffix` is that of literals.
+    fn packed(&self, suffix: &str) -> String {
+        self.list(" | ", |field| match field.first {
+            0 => field.name.to_owned(),
+            first => format!("({} << {first}{suffix})", field.name),
+        })
+    }
+
+    /// A field of `word`.
+    fn unpacked(field: &Field<'_>, suffix: &str) -> String {
+        let value = match field.first {
+            0 => "word".to_owned(),
+            first => format!("(word >> {first}{suffix})"),
+        };
+        match field.first + field.width {
+            32 => value.trim_matches(['(', ')']).to_owned(),
+            _ => format!("{value} & {}{suffix}", field.most()),
+        }
+    }
+
     fn wgsl(&self) -> String {
         let name = &self.name;
         let arguments = self.list(", ", |field| format!("{}: u32", field.name));
-        let packed = self.list(" | ", |field| match field.first {
-            0 => field.name.to_owned(),
-            first => format!("({} << {first}u)", field.name),
-        });
+        let packed = self.packed("u");
         let mut text = format!("\nfn {name}_word({arguments}) -> u32 {{\n    return {packed};\n}}\n");
         for field in &self.fields {
-            let value = match field.first {
-                0 => "word".to_owned(),
-                first => format!("(word >> {first}u)"),
-            };
-            let masked = match field.first + field.width {
-                32 => value,
-                _ => format!("{value} & {}u", field.most()),
-            };
-            write!(text, "\nfn {name}_{}(word: u32) -> u32 {{\n    return {masked};\n}}\n", field.name)
+            let value = Self::unpacked(field, "u");
+            write!(text, "\nfn {name}_{}(word: u32) -> u32 {{\n    return {value};\n}}\n", field.name)
                 .expect("a string");
         }
         text
@@ -87,7 +97,7 @@ impl<'a> Packed<'a> {
         let (name, comment) = (&self.name, self.comment);
         let arguments = self.list(", ", |field| format!("{}: u32", field.name));
         let fits = self.list(" && ", |field| format!("{} <= {:#x}", field.name, field.most()));
-        let packed = self.list(" | ", |field| format!("{} << {}", field.name, field.first));
+        let packed = self.packed("");
         let mut functions = vec![(
             format!("{name}_word"),
             format!(
@@ -95,13 +105,12 @@ impl<'a> Packed<'a> {
                  assert!({fits}, \"a value exceeds its bits: {comment}\");\n    {packed}\n}}\n"
             ),
         )];
-        for Field { name: field, first, width } in &self.fields {
-            let most = u32::MAX >> (32 - width);
+        for field in &self.fields {
+            let (value, Field { name: field, first, width }) = (Self::unpacked(field, ""), field);
             functions.push((
                 format!("{name}_{field}"),
                 format!(
-                    "/// The {width} bits of a {name} word from bit {first} on.\npub const fn {name}_{field}(word: u32) -> u32 {{\n    \
-                     word >> {first} & {most:#x}\n}}\n"
+                    "/// The {width} bits of a {name} word from bit {first} on.\npub const fn {name}_{field}(word: u32) -> u32 {{\n    {value}\n}}\n"
                 ),
             ));
         }

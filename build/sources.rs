@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::packed::{Packed, packed};
+use crate::shaders::refuse;
 
 /// The files of which a shader is composed, its own first.
 pub struct Sources(Vec<(PathBuf, String)>);
@@ -57,9 +58,14 @@ impl Sources {
         })
     }
 
-    /// The packed words of each file, with the path of its module.
-    pub fn packed(&self, root: &Path) -> Vec<(String, &Path, Result<Vec<Packed<'_>>, String>)> {
-        self.0.iter().map(|(file, text)| (module_of(root, file), &**file, packed(text))).collect()
+    /// The packed words of all files, with the path of their module. Refuses a comment that declares none.
+    pub fn packed(&self, root: &Path) -> Vec<(String, Packed<'_>)> {
+        let mut all = Vec::new();
+        for (file, text) in &self.0 {
+            let words = packed(text).unwrap_or_else(|why| refuse(file, &why));
+            all.extend(words.into_iter().map(|word| (module_of(root, file), word)));
+        }
+        all
     }
 
     /// The comment above the binding of that name, and its `// length…: …` line.
