@@ -24,6 +24,8 @@ from pathlib import Path
 
 HEADER = re.compile(rb"// relievo ([a-z0-9_/]+): generated from [a-z0-9_/.]+\n")
 FUNCTION = re.compile(rb"^(?:@[^\n]*\n)*fn (\w+)\(.*?^\}\n", re.MULTILINE | re.DOTALL)
+# Where another text begins: a shader, a module for others' shaders, or what is no text.
+END = re.compile(rb"// relievo [a-z0-9_/]+: generated from|// From relievo's|[^\x09\x0a\x20-\x7e\xc2-\xf4\x80-\xbf]")
 # What a driver or naga says of text that is no shader.
 REFUSED = re.compile(r"Validation|shader parsing|Shader validation|please report this", re.IGNORECASE)
 # Seconds after which a program counts as hanging, which is a way to see a fault.
@@ -68,11 +70,10 @@ def arguments() -> argparse.Namespace:
 
 def shaders(program: bytes) -> dict[str, bytes]:
     """The flat WGSL of each shader, by name: what follows its first line, function by function."""
-    heads = list(HEADER.finditer(program))
-    ends = [head.start() for head in heads[1:]] + [heads[-1].start() + 100_000]
     texts = {}
-    for head, end in zip(heads, ends):
-        text = program[head.start() : end]
+    for head in HEADER.finditer(program):
+        end = END.search(program, head.end())
+        text = program[head.start() : end.start() if end else len(program)]
         functions = list(FUNCTION.finditer(text))
         texts[head[1].decode()] = text[: functions[-1].end()] if functions else b""
     return texts
@@ -123,7 +124,6 @@ class Fault:
 def run(program: Path, *arguments: str) -> tuple[int, str]:
     """Exit status and output; hanging is status 124."""
     environment = {**os.environ, "XDG_RUNTIME_DIR": os.environ.get("XDG_RUNTIME_DIR", "/tmp")}
-    # Pipelines of other faults must not come from the driver's cache on disk: it goes by the shader's hash, which differs.
     try:
         done = subprocess.run(
             [program, *arguments], capture_output=True, text=True, errors="replace", timeout=LONGEST, env=environment
