@@ -4,13 +4,13 @@ use plotters::prelude::*;
 use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Hack (MIT and Bitstream Vera licences).
-const NAME: &str = "Hack";
+/// Ubuntu Light (Ubuntu font licence). plotters ignores the bearing of glyphs, which tears digits of monospaced type apart.
+const NAME: &str = "Ubuntu Light";
 
 /// Registers the typeface, which is needed before anything is written.
 pub fn register() {
     // It fails for bytes that are no font.
-    let _ = register_font(NAME, FontStyle::Normal, epaint_default_fonts::HACK_REGULAR);
+    let _ = register_font(NAME, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
 }
 
 /// The style of a text of `size` pixels per em, which is centered vertically.
