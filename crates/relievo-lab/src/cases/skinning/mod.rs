@@ -47,7 +47,7 @@ pub(crate) const SHAPES: [Shape; 8] = [
     Shape { bones: 33, vertices: 65, influences: 4, targets: 2, levels: 15 },
     Shape { bones: 64, vertices: 127, influences: 5, targets: 0, levels: 2 },
     Shape { bones: 65, vertices: 500, influences: 7, targets: 3, levels: 3 },
-    Shape { bones: 153, vertices: 1000, influences: 8, targets: 0, levels: 15 },
+    Shape { bones: 153, vertices: 1000, influences: 8, targets: 2, levels: 15 },
     Shape { bones: 1000, vertices: 129, influences: 8, targets: 1, levels: 1 },
 ];
 
@@ -86,12 +86,13 @@ pub(crate) fn triangles(shape: Shape) -> std::ops::Range<u32> {
     0..shape.vertices as u32 / 3 * 3
 }
 
-/// Levels with half of the triangles, a quarter and so on, down to one.
+/// Levels that lose equal numbers of triangles, so that the last two of a large mesh have other clusters.
 pub(crate) fn levels(draw: &mut Draw, shape: Shape) -> Vec<MeshLevel> {
     let mut left: Vec<u32> = triangles(shape).step_by(3).collect();
-    let mut level = |at| {
-        let half = left.len().div_ceil(2);
-        while left.len() > half {
+    let all = left.len();
+    let mut level = |at: usize| {
+        let most = (all * (shape.levels - at)).div_ceil(shape.levels + 1);
+        while left.len() > most {
             left.swap_remove(draw.word() as usize % left.len());
         }
         let indices = left.iter().flat_map(|first| *first..first + 3).collect();
