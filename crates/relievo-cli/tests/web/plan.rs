@@ -87,33 +87,46 @@ fn constants(shader: &str, overrides: &[Value]) -> Vec<Value> {
     sets
 }
 
-/// A compute pipeline, or for each fragment entry a render pipeline with the vertex entry.
+/// A compute pipeline, or for each fragment entry a render pipeline with its vertex entry.
 fn pipelines(shader: &str, entries: &[Value], constants: &Value) -> Vec<Value> {
     let of_stage = |stage: &str| entries.iter().filter(|entry| entry["stage"] == stage).collect::<Vec<_>>();
     let label = |entry: &Value| format!("{shader} {} {constants}", name_of(entry));
     let mut all: Vec<_> = (of_stage("compute").into_iter())
         .map(|entry| json!({ "label": label(entry), "constants": constants, "compute": entry["name"] }))
         .collect();
-    for vertex in of_stage("vertex") {
-        // Entries of such names take the vertices of one.
-        let kind = |entry: &Value| {
-            ["_plain", "_bumpy", "_whole", "_moving", "_wired"]
-                .into_iter()
-                .find(|end| name_of(entry).ends_with(end))
+    let vertices = of_stage("vertex");
+    all.extend(of_stage("fragment").into_iter().map(|fragment| {
+        let vertex = match &vertices[..] {
+            [vertex] => vertex,
+            several => {
+                let name = vertex_of(&name_of(fragment));
+                several.iter().find(|vertex| name_of(vertex) == name).expect("the vertex entry of a kind")
+            }
         };
-        let fitting = of_stage("fragment").into_iter().filter(|fragment| kind(vertex) == kind(fragment));
-        all.extend(fitting.map(|fragment| {
-            let render = json!({
-                "targets": targets(&name_of(fragment)),
-                "vertex": vertex["name"],
-                "fragment": fragment["name"],
-                "topology": "triangle-list",
-                "buffers": buffers(vertex),
-            });
-            json!({ "label": label(fragment), "constants": constants, "render": render })
-        }));
-    }
+        let render = json!({
+            "targets": targets(&name_of(fragment)),
+            "vertex": vertex["name"],
+            "fragment": fragment["name"],
+            "topology": "triangle-list",
+            "buffers": buffers(vertex),
+        });
+        json!({ "label": label(fragment), "constants": constants, "render": render })
+    }));
     all
+}
+
+/// The vertex entry of a kind that the renderer combines with a fragment entry.
+fn vertex_of(fragment: &str) -> String {
+    let (prefix, entry) = match fragment.strip_prefix("relievo_") {
+        Some(entry) => ("relievo_", entry),
+        None => ("", fragment),
+    };
+    let vertex = match entry {
+        "depth" => "vertex_depth",
+        _ if entry.starts_with("velocity") => "vertex_moving",
+        _ => "vertex",
+    };
+    format!("{prefix}{vertex}")
 }
 
 /// The colours of a fragment entry, by its name.
