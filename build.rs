@@ -31,7 +31,7 @@ mod shaders {
     use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
 
     use crate::bindings::Bindings;
-    use crate::entries::{KindText, OutputText, entries, exports};
+    use crate::entries::{KindText, OUTPUTS, OutputText, composed, entries, exports};
     use crate::{modules, packed, prefix};
 
     pub fn build() {
@@ -60,12 +60,35 @@ mod shaders {
             }
         }
         bindings.write(&out);
+        write_core(&root, &out, &mut manifest);
         refuse_unused_module_bindings(&root, &all);
         write_modules(&root, &out, &mut manifest);
         let list = all.iter().map(|shader| format!("&{}", shader.constant())).collect::<Vec<_>>().join(", ");
         writeln!(manifest, "/// Every shader of the crate.\npub static ALL: &[&Shader] = &[{list}];")
             .expect("a string");
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
+    }
+
+    /// Writes what the texts of callers' kinds stand beside, and checks it with the least kind.
+    fn write_core(root: &Path, out: &Path, manifest: &mut String) {
+        let file = root.join("wgsl/render/scene_core.wgsl");
+        let core = flatten(root, &file, Keep::All, wesl::ManglerKind::None);
+        let kind = KindText { name: "least", discards: true, blends: true, deep: true, moves: false };
+        let entries = composed(&kind, &core);
+        let least = "fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
+    return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
+}
+fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_surface(in); }
+";
+        Shader::validated(root, &file, "render/scene_core".to_owned(), format!("{least}\n{entries}"));
+        let path = out.join("scene_core.wgsl");
+        std::fs::write(&path, &core).expect("OUT_DIR is writable");
+        writeln!(
+            manifest,
+            "/// What the texts of kinds stand beside, without entry points; its names have no prefix yet.\n\
+             pub static SCENE_CORE: &str = include_str!({path:?});"
+        )
+        .expect("a string");
     }
 
     /// Writes the modules for shaders outside the crate: `module.wgsl` of a folder, with everything that it
@@ -103,15 +126,6 @@ mod shaders {
         KindText::declared(&text).unwrap_or_else(|why| refuse(file, &why)).is_some()
     }
 
-    /// The outputs of surfaces: name, file below `wgsl/render/`, and whether they need motion.
-    pub const OUTPUTS: &[(&str, &str, bool)] = &[
-        ("color", "output_color", false),
-        ("transparent", "output_color", false),
-        ("surface", "output_surface", false),
-        ("velocity", "output_velocity", true),
-        ("measure", "output_measure", false),
-    ];
-
     /// The file of an output.
     pub fn output_file(root: &Path, file: &str) -> PathBuf {
         root.join(format!("wgsl/render/{file}.wgsl"))
@@ -127,7 +141,8 @@ mod shaders {
             .map(|((name, _, moves), text)| OutputText { name, text, moves: *moves })
             .collect();
         let mut text = String::from(
-            "import package::wgsl::render::scene_kind::SceneFragment;\nimport package::wgsl::render::scene_view::view;\n",
+            "import package::wgsl::render::scene_kind::{SceneFragment, scene_words, words_instance, words_outside};\n\
+             import package::wgsl::render::scene_view::view;\n",
         );
         if kind.deep {
             text += "import package::wgsl::render::output_depth::depth_behind;\n";

@@ -10,7 +10,8 @@ use std::path::Path;
 
 use naga::{AddressSpace, Handle, TypeInner};
 
-use crate::shaders::{OUTPUTS, Shader, is_kind, output_file, refuse};
+use crate::entries::OUTPUTS;
+use crate::shaders::{Shader, is_kind, output_file, refuse};
 use crate::sources::Sources;
 use crate::types::{Use, constant_text, literal_text, scalar_name};
 

@@ -1,8 +1,10 @@
-//! Generates the entry points with which a kind of object is drawn into outputs, as WGSL.
+//! Generates the entry points with which a kind of object is drawn into outputs, as WGSL: at build time for the crate's own
+//! kinds, and at run time for those of callers.
 //!
-//! A kind is WGSL with a line such as `// kind mesh: discards, blends`, and exports `mesh_place`, `mesh_last_position` and
-//! `mesh_surface` (`wgsl/render/scene_kind.wgsl`). An output exports a struct of its targets and a function: `SurfaceTargets`
-//! and `surface_write(Surface) -> SurfaceTargets`.
+//! A kind exports `mesh_place`, `mesh_surface` and, unless it moves as a rigid body, `mesh_last_position`
+//! (`wgsl/render/scene_kind.wgsl`). The crate's own say with a line such as `// kind mesh: discards, blends` what their parts
+//! may need. An output exports a struct of its targets and a function: `SurfaceTargets` and
+//! `surface_write(Surface) -> SurfaceTargets`.
 
 use std::fmt::Write as _;
 
@@ -17,6 +19,8 @@ pub struct KindText<'a> {
     pub blends: bool,
     /// Whether parts may write `Surface.depth`.
     pub deep: bool,
+    /// Whether it exports `last_position`; else it moves with its instances alone.
+    pub moves: bool,
 }
 
 impl<'a> KindText<'a> {
@@ -27,7 +31,7 @@ impl<'a> KindText<'a> {
     pub fn declared(text: &'a str) -> Result<Option<Self>, String> {
         let Some(line) = text.lines().find_map(|line| line.strip_prefix("// kind ")) else { return Ok(None) };
         let (name, properties) = line.split_once(':').ok_or("// kind NAME: needs a colon")?;
-        let mut kind = Self { name, discards: false, blends: false, deep: false };
+        let mut kind = Self { name, discards: false, blends: false, deep: false, moves: true };
         for property in properties.split(',').map(str::trim).filter(|property| !property.is_empty()) {
             match property {
                 "discards" => kind.discards = true,
@@ -39,6 +43,15 @@ impl<'a> KindText<'a> {
         Ok(Some(kind))
     }
 }
+
+/// The outputs of surfaces: name, file below `wgsl/render/`, and whether they need motion.
+pub const OUTPUTS: &[(&str, &str, bool)] = &[
+    ("color", "output_color", false),
+    ("transparent", "output_color", false),
+    ("surface", "output_surface", false),
+    ("velocity", "output_velocity", true),
+    ("measure", "output_measure", false),
+];
 
 /// An output of surfaces. `depth`, which needs no surface of parts that are drawn whole, is generated beside these.
 #[derive(Debug, Clone, Copy)]
@@ -82,14 +95,27 @@ pub fn exports(kind: &KindText<'_>) -> [String; 3] {
     ["place", "last_position", "surface"].map(|name| format!("{}_{name}", kind.name))
 }
 
+/// What a caller's kind stands beside: `core`, the flat text of everything that entry points use, with the entry points. All
+/// names but the caller's have the prefix of the crate.
+pub fn composed(kind: &KindText<'_>, core: &str) -> String {
+    let output =
+        |(name, _, moves): &(&'static str, &str, bool)| OutputText { name, text: core, moves: *moves };
+    let outputs: Vec<_> = OUTPUTS.iter().map(output).collect();
+    super::prefix::prefixed(&format!("{core}\n{}", entries(kind, &outputs)))
+}
+
 /// The entry points of a kind: `vertex`, `vertex_moving` with the last position, `vertex_depth` with the position alone, and
 /// the fragment entries of `depth` and of each output.
 pub fn entries(kind: &KindText<'_>, outputs: &[OutputText<'_>]) -> String {
     let name = kind.name;
     let mut text = String::new();
-    for (varyings, entry, more) in [("Varyings", "vertex", ""), ("MovingVaryings", "vertex_moving", MOVING)] {
-        let last =
-            if more.is_empty() { String::new() } else { format!(", {name}_last_position(entry, vertex)") };
+    for (varyings, entry, moves) in [("Varyings", "vertex", false), ("MovingVaryings", "vertex_moving", true)]
+    {
+        let (more, last) = match (moves, kind.moves) {
+            (false, _) => ("", String::new()),
+            (true, true) => (MOVING, format!(", {name}_last_position(entry, vertex)")),
+            (true, false) => (MOVING, ", scene_last_rigid(entry, placed.position)".to_owned()),
+        };
         write!(
             text,
             "struct {varyings} {{{VARYINGS}{more}
@@ -100,7 +126,7 @@ fn {entry}(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> {vary
     let placed = {name}_place(entry, vertex);
     return {varyings}(
         view.clip_from_world * vec4<f32>(placed.position, 1.0), placed.position, placed.normal, placed.tangent, placed.uv,
-        placed.values, placed.words{last});
+        placed.values, scene_words(placed, entry){last});
 }}
 
 "
@@ -178,7 +204,8 @@ fn seen(kind: &str, moves: bool) -> String {
     let last = if moves { "in.last" } else { "in.position" };
     format!(
         "    let surface = {kind}_surface(SceneFragment(
-        in.position, in.normal, in.tangent, in.uv, in.values, in.words, {last}, in.clip, is_front));
+        in.position, in.normal, in.tangent, in.uv, in.values, in.words.xyz, words_instance(in.words), {last}, in.clip,
+        words_outside(in.words, is_front)));
 "
     )
 }

@@ -39,6 +39,14 @@ fn replaced_last(flat: &str) -> String {
     format!("{}{}\n\n{}\n", &flat[..start], flat[end..].trim_start(), &flat[start..end])
 }
 
+/// The names that a text without comments declares at module scope, each with its range.
+#[allow(dead_code)] // build.rs needs it only inside `prefixed`
+pub fn declarations(text: &str) -> Vec<Range<usize>> {
+    let start = text.as_ptr() as usize;
+    let range = |name: &str| name.as_ptr() as usize - start..name.as_ptr() as usize - start + name.len();
+    declared(text, &words(text)).into_iter().map(range).collect()
+}
+
 /// An identifier or a keyword.
 struct Word {
     range: Range<usize>,

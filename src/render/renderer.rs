@@ -2,7 +2,6 @@
 
 mod check;
 mod pipelines;
-mod programs;
 mod rebuild;
 mod scene_pass;
 #[cfg(test)]
@@ -15,11 +14,12 @@ use super::layer::Layer;
 use super::shading::Shading;
 use crate::gpu::{Gpu, foreign};
 use crate::lod::{OBJECT_LISTS, SceneDraw};
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView, MeshDrawable};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView, Part};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::specialization::Specialization;
 use crate::scene::{Scene, View};
 use crate::{Error, InputError};
-use pipelines::{Kind, PipelineKey};
+use pipelines::{PipelineKey, PipelineSource};
 pub use scene_pass::ScenePass;
 
 /// Draws scenes on targets of one format. A shadow map, or a target of another format, has a renderer of its own.
@@ -63,7 +63,9 @@ pub struct Renderer {
     shading: Option<Shading>,
     /// Whether it draws what casts shadows: both sides of all triangles.
     casts: bool,
+    /// The pipelines of parts, several of which may be one that was compiled.
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
+    compiled: HashMap<PipelineSource, wgpu::RenderPipeline>,
 }
 
 impl Renderer {
@@ -77,12 +79,13 @@ impl Renderer {
         format.check_on(gpu.device())?;
         let layouts = SceneLayouts::new(gpu)?;
         let (gpu, format) = (gpu.clone(), format.clone());
-        Ok(Self { gpu, format, layouts, shading: None, casts: false, pipelines: HashMap::new() })
+        let (pipelines, compiled) = (HashMap::new(), HashMap::new());
+        Ok(Self { gpu, format, layouts, shading: None, casts: false, pipelines, compiled })
     }
 
     /// The same renderer for maps of shadows, where triangles stop light from both sides, and nothing compiled.
     pub(super) fn casting(self) -> Self {
-        Self { casts: true, pipelines: HashMap::new(), ..self }
+        Self { casts: true, pipelines: HashMap::new(), compiled: HashMap::new(), ..self }
     }
 
     /// The same renderer with the caller's shading in every pipeline of colour, and nothing compiled.
@@ -107,7 +110,8 @@ impl Renderer {
     pub fn with_shading(self, source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, Error> {
         let shading = Shading::new(source, layout)?;
         shading.check_layout(&self.gpu, &self.format, &self.layouts)?;
-        Ok(Self { shading: Some(shading), pipelines: HashMap::new(), ..self })
+        let (pipelines, compiled) = (HashMap::new(), HashMap::new());
+        Ok(Self { shading: Some(shading), pipelines, compiled, ..self })
     }
 
     /// The format of its targets.
@@ -121,12 +125,13 @@ impl Renderer {
         objects: impl Iterator<Item = &'a Drawable>,
         is_shadowed: bool,
     ) -> Result<(), Error> {
-        let kinds: Vec<Kind> = objects.flat_map(kinds_of).collect();
+        let parts: Vec<&Specialization> =
+            objects.flat_map(Drawable::parts).map(|part| part.specialization).collect();
         let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
-            for kind in kinds.iter().filter(|kind| kind.is_in(layer)) {
+            for part in parts.iter().filter(|part| is_in(part, layer)) {
                 for is_flipped in [false, true] {
-                    self.compile(self.key(layer, *kind, is_flipped, is_shadowed))?;
+                    self.compile(self.key(layer, part, is_flipped, is_shadowed))?;
                 }
             }
         }
@@ -192,10 +197,16 @@ impl Renderer {
     }
 
     fn compile(&mut self, key: PipelineKey) -> Result<(), Error> {
-        if !self.pipelines.contains_key(&key) {
-            let pipeline = key.pipeline(&self.gpu, &self.format, &self.layouts, self.shading.as_ref())?;
-            self.pipelines.insert(key, pipeline);
+        if self.pipelines.contains_key(&key) {
+            return Ok(());
         }
+        let source = key.source(&self.format, self.casts);
+        let pipeline = match self.compiled.get(&source) {
+            Some(pipeline) => pipeline.clone(),
+            None => source.compiled(&self.gpu, &self.format, &self.layouts, self.shading.as_ref())?,
+        };
+        self.compiled.insert(source, pipeline.clone());
+        self.pipelines.insert(key, pipeline);
         Ok(())
     }
 
@@ -214,20 +225,11 @@ impl Renderer {
         self.check(view, objects.clone(), layer)?;
         pass.set_bind_group(0, view.group);
         for object in objects.filter(|object| object.lod.instances > 0) {
-            match object.drawable {
-                Drawable::Mesh(mesh) => self.draw_mesh(pass, view, &object, mesh, layer),
-                Drawable::Terrain(terrain) => {
-                    let kind = Kind::Terrain { style: terrain.style };
-                    let pipeline = self.pipeline(layer, kind, false, view);
-                    let (Some(ground), Some(pipeline)) = (object.ground, pipeline) else {
-                        continue;
-                    };
-                    pass.set_pipeline(pipeline);
-                    pass.set_bind_group(1, ground);
-                    pass.set_bind_group(2, &terrain.group);
-                    pass.set_index_buffer(terrain.geometry.indices.raw().slice(..));
-                    draw_lists(pass, view, &object, 0, false);
-                }
+            let Some(group) = object.drawable.group().or(object.ground) else { continue };
+            pass.set_bind_group(1, group);
+            pass.set_index_buffer(object.drawable.indices().slice(..));
+            for (index, part) in (0..).zip(object.drawable.parts()) {
+                self.draw_part(pass, view, &object, (index, part), layer);
             }
         }
         Ok(())
@@ -241,15 +243,14 @@ impl Renderer {
         singles: &DrawnSingles<'a>,
     ) {
         pass.set_bind_group(0, view.group);
-        for DrawnSingle { mesh, part, draw, is_mirrored } in &singles.parts {
+        for DrawnSingle { drawable, part, draw, is_mirrored } in &singles.parts {
             let is_flipped = *is_mirrored != view.mirrors;
-            let Some(pipeline) = self.pipeline(Layer::Transparent, Kind::of(part), is_flipped, view) else {
-                continue;
-            };
+            let pipeline = self.pipeline(Layer::Transparent, part.specialization, is_flipped, view);
+            let (Some(pipeline), Some(group)) = (pipeline, drawable.group()) else { continue };
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(1, &mesh.group);
-            pass.set_bind_group(2, part.materials.group());
-            pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
+            pass.set_bind_group(1, group);
+            pass.set_bind_group(2, part.group);
+            pass.set_index_buffer(drawable.indices().slice(..));
             let bytes = [*draw, draw + 1].map(|index| u64::from(index) * size_of::<u32>() as u64);
             pass.set_vertex_buffer(0, singles.entries.raw().slice(bytes[0]..bytes[1]));
             let offset = u64::from(*draw) * size_of::<SceneDraw>() as u64;
@@ -257,52 +258,47 @@ impl Renderer {
         }
     }
 
-    fn key(&self, layer: Layer, kind: Kind, is_flipped: bool, is_shadowed: bool) -> PipelineKey {
-        let kind = if self.casts { kind.two_sided() } else { kind };
-        PipelineKey::new(layer, kind, is_flipped).shadowed(is_shadowed)
+    fn key(&self, layer: Layer, part: &Specialization, is_flipped: bool, is_shadowed: bool) -> PipelineKey {
+        PipelineKey::new(layer, part, is_flipped).shadowed(is_shadowed)
     }
 
     fn pipeline(
         &self,
         layer: Layer,
-        kind: Kind,
+        part: &Specialization,
         is_flipped: bool,
         view: &DrawnView<'_>,
     ) -> Option<&wgpu::RenderPipeline> {
-        self.pipelines.get(&self.key(layer, kind, is_flipped, view.is_shadowed))
+        self.pipelines.get(&self.key(layer, part, is_flipped, view.is_shadowed))
     }
 
-    fn draw_mesh<'a>(
+    /// Draws a part of an object, by its number, in a layer that shows it.
+    fn draw_part<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
         view: &DrawnView<'a>,
         object: &DrawnObject<'a>,
-        mesh: &'a MeshDrawable,
+        (index, part): (u32, Part<'a>),
         layer: Layer,
     ) {
-        pass.set_bind_group(1, &mesh.group);
-        pass.set_index_buffer(mesh.geometry.indices.raw().slice(..));
-        for (index, part) in (0..).zip(&mesh.parts).filter(|(_, part)| Kind::of(part).is_in(layer)) {
-            pass.set_bind_group(2, part.materials.group());
-            for is_mirrored in [false, true] {
-                let is_flipped = is_mirrored != view.mirrors;
-                let pipeline = self.pipeline(layer, Kind::of(part), is_flipped, view);
-                let is_listed = object.sides[usize::from(is_mirrored)];
-                let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
-                pass.set_pipeline(pipeline);
-                draw_lists(pass, view, object, index, is_mirrored);
-            }
+        if !is_in(part.specialization, layer) {
+            return;
+        }
+        pass.set_bind_group(2, part.group);
+        for is_mirrored in [false, true] {
+            let is_flipped = is_mirrored != view.mirrors;
+            let pipeline = self.pipeline(layer, part.specialization, is_flipped, view);
+            let is_listed = object.sides[usize::from(is_mirrored)];
+            let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
+            pass.set_pipeline(pipeline);
+            draw_lists(pass, view, object, index, is_mirrored);
         }
     }
 }
 
-/// The kinds of pipelines that an object needs.
-fn kinds_of(drawable: &Drawable) -> impl Iterator<Item = Kind> {
-    let (parts, terrain) = match drawable {
-        Drawable::Mesh(mesh) => (mesh.parts.as_slice(), None),
-        Drawable::Terrain(terrain) => (&[][..], Some(Kind::Terrain { style: terrain.style })),
-    };
-    parts.iter().map(Kind::of).chain(terrain)
+/// Whether a layer shows a part.
+fn is_in(part: &Specialization, layer: Layer) -> bool {
+    part.state().blended == (layer == Layer::Transparent)
 }
 
 /// Draws a part of all instances that are mirrored, or of all others: list 2 · level + mirrored has a draw for each part.

@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use crate::InputError;
 use crate::scene::Scene;
 use crate::scene::handles::InstanceId;
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::{Object, ObjectKind};
 use crate::scene::pick::MARGIN;
 use crate::scene::placement::Placement;
 use crate::scene::ray::Surface;
@@ -47,13 +47,13 @@ impl Scene {
     pub fn bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
         let object = self.object_of(instance)?;
         match &object.kind {
-            Kind::Terrain(_) => {
+            ObjectKind::Terrain(_) | ObjectKind::Own(_) => {
                 self.around(instance, MARGIN, |placed| Ok(object.box_of_sphere(instance.index, placed)))
             }
-            Kind::Character(character) => self.around(instance, MARGIN, |placed| {
+            ObjectKind::Character(character) => self.around(instance, MARGIN, |placed| {
                 Ok(character.bounds(&character.pose(instance.index, self.now)?, placed))
             }),
-            Kind::Mesh(_) => self.tight_bounds(instance),
+            ObjectKind::Mesh(_) => self.tight_bounds(instance),
         }
     }
 
@@ -75,9 +75,10 @@ impl Scene {
                 boxes.reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
             };
             let found = match &object.kind {
-                Kind::Mesh(mesh) => around(mesh.surfaces()),
-                Kind::Character(character) => around(character.surface(instance.index, self.now)?),
-                Kind::Terrain(terrain) => {
+                ObjectKind::Mesh(mesh) => around(mesh.surfaces()),
+                ObjectKind::Character(character) => around(character.surface(instance.index, self.now)?),
+                ObjectKind::Own(_) => Some(object.box_of_sphere(instance.index, placed)),
+                ObjectKind::Terrain(terrain) => {
                     let known = terrain.bounds(instance.index, placed.translation);
                     known.or_else(|| Some(object.box_of_sphere(instance.index, placed)))
                 }

@@ -6,6 +6,8 @@ use crate::lod::{LodObject, SceneDraw};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{PartMaterials, ReliefMaterial};
 use crate::scene::options::TerrainStyle;
+use crate::scene::specialization::{OwnDepth, PartState, Specialization};
+use crate::shared::render::scene_instances::SceneObject;
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::pages::PageBuffers;
@@ -19,22 +21,109 @@ pub(crate) enum Drawable {
     Mesh(MeshDrawable),
     /// Patches of terrain.
     Terrain(TerrainDrawable),
+    /// Of a kind of the caller's.
+    Own(OwnDrawable),
+}
+
+/// A part of what is drawn, with pipelines and draws of its own.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Part<'a> {
+    pub specialization: &'a Specialization,
+    /// Bind group 2.
+    pub group: &'a Group,
 }
 
 impl Drawable {
-    /// Number of parts, each with draws of its own.
-    pub fn parts(&self) -> usize {
+    /// Number of parts.
+    pub fn part_count(&self) -> usize {
         match self {
             Self::Mesh(mesh) => mesh.parts.len(),
             Self::Terrain(_) => 1,
+            Self::Own(own) => own.parts.len(),
         }
+    }
+
+    /// A part by its number.
+    pub fn part(&self, at: usize) -> Option<Part<'_>> {
+        match self {
+            Self::Mesh(mesh) => mesh.parts.get(at).map(MeshPart::drawn),
+            Self::Terrain(TerrainDrawable { specialization, group, .. }) => {
+                (at == 0).then_some(Part { specialization, group })
+            }
+            Self::Own(own) => own.parts.get(at).map(|(specialization, group)| Part { specialization, group }),
+        }
+    }
+
+    /// Its parts, in the order of their draws.
+    pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
+        (0..self.part_count()).filter_map(|at| self.part(at))
+    }
+
+    /// Bind group 1; that of terrain belongs to the view.
+    pub fn group(&self) -> Option<&Group> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.group),
+            Self::Terrain(_) => None,
+            Self::Own(own) => Some(&own.group),
+        }
+    }
+
+    /// The triangles of all parts.
+    pub fn indices(&self) -> &wgpu::Buffer {
+        match self {
+            Self::Mesh(mesh) => mesh.geometry.indices.raw(),
+            Self::Terrain(terrain) => terrain.geometry.indices.raw(),
+            Self::Own(own) => &own.indices,
+        }
+    }
+
+    /// Where its instances lie, if shaders read that from a uniform of its own.
+    pub fn object(&self) -> Option<&Uniform<SceneObject>> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.geometry.object),
+            Self::Terrain(_) => None,
+            Self::Own(own) => Some(&own.object),
+        }
+    }
+}
+
+/// Where the instances of an object lie that no layout has yet.
+pub(crate) const NO_OBJECT: SceneObject = SceneObject { first_instance: 0, number: 0, first_slot: 0 };
+
+/// An object of a kind of the caller's.
+#[derive(Debug, Clone)]
+pub(crate) struct OwnDrawable {
+    pub object: Uniform<SceneObject>,
+    /// Bind group 1.
+    pub group: Group,
+    pub indices: wgpu::Buffer,
+    /// Its parts, each with bind group 2.
+    pub parts: Vec<(Specialization, Group)>,
+}
+
+impl OwnDrawable {
+    /// Binds what the scene knows of an object.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn new(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        indices: &wgpu::Buffer,
+        parts: Vec<(Specialization, Group)>,
+    ) -> Result<Self, GpuError> {
+        let object = Uniform::new(gpu, "object", &NO_OBJECT)?;
+        let group = layouts.own_object(gpu, &object)?;
+        Ok(Self { object, group, indices: indices.clone(), parts })
     }
 }
 
 /// The buffers of a mesh.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshGeometry {
-    /// Index of its first instance in the scene, and where its vertices lie.
+    /// Where its instances lie.
+    pub object: Uniform<SceneObject>,
+    /// Where its vertices lie.
     pub params: Uniform<MeshParams>,
     /// Vertices in the model's space: of the mesh, or in pages of each instance.
     pub vertices: Buffer<Vertex>,
@@ -78,6 +167,7 @@ impl MeshDrawable {
         parts: Vec<MeshPart>,
     ) -> Result<Self, GpuError> {
         let group = scene_mesh::Group1 {
+            scene_object: &geometry.object,
             mesh: &geometry.params,
             vertices: geometry.vertices.slice().cast(),
             texture_coordinates: geometry.uv.slice(),
@@ -85,6 +175,11 @@ impl MeshDrawable {
             page_table: geometry.page_table.slice(),
         };
         Ok(Self { group: group.bind(gpu, &layouts.mesh)?, geometry, clusters, parts })
+    }
+
+    /// Where its vertices lie.
+    pub fn params(&self) -> MeshParams {
+        MeshParams { clusters: self.clusters, last: self.geometry.last, partners: self.geometry.partners }
     }
 
     /// The same mesh, whose vertices lie in other pages.
@@ -107,16 +202,9 @@ impl MeshDrawable {
     /// # Errors
     /// [`GpuError`].
     pub fn beside(&self, gpu: &Gpu, layouts: &SceneLayouts, pages: &PageBuffers) -> Result<Self, GpuError> {
-        let none = MeshParams {
-            first_instance: 0,
-            clusters: self.clusters,
-            object: 0,
-            last: 0,
-            first_slot: 0,
-            partners: 0,
-        };
-        let params = Uniform::new(gpu, "mesh", &none)?;
-        let geometry = MeshGeometry { params, ..self.geometry.clone() };
+        let object = Uniform::new(gpu, "object", &NO_OBJECT)?;
+        let params = Uniform::new(gpu, "mesh", &self.params())?;
+        let geometry = MeshGeometry { object, params, ..self.geometry.clone() };
         Self { geometry, ..self.clone() }.with_pages(gpu, layouts, pages)
     }
 }
@@ -124,10 +212,49 @@ impl MeshDrawable {
 /// The triangles of a mesh that share a pipeline, textures and a sampler.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshPart {
-    /// What tells its pipelines from those of other parts.
-    pub surface: SurfaceKind,
+    faces: Faces,
+    morphed: bool,
+    materials: MeshMaterials,
+    specialization: Specialization,
+}
+
+/// How the triangles of a part are seen.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Faces {
+    /// Whether they are blended with what is behind them, in a layer of its own.
+    pub blended: bool,
+    /// Whether both of their sides are seen.
+    pub double_sided: bool,
+}
+
+impl MeshPart {
+    /// A part whose levels of detail do not move into each other.
+    pub fn new(faces: Faces, materials: MeshMaterials) -> Self {
+        let specialization = materials.specialization(faces, false);
+        Self { faces, morphed: false, materials, specialization }
+    }
+
+    /// Sets whether levels of detail move into each other.
+    pub fn set_morphed(&mut self, morphed: bool) {
+        self.morphed = morphed;
+        self.specialization = self.materials.specialization(self.faces, morphed);
+    }
+
+    /// Replaces the materials.
+    pub fn set_materials(&mut self, materials: MeshMaterials) {
+        self.specialization = materials.specialization(self.faces, self.morphed);
+        self.materials = materials;
+    }
+
     /// What it looks like.
-    pub materials: MeshMaterials,
+    pub fn materials(&self) -> &MeshMaterials {
+        &self.materials
+    }
+
+    /// The part as a renderer draws it.
+    fn drawn(&self) -> Part<'_> {
+        Part { specialization: &self.specialization, group: self.materials.group() }
+    }
 }
 
 /// What a part of a mesh looks like.
@@ -141,25 +268,24 @@ pub(crate) enum MeshMaterials {
 
 impl MeshMaterials {
     /// Bind group 2.
-    pub fn group(&self) -> &Group {
+    fn group(&self) -> &Group {
         match self {
             Self::Plain(materials) => &materials.group,
             Self::Relief(relief) => &relief.group,
         }
     }
-}
 
-/// What tells pipelines apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct SurfaceKind {
-    /// Whether alpha decides which pixels are drawn (masked or dithered). A relief ignores alpha.
-    pub cut_out: bool,
-    /// Whether it is blended with what is behind it, in a layer of its own.
-    pub blended: bool,
-    /// Whether both sides of triangles are seen.
-    pub double_sided: bool,
-    /// Whether levels of detail move into each other.
-    pub morphed: bool,
+    fn specialization(&self, faces: Faces, morphed: bool) -> Specialization {
+        let Faces { blended, double_sided } = faces;
+        match self {
+            Self::Plain(PartMaterials { cut_out, textured, normal_mapped, .. }) => {
+                let own_depth = OwnDepth::Never;
+                let state = PartState { cut_out: *cut_out, blended, double_sided, own_depth };
+                Specialization::mesh(state, *textured, *normal_mapped, morphed)
+            }
+            Self::Relief(relief) => Specialization::relief(&relief.options, double_sided),
+        }
+    }
 }
 
 /// The buffers of a terrain.
@@ -184,8 +310,8 @@ pub(crate) struct TerrainDrawable {
     pub geometry: TerrainGeometry,
     /// Bind group 2; bind group 1 belongs to the view ([`SceneLayouts::ground`]).
     pub group: Group,
-    /// How it looks.
-    pub style: TerrainStyle,
+    /// What its pipelines are compiled from.
+    pub specialization: Specialization,
 }
 
 impl TerrainDrawable {
@@ -207,7 +333,8 @@ impl TerrainDrawable {
             textures: &geometry.zones.view(),
             texture_sampler: &geometry.zones.sampler,
         };
-        Ok(Self { group: group.bind(gpu, &layouts.terrain)?, geometry, style })
+        let specialization = Specialization::terrain(style);
+        Ok(Self { group: group.bind(gpu, &layouts.terrain)?, geometry, specialization })
     }
 }
 
@@ -252,10 +379,10 @@ pub(crate) struct DrawnSingles<'a> {
 /// A part of an instance that is drawn by itself.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawnSingle<'a> {
-    /// The mesh.
-    pub mesh: &'a MeshDrawable,
+    /// What is drawn.
+    pub drawable: &'a Drawable,
     /// The part of it.
-    pub part: &'a MeshPart,
+    pub part: Part<'a>,
     /// The index of its draw.
     pub draw: u32,
     /// Whether its placement mirrors.

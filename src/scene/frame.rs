@@ -5,7 +5,7 @@ use crate::gpu::Staged;
 use crate::lod::{SceneInstance, SelectView};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
 use crate::scene::drive::Poses;
-use crate::scene::object::{self, Kind, Object};
+use crate::scene::object::{self, Object, ObjectKind};
 use crate::scene::order::Ordered;
 use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
@@ -126,7 +126,7 @@ impl Scene {
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
         }
         for object in self.objects.iter_mut() {
-            if let Kind::Terrain(terrain) = &mut object.kind {
+            if let ObjectKind::Terrain(terrain) = &mut object.kind {
                 terrain.morphing.iter_mut().for_each(|morphing| morphing.record(encoder));
             }
         }
@@ -268,9 +268,10 @@ impl Scene {
             let Some(chunk) = object.chunk_of(*instance) else { continue };
             let instance = (*instance as usize - chunk.slots.start) as u32;
             for single in &chunk.singles {
-                let Drawable::Mesh(mesh) = &chunk.drawables[single.drawable] else { continue };
-                let (part, draw) = (&mesh.parts[single.part], single.first + instance);
-                parts.push(DrawnSingle { mesh, part, draw, is_mirrored });
+                let drawable = &chunk.drawables[single.drawable];
+                let Some(part) = drawable.part(single.part) else { continue };
+                let draw = single.first + instance;
+                parts.push(DrawnSingle { drawable, part, draw, is_mirrored });
             }
         }
         Some(DrawnSingles { draws, entries, parts })

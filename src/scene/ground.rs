@@ -4,7 +4,7 @@ use crate::gpu::{Staged, Upload as _};
 use crate::scene::Scene;
 use crate::scene::drawable::Drawable;
 use crate::scene::handles::ObjectId;
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::{Object, ObjectKind};
 use crate::scene::terrain::{Terrain, listed};
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
@@ -113,16 +113,16 @@ impl Object {
     }
 }
 
-fn terrain_of(kind: &Kind) -> Result<&Terrain, InputError> {
+fn terrain_of(kind: &ObjectKind) -> Result<&Terrain, InputError> {
     match kind {
-        Kind::Terrain(terrain) => Ok(terrain),
+        ObjectKind::Terrain(terrain) => Ok(terrain),
         _ => Err(no_terrain()),
     }
 }
 
-fn terrain_of_mut(kind: &mut Kind) -> Result<&mut Terrain, InputError> {
+fn terrain_of_mut(kind: &mut ObjectKind) -> Result<&mut Terrain, InputError> {
     match kind {
-        Kind::Terrain(terrain) => Ok(terrain),
+        ObjectKind::Terrain(terrain) => Ok(terrain),
         _ => Err(no_terrain()),
     }
 }

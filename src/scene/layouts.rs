@@ -3,7 +3,9 @@
 
 use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Layouts, Uniform};
+use crate::scene::specialization::Program;
 use crate::shared::lod::instance::SceneInstance;
+use crate::shared::render::scene_instances::SceneObject;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 
@@ -17,6 +19,8 @@ pub(crate) struct SceneLayouts {
     pub relief: Layouts,
     /// Of terrain.
     pub terrain: Layouts,
+    /// Group 1 of kinds of the caller's.
+    own_object: wgpu::BindGroupLayout,
     /// What views without a shadow bind.
     shadow: ShadowBindings,
 }
@@ -70,6 +74,7 @@ impl SceneLayouts {
             mesh: scene_mesh::layouts(gpu)?,
             relief: scene_relief::layouts(gpu)?,
             terrain: scene_terrain::layouts(gpu)?,
+            own_object: gpu.scoped(|| gpu.device().create_bind_group_layout(&OWN_OBJECT))?,
             shadow: ShadowBindings::new(gpu)?,
         })
     }
@@ -106,18 +111,44 @@ impl SceneLayouts {
         scene_terrain::Group1 { ground }.bind(gpu, &self.terrain)
     }
 
-    /// The layouts of a pipeline of meshes with materials.
-    pub fn of_mesh(&self) -> [&wgpu::BindGroupLayout; 3] {
-        [&self.mesh.groups[0], &self.mesh.groups[1], &self.mesh.groups[2]]
+    /// Group 1 of an object of a kind of the caller's.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn own_object(&self, gpu: &Gpu, object: &Uniform<SceneObject>) -> Result<Group, GpuError> {
+        gpu.scoped(|| {
+            gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+                label: OWN_OBJECT.label,
+                layout: &self.own_object,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource: object.raw().as_entire_binding() }],
+            })
+        })
     }
 
-    /// The layouts of a pipeline of meshes with relief.
-    pub fn of_relief(&self) -> [&wgpu::BindGroupLayout; 3] {
-        [&self.mesh.groups[0], &self.mesh.groups[1], &self.relief.groups[2]]
-    }
-
-    /// The layouts of a pipeline of terrain.
-    pub fn of_terrain(&self) -> [&wgpu::BindGroupLayout; 3] {
-        [&self.mesh.groups[0], &self.terrain.groups[1], &self.terrain.groups[2]]
+    /// The layouts of groups 0 to 2 of a program.
+    pub fn of(&self, gpu: &Gpu, program: &Program) -> [wgpu::BindGroupLayout; 3] {
+        let view = self.mesh.groups[0].clone();
+        let [object, part] = match program {
+            Program::Mesh => [self.mesh.groups[1].clone(), self.mesh.groups[2].clone()],
+            Program::Relief => [self.mesh.groups[1].clone(), self.relief.groups[2].clone()],
+            Program::Terrain => [self.terrain.groups[1].clone(), self.terrain.groups[2].clone()],
+            Program::Own(program) => [self.own_object.clone(), program.layout(gpu)],
+        };
+        [view, object, part]
     }
 }
+
+/// What shaders of the caller's kinds know of an object: `scene_object` of `wgsl/render/scene_instances.wgsl`.
+const OWN_OBJECT: wgpu::BindGroupLayoutDescriptor<'static> = wgpu::BindGroupLayoutDescriptor {
+    label: Some("object of a kind"),
+    entries: &[wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }],
+};

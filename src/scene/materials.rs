@@ -9,7 +9,7 @@ use crate::scene::drawable::{Drawable, MeshMaterials};
 use crate::scene::handles::ObjectId;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Changed, Looks, PartMaterials};
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::{Object, ObjectKind};
 use crate::{Error, InputError};
 
 impl Scene {
@@ -139,7 +139,7 @@ impl Object {
         for (at, drawable) in first.drawables.iter().enumerate() {
             let Drawable::Mesh(mesh) = drawable else { continue };
             for (number, part) in mesh.parts.iter().enumerate() {
-                let MeshMaterials::Plain(materials) = &part.materials else { continue };
+                let MeshMaterials::Plain(materials) = part.materials() else { continue };
                 if let Some(changed) = change.of(gpu, looks, materials)? {
                     changes.push((at, number, changed));
                 }
@@ -149,9 +149,7 @@ impl Object {
             changed.stage(staged)?;
             for chunk in &mut self.chunks {
                 if let Some(Drawable::Mesh(mesh)) = chunk.drawables.get_mut(at) {
-                    let part = &mut mesh.parts[number];
-                    part.surface.cut_out = changed.materials.cut_out;
-                    part.materials = MeshMaterials::Plain(changed.materials.clone());
+                    mesh.parts[number].set_materials(MeshMaterials::Plain(changed.materials.clone()));
                 }
             }
         }
@@ -165,6 +163,10 @@ fn looks(object: &mut Object) -> Result<&mut Looks, InputError> {
 }
 
 fn without_materials(object: &Object) -> InputError {
-    let value = if let Kind::Terrain(_) = object.kind { "terrain" } else { "a relief" };
+    let value = match object.kind {
+        ObjectKind::Terrain(_) => "terrain",
+        ObjectKind::Own(_) => "of a kind of the caller's",
+        _ => "a relief",
+    };
     InputError::new("object", value, "must be a mesh or a character")
 }

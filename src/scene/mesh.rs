@@ -2,7 +2,9 @@
 
 use crate::asset::{Mesh, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::drawable::{
+    Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, NO_OBJECT,
+};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::scene::pieces::{Most, indices_of_levels, pieces};
@@ -155,19 +157,14 @@ pub(super) fn drawable(
             let PartKey { blended, double_sided, sampling, normal_sampling, .. } = part.key;
             let samplings = [sampling, normal_sampling].map(Option::unwrap_or_default);
             let materials = PartMaterials::new(gpu, layouts, looks, table, samplings)?;
-            // Materials may have changed since the model was added.
-            let surface = SurfaceKind { cut_out: materials.cut_out, blended, double_sided, morphed: false };
-            Ok(MeshPart { surface, materials: MeshMaterials::Plain(materials) })
+            Ok(MeshPart::new(Faces { blended, double_sided }, MeshMaterials::Plain(materials)))
         })
         .collect::<Result<_, Error>>()?;
     let count = if pages.is_some() { buffers.clusters() as u32 } else { 0 };
     let material_of = Buffer::constant(gpu, "materials of vertices", &placed)?;
     let geometry = MeshGeometry {
-        params: Uniform::new(
-            gpu,
-            "mesh",
-            &MeshParams { first_instance: 0, clusters: count, object: 0, last: 0, first_slot: 0, partners },
-        )?,
+        object: Uniform::new(gpu, "object", &NO_OBJECT)?,
+        params: Uniform::new(gpu, "mesh", &MeshParams { clusters: count, last: 0, partners })?,
         vertices: pages.map_or(&buffers.vertices, |pages| &pages.skinned).clone(),
         last: pages.map_or(0, |pages| pages.last),
         page_table: pages.map_or(&material_of, |pages| &pages.table).clone(),

@@ -12,6 +12,7 @@
 
 mod attach;
 mod bounds;
+pub(crate) mod caller_text;
 mod camera;
 mod character;
 mod chunk;
@@ -22,6 +23,7 @@ mod ground;
 mod handles;
 mod instance_pose;
 mod instances;
+pub mod kind;
 mod layers;
 pub(crate) mod layout;
 pub(crate) mod layouts;
@@ -49,6 +51,7 @@ mod ray;
 mod rebuild;
 mod relief;
 mod spawned;
+pub(crate) mod specialization;
 mod stage;
 mod statistics;
 pub(crate) mod terrain;

@@ -4,6 +4,7 @@ use crate::asset::Model;
 use crate::gpu::Upload as _;
 use crate::scene::Scene;
 use crate::scene::handles::{ObjectId, foreign, stale};
+use crate::scene::kind::Kind;
 use crate::scene::object::Object;
 use crate::scene::options::CharacterOptions;
 use crate::scene::relief::Relief;
@@ -146,6 +147,18 @@ impl Scene {
     pub async fn add_relief_async(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.relief(relief, capacity)?;
         self.add_checked(object).await
+    }
+
+    /// Adds an object of a kind of the caller's. There is room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says
+    /// what happens to more. Its levels change at once ([`Transition::Hard`]).
+    ///
+    /// # Errors
+    /// [`InputError`] for a capacity out of range, and for what the kind says of its levels, parts, indices or sphere
+    /// (`kind.parts[0].levels[1]`); [`crate::gpu::GpuError`].
+    pub fn add_kind(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
+        let (gpu, pending) = self.uploader();
+        let object = Object::own(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
+        Ok(self.add(object.awaiting(pending)))
     }
 
     /// Adds an object, unless the device tells errors of it.

@@ -5,7 +5,6 @@ use crate::lod::single::Single;
 use crate::lod::{OBJECT_LISTS, SelectView};
 use crate::scene::camera::Camera;
 use crate::scene::chunk::{Chunk, SinglePart};
-use crate::scene::drawable::Drawable;
 use crate::scene::object::Object;
 
 impl Chunk {
@@ -14,14 +13,14 @@ impl Chunk {
         self.singles.clear();
         let (instances, mut first_draw) = (self.slots.len() as u32, self.range.first_draw);
         for (drawable, of) in self.drawables.iter().enumerate() {
-            let parts = if let Drawable::Mesh(mesh) = of { mesh.parts.as_slice() } else { &[] };
-            for (part, _) in parts.iter().enumerate().filter(|(_, part)| part.surface.blended) {
+            let blended = of.parts().enumerate().filter(|(_, part)| part.specialization.state().blended);
+            for (part, _) in blended {
                 self.singles.push(SinglePart { drawable, part, first: all.len() as u32 });
                 let first_draw = first_draw + OBJECT_LISTS * part as u32;
                 let single = |slot| Single { instance: self.range.first + slot, first_draw, slot };
                 all.extend((0..instances).map(single));
             }
-            first_draw += OBJECT_LISTS * of.parts() as u32;
+            first_draw += OBJECT_LISTS * of.part_count() as u32;
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::InputError;
 use crate::scene::Scene;
 use crate::scene::handles::InstanceId;
 use crate::scene::matrices::placed_model;
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::{Object, ObjectKind};
 use crate::scene::ray::{Hit, Ray, Surface, SurfaceHit};
 use crate::shared::lod::instance::{INSTANCE_ALIVE, instance_flags_mask};
 
@@ -142,9 +142,10 @@ impl Object {
             hits.fold(None, SurfaceHit::nearer)
         };
         Ok(match &self.kind {
-            Kind::Mesh(mesh) => of_all(&mesh.surfaces()),
-            Kind::Character(character) => of_all(&character.surface(index, now)?),
-            Kind::Terrain(terrain) => terrain.hit(index, cell, ray, limit),
+            ObjectKind::Mesh(mesh) => of_all(&mesh.surfaces()),
+            ObjectKind::Character(character) => of_all(&character.surface(index, now)?),
+            ObjectKind::Terrain(terrain) => terrain.hit(index, cell, ray, limit),
+            ObjectKind::Own(own) => own.hit(placed, ray, limit),
         })
     }
 }

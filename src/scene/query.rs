@@ -3,7 +3,7 @@
 use glam::DAffine3;
 
 use super::handles::missing;
-use super::object::{Kind, Object};
+use super::object::{Object, ObjectKind};
 use super::{ClipTime, InstanceId, ObjectId, Placement, Scene};
 use crate::InputError;
 use crate::shared::lod::instance::SceneInstance;
@@ -195,13 +195,13 @@ mod drawn {
             instances: &[InstanceId],
         ) -> Result<Vec<Vec<Vec<Option<Vertex>>>>, Error> {
             let object = self.object_at(object)?;
-            if let Kind::Character(character) = &object.kind {
+            if let ObjectKind::Character(character) = &object.kind {
                 let indices: Vec<u32> = instances.iter().map(|instance| instance.index).collect();
                 return character.skinned(&self.gpu, &indices);
             }
             let meshes = object.drawables().filter_map(|drawable| match drawable {
                 Drawable::Mesh(mesh) => Some(mesh),
-                Drawable::Terrain(_) => None,
+                Drawable::Terrain(_) | Drawable::Own(_) => None,
             });
             let vertices = |mesh: &MeshDrawable| mesh.geometry.vertices.read_blocking(&self.gpu);
             let all = meshes.map(|mesh| Ok(vertices(mesh)?.into_iter().map(Some).collect()));

@@ -3,7 +3,9 @@
 use glam::{Vec2, Vec3};
 
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::drawable::{
+    Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, NO_OBJECT,
+};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{ReliefLook, ReliefMaterial, check_image};
 use crate::scene::mesh::{Drawn, NOTHING, within_binding};
@@ -147,11 +149,8 @@ pub(super) fn drawn(
     let uv: Vec<[f32; 2]> = relief.mesh.vertices.iter().map(|vertex| vertex.uv).collect();
     let material_of = Buffer::new(gpu, "materials of vertices", vertices.len())?;
     let geometry = MeshGeometry {
-        params: Uniform::new(
-            gpu,
-            "mesh",
-            &MeshParams { first_instance: 0, clusters: 0, object: 0, last: 0, first_slot: 0, partners: 0 },
-        )?,
+        object: Uniform::new(gpu, "object", &NO_OBJECT)?,
+        params: Uniform::new(gpu, "mesh", &MeshParams { clusters: 0, last: 0, partners: 0 })?,
         vertices: Buffer::constant(gpu, "mesh vertices", &vertices)?,
         last: 0,
         page_table: material_of.clone(),
@@ -160,14 +159,12 @@ pub(super) fn drawn(
         partners: 0,
         indices: Buffer::constant(gpu, "mesh indices", &relief.mesh.indices)?,
     };
-    let surface =
-        SurfaceKind { cut_out: false, blended: false, double_sided: relief.double_sided, morphed: false };
+    let faces = Faces { blended: false, double_sided: relief.double_sided };
     let material = material(gpu, layouts, relief).map_err(|error| match error {
         Error::Input(error) => error.below("relief").into(),
         error => error,
     })?;
-    let materials = MeshMaterials::Relief(material);
-    let parts = vec![MeshPart { surface, materials }];
+    let parts = vec![MeshPart::new(faces, MeshMaterials::Relief(material))];
     let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);
     let draw = SceneDraw { indices: relief.mesh.indices.len() as u32, ..NOTHING };
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];

@@ -3,7 +3,7 @@
 use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId, missing, no_character};
 use crate::scene::instances;
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::{Object, ObjectKind};
 use crate::scene::placement::{Placement, Play};
 use crate::{Error, InputError};
 
@@ -22,7 +22,7 @@ impl Scene {
         let placement = placement.checked()?;
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let entry = self.object_mut(object)?;
-        if let Kind::Terrain(_) = entry.kind {
+        if let ObjectKind::Terrain(_) = entry.kind {
             return Err(InputError::new("object", "terrain", "must be a mesh or a character").into());
         }
         let mut has_grown = false;
@@ -130,11 +130,11 @@ impl Scene {
     fn spawned_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
         let object = self.instance_mut(instance)?;
         match object.kind {
-            Kind::Terrain(_) => {
+            ObjectKind::Terrain(_) => {
                 let bound = "must be an instance of a mesh or a character";
                 Err(InputError::new("instance", "a patch of terrain", bound))
             }
-            Kind::Mesh(_) | Kind::Character(_) => Ok(object),
+            ObjectKind::Mesh(_) | ObjectKind::Character(_) | ObjectKind::Own(_) => Ok(object),
         }
     }
 

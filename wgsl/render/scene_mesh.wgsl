@@ -1,11 +1,11 @@
 // The kind `mesh`: instances of a mesh of a scene, static or skinned, with textures and normal maps. Surfaces are opaque, cut
 // out, blended, or drawn through a screen-door pattern, as each vertex's material says.
 // kind mesh: discards, blends
-import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, scene_surface};
+import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex};
+import package::wgsl::render::scene_instances::scene_surface;
 import package::wgsl::render::scene_motion::last_position;
 import package::wgsl::render::scene_shade::Surface;
-import package::wgsl::render::scene_vertex::{entry_instance, instances, material_of, mesh, placed_vertex};
-import package::wgsl::render::scene_view::view;
+import package::wgsl::render::scene_vertex::{material_of, placed_vertex};
 import package::wgsl::surface::dither::surface_dither_threshold;
 
 // Whether the mesh is seen from both sides; back faces reverse their normals.
@@ -45,13 +45,11 @@ struct SceneMaterial {
 // Filters normal maps.
 @group(2) @binding(4) var normal_filtering: sampler;
 
-// The words of a vertex: the index of its material, that of the instance in the object, the instance's tint, and 1 where
-// triangles seen from outside run counter-clockwise on the screen, else 0.
+// The first word of a vertex: the index of its material.
 fn mesh_place(entry: u32, vertex: u32) -> SceneVertex {
-    let placed = placed_vertex(entry, vertex);
-    let words = vec4<u32>(material_of[vertex], entry_instance(entry), placed.tint, u32(view.side * placed.side > 0.0));
-    return SceneVertex(
-        placed.position, placed.normal, placed.tangent, vec4<f32>(placed.uv, 0.0, 0.0), vec4<f32>(0.0), words);
+    var placed = placed_vertex(entry, vertex);
+    placed.words.x = material_of[vertex];
+    return placed;
 }
 
 fn mesh_last_position(entry: u32, vertex: u32) -> vec3<f32> {
@@ -61,7 +59,7 @@ fn mesh_last_position(entry: u32, vertex: u32) -> vec3<f32> {
 // A normal, given outwards, on the side that is seen.
 fn facing(outwards: vec3<f32>, in: SceneFragment) -> vec3<f32> {
     if DOUBLE_SIDED {
-        return select(-outwards, outwards, in.is_front == (in.words.w != 0u));
+        return select(-outwards, outwards, in.is_outside);
     }
     return outwards;
 }
@@ -80,7 +78,6 @@ fn bumpy_normal(in: SceneFragment, material: SceneMaterial, normal: vec3<f32>) -
 fn mesh_surface(in: SceneFragment) -> Surface {
     let material = materials[in.words.x];
     var surface = scene_surface(in);
-    surface.tint = unpack4x8unorm(in.words.z);
     var color = material.color * surface.tint;
     if TEXTURED {
         let has_none = material.layer == NO_LAYER;
@@ -97,8 +94,5 @@ fn mesh_surface(in: SceneFragment) -> Surface {
     surface.alpha = color.a;
     let is_dithered = material.cutoff == CUTOFF_DITHERED;
     surface.cutoff = select(material.cutoff, surface_dither_threshold(vec2<u32>(in.clip.xy)), is_dithered);
-    surface.word = instances[mesh.first_instance + in.words.y].word;
-    surface.object = mesh.object;
-    surface.instance = mesh.first_slot + in.words.y;
     return surface;
 }

@@ -1,12 +1,12 @@
 // The kind `relief`: instances of a static mesh of a scene with relief (B section 3.1, tables 4.1 to 4.4) by any method, with
 // self-shadow, silhouettes and the depth of the relief.
 // kind relief: discards, deep
-import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, scene_surface};
-import package::wgsl::render::scene_motion::{last_position, rows_to_last};
+import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex};
+import package::wgsl::render::scene_instances::{scene_last_rigid, scene_surface};
+import package::wgsl::render::scene_motion::last_position;
 import package::wgsl::render::scene_shade::Surface;
-import package::wgsl::render::scene_vertex::{instances, mesh, placed_vertex};
+import package::wgsl::render::scene_vertex::placed_vertex;
 import package::wgsl::render::scene_view::view;
-import package::wgsl::skinning::rows::placed_position;
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay, surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;
@@ -57,17 +57,15 @@ struct ReliefParams {
 // Filters the normal map.
 @group(2) @binding(7) var normal_filtering: sampler;
 
-// The words of a vertex: the instance's tint, and the index of the instance in the object. The first value: world units per uv
-// unit.
-fn relief_place(instance: u32, vertex: u32) -> SceneVertex {
-    let placed = placed_vertex(instance, vertex);
-    return SceneVertex(
-        placed.position, placed.normal, placed.tangent, vec4<f32>(placed.uv, 0.0, 0.0),
-        vec4<f32>(relief.world * placed.stretch, 0.0, 0.0, 0.0), vec4<u32>(placed.tint, instance, 0u, 0u));
+// The first value of a vertex: world units per uv unit.
+fn relief_place(entry: u32, vertex: u32) -> SceneVertex {
+    var placed = placed_vertex(entry, vertex);
+    placed.values.x = relief.world * length(placed.tangent.xyz);
+    return placed;
 }
 
-fn relief_last_position(instance: u32, vertex: u32) -> vec3<f32> {
-    return last_position(instance, vertex);
+fn relief_last_position(entry: u32, vertex: u32) -> vec3<f32> {
+    return last_position(entry, vertex);
 }
 
 // The frame of a fragment's tangent space: unit vectors along u, along v, and outwards.
@@ -127,13 +125,11 @@ fn relief_surface(in: SceneFragment) -> Surface {
     let uv_dy = dpdy(in.uv.xy);
     let found = traced(in, uv_dx, uv_dy);
     let hit = found.hit;
-    let index = mesh.first_instance + in.words.y;
     var facing = surface_normal(heights, hit.uv, relief.scale, found.settings);
     if NORMAL_MAP {
         facing = surface_mapped_normal(textureSampleGrad(normals, normal_filtering, hit.uv, uv_dx, uv_dy), GREEN_UP);
     }
     var surface = scene_surface(in);
-    surface.tint = unpack4x8unorm(in.words.x);
     surface.position = found.position;
     surface.normal = in_world(found.frame, facing);
     surface.geometric_normal = found.frame.normal;
@@ -146,11 +142,8 @@ fn relief_surface(in: SceneFragment) -> Surface {
     surface.sunlit = surface_sunlit(
         METHOD, SHADOW, heights, acceleration, hit, in_frame(found.frame, view.light.xyz),
         SurfaceShadow(relief.scale, relief.shadow_steps, relief.softness), found.settings);
-    surface.word = instances[index].word;
-    surface.object = mesh.object;
-    surface.instance = mesh.first_slot + in.words.y;
     surface.light_position = above(in, found);
-    surface.last_position = placed_position(rows_to_last(index), found.position);
+    surface.last_position = scene_last_rigid(in.instance, found.position);
     surface.depth = found.depth;
     return surface;
 }

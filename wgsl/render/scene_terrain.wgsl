@@ -1,7 +1,7 @@
 // The kind `terrain`: patches of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8), an indexed patch for
 // each visible one, with zone textures blended by height, slope and their own height maps, or as a wireframe.
 // kind terrain:
-import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, scene_surface};
+import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, triangle_surface};
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_uv, triplanar_weight, triplanar_weights, varied};
@@ -69,7 +69,7 @@ struct TerrainPatch {
 @group(2) @binding(5) var texture_sampler: sampler;
 
 // Equal samples give equal bits, so that patches that share an edge leave no crack. The values of a vertex: 1 at one corner of
-// each triangle and 0 at the others, and the height in units. The first word: the index of the patch.
+// each triangle and 0 at the others, and the height in units.
 fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let patch_of = patches[instance];
     let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
@@ -88,7 +88,7 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     values[(at.x + 2u * at.y) % 3u] = 1.0;
     return SceneVertex(
         position, slope_normal(gradient, terrain.run), vec4<f32>(1.0, 0.0, 0.0, 1.0),
-        vec4<f32>(patch_of.uv + vec2<f32>(at) * terrain.tiling, 0.0, 0.0), values, vec4<u32>(instance, 0u, 0u, 0u));
+        vec4<f32>(patch_of.uv + vec2<f32>(at) * terrain.tiling, 0.0, 0.0), values, vec3<u32>(0u), 1.0);
 }
 
 // The ground stands still.
@@ -124,7 +124,7 @@ fn ground_color(uv: vec2<f32>, height: f32, normal: vec3<f32>) -> vec3<f32> {
 }
 
 fn terrain_surface(in: SceneFragment) -> Surface {
-    var surface = scene_surface(in);
+    var surface = triangle_surface(in);
     if WIREFRAME {
         let edge = in.values.xyz / max(fwidth(in.values.xyz), vec3<f32>(1e-6));
         let near = clamp(1.2 - min(edge.x, min(edge.y, edge.z)), 0.0, 1.0);
@@ -134,6 +134,6 @@ fn terrain_surface(in: SceneFragment) -> Surface {
         surface.color = ground_color(in.uv.xy, in.values.w, surface.normal);
     }
     surface.object = ground.object;
-    surface.instance = terrain.first_patch + in.words.x;
+    surface.instance = terrain.first_patch + in.instance;
     return surface;
 }

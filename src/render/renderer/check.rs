@@ -1,6 +1,6 @@
 //! Whether a renderer can draw what it is given.
 
-use super::{Renderer, kinds_of};
+use super::{Renderer, is_in};
 use crate::InputError;
 use crate::render::layer::Layer;
 use crate::scene::Scene;
@@ -42,8 +42,9 @@ impl Renderer {
             return Err(InputError::new("scene", "does not keep the last frame", bound));
         }
         for object in objects {
-            let is_ready = |kind| self.pipeline(layer, kind, false, view).is_some();
-            if !kinds_of(object.drawable).filter(|kind| kind.is_in(layer)).all(is_ready) {
+            let mut parts = object.drawable.parts().map(|part| part.specialization);
+            let is_ready = |part| !is_in(part, layer) || self.pipeline(layer, part, false, view).is_some();
+            if !parts.all(is_ready) {
                 let value = format!("object {} (ObjectId::number), not compiled", object.number);
                 return Err(InputError::new("scene", value, PREPARE));
             }

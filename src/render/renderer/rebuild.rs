@@ -45,7 +45,7 @@ impl Renderer {
         }
         fresh.shading = shading;
         fresh.casts = self.casts;
-        self.pipelines.keys().try_for_each(|key| fresh.compile(*key))?;
+        self.pipelines.keys().try_for_each(|key| fresh.compile(key.clone()))?;
         *self = fresh;
         Ok(())
     }

@@ -14,7 +14,7 @@ use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId};
 use crate::scene::instances;
 use crate::scene::matrices::affine_of;
-use crate::scene::object::Kind;
+use crate::scene::object::ObjectKind;
 use crate::scene::placement::Placement;
 use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -93,7 +93,7 @@ impl Scene {
     ) -> Result<(), InputError> {
         let bone = self.bone(character, bone).map_err(|error| renamed(error, "character"))?;
         let object = self.object_of(mesh).map_err(|error| renamed(error, "mesh"))?;
-        let Kind::Mesh(_) = object.kind else {
+        let ObjectKind::Mesh(_) = object.kind else {
             return Err(InputError::new("mesh", "no mesh", "must be an instance of a mesh"));
         };
         let offset = offset.checked("offset")?;

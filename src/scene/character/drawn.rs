@@ -38,7 +38,7 @@ impl Character {
         let chunk = |runtime: &Runtime| {
             let drawable = |(drawable, skin): (&Drawable, &PagedSkin)| match drawable {
                 Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.beside(gpu, layouts, skin.pages())?)),
-                Drawable::Terrain(_) => Ok(drawable.clone()),
+                Drawable::Terrain(_) | Drawable::Own(_) => Ok(drawable.clone()),
             };
             let drawables = first.iter().zip(&runtime.skins).map(drawable);
             Ok(Chunk::new(runtime.slots.clone(), drawables.collect::<Result<_, Error>>()?))

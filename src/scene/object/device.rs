@@ -1,10 +1,11 @@
 //! What an object has on a device: made larger, made afresh, or made on another one.
 
-use super::{Kind, MAX_CAPACITY, MeshOnHost, Object, whole};
+use super::{MAX_CAPACITY, MeshOnHost, Object, ObjectKind, whole};
 use crate::gpu::Gpu;
 use crate::scene::character::{Character, Runtime, Shared};
 use crate::scene::chunk::Chunk;
 use crate::scene::instances;
+use crate::scene::kind::OwnKind;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::terrain::Morphing;
@@ -18,6 +19,7 @@ pub(in crate::scene) struct OnDevice {
     chunks: Vec<Chunk>,
     character: Option<(Shared, Vec<Runtime>)>,
     morphing: Option<Morphing>,
+    own: Option<OwnKind>,
 }
 
 impl Object {
@@ -43,14 +45,18 @@ impl Object {
 
     fn renew(&mut self, gpu: &Gpu, layouts: &SceneLayouts, capacity: usize) -> Result<(), Error> {
         match &mut self.kind {
-            Kind::Character(character) => {
+            ObjectKind::Character(character) => {
                 character.grow(gpu, capacity)?;
                 let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
                 self.chunks = character.chunks(gpu, layouts, first)?;
             }
-            Kind::Mesh(_) => self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity),
+            ObjectKind::Mesh(_) => self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity),
+            ObjectKind::Own(own) => {
+                own.is_fresh = true;
+                self.chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
+            }
             // It does not grow.
-            Kind::Terrain(terrain) => terrain.morphing.iter_mut().for_each(Morphing::refresh),
+            ObjectKind::Terrain(terrain) => terrain.morphing.iter_mut().for_each(Morphing::refresh),
         }
         Ok(())
     }
@@ -60,30 +66,43 @@ impl Object {
         let none = Looks { materials: Vec::new(), images: Vec::new() };
         let looks = self.looks.as_ref().unwrap_or(&none);
         let drawn = match &self.kind {
-            Kind::Terrain(terrain) => {
+            ObjectKind::Terrain(terrain) => {
                 terrain.check_can_be_rebuilt()?;
                 let (terrain, _, (chunks, _)) = terrain::made(gpu, layouts, &terrain.source).await?;
-                return Ok(OnDevice { chunks, character: None, morphing: terrain.morphing });
+                return Ok(OnDevice { chunks, character: None, morphing: terrain.morphing, own: None });
             }
-            Kind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, (merged, looks))?,
-            Kind::Mesh(MeshOnHost::Relief(relief)) => {
+            ObjectKind::Mesh(MeshOnHost::Model(merged)) => mesh::drawn(gpu, layouts, (merged, looks))?,
+            ObjectKind::Mesh(MeshOnHost::Relief(relief)) => {
                 relief.check_can_be_rebuilt()?;
                 relief::drawn(gpu, layouts, relief)?.1
             }
-            Kind::Character(character) => {
+            ObjectKind::Character(character) => {
                 let (shared, runtimes) = character.on(gpu)?;
                 let first = character.drawables_of((gpu, layouts), looks, &runtimes)?;
                 let chunks = Character::chunks_of((gpu, layouts), &first, &runtimes)?;
-                return Ok(OnDevice { chunks, character: Some((shared, runtimes)), morphing: None });
+                return Ok(OnDevice {
+                    chunks,
+                    character: Some((shared, runtimes)),
+                    morphing: None,
+                    own: None,
+                });
+            }
+            ObjectKind::Own(own) => {
+                let own = OwnKind::new(own.kind.rebuild(gpu)?)?;
+                let chunks = whole(&self.instances, own.drawn(gpu, layouts)?).0;
+                return Ok(OnDevice { chunks, character: None, morphing: None, own: Some(own) });
             }
         };
-        Ok(OnDevice { chunks: whole(&self.instances, drawn).0, character: None, morphing: None })
+        Ok(OnDevice { chunks: whole(&self.instances, drawn).0, character: None, morphing: None, own: None })
     }
 
     /// Takes everything on another device. Everything starts afresh.
     pub(in crate::scene) fn adopt(&mut self, on_device: OnDevice) {
-        let OnDevice { chunks, character: on_device, morphing } = on_device;
-        if let Kind::Terrain(terrain) = &mut self.kind {
+        let OnDevice { chunks, character: on_device, morphing, own: on_new } = on_device;
+        if let (ObjectKind::Own(own), Some(on_new)) = (&mut self.kind, on_new) {
+            **own = on_new;
+        }
+        if let ObjectKind::Terrain(terrain) = &mut self.kind {
             terrain.morphing = morphing;
         }
         if let (Some(character), Some(on_device)) = (self.kind.character_mut(), on_device) {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Kind, Object};
+use super::{Object, ObjectKind};
 use crate::Error;
 use crate::animation::Frame;
 use crate::gpu::{Buffer, Gpu, Staged, Upload as _};
@@ -10,13 +10,14 @@ use crate::lod::assign::AssignPass;
 use crate::lod::{SceneInstance, SelectView};
 use crate::scene::character::{Provided, Replaced};
 use crate::scene::chunk::{Chunk, common};
-use crate::scene::drawable::{Drawable, MeshDrawable};
+use crate::scene::drawable::Drawable;
 use crate::scene::handles::{ObjectId, Slots};
+use crate::scene::kind::KindFrame;
 use crate::scene::layout::{Counted, CountedObject, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::quality::Shares;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS};
-use crate::shared::render::scene_vertex::MeshParams;
+use crate::shared::render::scene_instances::SceneObject;
 
 impl Object {
     /// Provides what the views of a frame need of a character. Where memory ends, its levels of detail are coarser. Returns
@@ -71,9 +72,15 @@ impl Object {
             }
         }
         match &mut self.kind {
-            Kind::Character(character) => character.stage(staged, frame, now),
-            Kind::Terrain(terrain) => terrain.morphing.iter().try_for_each(|morphing| morphing.stage(staged)),
-            Kind::Mesh(_) => Ok(()),
+            ObjectKind::Character(character) => character.stage(staged, frame, now),
+            ObjectKind::Terrain(terrain) => {
+                terrain.morphing.iter().try_for_each(|morphing| morphing.stage(staged))
+            }
+            ObjectKind::Mesh(_) => Ok(()),
+            ObjectKind::Own(own) => {
+                let last_seconds = now - f64::from(frame.ahead);
+                own.stage(staged, KindFrame { seconds: now, last_seconds, is_fresh: false })
+            }
         }
     }
 
@@ -96,7 +103,7 @@ impl Object {
             chunk.lods.clear();
             for drawable in &chunk.drawables {
                 chunk.lods.push(lod);
-                lod.first_draw += OBJECT_LISTS * drawable.parts() as u32;
+                lod.first_draw += OBJECT_LISTS * drawable.part_count() as u32;
             }
             stage_params(staged, chunk, self.handle)?;
         }
@@ -128,16 +135,15 @@ fn stage_instances(
     Ok(())
 }
 
-/// Stages where the instances and vertices of a chunk lie.
-fn stage_params(staged: &mut Staged, chunk: &Chunk, object: u32) -> Result<(), Error> {
+/// Stages where the instances and vertices of a chunk of an object lie.
+fn stage_params(staged: &mut Staged, chunk: &Chunk, number: u32) -> Result<(), Error> {
     for drawable in &chunk.drawables {
-        if let Drawable::Mesh(MeshDrawable { geometry, clusters, .. }) = drawable {
-            let (first_instance, last) = (chunk.range.first, geometry.last);
-            let first_slot = chunk.slots.start as u32;
-            let partners = geometry.partners;
-            let params =
-                MeshParams { first_instance, clusters: *clusters, object, last, first_slot, partners };
-            staged.uniform(&geometry.params, &params)?;
+        if let Some(to) = drawable.object() {
+            let (first_instance, first_slot) = (chunk.range.first, chunk.slots.start as u32);
+            staged.uniform(to, &SceneObject { first_instance, number, first_slot })?;
+        }
+        if let Drawable::Mesh(mesh) = drawable {
+            staged.uniform(&mesh.geometry.params, &mesh.params())?;
         }
     }
     Ok(())

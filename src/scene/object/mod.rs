@@ -13,6 +13,7 @@ use crate::scene::character::Character;
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
 use crate::scene::instances::Instances;
+use crate::scene::kind::{Kind, OwnKind};
 use crate::scene::layout::error_vectors;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
@@ -36,7 +37,7 @@ const MAX_CAPACITY: usize = 1 << 20;
 /// An object of a scene.
 #[derive(Debug)]
 pub(crate) struct Object {
-    pub(super) kind: Kind,
+    pub(super) kind: ObjectKind,
     pub(super) instances: Instances,
     /// A sphere around an instance that moves no bone.
     pub(super) sphere: BoundingSphere,
@@ -93,19 +94,21 @@ impl MeshOnHost {
 
 /// What an object is.
 #[derive(Debug)]
-pub(super) enum Kind {
+pub(super) enum ObjectKind {
     Terrain(Box<Terrain>),
     Mesh(MeshOnHost),
     Character(Box<Character>),
+    /// Of a kind of the caller's.
+    Own(Box<OwnKind>),
 }
 
-impl Kind {
+impl ObjectKind {
     /// The character, if it is one.
     pub fn character(&self) -> Option<&Character> {
         if let Self::Character(character) = self { Some(character) } else { None }
     }
 
-    /// As [`Kind::character`], to be changed.
+    /// As [`ObjectKind::character`], to be changed.
     pub fn character_mut(&mut self) -> Option<&mut Character> {
         if let Self::Character(character) = self { Some(character) } else { None }
     }
@@ -114,7 +117,7 @@ impl Kind {
 impl Object {
     /// An object that is shown.
     pub(super) fn new(
-        kind: Kind,
+        kind: ObjectKind,
         (instances, sphere): (Instances, BoundingSphere),
         (errors, mesh_fraction): (Vec<f32>, f32),
         (chunks, draws): (Vec<Chunk>, Vec<SceneDraw>),
@@ -147,7 +150,7 @@ impl Object {
     ) -> Result<Self, Error> {
         let (terrain, instances, drawn) = terrain::made(gpu, layouts, source).await?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
-        Ok(Self::new(Kind::Terrain(Box::new(terrain)), (instances, sphere), (vec![0.0], 1.0), drawn))
+        Ok(Self::new(ObjectKind::Terrain(Box::new(terrain)), (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
     /// A model's meshes at rest.
@@ -163,7 +166,7 @@ impl Object {
         looks.check_all()?;
         let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
         let errors = mesh::errors(&merged);
-        let kind = Kind::Mesh(MeshOnHost::Model(Box::new(merged)));
+        let kind = ObjectKind::Mesh(MeshOnHost::Model(Box::new(merged)));
         let object = Self::new(kind, (instances, sphere), (errors, 1.0), drawn);
         Ok(Self { looks: Some(looks), ..object })
     }
@@ -178,8 +181,22 @@ impl Object {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
         let drawn = whole(&instances, drawn);
-        let kind = Kind::Mesh(MeshOnHost::Relief(Box::new(relief.clone())));
+        let kind = ObjectKind::Mesh(MeshOnHost::Relief(Box::new(relief.clone())));
         Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
+    }
+
+    /// An object of a kind of the caller's.
+    pub(super) fn own(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        kind: Box<dyn Kind>,
+        capacity: usize,
+    ) -> Result<Self, Error> {
+        let instances = room(capacity)?;
+        let own = OwnKind::new(kind)?;
+        let drawn = whole(&instances, own.drawn(gpu, layouts)?);
+        let (sphere, errors) = (own.kind.bounding_sphere(), own.kind.errors().to_vec());
+        Ok(Self::new(ObjectKind::Own(Box::new(own)), (instances, sphere), (errors, 1.0), drawn))
     }
 
     /// A model that has clips.
@@ -198,7 +215,7 @@ impl Object {
         let first = character.drawables(gpu, layouts, &looks)?;
         let drawn = (character.chunks(gpu, layouts, &first)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
-        let kind = Kind::Character(Box::new(character));
+        let kind = ObjectKind::Character(Box::new(character));
         let object = Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn);
         Ok(Self { looks: Some(looks), ..object })
     }
@@ -211,8 +228,10 @@ impl Object {
     /// What views need to know of a terrain.
     pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
         match &self.kind {
-            Kind::Terrain(terrain) => Some(SeenTerrain { spacing: terrain.spacing, object: self.handle }),
-            Kind::Mesh(_) | Kind::Character(_) => None,
+            ObjectKind::Terrain(terrain) => {
+                Some(SeenTerrain { spacing: terrain.spacing, object: self.handle })
+            }
+            ObjectKind::Mesh(_) | ObjectKind::Character(_) | ObjectKind::Own(_) => None,
         }
     }
 
@@ -239,10 +258,10 @@ impl Object {
 
     /// The largest number of its draws in a view and a layer.
     pub(super) fn draws(&self) -> usize {
-        let parts: usize = self.drawables().map(Drawable::parts).sum();
+        let parts: usize = self.drawables().map(Drawable::part_count).sum();
         match self.kind {
-            Kind::Terrain(_) => parts,
-            Kind::Mesh(_) | Kind::Character(_) => {
+            ObjectKind::Terrain(_) => parts,
+            ObjectKind::Mesh(_) | ObjectKind::Character(_) | ObjectKind::Own(_) => {
                 let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
                 sides * parts * self.errors.len()
             }

@@ -17,7 +17,7 @@ impl Object {
         for drawable in self.chunks.iter_mut().flat_map(|chunk| &mut chunk.drawables) {
             if let Drawable::Mesh(mesh) = drawable {
                 let own = morphs && mesh.geometry.partners > 0;
-                mesh.parts.iter_mut().for_each(|part| part.surface.morphed = own);
+                mesh.parts.iter_mut().for_each(|part| part.set_morphed(own));
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::lod::attach::{AttachBuffers, AttachPass};
 use crate::scene::attach::Attachments;
 use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
-use crate::scene::object::{Kind, Object};
+use crate::scene::object::{Object, ObjectKind};
 
 /// The jobs that place attached meshes, one for each character that carries any.
 #[derive(Debug, Default)]
@@ -33,7 +33,7 @@ impl View {
         let mut jobs = Vec::new();
         for ((object, chunk), list) in attachments.lists() {
             let Some(object) = objects.get(object) else { continue };
-            let Kind::Character(character) = &object.kind else { continue };
+            let ObjectKind::Character(character) = &object.kind else { continue };
             let Some(model_matrices) = character.matrices(chunk) else { continue };
             let buffers = AttachBuffers {
                 view: &self.select,

@@ -7,23 +7,25 @@ use super::mesh::{mesh, painted, placements};
 use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, renderer, view};
 use crate::Error;
 use crate::asset::material::Alpha;
-use crate::render::renderer::pipelines::{Kind, PipelineKey};
+use crate::render::renderer::pipelines::PipelineKey;
 use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
 use crate::scene::TerrainStyle;
-use crate::scene::drawable::SurfaceKind;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::specialization::{PartState, Program, Specialization};
 use crate::surface::{Green, Method, ReliefOptions, Shadow};
 
-/// Kinds that take every entry point and both values of every flag.
-fn kinds() -> Vec<Kind> {
+/// Parts that take every entry point and both values of every flag. Reliefs have a method.
+fn parts() -> Vec<(Option<Method>, Specialization)> {
     let flags = || [false, true].into_iter();
-    let surfaces = flags().flat_map(|cut_out| {
-        flags().map(move |double_sided| SurfaceKind { cut_out, blended: false, morphed: false, double_sided })
+    let states = flags().flat_map(|cut_out| {
+        flags().map(move |double_sided| PartState { cut_out, double_sided, ..PartState::default() })
     });
-    let meshes = surfaces.flat_map(|surface| {
-        let mesh = move |normal_mapped, textured| Kind::Mesh { surface, normal_mapped, textured };
-        flags().flat_map(move |textured| flags().map(move |normal_mapped| mesh(normal_mapped, textured)))
+    let meshes = states.flat_map(|state| {
+        let mesh = move |textured, normal_mapped| {
+            (None, Specialization::mesh(state, textured, normal_mapped, false))
+        };
+        flags().flat_map(move |textured| flags().map(move |normal_mapped| mesh(textured, normal_mapped)))
     });
     let reliefs = Method::ALL.into_iter().flat_map(|method| {
         [
@@ -31,13 +33,13 @@ fn kinds() -> Vec<Kind> {
             (Shadow::Hard, Some(Green::Up), true),
             (Shadow::Soft, Some(Green::Down), true),
         ]
-        .map(|(shadow, normal_map, set)| Kind::Relief {
-            double_sided: set,
-            options: ReliefOptions { method, shadow, normal_map, silhouette: set, depth: set, mip: set },
+        .map(|(shadow, normal_map, set)| {
+            let options = ReliefOptions { method, shadow, normal_map, silhouette: set, depth: set, mip: set };
+            (Some(method), Specialization::relief(&options, set))
         })
     });
     let styles = [TerrainStyle::Textured, TerrainStyle::Wireframe];
-    meshes.chain(reliefs).chain(styles.map(|style| Kind::Terrain { style })).collect()
+    meshes.chain(reliefs).chain(styles.map(|style| (None, Specialization::terrain(style)))).collect()
 }
 
 fn formats() -> Vec<TargetFormat> {
@@ -69,17 +71,16 @@ fn every_kind_of_pipeline_compiles_for_every_format() {
     for format in formats() {
         let renderer = Renderer::new(&gpu, &format).expect("a format");
         for layer in format.layers() {
-            // All methods on one format are enough.
-            let kinds = kinds().into_iter().filter(|kind| match kind {
-                // Only meshes are ever blended.
-                Kind::Relief { .. } | Kind::Terrain { .. } if layer == Layer::Transparent => false,
-                Kind::Relief { options, .. } => format.samples == 4 || options.method == Method::Quadtree,
-                _ => true,
+            // All methods on one format are enough. Only meshes are ever blended.
+            let parts = parts().into_iter().filter(|(method, part)| match layer {
+                Layer::Transparent => *part.program() == Program::Mesh,
+                _ => method.is_none_or(|method| format.samples == 4 || method == Method::Quadtree),
             });
-            for kind in kinds {
-                let key = PipelineKey::new(layer, kind, true);
-                for key in [key, key.shadowed(true)] {
-                    let pipeline = key.pipeline(&gpu, &format, &renderer.layouts, None);
+            for (_, part) in parts {
+                let key = PipelineKey::new(layer, &part, true);
+                for key in [key.clone(), key.shadowed(true)] {
+                    let source = key.source(&format, false);
+                    let pipeline = source.compiled(&gpu, &format, &renderer.layouts, None);
                     assert!(pipeline.is_ok(), "{format:?} {key:?}: {:?}", pipeline.err());
                 }
             }

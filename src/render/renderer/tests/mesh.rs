@@ -12,9 +12,10 @@ use crate::picture::texture::Surface;
 use crate::picture::{self, Part};
 use crate::render::{Layer, TargetFormat};
 use crate::samples::creature::creature;
-use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::drawable::{Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
+use crate::shared::render::scene_instances::SceneObject;
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::skin::reference::transformed;
@@ -45,19 +46,15 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
     model
 }
 
+/// The object of a stage.
+pub const OBJECT: SceneObject = SceneObject { first_instance: 64, number: 1, first_slot: 0 };
+
 /// The model's first mesh, whose instances have vertices of their own in pages, which lie in reverse order.
 pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (Drawable, u32) {
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];
     let count = buffers.clusters();
-    let params = MeshParams {
-        first_instance: 64,
-        clusters: count as u32,
-        object: 1,
-        last: 0,
-        first_slot: 0,
-        partners: 0,
-    };
+    let params = MeshParams { clusters: count as u32, last: 0, partners: 0 };
     let mut pages = clusters.vertices.clone();
     pages.resize(64 * count, Vertex::default());
     let pages: Vec<Vertex> = pages.chunks(64).rev().flatten().copied().collect();
@@ -66,6 +63,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
         .flat_map(|instance| row.iter().map(move |page| page + (instance * count) as u32))
         .collect();
     let geometry = MeshGeometry {
+        object: Uniform::new(gpu, "object", &OBJECT).expect("uploaded"),
         params: Uniform::new(gpu, "mesh", &params).expect("uploaded"),
         vertices: Buffer::from_slice(gpu, "vertices", &pages.repeat(instances)).expect("uploaded"),
         last: 0,
@@ -84,16 +82,9 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
         Default::default(),
     )
     .expect("uploaded");
-    let cut_out = material.alpha != Alpha::Opaque;
-    let part = MeshPart {
-        surface: SurfaceKind {
-            cut_out,
-            blended: false,
-            double_sided: model.meshes[0].double_sided,
-            morphed: false,
-        },
-        materials: MeshMaterials::Plain(table),
-    };
+    assert_eq!(table.cut_out, material.alpha != Alpha::Opaque);
+    let faces = Faces { blended: false, double_sided: model.meshes[0].double_sided };
+    let part = MeshPart::new(faces, MeshMaterials::Plain(table));
     let drawable = MeshDrawable::new(gpu, layouts, geometry, params.clusters, vec![part]).expect("bound");
     (Drawable::Mesh(drawable), buffers.level(0).indices)
 }

@@ -2,13 +2,14 @@
 
 use glam::{Mat4, Vec3};
 
+use super::mesh::OBJECT;
 use super::stage::{FORMAT, Stage, differing, drawn, gpu, through, view};
 use crate::asset::Light;
 use crate::asset::transform::{AFFINE_IDENTITY, rows};
 use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::render::{Layer, TargetFormat};
 use crate::samples::maps::BuiltInMap;
-use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::drawable::{Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{ReliefLook, ReliefMaterial};
 use crate::shared::render::scene_vertex::MeshParams;
@@ -87,11 +88,11 @@ fn mesh_of(
         color: [1.0; 3],
     };
     let up = "uploaded";
-    let params =
-        MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0, partners: 0 };
+    let params = MeshParams { clusters: 0, last: 0, partners: 0 };
     let uv: Vec<_> = square.vertices.iter().map(|vertex| vertex.uv).collect();
     let vertices: Vec<_> = square.vertices.iter().map(vertex).collect();
     let geometry = MeshGeometry {
+        object: Uniform::new(gpu, "object", &OBJECT).expect(up),
         params: Uniform::new(gpu, "mesh", &params).expect(up),
         vertices: Buffer::from_slice(gpu, "vertices", &vertices).expect(up),
         last: 0,
@@ -102,10 +103,7 @@ fn mesh_of(
         indices: Buffer::from_slice(gpu, "indices", &square.indices).expect(up),
     };
     let relief = ReliefMaterial::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
-    let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, blended: false, double_sided: true, morphed: false },
-        materials: MeshMaterials::Relief(relief),
-    };
+    let part = MeshPart::new(Faces { blended: false, double_sided: true }, MeshMaterials::Relief(relief));
     Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))
 }
 

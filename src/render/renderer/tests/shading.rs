@@ -4,6 +4,7 @@
 use glam::{Mat4, Vec3, Vec4};
 use image::{Rgba, RgbaImage};
 
+use super::mesh::OBJECT;
 use super::stage::{FORMAT, SIZE, Stage, drawn, gpu, through};
 use crate::asset::Model;
 use crate::asset::material::{Alpha, Material, Sampling, Texture};
@@ -12,7 +13,7 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::render::Layer;
 use crate::render::TargetFormat;
 use crate::samples::creature::creature;
-use crate::scene::drawable::{Drawable, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, SurfaceKind};
+use crate::scene::drawable::{Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::shared::render::scene_vertex::MeshParams;
@@ -60,12 +61,8 @@ fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided:
     };
     let up = "uploaded";
     let geometry = MeshGeometry {
-        params: Uniform::new(
-            gpu,
-            "mesh",
-            &MeshParams { first_instance: 64, clusters: 0, object: 1, last: 0, first_slot: 0, partners: 0 },
-        )
-        .expect(up),
+        object: Uniform::new(gpu, "object", &OBJECT).expect(up),
+        params: Uniform::new(gpu, "mesh", &MeshParams { clusters: 0, last: 0, partners: 0 }).expect(up),
         last: 0,
         page_table: Buffer::from_slice(gpu, "no pages", &[0]).expect(up),
         vertices: Buffer::from_slice(gpu, "vertices", &corners.map(vertex)).expect(up),
@@ -75,12 +72,9 @@ fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided:
         indices: Buffer::from_slice(gpu, "indices", &[0, 2, 1, 1, 2, 3]).expect(up),
     };
     let table = [Some(0), Some(1)];
-    let part = MeshPart {
-        surface: SurfaceKind { cut_out: false, blended: false, double_sided, morphed: false },
-        materials: MeshMaterials::Plain(
-            PartMaterials::new(gpu, layouts, &Looks::taken(model), &table, Default::default()).expect(up),
-        ),
-    };
+    let materials =
+        PartMaterials::new(gpu, layouts, &Looks::taken(model), &table, Default::default()).expect(up);
+    let part = MeshPart::new(Faces { blended: false, double_sided }, MeshMaterials::Plain(materials));
     Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))
 }
 

@@ -1,0 +1,107 @@
+//! WGSL of the caller's, which stands in front of the crate's, so that every message about it has the caller's own lines.
+//!
+//! The crate's names begin with [`PREFIX`] there; only `Surface` and `View` do not.
+
+use naga::front::wgsl::{ParseError, parse_str};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{Module, Span};
+
+use crate::InputError;
+
+/// What the crate's names begin with beside the caller's text.
+pub(crate) const PREFIX: &str = "relievo_";
+
+/// The caller's text, and the one that is parsed, which begins with it.
+pub(crate) struct CallerText<'a> {
+    /// What the paths of errors begin with.
+    pub path: &'a str,
+    pub source: &'a str,
+    pub text: &'a str,
+}
+
+impl CallerText<'_> {
+    /// Parses the text.
+    ///
+    /// # Errors
+    /// [`InputError`] whose path is `PATH:LINE:COLUMN`, both counted from 1.
+    pub fn parsed(&self) -> Result<Module, InputError> {
+        let place = |error: &ParseError| -> Vec<Span> { error.labels().map(|(span, _)| span).collect() };
+        parse_str(self.text)
+            .map_err(|error| self.refused(place(&error).into_iter(), error.message().to_owned()))
+    }
+
+    /// Validates the module of the text.
+    ///
+    /// # Errors
+    /// As [`CallerText::parsed`].
+    pub fn validated(&self, module: &Module) -> Result<ModuleInfo, InputError> {
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+        validator.validate(module).map_err(|error| {
+            // A function, and in it the place: the shortest is the most exact.
+            let mut spans: Vec<Span> = error.spans().map(|(span, _)| *span).collect();
+            spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
+            self.refused(spans.into_iter(), chain(error.as_inner()))
+        })
+    }
+
+    /// The error at the first of these places that lies in the caller's text, else at its end.
+    pub fn refused(&self, spans: impl Iterator<Item = Span>, bound: String) -> InputError {
+        let mut ranges = spans.filter_map(Span::to_range);
+        let range = ranges.find(|range| range.start < self.source.len());
+        let range = range.unwrap_or(self.source.len()..self.source.len());
+        let before = &self.text[..range.start];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |text| text.chars().count()) + 1;
+        let quoted = self.text[range.start..range.end.min(self.source.len())].lines().next();
+        let value: String = quoted.unwrap_or_default().chars().take(60).collect();
+        InputError::new(format!("{}:{line}:{column}", self.path), value, bound)
+    }
+
+    /// Names with the crate's prefix are the crate's. naga drops constants and aliases that nothing uses, so this reads the text.
+    pub fn check_names(&self) -> Result<(), InputError> {
+        let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
+        let code = without_comments(self.source);
+        let begins = |(at, _): &(usize, &str)| !code[..*at].ends_with(is_part);
+        let Some((at, _)) = code.match_indices(PREFIX).find(begins) else { return Ok(()) };
+        let length = code[at..].find(|letter| !is_part(letter)).unwrap_or(code.len() - at);
+        let span = Span::new(at as u32, (at + length) as u32);
+        Err(self.refused([span].into_iter(), OURS.to_owned()))
+    }
+}
+
+const OURS: &str = "must not begin with `relievo_`, as the crate's own names do";
+
+/// An error with its causes.
+fn chain(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(Some(error), |error| error.source());
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
+}
+
+/// A valid text with spaces in the place of its comments: each byte stays where it is.
+pub(crate) fn without_comments(source: &str) -> String {
+    let (mut code, mut rest) = (String::with_capacity(source.len()), source);
+    while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
+        let (before, comment) = rest.split_at(at);
+        let length = match comment.starts_with("//") {
+            true => comment.find('\n').unwrap_or(comment.len()),
+            false => block_comment(comment),
+        };
+        code.push_str(before);
+        code.extend(std::iter::repeat_n(' ', length));
+        rest = &comment[length..];
+    }
+    code + rest
+}
+
+/// The length of the block comment with which a text begins. Such comments nest.
+fn block_comment(text: &str) -> usize {
+    let (mut depth, mut at) = (0, 0);
+    while let Some(mark) = text[at..].find("/*").into_iter().chain(text[at..].find("*/")).min() {
+        depth += if text[at + mark..].starts_with("/*") { 1 } else { -1 };
+        at += mark + 2;
+        if depth == 0 {
+            return at;
+        }
+    }
+    text.len()
+}

@@ -1,0 +1,226 @@
+//! What the pipelines of a part are compiled from.
+
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
+use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN};
+use crate::scene::kind::KindProgram;
+use crate::scene::options::TerrainStyle;
+use crate::surface::{Green, ReliefOptions, Shadow};
+
+/// The shader of a kind of object.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) enum Program {
+    Mesh,
+    Relief,
+    Terrain,
+    /// Of a kind of the caller's.
+    Own(KindProgram),
+}
+
+impl Program {
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Mesh => RENDER_SCENE_MESH.name,
+            Self::Relief => RENDER_SCENE_RELIEF.name,
+            Self::Terrain => RENDER_SCENE_TERRAIN.name,
+            Self::Own(program) => program.name(),
+        }
+    }
+
+    /// The WGSL, which ends with the function `shade`.
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Mesh => RENDER_SCENE_MESH.source,
+            Self::Relief => RENDER_SCENE_RELIEF.source,
+            Self::Terrain => RENDER_SCENE_TERRAIN.source,
+            Self::Own(program) => program.text(),
+        }
+    }
+}
+
+/// What a part needs of its pipelines besides the shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(crate) struct PartState {
+    /// Whether alpha decides which pixels are drawn (masked or dithered).
+    pub cut_out: bool,
+    /// Whether it is blended with what is behind it, in a layer of its own.
+    pub blended: bool,
+    /// Whether both sides of triangles are seen.
+    pub double_sided: bool,
+    /// Where it writes the depth of the surface and not that of the triangles.
+    pub own_depth: OwnDepth,
+}
+
+/// The layers in which a part writes the depth of the surface and not that of the triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(crate) enum OwnDepth {
+    #[default]
+    Never,
+    /// In the layer of depth alone.
+    Depth,
+    Always,
+}
+
+/// For which layers constants are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shown {
+    /// Lit surfaces.
+    Lit,
+    /// Surfaces before they are lit.
+    Surface,
+    /// Places, and what is cut out, alone.
+    Place,
+}
+
+/// Names and values of override constants.
+type Constants = Vec<(&'static str, f64)>;
+
+/// What the pipelines of a part are compiled from: equal ones share pipelines.
+#[derive(Debug, Clone)]
+pub(crate) struct Specialization(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    program: Program,
+    state: PartState,
+    /// For each of [`Shown`].
+    constants: [Constants; 3],
+    hash: u64,
+}
+
+impl Inner {
+    fn bits(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        self.constants.iter().flatten().map(|(name, value)| (*name, value.to_bits()))
+    }
+}
+
+impl PartialEq for Specialization {
+    fn eq(&self, other: &Self) -> bool {
+        let (a, b) = (&*self.0, &*other.0);
+        std::ptr::eq(a, b)
+            || (a.hash == b.hash && a.program == b.program && a.state == b.state && a.bits().eq(b.bits()))
+    }
+}
+
+impl Eq for Specialization {}
+
+impl Hash for Specialization {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        state.write_u64(self.0.hash);
+    }
+}
+
+impl Specialization {
+    fn new(program: Program, state: PartState, constants: [Constants; 3]) -> Self {
+        let mut inner = Inner { program, state, constants, hash: 0 };
+        let mut hasher = std::hash::DefaultHasher::new();
+        (&inner.program, inner.state).hash(&mut hasher);
+        inner.bits().for_each(|bits| bits.hash(&mut hasher));
+        inner.hash = hasher.finish();
+        Self(Arc::new(inner))
+    }
+
+    /// Of a mesh with materials, of which one has a texture or a normal map.
+    pub fn mesh(state: PartState, textured: bool, normal_mapped: bool, morphed: bool) -> Self {
+        let PartState { double_sided, cut_out, .. } = state;
+        let full = scene_mesh::Constants { double_sided, textured, normal_mapped, morphed, shadowed: false };
+        let place = scene_mesh::Constants { textured: textured && cut_out, normal_mapped: false, ..full };
+        Self::new(Program::Mesh, state, [full, full, place].map(|constants| constants.list()))
+    }
+
+    /// Of a mesh with relief.
+    pub fn relief(options: &ReliefOptions, double_sided: bool) -> Self {
+        let own_depth = if options.depth { OwnDepth::Always } else { OwnDepth::Depth };
+        let state = PartState { cut_out: options.silhouette, blended: false, double_sided, own_depth };
+        let full = scene_relief::Constants {
+            method: options.method.code(),
+            shadow: options.shadow as u32,
+            normal_map: options.normal_map.is_some(),
+            green_up: options.normal_map == Some(Green::Up),
+            silhouette: options.silhouette,
+            choose_mip: options.chooses_mip(),
+            // The renderer sets these.
+            own_depth: false,
+            reversed: false,
+            shadowed: false,
+            // Reliefs have one level of detail.
+            morphed: false,
+        };
+        let surface = scene_relief::Constants { shadow: Shadow::None as u32, ..full };
+        let place = scene_relief::Constants { normal_map: false, green_up: false, ..surface };
+        Self::new(Program::Relief, state, [full, surface, place].map(|constants| constants.list()))
+    }
+
+    /// Of patches of terrain, which are seen from both sides.
+    pub fn terrain(style: TerrainStyle) -> Self {
+        let wireframe = |wireframe| scene_terrain::Constants { wireframe, shadowed: false }.list();
+        let state = PartState { double_sided: true, ..PartState::default() };
+        let full = wireframe(style == TerrainStyle::Wireframe);
+        Self::new(Program::Terrain, state, [full, wireframe(false), wireframe(false)])
+    }
+
+    /// Of a kind of the caller's.
+    pub fn own(program: &KindProgram, state: PartState) -> Self {
+        // Every text of a caller's has them.
+        let constants = [SHADOWED, OWN_DEPTH, REVERSED].map(|name| (name, 0.0)).to_vec();
+        Self::new(Program::Own(program.clone()), state, std::array::from_fn(|_| constants.clone()))
+    }
+
+    pub fn program(&self) -> &Program {
+        &self.0.program
+    }
+
+    pub fn state(&self) -> PartState {
+        self.0.state
+    }
+
+    /// The constants for some layers, with those that the renderer sets: whether surfaces are looked up in the map of a sun's
+    /// shadow, and whether depth falls with distance.
+    pub fn constants(&self, shown: Shown, shadowed: bool, reversed: bool) -> Constants {
+        let set = [
+            (SHADOWED, shadowed),
+            (OWN_DEPTH, self.0.state.own_depth == OwnDepth::Always),
+            (REVERSED, reversed),
+        ];
+        let value = |(name, value): &(&'static str, f64)| {
+            let set = set.iter().find(|(known, _)| known == name);
+            (*name, set.map_or(*value, |(_, set)| f64::from(u8::from(*set))))
+        };
+        self.0.constants[shown as usize].iter().map(value).collect()
+    }
+}
+
+/// The constants that the renderer sets.
+const SHADOWED: &str = "relievo_SHADOWED";
+const OWN_DEPTH: &str = "relievo_OWN_DEPTH";
+const REVERSED: &str = "relievo_REVERSED";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_ones_are_equal_and_others_differ() {
+        let mesh = |double_sided, textured| {
+            Specialization::mesh(PartState { double_sided, ..PartState::default() }, textured, false, false)
+        };
+        assert_eq!(mesh(true, true), mesh(true, true));
+        assert_ne!(mesh(true, true), mesh(true, false));
+        assert_ne!(mesh(true, true), mesh(false, true));
+        assert_ne!(mesh(true, false), Specialization::terrain(TerrainStyle::Textured));
+    }
+
+    #[test]
+    fn the_renderers_constants_are_set_where_the_shader_has_them() {
+        let relief =
+            Specialization::relief(&ReliefOptions { depth: true, ..ReliefOptions::default() }, false);
+        let found = relief.constants(Shown::Lit, true, true);
+        for name in [SHADOWED, OWN_DEPTH, REVERSED] {
+            assert!(found.contains(&(name, 1.0)), "{name} in {found:?}");
+        }
+        let terrain = Specialization::terrain(TerrainStyle::Wireframe).constants(Shown::Place, false, true);
+        assert_eq!(terrain, [("relievo_WIREFRAME", 0.0), (SHADOWED, 0.0)]);
+    }
+}
