@@ -71,16 +71,15 @@ impl OutputText<'_> {
         format!("{}{rest}Targets", first.to_uppercase())
     }
 
-    /// The members of that struct: name, and the line that declares it.
+    /// The members of that struct: name, and declaration.
     fn members(&self) -> Vec<(&str, &str)> {
         let head = format!("struct {} {{", self.targets());
-        let body = self
-            .text
-            .split_once(&head)
-            .and_then(|(_, rest)| rest.split_once('}'))
-            .map_or("", |(body, _)| body);
-        let lines = body.lines().map(str::trim).filter(|line| line.starts_with("@location"));
-        lines.filter_map(|line| Some((line.split_once(':')?.0.rsplit(' ').next()?, line))).collect()
+        let (_, rest) = self.text.split_once(&head).expect("an output declares its targets");
+        let body = rest.split_once('}').map_or(rest, |(body, _)| body);
+        let declared = body.split(',').filter_map(|text| Some(text[text.find('@')?..].trim_end()));
+        let named =
+            declared.filter_map(|text| Some((text.split_once(':')?.0.split_whitespace().last()?, text)));
+        named.collect()
     }
 }
 
@@ -150,7 +149,7 @@ fn depth() {{}}
 "
     )
     .expect("a string");
-    if kind.discards && !kind.deep {
+    if kind.discards {
         let seen = seen(name, false);
         write!(text, "@fragment\nfn depth_cut({ARGUMENTS}) {{\n{seen}{DISCARD}}}\n\n").expect("a string");
     }
@@ -189,7 +188,7 @@ fn fragment(kind: &KindText<'_>, output: &OutputText<'_>, discards: bool, deep: 
         );
     }
     let members = output.members();
-    let declared: String = members.iter().map(|(_, line)| format!("    {line}\n")).collect();
+    let declared: String = members.iter().map(|(_, member)| format!("    {member},\n")).collect();
     let values: String = members.iter().map(|(member, _)| format!("targets.{member}, ")).collect();
     let structure = if discards { "Cut" } else { "" };
     format!(

@@ -2,13 +2,13 @@
 //!
 //! It stands in front of the crate's text ([`CallerText`]).
 
-use naga::{Block, Function, GlobalVariable, Handle, Module, Span, Statement, Type, TypeInner};
+use naga::{Function, GlobalVariable, Handle, Module, Span, Type, TypeInner};
 
 use crate::gpu::shaders::RENDER_SCENE_MESH;
 use crate::gpu::{Gpu, GpuError};
 use crate::render::format::TargetFormat;
 use crate::render::layer::Layer;
-use crate::scene::caller_text::CallerText;
+use crate::scene::caller_text::{CallerText, discard_in};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::Program;
 use crate::{Error, InputError};
@@ -198,16 +198,4 @@ fn refused_variable(variable: &GlobalVariable, has_layout: bool) -> Option<&'sta
         (true, false) => Some("must not be bound: no layout of bind group 3 was given"),
         (false, _) => Some("must be in bind group 3: groups 0 to 2 are the crate's"),
     }
-}
-
-/// Where a block discards.
-fn discard_in(block: &Block) -> Option<Span> {
-    block.span_iter().find_map(|(statement, span)| match statement {
-        Statement::Kill => Some(*span),
-        Statement::Block(block) => discard_in(block),
-        Statement::If { accept, reject, .. } => discard_in(accept).or_else(|| discard_in(reject)),
-        Statement::Switch { cases, .. } => cases.iter().find_map(|case| discard_in(&case.body)),
-        Statement::Loop { body, continuing, .. } => discard_in(body).or_else(|| discard_in(continuing)),
-        _ => None,
-    })
 }

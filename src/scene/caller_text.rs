@@ -4,7 +4,7 @@
 
 use naga::front::wgsl::{ParseError, parse_str};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{Module, Span};
+use naga::{Block, Module, Span, Statement};
 
 use crate::InputError;
 
@@ -104,4 +104,16 @@ fn block_comment(text: &str) -> usize {
         }
     }
     text.len()
+}
+
+/// Where a block discards.
+pub(crate) fn discard_in(block: &Block) -> Option<Span> {
+    block.span_iter().find_map(|(statement, span)| match statement {
+        Statement::Kill => Some(*span),
+        Statement::Block(block) => discard_in(block),
+        Statement::If { accept, reject, .. } => discard_in(accept).or_else(|| discard_in(reject)),
+        Statement::Switch { cases, .. } => cases.iter().find_map(|case| discard_in(&case.body)),
+        Statement::Loop { body, continuing, .. } => discard_in(body).or_else(|| discard_in(continuing)),
+        _ => None,
+    })
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
 use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN};
-use crate::scene::kind::KindProgram;
 use crate::scene::options::TerrainStyle;
+use crate::scene::program::KindProgram;
 use crate::surface::{Green, ReliefOptions, Shadow};
 
 /// The shader of a kind of object.

@@ -14,6 +14,7 @@ mod health;
 mod host;
 #[path = "../skinning/hull.rs"]
 mod hull;
+mod kinds;
 mod layers;
 mod levels;
 mod life;

@@ -3,15 +3,7 @@
 //! A kind is a type that implements [`Kind`] and one WGSL text ([`KindProgram`]). The scene selects its instances as it selects
 //! all others (views, culling, levels of detail, masks), and renderers draw it in every layer. `examples/kind/` is one.
 
-// Both are build.rs's, which uses more of them.
-#[allow(dead_code)]
-#[path = "../../../build/entries.rs"]
-mod entries;
 mod own;
-#[allow(dead_code)]
-#[path = "../../../build/prefix.rs"]
-mod prefix;
-mod program;
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -21,9 +13,9 @@ use glam::DVec3;
 use crate::Error;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::mesh::ray::distance_to;
+pub use crate::scene::program::KindProgram;
 use crate::skinning::bounding_sphere::BoundingSphere;
 pub(in crate::scene) use own::OwnKind;
-pub use program::KindProgram;
 
 /// A kind of object: what the instances of one object share, on the host and on the device.
 ///

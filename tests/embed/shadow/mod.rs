@@ -1,7 +1,7 @@
 //! The shadow of the sun: what the host's rays say, for each kind of surface, near the origin and far from it; the same
 //! texels under a moving camera; and pictures without a shadow as before.
 
-mod occluders;
+pub mod occluders;
 mod panes;
 mod stage;
 

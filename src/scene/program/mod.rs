@@ -1,22 +1,30 @@
 //! The shader of a kind of object, from the caller's text.
 
+// Both are build.rs's, which uses more of them.
+#[allow(dead_code)]
+#[path = "../../../build/entries.rs"]
+mod entries;
+#[allow(dead_code)]
+#[path = "../../../build/prefix.rs"]
+mod prefix;
+
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use naga::valid::ModuleInfo;
 use naga::{AddressSpace, Handle, ImageClass, Module, ScalarKind, Span, StorageAccess, TypeInner};
 
-use super::entries::{KindText, composed};
-use super::prefix::declarations;
 use crate::InputError;
 use crate::gpu::Gpu;
 use crate::gpu::shaders::SCENE_CORE;
-use crate::scene::caller_text::{CallerText, PREFIX, without_comments};
+use crate::scene::caller_text::{CallerText, PREFIX, discard_in, without_comments};
+use entries::{KindText, composed};
+use prefix::declarations;
 
 /// The bind group of a kind's own resources.
 const GROUP: u32 = 2;
 
-/// The shader of a [`Kind`](super::Kind): the caller's WGSL, checked, with entry points for every layer.
+/// The shader of a [`Kind`](crate::scene::kind::Kind): the caller's WGSL, checked, with entry points for every layer.
 ///
 /// Clones share one shader, and with it the pipelines that renderers compile.
 #[derive(Debug, Clone)]
@@ -107,6 +115,7 @@ impl KindProgram {
         let in_own = |error: InputError| own.explained(name, error);
         let module = own.parsed().map_err(in_own)?;
         let info = own.validated(&module).map_err(in_own)?;
+        check(&own, &module)?;
         let entries = bound(&own, &module, &info)?;
         Ok(Self(Arc::new(Inner { name: name.to_owned(), text: text.clone(), entries })))
     }
@@ -129,7 +138,7 @@ impl KindProgram {
         })
     }
 
-    /// Bind group 2, from the resources of its bindings in any order, for a [`KindPart`](super::KindPart).
+    /// Bind group 2, from the resources of its bindings in any order, for a [`KindPart`](crate::scene::kind::KindPart).
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`] for a resource that does not fit.
@@ -179,6 +188,31 @@ impl CallerText<'_> {
         let bound = format!("{} (the functions {})", error.bound, forms.join(", "));
         InputError { value: "a function of another form".to_owned(), bound, ..error }
     }
+}
+
+/// What a valid text must not do here.
+fn check(own: &CallerText<'_>, module: &Module) -> Result<(), InputError> {
+    let is_own = |at: &Span| at.to_range().is_some_and(|range| range.start < own.source.len());
+    let refuse = |at: Span, bound: &str| Err(own.refused(std::iter::once(at), bound.to_owned()));
+    if let Some(entry) = module.entry_points.iter().find(|entry| !entry.name.starts_with(PREFIX)) {
+        let at = own.source.find(&entry.name).unwrap_or(0);
+        return refuse(span(&(at..at + entry.name.len())), "must not be an entry point: these are generated");
+    }
+    for (handle, _) in module.overrides.iter() {
+        let at = module.overrides.get_span(handle);
+        if is_own(&at) {
+            return refuse(at, "must not be an override constant");
+        }
+    }
+    for (handle, function) in module.functions.iter() {
+        if let Some(at) = discard_in(&function.body).filter(|_| is_own(&module.functions.get_span(handle))) {
+            return refuse(
+                at,
+                "must not discard: parts that are cut out leave out pixels (KindPart::cut_out)",
+            );
+        }
+    }
+    Ok(())
 }
 
 /// The entries of bind group 2: what the text binds, visible where it is used.
