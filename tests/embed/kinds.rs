@@ -569,3 +569,67 @@ fn kinds_outlive_a_device() {
         );
     }
 }
+
+/// What the documentation of [`Renderer::with_shading`] leaves a caller's shading of the default limits, it has in every kind;
+/// and not more.
+#[test]
+fn shading_has_what_the_kinds_leave_of_the_limits() {
+    let gpu = device();
+    // Storage buffers, uniform buffers, textures and samplers.
+    let left = [4, 8, 11, 13];
+    let refused = [[5, 8, 11, 13], [4, 9, 11, 13], [4, 8, 12, 13], [4, 8, 11, 14]];
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    for sample in &SAMPLES {
+        (sample.add)(&gpu, &mut scene);
+    }
+    let renderer = |counts: [u32; 4]| {
+        let (source, layout) = shading(&gpu, counts);
+        let renderer = Renderer::new(&gpu, &TargetFormat::new(relievo::wgpu::TextureFormat::Rgba8Unorm));
+        renderer.expect("a format").with_shading(&source, Some(&layout))
+    };
+    renderer(left).expect("within the limits").prepare(&scene).expect("compiled");
+    for counts in refused {
+        let error = renderer(counts).expect_err("beyond the limits").to_string();
+        assert!(error.starts_with("shading.layout"), "{counts:?}: {error}");
+    }
+}
+
+/// A shading that uses so many storage buffers, uniform buffers, textures and samplers, and its layout.
+fn shading(gpu: &Gpu, counts: [u32; 4]) -> (String, relievo::wgpu::BindGroupLayout) {
+    use relievo::wgpu;
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let classes = [
+        ("var<storage, read> s", "array<f32>", buffer(wgpu::BufferBindingType::Storage { read_only: true })),
+        ("var<uniform> u", "vec4<f32>", buffer(wgpu::BufferBindingType::Uniform)),
+        ("var t", "texture_2d<f32>", texture),
+        ("var f", "sampler", wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+    ];
+    let (mut text, mut entries) = (String::new(), Vec::new());
+    for ((declared, ty, layout), count) in classes.into_iter().zip(counts) {
+        for at in 0..count {
+            let binding = entries.len() as u32;
+            text += &format!("@group(3) @binding({binding}) {declared}{at}: {ty};\n");
+            let visibility = wgpu::ShaderStages::FRAGMENT;
+            entries.push(wgpu::BindGroupLayoutEntry { binding, visibility, ty: layout, count: None });
+        }
+    }
+    let [storage, uniforms, textures, samplers] = counts;
+    let used = (0..storage).map(|at| format!("s{at}[0]"));
+    let used = used.chain((0..uniforms).map(|at| format!("u{at}.x")));
+    let most = textures.max(samplers);
+    let used = used.chain((0..most).map(|at| {
+        let (texture, sampler) = (at.min(textures - 1), at.min(samplers - 1));
+        format!("textureSampleLevel(t{texture}, f{sampler}, surface.uv, 0.0).x")
+    }));
+    let sum = used.collect::<Vec<_>>().join(" + ");
+    text += &format!("fn shade(surface: Surface, view: View) -> vec4<f32> {{ return vec4<f32>({sum}); }}");
+    let layout = gpu
+        .device()
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    (text, layout)
+}

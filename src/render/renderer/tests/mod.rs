@@ -2,6 +2,7 @@
 
 mod formats;
 mod layers;
+mod limits;
 mod mesh;
 mod relief;
 mod shading;

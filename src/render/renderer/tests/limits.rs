@@ -1,0 +1,115 @@
+//! What every kind of object takes of WebGPU's default limits, in every entry point: as documented at
+//! [`Renderer::with_shading`](crate::render::Renderer::with_shading) and [`KindProgram::new`].
+
+use naga::front::wgsl::parse_str;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{AddressSpace, Binding, Module, ShaderStage, TypeInner};
+
+use crate::scene::kind::KindProgram;
+use crate::scene::specialization::Program;
+
+/// Bindings of a stage by class, and locations between the stages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+struct Taken {
+    storage: usize,
+    uniforms: usize,
+    textures: usize,
+    samplers: usize,
+    locations: usize,
+}
+
+impl Taken {
+    fn is_within(&self, most: &Self) -> bool {
+        let all =
+            |taken: &Self| [taken.storage, taken.uniforms, taken.textures, taken.samplers, taken.locations];
+        all(self).iter().zip(all(most)).all(|(taken, most)| *taken <= most)
+    }
+}
+
+/// What vertex and fragment stages may take: the rest is the caller's.
+const VERTEX: Taken = Taken { storage: 7, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
+const FRAGMENT: Taken = Taken { storage: 4, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
+
+/// A kind that binds nothing.
+const LEAST: &str = "
+    fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
+        return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
+    }
+    fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_surface(in); }";
+
+/// The number of locations of a type: those of its members, or one.
+fn locations(module: &Module, ty: naga::Handle<naga::Type>) -> usize {
+    match &module.types[ty].inner {
+        TypeInner::Struct { members, .. } => {
+            let is_location =
+                |member: &&naga::StructMember| matches!(member.binding, Some(Binding::Location { .. }));
+            members.iter().filter(is_location).count()
+        }
+        _ => 0,
+    }
+}
+
+/// What each entry point takes.
+fn taken(text: &str) -> Vec<(String, ShaderStage, Taken)> {
+    let module = parse_str(text).expect("WGSL");
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+    let info = validator.validate(&module).expect("valid");
+    let of_entry = |(index, entry): (usize, &naga::EntryPoint)| {
+        let mut taken = Taken::default();
+        for (handle, variable) in module.global_variables.iter() {
+            if variable.binding.is_none() || info.get_entry_point(index)[handle].is_empty() {
+                continue;
+            }
+            match (variable.space, &module.types[variable.ty].inner) {
+                (AddressSpace::Uniform, _) => taken.uniforms += 1,
+                (AddressSpace::Storage { .. }, _) => taken.storage += 1,
+                (_, TypeInner::Sampler { .. }) => taken.samplers += 1,
+                _ => taken.textures += 1,
+            }
+        }
+        taken.locations = match entry.stage {
+            ShaderStage::Vertex => {
+                entry.function.result.as_ref().map_or(0, |result| locations(&module, result.ty))
+            }
+            _ => entry.function.arguments.iter().map(|argument| locations(&module, argument.ty)).sum(),
+        };
+        (entry.name.clone(), entry.stage, taken)
+    };
+    module.entry_points.iter().enumerate().map(of_entry).collect()
+}
+
+#[test]
+fn every_kind_stays_within_its_part_of_the_limits_in_every_output() {
+    let own = Program::Own(KindProgram::new("least", LEAST).expect("valid"));
+    let mut largest = [Taken::default(); 2];
+    for program in [Program::Mesh, Program::Relief, Program::Terrain, own] {
+        let all = taken(program.text());
+        assert!(all.len() >= 8, "{}: {} entry points", program.name(), all.len());
+        for (entry, stage, taken) in all {
+            let is_fragment = stage == ShaderStage::Fragment;
+            let most = if is_fragment { FRAGMENT } else { VERTEX };
+            assert!(taken.is_within(&most), "{} {entry}: {taken:?}", program.name());
+            let Taken { storage, uniforms, textures, samplers, locations } =
+                &mut largest[usize::from(is_fragment)];
+            *storage = taken.storage.max(*storage);
+            *uniforms = taken.uniforms.max(*uniforms);
+            *textures = taken.textures.max(*textures);
+            *samplers = taken.samplers.max(*samplers);
+            *locations = taken.locations.max(*locations);
+        }
+    }
+    println!("vertex: {:?}, fragment: {:?}", largest[0], largest[1]);
+    // The caller has everything that the kinds do not take: what is stated is not more than is taken.
+    assert_eq!((largest[0].storage, largest[0].locations), (VERTEX.storage, VERTEX.locations));
+    assert_eq!((largest[1].textures, largest[1].samplers), (FRAGMENT.textures, FRAGMENT.samplers));
+    // A kind that takes one more than its part is seen.
+    let more = LEAST.replace("return relievo_scene_surface(in)", "var surface = relievo_scene_surface(in); surface.color *= least_a * least_b * least_c * least_d; return surface");
+    let bound: String = (0..4)
+        .map(|at| {
+            format!("@group(2) @binding({at}) var<uniform> least_{}: vec3<f32>;\n", ["a", "b", "c", "d"][at])
+        })
+        .collect();
+    let over = KindProgram::new("least", &(bound + &more)).expect("valid");
+    let is_over = |(_, _, taken): &(String, ShaderStage, Taken)| !taken.is_within(&FRAGMENT);
+    assert!(taken(over.text()).iter().any(is_over));
+}
