@@ -31,7 +31,7 @@ mod shaders {
     use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
 
     use crate::bindings::Bindings;
-    use crate::entries::{KindText, OUTPUTS, OutputText, composed, entries, exports};
+    use crate::entries::{KindText, OutputText, composed, entries, exports};
     use crate::{modules, packed, prefix};
 
     pub fn build() {
@@ -69,12 +69,18 @@ mod shaders {
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
     }
 
+    /// The root of what the texts of callers' kinds stand beside, which is generated.
+    const CORE: &str = "wgsl/render/scene_core.wgsl";
+
     /// Writes what the texts of callers' kinds stand beside, and checks it with the least kind.
     fn write_core(root: &Path, out: &Path, manifest: &mut String) {
-        let file = root.join("wgsl/render/scene_core.wgsl");
+        let files = output_files(root);
+        let (outputs, _) = outputs(&files, root, true);
+        let outputs: Vec<_> = outputs.iter().map(|output| (output.name, output.moves)).collect();
+        let file = root.join(CORE);
         let core = flatten(root, &file, Keep::All, wesl::ManglerKind::None);
         let kind = KindText { name: "least", discards: true, blends: true, deep: true, moves: false };
-        let entries = composed(&kind, &core);
+        let entries = composed(&kind, &core, &outputs);
         let least = "fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
     return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
 }
@@ -86,7 +92,9 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         writeln!(
             manifest,
             "/// What the texts of kinds stand beside, without entry points; its names have no prefix yet.\n\
-             pub static SCENE_CORE: &str = include_str!({path:?});"
+             pub static SCENE_CORE: &str = include_str!({path:?});\n\
+             /// The outputs in it: name, and whether it needs motion.\n\
+             pub static SCENE_OUTPUTS: &[(&str, bool)] = &{outputs:?};"
         )
         .expect("a string");
     }
@@ -126,20 +134,37 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         KindText::declared(&text).unwrap_or_else(|why| refuse(file, &why)).is_some()
     }
 
-    /// The file of an output.
-    pub fn output_file(root: &Path, file: &str) -> PathBuf {
-        root.join(format!("wgsl/render/{file}.wgsl"))
+    /// The files of outputs, with their texts.
+    pub fn output_files(root: &Path) -> Vec<(PathBuf, String)> {
+        let files = shader_files(&root.join("wgsl/render")).into_iter();
+        let read = |file: PathBuf| (file.clone(), std::fs::read_to_string(file).unwrap_or_default());
+        files.map(read).filter(|(_, text)| text.contains("\n// output ")).collect()
+    }
+
+    /// The outputs of all kinds, and the imports of what their entry points use.
+    fn outputs<'a>(
+        files: &'a [(PathBuf, String)],
+        root: &Path,
+        blends: bool,
+    ) -> (Vec<OutputText<'a>>, String) {
+        let (mut all, mut imports) = (Vec::new(), String::new());
+        for (file, text) in files {
+            let relative = file.strip_prefix(root).expect("below the root");
+            let outputs = OutputText::declared(text).unwrap_or_else(|why| refuse(relative, &why));
+            for output in outputs.into_iter().filter(|output| blends || output.name != "transparent") {
+                let (targets, name) = (output.targets(), output.name);
+                writeln!(imports, "import {}::{{{targets}, {name}_write}};", module_path(relative))
+                    .expect("a string");
+                all.push(output);
+            }
+        }
+        (all, imports)
     }
 
     /// The root of a kind's shader: its entry points, with what these import.
     fn kind_root(root: &Path, relative: &Path, kind: &KindText<'_>) -> String {
-        let files: Vec<_> =
-            OUTPUTS.iter().filter(|(name, ..)| kind.blends || *name != "transparent").collect();
-        let read = |file| std::fs::read_to_string(output_file(root, file)).unwrap_or_default();
-        let texts: Vec<String> = files.iter().map(|(_, file, _)| read(file)).collect();
-        let outputs: Vec<_> = (files.iter().zip(&texts))
-            .map(|((name, _, moves), text)| OutputText { name, text, moves: *moves })
-            .collect();
+        let files = output_files(root);
+        let (outputs, imports) = outputs(&files, root, kind.blends);
         let mut text = String::from(
             "import package::wgsl::render::scene_kind::{SceneFragment, scene_words, words_instance, words_outside};\n\
              import package::wgsl::render::scene_view::view;\n",
@@ -147,11 +172,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         if kind.deep {
             text += "import package::wgsl::render::output_depth::depth_behind;\n";
         }
-        for (output, (_, file, _)) in outputs.iter().zip(files) {
-            let (targets, name) = (output.targets(), output.name);
-            writeln!(text, "import package::wgsl::render::{file}::{{{targets}, {name}_write}};")
-                .expect("a string");
-        }
+        text += &imports;
         let module = module_path(relative);
         writeln!(text, "import {module}::{{{}}};\n", exports(kind).join(", ")).expect("a string");
         text + &entries(kind, &outputs)
@@ -228,6 +249,14 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
             let text = packed::expanded(text).unwrap_or_else(|why| refuse(relative, &why));
             resolver.add_module(module_path(relative), text.into());
         }
+        let files = output_files(root);
+        let (_, imports) = outputs(&files, root, true);
+        let core = "import package::wgsl::render::output_depth::depth_behind;
+import package::wgsl::render::scene_instances::{scene_last_placed, scene_last_rigid, scene_placed, scene_surface};
+import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, scene_words, words_instance, words_outside};
+import package::wgsl::render::scene_view::view;
+";
+        resolver.add_module(module_path(Path::new(CORE)), format!("{core}{imports}").into());
         resolver
     }
 

@@ -10,8 +10,7 @@ use std::path::Path;
 
 use naga::{AddressSpace, Handle, TypeInner};
 
-use crate::entries::OUTPUTS;
-use crate::shaders::{Shader, is_kind, output_file, refuse};
+use crate::shaders::{Shader, is_kind, output_files, refuse};
 use crate::sources::Sources;
 use crate::types::{Use, constant_text, literal_text, scalar_name};
 
@@ -31,8 +30,9 @@ impl Bindings {
     pub fn add(&mut self, root: &Path, file: &Path, shader: &Shader) {
         let mut sources = Sources::of(root, file);
         if is_kind(file) {
-            let outputs = OUTPUTS.iter().map(|(_, output, _)| *output).chain(["output_depth"]);
-            outputs.for_each(|output| sources.follow(root, &output_file(root, output)));
+            let outputs = output_files(root).into_iter().map(|(file, _)| file);
+            let files = outputs.chain([root.join("wgsl/render/output_depth.wgsl")]);
+            files.for_each(|file| sources.follow(root, &file));
         }
         let bindings = ShaderBindings { root, file, shader, sources: &sources };
         bindings.constants(&mut self.shared);

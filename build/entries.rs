@@ -44,15 +44,6 @@ impl<'a> KindText<'a> {
     }
 }
 
-/// The outputs of surfaces: name, file below `wgsl/render/`, and whether they need motion.
-pub const OUTPUTS: &[(&str, &str, bool)] = &[
-    ("color", "output_color", false),
-    ("transparent", "output_color", false),
-    ("surface", "output_surface", false),
-    ("velocity", "output_velocity", true),
-    ("measure", "output_measure", false),
-];
-
 /// An output of surfaces. `depth`, which needs no surface of parts that are drawn whole, is generated beside these.
 #[derive(Debug, Clone, Copy)]
 pub struct OutputText<'a> {
@@ -64,7 +55,21 @@ pub struct OutputText<'a> {
     pub moves: bool,
 }
 
-impl OutputText<'_> {
+impl<'a> OutputText<'a> {
+    /// The outputs that a text declares, with lines such as `// output velocity: moves`.
+    ///
+    /// # Errors
+    /// The word that is no property of an output.
+    pub fn declared(text: &'a str) -> Result<Vec<Self>, String> {
+        let lines = text.lines().filter_map(|line| line.strip_prefix("// output "));
+        let output = |line: &'a str| match line.split_once(": ") {
+            None => Ok(Self { name: line, text, moves: false }),
+            Some((name, "moves")) => Ok(Self { name, text, moves: true }),
+            Some((name, other)) => Err(format!("// output {name}: `{other}` is not moves")),
+        };
+        lines.map(output).collect()
+    }
+
     /// The struct of its targets.
     pub fn targets(&self) -> String {
         let (first, rest) = self.name.split_at(1);
@@ -72,7 +77,7 @@ impl OutputText<'_> {
     }
 
     /// The members of that struct: name, and declaration.
-    fn members(&self) -> Vec<(&str, &str)> {
+    pub fn members(&self) -> Vec<(&str, &str)> {
         let head = format!("struct {} {{", self.targets());
         let (_, rest) = self.text.split_once(&head).expect("an output declares its targets");
         let body = rest.split_once('}').map_or(rest, |(body, _)| body);
@@ -94,12 +99,11 @@ pub fn exports(kind: &KindText<'_>) -> [String; 3] {
     ["place", "last_position", "surface"].map(|name| format!("{}_{name}", kind.name))
 }
 
-/// What a caller's kind stands beside: `core`, the flat text of everything that entry points use, with the entry points. All
-/// names but the caller's have the prefix of the crate.
-pub fn composed(kind: &KindText<'_>, core: &str) -> String {
-    let output =
-        |(name, _, moves): &(&'static str, &str, bool)| OutputText { name, text: core, moves: *moves };
-    let outputs: Vec<_> = OUTPUTS.iter().map(output).collect();
+/// What a caller's kind stands beside: `core`, the flat text of everything that entry points use, with the entry points of the
+/// outputs that it has. All names but the caller's have the prefix of the crate.
+pub fn composed(kind: &KindText<'_>, core: &str, outputs: &[(&str, bool)]) -> String {
+    let outputs: Vec<_> =
+        outputs.iter().map(|(name, moves)| OutputText { name, text: core, moves: *moves }).collect();
     super::prefix::prefixed(&format!("{core}\n{}", entries(kind, &outputs)))
 }
 
@@ -166,10 +170,17 @@ fn depth() {{}}
         }
     }
     for output in outputs {
-        for deep in [false, true].into_iter().filter(|deep| kind.deep || !deep) {
-            for discards in [false, true].into_iter().filter(|discards| kind.discards || !discards) {
-                text += &fragment(kind, output, discards, deep);
-            }
+        text += &fragments(kind, output);
+    }
+    text
+}
+
+/// The fragment entries of an output, for every part that a kind may have.
+pub fn fragments(kind: &KindText<'_>, output: &OutputText<'_>) -> String {
+    let mut text = String::new();
+    for deep in [false, true].into_iter().filter(|deep| kind.deep || !deep) {
+        for discards in [false, true].into_iter().filter(|discards| kind.discards || !discards) {
+            text += &fragment(kind, output, discards, deep);
         }
     }
     text

@@ -16,9 +16,20 @@ const REPLACED: &str = "fn shade(";
 /// that this text replaces at its end.
 pub fn prefixed(flat: &str) -> String {
     let text = replaced_last(flat);
-    let words = words(&text);
-    let names: BTreeSet<&str> =
-        declared(&text, &words).into_iter().filter(|name| !KEPT.contains(name)).collect();
+    let names = declared(&text, &words(&text)).into_iter().filter(|name| !KEPT.contains(name));
+    renamed(&text, &names.collect())
+}
+
+/// What stands behind a text that was prefixed, written with the names that it had before, with the prefix too.
+#[allow(dead_code)] // build.rs writes no such text
+pub fn prefixed_behind(prefixed: &str, more: &str) -> String {
+    let (before, own) = (declared(prefixed, &words(prefixed)), declared(more, &words(more)));
+    renamed(more, &before.into_iter().filter_map(|name| name.strip_prefix(PREFIX)).chain(own).collect())
+}
+
+/// The text with the prefix before these names, where they are no names of members.
+fn renamed(text: &str, names: &BTreeSet<&str>) -> String {
+    let words = words(text);
     let mut out = String::with_capacity(text.len() + 8 * words.len());
     let mut end = 0;
     for word in &words {

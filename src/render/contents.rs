@@ -2,12 +2,12 @@
 
 use wgpu::TextureFormat as Format;
 
-#[cfg(doc)]
 use super::layer::Layer;
+use super::output::OutputProgram;
 
 /// What the first colour attachments of a target hold, and so, which layers can be drawn into it. All but the first
 /// kind need a depth attachment, and no blending.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Contents {
     /// One colour in linear light, of floats: [`Layer::Color`] if it is there, [`Layer::Transparent`] if WebGPU can blend
@@ -22,14 +22,37 @@ pub enum Contents {
     Velocity,
     /// Positions, of `Rgba32Float`, and numbers, of `Rg32Uint`, one sample each: [`Layer::Measure`] and [`Layer::Depth`].
     Measure,
+    /// What an output of the caller's writes: [`Layer::Own`] and [`Layer::Depth`].
+    Own(OutputProgram),
 }
 
 /// What a colour must be, and in words.
 type Wanted = (fn(Format) -> bool, &'static str);
 
 impl Contents {
+    /// The layers that such a target shows besides depth.
+    pub(super) fn layers(&self) -> &'static [Layer] {
+        match self {
+            Self::Color => &[Layer::Color, Layer::Transparent],
+            Self::Surface => &[Layer::Surface],
+            Self::Velocity => &[Layer::Velocity],
+            Self::Measure => &[Layer::Measure],
+            Self::Own(_) => &[Layer::Own],
+        }
+    }
+
+    /// The number of colours that a layer writes, from the first on.
+    pub(super) fn colors(&self, layer: Layer) -> usize {
+        match (layer, self) {
+            (Layer::Depth, _) => 0,
+            (_, Self::Color) => 1,
+            (_, Self::Own(output)) => output.colors(),
+            _ => self.wanted().len(),
+        }
+    }
+
     /// What each of the first colours must be.
-    pub(super) fn wanted(self) -> &'static [Wanted] {
+    pub(super) fn wanted(&self) -> &'static [Wanted] {
         match self {
             Self::Color => &[(is_float, "must be a colour of floats")],
             Self::Surface => &[
@@ -54,6 +77,8 @@ impl Contents {
                 (|format| format == Format::Rgba32Float, "must be Rgba32Float"),
                 (|format| format == Format::Rg32Uint, "must be Rg32Uint"),
             ],
+            // A pipeline that is compiled tells whether they fit what the text writes.
+            Self::Own(_) => &[],
         }
     }
 }

@@ -4,6 +4,7 @@ use wgpu::TextureFormat as Format;
 
 use super::contents::{Contents, can_blend};
 use super::layer::Layer;
+use super::output::OutputProgram;
 use crate::InputError;
 
 /// The attachments of the render passes, or of the render bundles, into which a [`Renderer`](super::Renderer) draws.
@@ -83,6 +84,17 @@ impl TargetFormat {
     /// `Depth32Float` that grows with distance, and one sample.
     pub fn measure() -> Self {
         Self::holding(Contents::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
+    }
+
+    /// For [`Layer::Own`]: colours of these formats, as many as the output writes, `Depth32Float` that grows with distance, and
+    /// one sample.
+    pub fn of_output(output: &OutputProgram, formats: &[Format]) -> Self {
+        Self::holding(Contents::Own(output.clone()), formats)
+    }
+
+    /// The caller's output, if it holds one.
+    pub(super) fn output(&self) -> Option<&OutputProgram> {
+        if let Contents::Own(output) = &self.contents { Some(output) } else { None }
     }
 
     fn holding(contents: Contents, formats: &[Format]) -> Self {
@@ -167,6 +179,11 @@ impl TargetFormat {
                 _ => {}
             }
         }
+        let colors = self.output().map_or(0, OutputProgram::colors);
+        if let Some(at) = (0..colors).find(|at| self.color.get(*at).is_none_or(Option::is_none)) {
+            let bound = "must be there for the output";
+            return Err(InputError::new(format!("format.color[{at}]"), "nothing", bound));
+        }
         if !is_plain && self.depth.is_none() {
             return Err(InputError::new("format.depth", "nothing", "must be there for these contents"));
         }
@@ -246,16 +263,11 @@ impl TargetFormat {
     /// The layers that can be drawn.
     pub(super) fn layers(&self) -> impl Iterator<Item = Layer> + use<> {
         let first = self.color.first().and_then(Option::as_ref);
-        let [own, other] = match self.contents {
-            Contents::Color => {
-                let blends = first.filter(|color| can_blend(color.format));
-                [first.map(|_| Layer::Color), blends.map(|_| Layer::Transparent)]
-            }
-            Contents::Surface => [Some(Layer::Surface), None],
-            Contents::Velocity => [Some(Layer::Velocity), None],
-            Contents::Measure => [Some(Layer::Measure), None],
-        };
-        own.into_iter().chain(other).chain(self.depth.map(|_| Layer::Depth))
+        let is_there = first.is_some();
+        let blends = first.is_some_and(|color| can_blend(color.format));
+        let is_drawn = move |layer: &Layer| if *layer == Layer::Transparent { blends } else { is_there };
+        let own = self.contents.layers().iter().copied().filter(is_drawn);
+        own.chain(self.depth.map(|_| Layer::Depth))
     }
 
     /// Whether depth falls with distance.
@@ -266,7 +278,7 @@ impl TargetFormat {
     /// The colour attachments as a pipeline of a layer sees them.
     pub(super) fn targets(&self, layer: Layer) -> Vec<Option<wgpu::ColorTargetState>> {
         let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
-            color.clone().map(|color| match at < layer.colors() {
+            color.clone().map(|color| match at < self.contents.colors(layer) {
                 true if layer == Layer::Transparent => wgpu::ColorTargetState {
                     blend: color.blend.or(Some(wgpu::BlendState::ALPHA_BLENDING)),
                     ..color

@@ -1,5 +1,7 @@
 //! What of a scene is drawn, and into which attachments.
 
+use crate::scene::specialization::Shown;
+
 /// What of a scene is drawn. [`Contents`](crate::render::Contents) says which layers a target holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -37,10 +39,12 @@ pub enum Layer {
     /// view's cell ([`Camera::cell`](crate::scene::Camera::cell); w: 1), on reliefs that of the point which the ray meets;
     /// and the same two numbers.
     Measure,
+    /// What the caller's output writes ([`OutputProgram`](super::OutputProgram)), with depth.
+    Own,
 }
 
 impl Layer {
-    /// What the names of its entry points in shaders begin with.
+    /// What the names of its entry points in shaders begin with; those of the caller's output begin with its name.
     pub(crate) fn entry(self) -> &'static str {
         match self {
             Self::Color => "color",
@@ -49,21 +53,21 @@ impl Layer {
             Self::Surface => "surface",
             Self::Velocity => "velocity",
             Self::Measure => "measure",
+            Self::Own => "",
         }
     }
 
-    /// Whether surfaces are shaded.
+    /// Whether surfaces are shaded, or may be.
     pub(crate) fn is_shaded(self) -> bool {
-        matches!(self, Self::Color | Self::Transparent)
+        matches!(self, Self::Color | Self::Transparent | Self::Own)
     }
 
-    /// The number of colours that it writes, from the first on.
-    pub(crate) fn colors(self) -> usize {
+    /// What of surfaces it needs.
+    pub(crate) fn shown(self) -> Shown {
         match self {
-            Self::Depth => 0,
-            Self::Color | Self::Transparent | Self::Velocity => 1,
-            Self::Measure => 2,
-            Self::Surface => 3,
+            Self::Color | Self::Transparent | Self::Own => Shown::Lit,
+            Self::Surface => Shown::Surface,
+            Self::Depth | Self::Velocity | Self::Measure => Shown::Place,
         }
     }
 }

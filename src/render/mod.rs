@@ -9,6 +9,7 @@ mod contents;
 mod format;
 mod layer;
 mod offscreen;
+mod output;
 mod renderer;
 mod shading;
 mod sun_shadow;
@@ -18,6 +19,7 @@ pub use contents::Contents;
 pub use format::{DepthFormat, TargetFormat};
 pub use layer::Layer;
 pub use offscreen::Offscreen;
+pub use output::OutputProgram;
 pub use renderer::{Renderer, ScenePass};
 pub use sun_shadow::SunShadow;
 

@@ -44,6 +44,11 @@ impl CallerText<'_> {
         })
     }
 
+    /// Whether a place lies in the caller's text.
+    pub fn is_in(&self, at: &Span) -> bool {
+        at.to_range().is_some_and(|range| range.start < self.source.len())
+    }
+
     /// The error at the first of these places that lies in the caller's text, else at its end.
     pub fn refused(&self, spans: impl Iterator<Item = Span>, bound: String) -> InputError {
         let mut ranges = spans.filter_map(Span::to_range);

@@ -44,7 +44,7 @@ mod pieces;
 mod placement;
 mod playing;
 mod poses;
-mod program;
+pub(crate) mod program;
 mod quality;
 #[doc(hidden)]
 pub mod query;

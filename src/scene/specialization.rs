@@ -7,6 +7,7 @@ use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
 use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN};
 use crate::scene::options::TerrainStyle;
 use crate::scene::program::KindProgram;
+use crate::scene::program::entries::KindText;
 use crate::surface::{Green, ReliefOptions, Shadow};
 
 /// The shader of a kind of object.
@@ -26,6 +27,17 @@ impl Program {
             Self::Relief => RENDER_SCENE_RELIEF.name,
             Self::Terrain => RENDER_SCENE_TERRAIN.name,
             Self::Own(program) => program.name(),
+        }
+    }
+
+    /// What its entry points are generated from.
+    pub fn kind(&self) -> KindText<'_> {
+        let of = |name, discards, blends, deep| KindText { name, discards, blends, deep, moves: true };
+        match self {
+            Self::Mesh => of("mesh", true, true, false),
+            Self::Relief => of("relief", true, false, true),
+            Self::Terrain => of("terrain", false, false, false),
+            Self::Own(program) => program.kind(),
         }
     }
 

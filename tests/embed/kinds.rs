@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 use relievo::asset::Light;
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
-use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
+use relievo::render::{Layer, OutputProgram, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
     Camera, InstanceId, ObjectId, Placement, Quality, Ray, Relief, Scene, TerrainSource, View,
 };
@@ -450,6 +450,73 @@ fn every_kind_casts_and_receives_shadow() {
         }
         let wrong = tally(&occluders(SUN + Vec3::new(0.3, 0.0, 0.0)));
         assert!(wrong.iter().any(|[lit, dark, wrong]| 50 * wrong > lit + dark), "{wrong:?}");
+    }
+}
+
+/// Places and velocities in one pass, texture coordinates and alpha.
+const PROBE: &str = "
+    struct ProbeTargets {
+        @location(0) place: vec4<f32>,
+        @location(1) motion: vec4<f32>,
+        @location(2) more: vec4<f32>,
+    }
+    fn probe_shown(clip: mat4x4<f32>, place: vec3<f32>) -> vec2<f32> {
+        let at = clip * vec4<f32>(place, 1.0);
+        return at.xy / at.w;
+    }
+    fn probe_write(surface: Surface) -> ProbeTargets {
+        let now = probe_shown(relievo_view.clip_from_world, surface.position);
+        let moved = now - probe_shown(relievo_view.last_clip_from_world, surface.last_position);
+        return ProbeTargets(
+            vec4<f32>(surface.position, 1.0), vec4<f32>(0.5 * moved.x, -0.5 * moved.y, 0.0, 1.0),
+            vec4<f32>(fract(surface.uv), surface.alpha, 1.0));
+    }";
+
+/// An output of the caller's shows every kind, behind a prepass, as the library's own layers do.
+#[test]
+fn outputs_of_the_caller_show_every_kind() {
+    use relievo::wgpu::TextureFormat::{Rg16Float, Rgba8Unorm, Rgba32Float};
+    let gpu = device();
+    let probe = OutputProgram::new("probe", PROBE).expect("valid");
+    assert_eq!((probe.name(), probe.colors()), ("probe", 3));
+    let format = TargetFormat::of_output(&probe, &[Rgba32Float, Rg16Float, Rgba8Unorm]);
+    let [own, measure, velocity] = [format, TargetFormat::measure(), TargetFormat::velocity()]
+        .map(|format| Raw::new(&gpu, format, SIZE));
+    for sample in &SAMPLES {
+        let mut world = World::new(&gpu, sample);
+        let mut frame = |raws: &[(&Raw, Layer)]| {
+            let mut encoder = gpu.encoder("frame");
+            world.scene.record(&mut encoder, &mut [&mut world.view]).expect("recorded");
+            for (raw, layer) in raws {
+                let renderer = raw.renderer(&gpu, &world.scene);
+                raw.pass(&mut encoder, |pass| {
+                    for layer in [Layer::Depth, *layer] {
+                        renderer.draw(pass, &world.scene, &world.view, layer).expect("drawn");
+                    }
+                });
+            }
+            gpu.queue().submit([encoder.finish()]);
+            world.step();
+            world.view.set(moved()).expect("a camera");
+        };
+        frame(&[]);
+        frame(&[(&own, Layer::Own), (&measure, Layer::Measure), (&velocity, Layer::Velocity)]);
+        let places = own.floats(&gpu, 0);
+        assert!(places == measure.floats(&gpu, 0), "{}: other places", sample.name);
+        assert!(own.floats(&gpu, 1) == velocity.floats(&gpu, 0), "{}: other velocities", sample.name);
+        let more = own.floats(&gpu, 2);
+        let drawn = |place: &[f32; 4]| place[3] == 1.0;
+        let seen = places.iter().filter(|place| drawn(place)).count();
+        let spread = more.iter().map(|more| more[1]).fold(0.0, f32::max);
+        assert!(
+            seen > 60 && (spread > 0.5 || sample.name == "mesh" || sample.name == "character"),
+            "{spread}"
+        );
+        assert!(
+            places.iter().zip(&more).all(|(place, more)| more[2] == f32::from(u8::from(drawn(place)))),
+            "{}: alpha",
+            sample.name
+        );
     }
 }
 

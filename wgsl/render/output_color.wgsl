@@ -1,4 +1,6 @@
 // The outputs `color` and `transparent`: the shaded colour of surfaces, through which all light goes.
+// output color
+// output transparent
 import package::wgsl::render::scene_shade::{Surface, shade};
 import package::wgsl::render::scene_shadow::{SHADOWED, scene_sunlit};
 import package::wgsl::render::scene_view::scene_seen_by;

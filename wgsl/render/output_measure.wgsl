@@ -1,4 +1,5 @@
 // The output `measure`: where surfaces are.
+// output measure
 import package::wgsl::render::scene_shade::Surface;
 
 struct MeasureTargets {

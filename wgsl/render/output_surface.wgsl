@@ -1,4 +1,5 @@
 // The output `surface`: what surfaces are before they are lit.
+// output surface
 import package::wgsl::render::scene_shade::Surface;
 
 struct SurfaceTargets {

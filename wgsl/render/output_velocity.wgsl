@@ -1,5 +1,6 @@
 // The output `velocity`: the motion of surfaces on the screen since the last frame, as a fraction of the picture's width, to the
 // right, and of its height, downwards; w: 1. What lay behind the last frame's eye has the velocity 0.
+// output velocity: moves
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
 

@@ -3,6 +3,7 @@
 use super::{Renderer, is_in};
 use crate::InputError;
 use crate::render::layer::Layer;
+use crate::render::output::OutputProgram;
 use crate::scene::Scene;
 use crate::scene::drawable::{DrawnObject, DrawnView};
 
@@ -37,7 +38,9 @@ impl Renderer {
                 format!("must be {}, as the renderer's format says", direction(self.format.is_reversed()));
             return Err(InputError::new("view.camera.depth", direction(view.reversed), bound));
         }
-        if layer == Layer::Velocity && !view.keeps_last {
+        let own = self.format.output().filter(|_| layer == Layer::Own);
+        let moves = own.map_or(layer == Layer::Velocity, OutputProgram::moves);
+        if moves && !view.keeps_last {
             let bound = "must keep the last frame: Scene::keep_last_frame";
             return Err(InputError::new("scene", "does not keep the last frame", bound));
         }

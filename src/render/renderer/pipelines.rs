@@ -1,12 +1,15 @@
 //! The pipelines of a renderer, by what they are compiled from.
 
+use std::borrow::Cow;
+
 use crate::gpu::{Gpu, GpuError};
 use crate::render::format::TargetFormat;
 use crate::render::layer::Layer;
+use crate::render::output::OutputProgram;
 use crate::render::shading::Shading;
 use crate::scene::caller_text::PREFIX;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::specialization::{OwnDepth, Program, Shown, Specialization};
+use crate::scene::specialization::{OwnDepth, Program, Specialization};
 
 /// A pipeline of a renderer, as it is looked up: for a part in a layer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -42,20 +45,18 @@ impl PipelineKey {
         // Without a depth attachment no shader may write depth.
         let deep = own_depth && format.depth.is_some();
         let is_plain_depth = layer == Layer::Depth && !state.cut_out && !deep;
-        let shown = match layer {
-            Layer::Color | Layer::Transparent => Shown::Lit,
-            Layer::Surface => Shown::Surface,
-            Layer::Depth | Layer::Velocity | Layer::Measure => Shown::Place,
-        };
         let [cut, deep] =
             [(state.cut_out, "_cut"), (deep, "_deep")].map(|(is, end)| if is { end } else { "" });
-        let entry = format!("{PREFIX}{}{cut}{deep}", layer.entry());
-        let vertex = match layer {
-            _ if is_plain_depth => "vertex_depth",
-            Layer::Velocity => "vertex_moving",
-            _ => "vertex",
+        let own = format.output().filter(|_| layer == Layer::Own);
+        let name = own.map_or(layer.entry(), OutputProgram::name);
+        let moves = own.map_or(layer == Layer::Velocity, OutputProgram::moves);
+        let entry = format!("{PREFIX}{name}{cut}{deep}");
+        let vertex = match (is_plain_depth, moves) {
+            (true, _) => "vertex_depth",
+            (false, true) => "vertex_moving",
+            (false, false) => "vertex",
         };
-        let constants = self.part.constants(shown, self.is_shadowed, format.is_reversed());
+        let constants = self.part.constants(layer.shown(), self.is_shadowed, format.is_reversed());
         PipelineSource {
             layer,
             program: self.part.program().clone(),
@@ -103,8 +104,11 @@ impl PipelineSource {
         let groups = layouts.of(gpu, &self.program);
         let own = shading.and_then(|shading| shading.layout.as_ref());
         let groups: Vec<_> = groups.iter().chain(own).map(Some).collect();
-        let text = self.program.text();
-        let text = shading.map_or(text.into(), |shading| std::borrow::Cow::from(shading.text(text)));
+        let text = match format.output().filter(|_| self.layer == Layer::Own) {
+            Some(output) => output.beside(&self.program).into(),
+            None => Cow::from(self.program.text()),
+        };
+        let text = shading.map_or_else(|| text.clone(), |shading| shading.text(&text).into());
         gpu.scoped(|| self.compile(gpu, format, text, &groups))
     }
 
@@ -112,7 +116,7 @@ impl PipelineSource {
         &self,
         gpu: &Gpu,
         format: &TargetFormat,
-        text: std::borrow::Cow<'_, str>,
+        text: Cow<'_, str>,
         groups: &[Option<&wgpu::BindGroupLayout>],
     ) -> wgpu::RenderPipeline {
         let (device, label) = (gpu.device(), Some(self.program.name()));

@@ -3,10 +3,10 @@
 // Both are build.rs's, which uses more of them.
 #[allow(dead_code)]
 #[path = "../../../build/entries.rs"]
-mod entries;
+pub(crate) mod entries;
 #[allow(dead_code)]
 #[path = "../../../build/prefix.rs"]
-mod prefix;
+pub(crate) mod prefix;
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -16,10 +16,10 @@ use naga::{AddressSpace, Handle, ImageClass, Module, ScalarKind, Span, StorageAc
 
 use crate::InputError;
 use crate::gpu::Gpu;
-use crate::gpu::shaders::SCENE_CORE;
+use crate::gpu::shaders::{SCENE_CORE, SCENE_OUTPUTS};
 use crate::scene::caller_text::{CallerText, PREFIX, discard_in, without_comments};
-use entries::{KindText, composed};
-use prefix::declarations;
+use entries::{KindText, OutputText, composed, fragments};
+use prefix::{declarations, prefixed_behind};
 
 /// The bind group of a kind's own resources.
 const GROUP: u32 = 2;
@@ -34,6 +34,8 @@ pub struct KindProgram(Arc<Inner>);
 struct Inner {
     name: String,
     text: String,
+    /// Whether vertices move in the model's space.
+    moves: bool,
     entries: Vec<wgpu::BindGroupLayoutEntry>,
 }
 
@@ -98,7 +100,7 @@ impl KindProgram {
         };
         let kind =
             KindText { name, discards: true, blends: true, deep: true, moves: declares("last_position") };
-        let text = format!("{source}\n{}", composed(&kind, SCENE_CORE));
+        let text = format!("{source}\n{}", composed(&kind, SCENE_CORE, SCENE_OUTPUTS));
         let own = CallerText { path: "kind", source, text: &text };
         for range in &declared {
             if !is_of(name, &code[range.clone()]) {
@@ -117,7 +119,8 @@ impl KindProgram {
         let info = own.validated(&module).map_err(in_own)?;
         check(&own, &module)?;
         let entries = bound(&own, &module, &info)?;
-        Ok(Self(Arc::new(Inner { name: name.to_owned(), text: text.clone(), entries })))
+        let moves = kind.moves;
+        Ok(Self(Arc::new(Inner { name: name.to_owned(), text: text.clone(), moves, entries })))
     }
 
     /// The name.
@@ -128,6 +131,16 @@ impl KindProgram {
     /// The WGSL, which ends with the function `shade`.
     pub(crate) fn text(&self) -> &str {
         &self.0.text
+    }
+
+    /// What its entry points are generated from.
+    pub(crate) fn kind(&self) -> KindText<'_> {
+        KindText { name: &self.0.name, discards: true, blends: true, deep: true, moves: self.0.moves }
+    }
+
+    /// A kind that shows nothing.
+    pub(crate) fn least() -> Result<Self, InputError> {
+        Self::new("least", LEAST)
     }
 
     /// The layout of bind group 2: what the text binds, visible where entry points use it.
@@ -157,8 +170,31 @@ impl KindProgram {
     }
 }
 
-/// Whether a kind may declare a name: `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` are of `grass`.
-fn is_of(kind: &str, name: &str) -> bool {
+const LEAST: &str = "
+fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
+    return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
+}
+fn least_surface(in: relievo_SceneFragment) -> Surface {
+    return relievo_scene_surface(in);
+}
+";
+
+/// The function that the caller's shading replaces: the last one of every shader.
+const SHADE: &str = "fn shade(";
+
+/// The shader of a kind with an output of the caller's: `source` in front, and entry points for it.
+pub(crate) fn with_output(
+    shader: &str,
+    kind: &KindText<'_>,
+    source: &str,
+    output: &OutputText<'_>,
+) -> String {
+    let (ours, shade) = shader.split_at(shader.find(SHADE).unwrap_or(shader.len()));
+    format!("{source}\n{ours}\n{}\n{shade}", prefixed_behind(shader, &fragments(kind, output)))
+}
+
+/// Whether a text may declare a name: `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` are of `grass`.
+pub(crate) fn is_of(kind: &str, name: &str) -> bool {
     let plain = |text: &str| text.replace('_', "").to_lowercase();
     plain(name).starts_with(&plain(kind)) && !name.starts_with(PREFIX)
 }
@@ -192,7 +228,6 @@ impl CallerText<'_> {
 
 /// What a valid text must not do here.
 fn check(own: &CallerText<'_>, module: &Module) -> Result<(), InputError> {
-    let is_own = |at: &Span| at.to_range().is_some_and(|range| range.start < own.source.len());
     let refuse = |at: Span, bound: &str| Err(own.refused(std::iter::once(at), bound.to_owned()));
     if let Some(entry) = module.entry_points.iter().find(|entry| !entry.name.starts_with(PREFIX)) {
         let at = own.source.find(&entry.name).unwrap_or(0);
@@ -200,12 +235,13 @@ fn check(own: &CallerText<'_>, module: &Module) -> Result<(), InputError> {
     }
     for (handle, _) in module.overrides.iter() {
         let at = module.overrides.get_span(handle);
-        if is_own(&at) {
+        if own.is_in(&at) {
             return refuse(at, "must not be an override constant");
         }
     }
     for (handle, function) in module.functions.iter() {
-        if let Some(at) = discard_in(&function.body).filter(|_| is_own(&module.functions.get_span(handle))) {
+        if let Some(at) = discard_in(&function.body).filter(|_| own.is_in(&module.functions.get_span(handle)))
+        {
             return refuse(
                 at,
                 "must not discard: parts that are cut out leave out pixels (KindPart::cut_out)",
@@ -224,9 +260,8 @@ fn bound(
     let mut entries = Vec::new();
     for (handle, variable) in module.global_variables.iter() {
         let at = module.global_variables.get_span(handle);
-        let is_own = at.to_range().is_some_and(|range| range.start < own.source.len());
         let refuse = |bound: &str| Err(own.refused(std::iter::once(at), bound.to_owned()));
-        let Some(binding) = variable.binding.as_ref().filter(|_| is_own) else { continue };
+        let Some(binding) = variable.binding.as_ref().filter(|_| own.is_in(&at)) else { continue };
         if binding.group != GROUP {
             return refuse("must be in bind group 2: groups 0, 1 and 3 are not the kind's");
         }

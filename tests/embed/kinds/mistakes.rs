@@ -3,6 +3,7 @@
 use std::iter;
 
 use relievo::gpu::Gpu;
+use relievo::render::{OutputProgram, Renderer, TargetFormat};
 use relievo::scene::Scene;
 use relievo::scene::kind::{Kind, KindPart, KindProgram};
 use relievo::skinning::bounding_sphere::BoundingSphere;
@@ -123,6 +124,55 @@ fn mistakes_in_a_text_are_told_by_their_place() {
         assert!(error.path.starts_with(path), "{error}\n{text}");
         assert!(error.to_string().contains(bound), "{error}\n{text}");
     }
+}
+
+const UV: &str = "struct UvTargets {
+    @location(0) uv: vec4<f32>,
+}
+fn uv_write(surface: Surface) -> UvTargets {
+    return UvTargets(vec4<f32>(surface.uv, 0.0, 1.0));
+}
+";
+
+#[test]
+fn mistakes_in_an_output_are_told_by_their_place() {
+    let uv = OutputProgram::new("uv", UV).expect("valid");
+    let cases: [(&str, String, &str, &str); 8] = [
+        ("uv_2", UV.to_owned(), "output.name", "letters and digits"),
+        (
+            "uv",
+            UV.replace("uv_write", "uv_writes"),
+            "output:7:1",
+            "fn uv_write(surface: Surface) -> UvTargets",
+        ),
+        ("uv", UV.replace("UvTargets", "UvTarget"), "output:7:1", "struct UvTargets"),
+        ("uv", format!("{UV}fn more() {{}}\n"), "output:7:4", "must begin with `uv`"),
+        ("uv", UV.replace("surface.uv,", "surface.xy,"), "output:5:", ""),
+        (
+            "uv",
+            format!("{UV}@group(3) @binding(0) var<uniform> uv_x: f32;\n"),
+            "output:7:",
+            "must not be bound",
+        ),
+        ("uv", UV.replace("    return", "    discard;\n    return"), "output:5:5", "must not discard"),
+        ("uv", UV.replace("surface: Surface", "surface: f32"), "output:", ""),
+    ];
+    for (name, text, path, bound) in cases {
+        let error = OutputProgram::new(name, &text).expect_err(&text);
+        assert!(error.path.starts_with(path), "{error}\n{text}");
+        assert!(error.to_string().contains(bound), "{error}\n{text}");
+    }
+    let format = TargetFormat::of_output(&uv, &[]);
+    assert_eq!(format.validate().expect_err("refused").path, "format.color[0]");
+    // Colours of another kind than the text writes.
+    let gpu = device();
+    let format = TargetFormat::of_output(&uv, &[wgpu::TextureFormat::Rgba16Uint]);
+    let mut renderer = Renderer::new(&gpu, &format).expect("a format");
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let program = KindProgram::new("card", &format!("{PLACE}{SURFACE}")).expect("valid");
+    scene.add_kind(Card::new(&gpu, &program, |part| part), 1).expect("added");
+    let error = renderer.prepare(&scene).expect_err("refused").to_string();
+    assert!(error.contains("Rgba16Uint") || error.contains("Uint"), "{error}");
 }
 
 #[test]

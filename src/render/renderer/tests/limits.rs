@@ -80,7 +80,7 @@ fn taken(text: &str) -> Vec<(String, ShaderStage, Taken)> {
 
 #[test]
 fn every_kind_stays_within_its_part_of_the_limits_in_every_output() {
-    let own = Program::Own(KindProgram::new("least", LEAST).expect("valid"));
+    let own = Program::Own(KindProgram::least().expect("valid"));
     let mut largest = [Taken::default(); 2];
     for program in [Program::Mesh, Program::Relief, Program::Terrain, own] {
         let all = taken(program.text());
