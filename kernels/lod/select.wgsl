@@ -1,15 +1,16 @@
 // Decides for each instance of a scene whether a view sees it, and with which level of detail. A workgroup takes a block of
 // instances, a thread one of them.
+import package::wgsl::lod::allowed::{MAX_ALLOWED, allowed_in_model, camera_allows};
+import package::wgsl::lod::criterion::criterion_metric;
 import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, Axes, SceneInstance, instance_axes, instance_flags_mask, instance_position};
-import package::wgsl::lod::object::{BLOCK, LodObject, MORPH_STEPS, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, OBJECT_MORPHS, OBJECT_SHOWN, decision_list, decision_morph, decision_word, morph_steps, morph_word};
-import package::wgsl::lod::view::{LodCamera, POSITION_SLACK, SelectView, VIEW_CAMERAS, camera_allows};
+import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, decision_list, decision_morph, morph_steps, object_flags_shown};
+import package::wgsl::lod::transition::transition_decision;
+import package::wgsl::lod::view::{POSITION_SLACK, SelectView, VIEW_CAMERAS};
 
 // Of an instance that no view has seen in the frame.
 const UNSEEN_ALLOWED: f32 = -1.0;
-// The largest displacement that is allowed, in the model's units: it keeps quotients of it finite.
-const MAX_ALLOWED: f32 = 1e9;
-// The least scale by which a displacement is divided.
-const LEAST_SCALE: f32 = 1e-9;
+// What no metric exceeds.
+const MAX_METRIC: f32 = 3e38;
 
 // The view. Its `blocks` may be fewer than `block_objects` has.
 @group(0) @binding(0) var<uniform> view: SelectView;
@@ -43,7 +44,7 @@ var<workgroup> tally: array<atomic<u32>, 16>;
 
 // Whether the view may see the instance at all, wherever it is.
 fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
-    let is_alive = (object.shown & OBJECT_SHOWN) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
+    let is_alive = object_flags_shown(object.flags) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
     let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
     return is_alive && casts && (instance_flags_mask(instance.flags) & view.mask) != 0u;
 }
@@ -59,52 +60,25 @@ fn is_inside(center: vec3<f32>, radius: f32) -> bool {
     return least >= 0.0;
 }
 
-// The displacement that all of the view's cameras allow, in the model's units. The loop ends where it is 0. (Where uniforms
-// alone decide loops and branches, lavapipe compiles the kernel anew in each submission.)
-fn view_allows(center: vec3<f32>, radius: f32, scale: f32) -> f32 {
+// What the view makes of a sphere.
+struct Seen {
+    // The displacement that all of its cameras allow, in the model's units.
+    allowed: f32,
+    // The least metric of its cameras, which decides the level.
+    metric: f32,
+}
+
+// (Where uniforms alone decide loops and branches, lavapipe compiles the kernel anew in each submission.)
+fn seen_by(object: LodObject, center: vec3<f32>, radius: f32, scale: f32) -> Seen {
     let cameras = min(view.camera_count, VIEW_CAMERAS);
-    var least = MAX_ALLOWED;
-    for (var camera = 0u; camera < select(0u, cameras, least > 0.0); camera++) {
-        least = min(least, camera_allows(view.cameras[camera], center, radius));
+    var seen = Seen(MAX_ALLOWED, MAX_METRIC);
+    for (var index = 0u; index < select(0u, cameras, seen.allowed >= 0.0); index++) {
+        let camera = view.cameras[index];
+        let allowed = allowed_in_model(camera_allows(camera, center, radius), scale);
+        seen.allowed = min(seen.allowed, allowed);
+        seen.metric = min(seen.metric, criterion_metric(object, camera, center, allowed));
     }
-    return min(least / max(scale, LEAST_SCALE), MAX_ALLOWED);
-}
-
-fn error_of(object: LodObject, level: u32) -> f32 {
-    return object.errors[level >> 2u][level & 3u];
-}
-
-// The coarsest level whose error is at most `within`.
-fn level_within(object: LodObject, within: f32) -> u32 {
-    var level = 0u;
-    for (var coarser = 1u; coarser < min(object.levels, OBJECT_LEVELS); coarser++) {
-        if error_of(object, coarser) <= within {
-            level = coarser;
-        }
-    }
-    return level;
-}
-
-// The morph word of a level.
-fn morph_within(object: LodObject, level: u32, within: f32) -> u32 {
-    if (object.shown & OBJECT_MORPHS) == 0u || level + 1u >= min(object.levels, OBJECT_LEVELS) {
-        return 0u;
-    }
-    let begin = error_of(object, level);
-    if within <= begin {
-        return 0u;
-    }
-    // The next level's error is above `within`.
-    let way = min((within - begin) / (error_of(object, level + 1u) - begin), 1.0);
-    let steps = u32(f32(MORPH_STEPS) * way + 0.5);
-    return select(0u, morph_word(level, steps), steps > 0u);
-}
-
-// The decision for an instance that the view sees.
-fn decision_within(object: LodObject, scale: vec3<f32>, within: f32) -> u32 {
-    let level = level_within(object, within);
-    let is_mirrored = ((scale.x < 0.0) != (scale.y < 0.0)) != (scale.z < 0.0);
-    return decision_word(1u + 2u * level + u32(is_mirrored), morph_within(object, level, within));
+    return seen;
 }
 
 // The decision for an instance. Writes its rows and its allowed displacement.
@@ -123,9 +97,11 @@ fn decide(index: u32, object: LodObject) -> u32 {
             rows[3u * index] = vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x);
             rows[3u * index + 1u] = vec4<f32>(axes.x.y, axes.y.y, axes.z.y, at.y);
             rows[3u * index + 2u] = vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z);
-            let allowed_here = view_allows(center, radius, scale);
-            allowed[index] = select(allowed_here, min(before, allowed_here), before >= 0.0);
-            return decision_within(object, instance.scale, object.mesh_fraction * allowed_here);
+            let seen = seen_by(object, center, radius, scale);
+            allowed[index] = select(seen.allowed, min(before, seen.allowed), before >= 0.0);
+            let s = instance.scale;
+            let is_mirrored = ((s.x < 0.0) != (s.y < 0.0)) != (s.z < 0.0);
+            return transition_decision(object, is_mirrored, seen.metric);
         }
     }
     allowed[index] = before;

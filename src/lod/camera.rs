@@ -5,7 +5,6 @@ use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 
 use super::LodCamera;
 use crate::InputError;
-use crate::shared::lod::view::{ALLOWED_MARGIN, POSITION_SLACK};
 
 /// A plane of the view volume is the difference of two rows. If its normal is this much shorter than theirs, the rounding
 /// of matrices to `f32` decides its direction.
@@ -102,29 +101,6 @@ impl LodCamera {
             unused_a: 0.0,
             unused_b: 0.0,
         })
-    }
-
-    /// The largest distance, in world units, by which every point inside a sphere may be off while the camera draws none
-    /// more than its `pixels` from its place: the CPU reference of `camera_allows` in `wgsl/lod/view.wgsl`.
-    pub fn allows(&self, center: Vec3, radius: f32) -> f32 {
-        if self.perspective == 0.0 {
-            return ALLOWED_MARGIN * (self.pixels / self.focal);
-        }
-        let towards = center - self.eye;
-        let ahead = self.ahead.dot(towards);
-        let aside = (towards - ahead * self.ahead).length();
-        let around = radius + POSITION_SLACK * (center.length() + self.eye.length() + radius);
-        let (depth, across) = if ahead + around < 0.0 {
-            (towards.length() - around, 0.0)
-        } else {
-            (ahead - around, aside + around)
-        };
-        if depth <= self.near {
-            return 0.0;
-        }
-        let cosine = depth / (depth * depth + across * across).sqrt();
-        let allowed = ALLOWED_MARGIN * (self.pixels * cosine * depth / (self.focal + self.pixels * cosine));
-        if depth - allowed <= self.near { 0.0 } else { allowed }
     }
 }
 

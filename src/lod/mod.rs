@@ -14,15 +14,21 @@
 //! are relative to the corner of the view's cell. Errors of levels are in the model's units, allowed displacements
 //! too, once an instance's largest scale has divided them.
 
+#[doc(hidden)]
+pub mod allowed;
 pub mod assign;
 pub mod attach;
 mod camera;
+#[doc(hidden)]
+pub mod criterion;
 mod instance;
 pub mod list;
 #[doc(hidden)]
 pub mod object;
 pub mod select;
 pub mod single;
+#[doc(hidden)]
+pub mod transition;
 
 pub use crate::shared::lod::instance::{
     CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, SceneInstance,

@@ -2,7 +2,8 @@
 
 use super::{BLOCK, LodObject, OBJECT_LEVELS};
 use crate::InputError;
-use crate::shared::lod::object::OBJECT_MORPHS;
+use crate::shared::lod::object::object_flags_transition;
+use crate::shared::lod::transition::TRANSITION_HARD;
 
 /// Checks the errors of an object's levels and the number of levels; that of level 0 is 0 if `begins_at_0`.
 pub(super) fn check_levels(
@@ -48,7 +49,7 @@ impl LodObject {
         first_draw: 0,
         parts: 0,
         mesh_fraction: 0.0,
-        shown: 0,
+        flags: 0,
         errors: [[0.0; 4]; 2],
     };
 
@@ -64,7 +65,7 @@ impl LodObject {
                 return Err(InputError::new(format!("{path}.{field}"), value, bound));
             }
         }
-        let begins_at_0 = self.shown & OBJECT_MORPHS == 0;
+        let begins_at_0 = object_flags_transition(self.flags) == TRANSITION_HARD;
         check_levels(path, self.levels, self.errors.as_flattened(), begins_at_0)?;
         check_fraction(format!("{path}.mesh_fraction"), self.mesh_fraction)
     }
@@ -79,6 +80,8 @@ pub fn level_within(levels: u32, errors: &[[f32; 4]; 2], within: f32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shared::lod::object::object_flags_word;
+    use crate::shared::lod::transition::TRANSITION_GEOMORPH;
 
     #[test]
     fn objects_are_checked_field_by_field() {
@@ -99,7 +102,8 @@ mod tests {
         assert_eq!(refused(LodObject { levels: 4, ..right }), "objects[3].errors[3]");
         let first = |error| [[error, 0.1, 0.1, 0.2], [0.0; 4]];
         assert_eq!(refused(LodObject { errors: first(0.1), ..right }), "objects[3].errors[0]");
-        let morphs = LodObject { shown: 3, errors: first(0.05), ..right };
+        let flags = object_flags_word(1, TRANSITION_GEOMORPH, 0);
+        let morphs = LodObject { flags, errors: first(0.05), ..right };
         assert_eq!(morphs.validate("objects[3]"), Ok(()));
         assert_eq!(refused(LodObject { errors: first(-0.1), ..right }), "objects[3].errors[0]");
         assert_eq!(refused(LodObject { levels: 5, errors: first(0.0), ..right }), "objects[3].errors[4]");

@@ -56,11 +56,11 @@ pub(crate) mod specialization;
 mod stage;
 mod statistics;
 pub(crate) mod terrain;
-mod transition;
 mod uploads;
 mod view;
 mod watch;
 
+pub use crate::lod::transition::Transition;
 pub use bounds::Bounds;
 pub use camera::{Camera, Depth};
 pub use drive::Poses;
@@ -77,7 +77,6 @@ pub use statistics::{
     CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
 };
 pub use terrain::TerrainSource;
-pub use transition::Transition;
 pub use view::View;
 pub(crate) use view::ViewShadow;
 pub use watch::{WatchedBone, WatchedBones};

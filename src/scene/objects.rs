@@ -2,6 +2,7 @@
 
 use crate::asset::Model;
 use crate::gpu::Upload as _;
+use crate::lod::transition::Transition;
 use crate::scene::Scene;
 use crate::scene::handles::{ObjectId, foreign, stale};
 use crate::scene::kind::Kind;
@@ -9,7 +10,6 @@ use crate::scene::object::Object;
 use crate::scene::options::CharacterOptions;
 use crate::scene::relief::Relief;
 use crate::scene::terrain::TerrainSource;
-use crate::scene::transition::Transition;
 use crate::{Error, InputError};
 
 impl Scene {

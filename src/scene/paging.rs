@@ -3,7 +3,8 @@
 
 use std::ops::Range;
 
-use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere, view_allows};
+use crate::lod::allowed::allowed_by;
+use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
 use crate::lod::{LodObject, SceneInstance, SelectView};
 use crate::skinning::pages::{KEEPING_PAGE_BYTES, PAGE_BYTES};
 
@@ -120,7 +121,7 @@ fn allowed(views: &[SelectView], object: &LodObject, instance: &SceneInstance) -
     let of_view = |view: &SelectView| {
         let (center, radius) = placed_sphere(instance, view.cell);
         let is_seen = is_shown(view, object, instance) && nearly_seen(view, center, radius);
-        is_seen.then(|| view_allows(view, center, radius, instance.largest_scale()))
+        is_seen.then(|| allowed_by(view.cameras(), center, radius, instance.largest_scale()))
     };
     views.iter().filter_map(of_view).reduce(f32::min)
 }

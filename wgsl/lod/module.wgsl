@@ -3,4 +3,5 @@
 // WESL: put that text before your own code.
 import package::wgsl::lod::instance::{Axes, SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::object::{LodObject, SceneDraw};
-import package::wgsl::lod::view::{LodCamera, SelectView, camera_allows};
+import package::wgsl::lod::allowed::camera_allows;
+import package::wgsl::lod::view::{LodCamera, SelectView};

@@ -9,10 +9,9 @@ const BLOCK = 64u;
 // What stands for the object of a block that belongs to none.
 const NO_OBJECT = 0xffffffffu;
 
-// A bit of `LodObject.shown`: the object is visible as a whole.
-const OBJECT_SHOWN = 1u;
-// A bit of `LodObject.shown`: its levels of detail move into each other.
-const OBJECT_MORPHS = 2u;
+// Whether an object is visible as a whole, how its levels change (`wgsl/lod/transition.wgsl`), and what chooses them
+// (`wgsl/lod/criterion.wgsl`).
+// packed ObjectFlags: shown 1, transition 7, criterion 8
 // How far an instance has moved from its level to the next coarser one: the level and the steps. 0: no morph.
 // packed Morph: level 3, steps 9
 // Number of steps from a level to the next one.
@@ -38,10 +37,11 @@ struct LodObject {
     parts: u32,
     // The fraction of the allowed displacement that its levels of detail may use, 0 to 1.
     mesh_fraction: f32,
-    // `OBJECT_SHOWN`, without which it is hidden, and `OBJECT_MORPHS`.
-    shown: u32,
-    // The error of each level in the model's units, ascending from 0. If levels move into each other, the displacement from
-    // which on each begins to move, which for all but level 0 is also that from which on it is drawn.
+    // Whether it is visible, its transition and its criterion: an object flags word.
+    flags: u32,
+    // For each level the metric from which on it is drawn, ascending: the error in the model's units, 0 for level 0. If levels
+    // move into each other, the metric from which on each begins to move, which for all but level 0 is also that from which on
+    // it is drawn.
     errors: array<vec4<f32>, 2>,
 }
 

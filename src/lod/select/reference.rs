@@ -2,22 +2,22 @@
 
 use glam::{IVec3, Vec3};
 
-use crate::lod::object::level_within;
+use crate::lod::allowed::allowed_by;
+use crate::lod::criterion::metric;
+use crate::lod::transition::decision;
 use crate::lod::{
-    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodObject, OBJECT_LEVELS, SceneInstance, SelectView,
+    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, SceneInstance, SelectView,
     instance_flags_mask,
 };
-use crate::shared::lod::object::{
-    MORPH_STEPS, OBJECT_MORPHS, OBJECT_SHOWN, decision_list, decision_morph, decision_word, morph_steps,
-    morph_word,
-};
-use crate::shared::lod::select::{LEAST_SCALE, MAX_ALLOWED, UNSEEN_ALLOWED};
+use crate::shared::lod::allowed::MAX_ALLOWED;
+use crate::shared::lod::object::{decision_list, decision_morph, morph_steps, object_flags_shown};
+use crate::shared::lod::select::{MAX_METRIC, UNSEEN_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
 
 /// What a view makes of an instance that it sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selected {
-    /// The decision word: 1 + 2 · level + mirrored, and [`morph_within`].
+    /// The decision word ([`decision`]).
     pub decision: u32,
     /// The displacement that the view allows, in the model's units.
     pub allowed: f32,
@@ -36,7 +36,7 @@ pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
 
 /// Whether a view may see an instance at all, wherever it is.
 pub fn is_shown(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> bool {
-    let is_alive = object.shown & OBJECT_SHOWN != 0 && instance.flags & INSTANCE_ALIVE != 0;
+    let is_alive = object_flags_shown(object.flags) != 0 && instance.flags & INSTANCE_ALIVE != 0;
     let casts = view.casters == 0 || instance.flags & INSTANCE_CASTS != 0;
     is_alive && casts && instance_flags_mask(instance.flags) & view.mask != 0
 }
@@ -57,26 +57,22 @@ pub(crate) fn nearly_seen(view: &SelectView, center: Vec3, radius: f32) -> bool 
     depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius
 }
 
-/// The displacement that all of a view's cameras allow for a sphere, in units of a model with this largest scale.
-pub fn view_allows(view: &SelectView, center: Vec3, radius: f32, scale: f32) -> f32 {
-    let least = view.cameras().iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);
-    (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)
-}
-
 /// What a view makes of an instance; `None` if it does not see it.
 pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> Option<Selected> {
     let (center, radius) = placed_sphere(instance, view.cell);
     if !is_shown(view, object, instance) || depth_inside(view, center, radius) < 0.0 {
         return None;
     }
-    let allowed = view_allows(view, center, radius, instance.largest_scale());
-    let within = object.mesh_fraction * allowed;
-    let level = level_within(object.levels, &object.errors, within);
-    let morph = morph_within(object, level, within);
+    let scale = instance.largest_scale();
+    let allowed = allowed_by(view.cameras(), center, radius, scale);
+    let metric_of = |camera: &LodCamera| {
+        let allowed = allowed_by(std::slice::from_ref(camera), center, radius, scale);
+        metric(object, camera, center, allowed)
+    };
+    let metric = view.cameras().iter().map(metric_of).fold(MAX_METRIC, f32::min);
     let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
     let rows = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
-    let list = 2 * level + u32::from(instance.is_mirrored());
-    Some(Selected { decision: decision_word(1 + list, morph), allowed, rows })
+    Some(Selected { decision: decision(object, instance.is_mirrored(), metric), allowed, rows })
 }
 
 /// What a decision tells of an instance's level: 1 + the level, or 0 if the instance is not seen, and the steps that the
@@ -87,18 +83,6 @@ pub fn level_told(decision: u32) -> [f32; 4] {
     }
     let level = (decision_list(decision).max(1) - 1) >> 1;
     [(1 + level) as f32, morph_steps(decision_morph(decision)) as f32, 0.0, 0.0]
-}
-
-/// The morph word of a level of an object: the level and how many of [`MORPH_STEPS`]; 0 where it has not moved. `within` is the displacement that levels may use.
-pub fn morph_within(object: &LodObject, level: u32, within: f32) -> u32 {
-    let errors = object.errors.as_flattened();
-    let begin = errors[level as usize];
-    if object.shown & OBJECT_MORPHS == 0 || level + 1 >= object.levels.min(OBJECT_LEVELS) || within <= begin {
-        return 0;
-    }
-    let way = ((within - begin) / (errors[level as usize + 1] - begin)).min(1.0);
-    let steps = (MORPH_STEPS as f32 * way + 0.5) as u32;
-    if steps > 0 { morph_word(level, steps) } else { 0 }
 }
 
 /// The displacement that is allowed an instance after another view of the frame. `before` is what the views before it

@@ -108,9 +108,9 @@ impl Object {
             stage_params(staged, chunk, self.handle)?;
         }
         let mesh_fraction = self.coarsening * self.mesh_fraction;
+        let mut errors = self.thresholds();
         if let Some(character) = self.kind.character_mut() {
             // Level 0 has no error that counts.
-            let mut errors = self.transition.begins(&self.errors);
             errors[0] = 0.0;
             let object = (&*self.chunks, &*errors);
             character.fit(gpu, layout, pass, object, (shares, mesh_fraction))?;

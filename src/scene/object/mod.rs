@@ -9,6 +9,8 @@ use glam::Vec3;
 
 use crate::asset::Model;
 use crate::gpu::{Gpu, PendingUploads};
+use crate::lod::criterion::Criterion;
+use crate::lod::transition::Transition;
 use crate::scene::character::Character;
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
@@ -23,8 +25,7 @@ use crate::scene::quality::Shares;
 use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, SeenTerrain, Terrain, TerrainSource};
-use crate::scene::transition::Transition;
-use crate::shared::lod::object::{LodObject, OBJECT_LISTS, OBJECT_SHOWN, SceneDraw};
+use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw, object_flags_word};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
@@ -44,8 +45,9 @@ pub(crate) struct Object {
     /// The error of each level in the model's units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
-    /// How its levels change.
+    /// How its levels change, and what chooses them.
     pub(super) transition: Transition,
+    pub(super) criterion: Criterion,
     /// The factor by which its levels are coarser than the views ask for: 1 unless memory has ended.
     pub(super) coarsening: f32,
     /// Whether the device does not know the factor yet, or whether the object is drawn.
@@ -128,7 +130,8 @@ impl Object {
             sphere,
             errors,
             mesh_fraction,
-            transition: Transition::Hard,
+            transition: Transition::default(),
+            criterion: Criterion::default(),
             coarsening: 1.0,
             is_retuned: false,
             is_rebound: false,
@@ -245,9 +248,14 @@ impl Object {
             first_draw: chunk.range.first_draw,
             parts: self.draws.len() as u32 / OBJECT_LISTS,
             mesh_fraction: self.coarsening * self.mesh_fraction,
-            shown: (u32::from(self.is_drawn()) * OBJECT_SHOWN) | self.transition.flag(),
-            errors: error_vectors(&self.transition.begins(&self.errors)).map(Into::into),
+            flags: object_flags_word(self.is_drawn().into(), self.transition.code(), self.criterion.code()),
+            errors: error_vectors(&self.thresholds()).map(Into::into),
         }
+    }
+
+    /// The metric from which on each of its levels is drawn, or begins to move.
+    pub(super) fn thresholds(&self) -> Vec<f32> {
+        self.transition.begins(&self.criterion.thresholds(&self.errors))
     }
 
     /// Keeps the last frame, once it is refreshed, or does no longer.

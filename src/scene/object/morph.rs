@@ -1,8 +1,8 @@
 //! Whether the levels of detail of an object move into each other.
 
 use super::Object;
+use crate::lod::transition::Transition;
 use crate::scene::drawable::{Drawable, MeshDrawable};
-use crate::scene::transition::Transition;
 
 impl Object {
     /// Whether its levels can move into each other.

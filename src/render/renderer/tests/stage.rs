@@ -11,6 +11,7 @@ use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
 use crate::scene::layouts::SceneLayouts;
+use crate::shared::lod::object::object_flags_word;
 use crate::shared::render::scene_view::SceneView;
 
 /// Pixels along the edges of a canvas. The bytes of a row are a multiple of 256, as copies demand.
@@ -75,7 +76,7 @@ impl Stage {
             first_list: 2 * BLOCK,
             first_draw: 3,
             parts: parts.len() as u32,
-            shown: 1,
+            flags: object_flags_word(1, 0, 0),
             ..LodObject::NONE
         };
         let (lists, draws) = listed(&lod, placements, parts);

@@ -12,7 +12,8 @@ use relievo::lod::{
     BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS,
     SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
 };
-use relievo::shared::lod::object::OBJECT_MORPHS;
+use relievo::shared::lod::object::object_flags_word;
+use relievo::shared::lod::transition::TRANSITION_GEOMORPH;
 
 use crate::cases::animation::Draw;
 
@@ -47,7 +48,11 @@ impl Blocks {
                 first_draw,
                 parts: draw.word() % 4,
                 mesh_fraction: 0.5,
-                shown: u32::from(index != 2) | ((index as u32 + case) % 2 * OBJECT_MORPHS),
+                flags: object_flags_word(
+                    u32::from(index != 2),
+                    (index as u32 + case) % 2 * TRANSITION_GEOMORPH,
+                    0,
+                ),
                 errors: std::array::from_fn(|four| {
                     std::array::from_fn(|lane| {
                         let is_still = (index as u32 + case).is_multiple_of(2);

@@ -2,11 +2,11 @@
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
+use relievo::lod::allowed::allowed_by;
 use relievo::lod::object::level_within;
-use relievo::lod::select::reference::{
-    counts, depth_inside, is_shown, level_told, morph_within, placed_sphere, select, view_allows,
-};
+use relievo::lod::select::reference::{counts, depth_inside, is_shown, level_told, placed_sphere, select};
 use relievo::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
+use relievo::lod::transition::morph_within;
 use relievo::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
 use relievo::shared::lod::object::{
     MORPH_STEPS, decision_list, decision_morph, decision_word, morph_level, morph_steps, morph_word,
@@ -180,7 +180,7 @@ impl Range {
         let lengths = 2.0 * (instance.position(view.cell).length() + center.length() + radius + farthest);
         let slack = 2.0 * POSITION_SLACK * lengths;
         let [less, more] =
-            [radius + slack, radius - slack].map(|radius| view_allows(view, center, radius, scale));
+            [radius + slack, radius - slack].map(|radius| allowed_by(view.cameras(), center, radius, scale));
         let allowed = [less * (1.0 - FORMULA), more * (1.0 + FORMULA)];
         let within = allowed.map(|allowed| object.mesh_fraction * allowed);
         let levels = within.map(|within| level_within(object.levels, &object.errors, within));

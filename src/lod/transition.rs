@@ -1,6 +1,9 @@
-//! How levels of detail change.
+//! How levels of detail change. The CPU reference of `wgsl/lod/transition.wgsl`.
 
-use crate::shared::lod::object::OBJECT_MORPHS;
+use super::object::level_within;
+use super::{LodObject, OBJECT_LEVELS};
+use crate::shared::lod::object::{MORPH_STEPS, decision_word, morph_word, object_flags_transition};
+use crate::shared::lod::transition::{TRANSITION_GEOMORPH, TRANSITION_HARD};
 
 /// How far the surface between two levels may be off, as a multiple of the coarser one's error: an allowance from
 /// measurements, not a bound (`docs/pixel-bounds.md`).
@@ -31,15 +34,18 @@ impl Transition {
     /// Both, by the names that scene files and the command line have for them.
     pub const NAMES: [(&'static str, Self); 2] = [("hard", Self::Hard), ("geomorph", Self::Geomorph)];
 
-    /// The bit in what kernels know of an object.
-    pub(super) fn flag(self) -> u32 {
-        if self == Self::Geomorph { OBJECT_MORPHS } else { 0 }
+    /// Its code in an object's flags.
+    pub(crate) fn code(self) -> u32 {
+        match self {
+            Self::Hard => TRANSITION_HARD,
+            Self::Geomorph => TRANSITION_GEOMORPH,
+        }
     }
 
-    /// From the errors of an object's levels, ascending from 0: the displacement from which on each level is drawn. With a
+    /// From the thresholds of an object's levels, ascending from 0: the metric from which on each level is drawn. With a
     /// geomorph it begins to move there, [`ON_THE_WAY`] times the error of the next one, and level 0, which is drawn before,
     /// too. The last level then begins at twice as much.
-    pub(super) fn begins(self, errors: &[f32]) -> Vec<f32> {
+    pub(crate) fn begins(self, errors: &[f32]) -> Vec<f32> {
         match (self, errors.last()) {
             (Self::Geomorph, Some(last)) => {
                 let next = errors.iter().skip(1).copied().chain([2.0 * last]);
@@ -48,6 +54,27 @@ impl Transition {
             _ => errors.to_vec(),
         }
     }
+}
+
+/// The morph word of a level of an object: the level and how many of [`MORPH_STEPS`]; 0 where it has not moved.
+pub fn morph_within(object: &LodObject, level: u32, metric: f32) -> u32 {
+    let errors = object.errors.as_flattened();
+    let begin = errors[level as usize];
+    if object_flags_transition(object.flags) != TRANSITION_GEOMORPH
+        || level + 1 >= object.levels.min(OBJECT_LEVELS)
+        || metric <= begin
+    {
+        return 0;
+    }
+    let way = ((metric - begin) / (errors[level as usize + 1] - begin)).min(1.0);
+    let steps = (MORPH_STEPS as f32 * way + 0.5) as u32;
+    if steps > 0 { morph_word(level, steps) } else { 0 }
+}
+
+/// The decision for an instance that a view sees: 1 + 2 · level + mirrored, and [`morph_within`].
+pub fn decision(object: &LodObject, is_mirrored: bool, metric: f32) -> u32 {
+    let level = level_within(object.levels, &object.errors, metric);
+    decision_word(1 + 2 * level + u32::from(is_mirrored), morph_within(object, level, metric))
 }
 
 #[cfg(test)]
@@ -59,6 +86,6 @@ mod tests {
         let errors = [0.0, 0.1, 0.2, 0.4];
         assert_eq!(Transition::Hard.begins(&errors), errors);
         assert_eq!(Transition::Geomorph.begins(&errors), [0.1, 0.2, 0.4, 0.8].map(|error| 1.2 * error));
-        assert_eq!([Transition::Hard, Transition::Geomorph].map(Transition::flag), [0, 2]);
+        assert_eq!([Transition::Hard, Transition::Geomorph].map(Transition::code), [0, 1]);
     }
 }

@@ -1,0 +1,39 @@
+//! What views allow: the displacement by which a surface may be off. This is the one formula from pixels to levels, gates and
+//! influences: the CPU reference of `wgsl/lod/allowed.wgsl`. `docs/pixel-bounds.md` derives it.
+
+use glam::Vec3;
+
+use super::LodCamera;
+use crate::shared::lod::allowed::{ALLOWED_MARGIN, LEAST_SCALE, MAX_ALLOWED};
+use crate::shared::lod::view::POSITION_SLACK;
+
+impl LodCamera {
+    /// The largest distance, in world units, by which every point inside a sphere may be off while the camera draws none
+    /// more than its `pixels` from its place: the CPU reference of `camera_allows`.
+    pub fn allows(&self, center: Vec3, radius: f32) -> f32 {
+        if self.perspective == 0.0 {
+            return ALLOWED_MARGIN * (self.pixels / self.focal);
+        }
+        let towards = center - self.eye;
+        let ahead = self.ahead.dot(towards);
+        let aside = (towards - ahead * self.ahead).length();
+        let around = radius + POSITION_SLACK * (center.length() + self.eye.length() + radius);
+        let (depth, across) = if ahead + around < 0.0 {
+            (towards.length() - around, 0.0)
+        } else {
+            (ahead - around, aside + around)
+        };
+        if depth <= self.near {
+            return 0.0;
+        }
+        let cosine = depth / (depth * depth + across * across).sqrt();
+        let allowed = ALLOWED_MARGIN * (self.pixels * cosine * depth / (self.focal + self.pixels * cosine));
+        if depth - allowed <= self.near { 0.0 } else { allowed }
+    }
+}
+
+/// The displacement that all of some cameras allow for a sphere, in units of a model with this largest scale.
+pub fn allowed_by(cameras: &[LodCamera], center: Vec3, radius: f32, scale: f32) -> f32 {
+    let least = cameras.iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);
+    (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)
+}
