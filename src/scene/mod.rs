@@ -19,7 +19,6 @@ mod chunk;
 pub(crate) mod drawable;
 mod drive;
 mod frame;
-pub mod grass;
 mod ground;
 mod handles;
 mod instance_pose;
