@@ -4,18 +4,15 @@
 use glam::Vec3;
 
 use super::{LodCamera, LodObject};
-use crate::shared::lod::criterion::{CRITERION_DISTANCE, CRITERION_ERROR};
-use crate::shared::lod::object::object_flags_criterion;
+use crate::shared::lod::criterion::CRITERION_ERROR;
 
 /// What chooses the levels of an object.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Criterion {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Criterion {
     /// The projected error: the coarsest level whose error a view allows. It alone keeps the promise of
     /// [`Quality::pixels`](crate::scene::Quality).
     #[default]
     Error,
-    /// The distance from the eye: each level from so many world units on, ascending from 0.
-    Distance([f32; 8]),
 }
 
 impl Criterion {
@@ -23,7 +20,6 @@ impl Criterion {
     pub fn code(self) -> u32 {
         match self {
             Self::Error => CRITERION_ERROR,
-            Self::Distance(_) => CRITERION_DISTANCE,
         }
     }
 
@@ -31,15 +27,11 @@ impl Criterion {
     pub fn thresholds(self, errors: &[f32]) -> Vec<f32> {
         match self {
             Self::Error => errors.to_vec(),
-            Self::Distance(from) => from[..errors.len()].to_vec(),
         }
     }
 }
 
 /// The metric of an instance in a camera that allows it a displacement in the model's units; `center` is that of its sphere.
-pub fn metric(object: &LodObject, camera: &LodCamera, center: Vec3, allowed: f32) -> f32 {
-    if object_flags_criterion(object.flags) == CRITERION_DISTANCE {
-        return center.distance(camera.eye);
-    }
+pub fn metric(object: &LodObject, _camera: &LodCamera, _center: Vec3, allowed: f32) -> f32 {
     object.mesh_fraction * allowed
 }

@@ -2,7 +2,6 @@
 
 use crate::asset::Model;
 use crate::gpu::Upload as _;
-use crate::lod::criterion::Criterion;
 use crate::lod::transition::Transition;
 use crate::scene::Scene;
 use crate::scene::handles::{ObjectId, foreign, stale};
@@ -232,20 +231,6 @@ impl Scene {
             entry.mark_transition();
             self.layout = None;
         }
-        Ok(())
-    }
-
-    /// Sets what chooses the levels of a mesh or of an object of the caller's kind, from the next recording on.
-    ///
-    /// # Errors
-    /// [`InputError`] for an object that is not of this scene, and for a character, whose skinning follows the projected error.
-    pub fn set_criterion(&mut self, object: ObjectId, criterion: Criterion) -> Result<(), InputError> {
-        let entry = self.object_mut(object)?;
-        if entry.kind.character().is_some() {
-            return Err(InputError::new("object", "a character", "must be a mesh"));
-        }
-        entry.criterion = criterion;
-        self.layout = None;
         Ok(())
     }
 
