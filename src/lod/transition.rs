@@ -3,7 +3,7 @@
 use super::object::level_within;
 use super::{LodObject, OBJECT_LEVELS};
 use crate::shared::lod::object::{MORPH_STEPS, decision_word, morph_word, object_flags_transition};
-use crate::shared::lod::transition::{TRANSITION_GEOMORPH, TRANSITION_HARD, TRANSITION_VANISH};
+use crate::shared::lod::transition::{TRANSITION_GEOMORPH, TRANSITION_HARD};
 
 /// How far the surface between two levels may be off, as a multiple of the coarser one's error: an allowance from
 /// measurements, not a bound (`docs/pixel-bounds.md`).
@@ -28,21 +28,17 @@ pub enum Transition {
     /// its level had been as it is, and so do all in the first frame after objects were added, removed or grew. One that takes the place of another, which was
     /// removed since the last frame, counts as if it had had that one's level.
     Geomorph,
-    /// At once, and nothing is drawn from twice the last level's error on.
-    Vanish,
 }
 
 impl Transition {
     /// Both, by the names that scene files and the command line have for them.
-    pub const NAMES: [(&'static str, Self); 3] =
-        [("hard", Self::Hard), ("geomorph", Self::Geomorph), ("vanish", Self::Vanish)];
+    pub const NAMES: [(&'static str, Self); 2] = [("hard", Self::Hard), ("geomorph", Self::Geomorph)];
 
     /// Its code in an object's flags.
     pub(crate) fn code(self) -> u32 {
         match self {
             Self::Hard => TRANSITION_HARD,
             Self::Geomorph => TRANSITION_GEOMORPH,
-            Self::Vanish => TRANSITION_VANISH,
         }
     }
 
@@ -78,10 +74,6 @@ pub fn morph_within(object: &LodObject, level: u32, metric: f32) -> u32 {
 /// The decision for an instance that a view sees: 1 + 2 · level + mirrored, and [`morph_within`].
 pub fn decision(object: &LodObject, is_mirrored: bool, metric: f32) -> u32 {
     let level = level_within(object.levels, &object.errors, metric);
-    let last = object.errors.as_flattened()[object.levels.min(OBJECT_LEVELS) as usize - 1];
-    if object_flags_transition(object.flags) == TRANSITION_VANISH && metric >= 2.0 * last {
-        return 0;
-    }
     decision_word(1 + 2 * level + u32::from(is_mirrored), morph_within(object, level, metric))
 }
 

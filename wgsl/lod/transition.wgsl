@@ -6,8 +6,6 @@ import package::wgsl::lod::object::{LodObject, MORPH_STEPS, OBJECT_LEVELS, decis
 const TRANSITION_HARD = 0u;
 // Vertices move to their partners in the next coarser level.
 const TRANSITION_GEOMORPH = 1u;
-// At once, and nothing from twice the threshold of the last level on.
-const TRANSITION_VANISH = 2u;
 
 // The threshold of a level.
 fn threshold_of(object: LodObject, level: u32) -> f32 {
@@ -43,9 +41,5 @@ fn morph_within(object: LodObject, level: u32, metric: f32) -> u32 {
 // The decision for an instance that a view sees. Lists alternate between instances that are not mirrored and those that are.
 fn transition_decision(object: LodObject, is_mirrored: bool, metric: f32) -> u32 {
     let level = level_within(object, metric);
-    let last = threshold_of(object, min(object.levels, OBJECT_LEVELS) - 1u);
-    if object_flags_transition(object.flags) == TRANSITION_VANISH && metric >= 2.0 * last {
-        return 0u;
-    }
     return decision_word(1u + 2u * level + u32(is_mirrored), morph_within(object, level, metric));
 }
