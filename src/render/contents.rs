@@ -22,8 +22,6 @@ pub enum Contents {
     Velocity,
     /// Positions, of `Rgba32Float`, and numbers, of `Rg32Uint`, one sample each: [`Layer::Measure`] and [`Layer::Depth`].
     Measure,
-    /// Texture coordinates and alpha, of `Rgba16Float` or `Rgba32Float`: [`Layer::Uv`] and [`Layer::Depth`].
-    Uv,
     /// What an output of the caller's writes: [`Layer::Own`] and [`Layer::Depth`].
     Own(OutputProgram),
 }
@@ -40,7 +38,6 @@ impl Contents {
             Self::Velocity => &[Layer::Velocity],
             Self::Measure => &[Layer::Measure],
             Self::Own(_) => &[Layer::Own],
-            Self::Uv => &[Layer::Uv],
         }
     }
 
@@ -80,10 +77,6 @@ impl Contents {
                 (|format| format == Format::Rgba32Float, "must be Rgba32Float"),
                 (|format| format == Format::Rg32Uint, "must be Rg32Uint"),
             ],
-            Self::Uv => &[(
-                |format| matches!(format, Format::Rgba16Float | Format::Rgba32Float),
-                "must be Rgba16Float or Rgba32Float",
-            )],
             // A pipeline that is compiled tells whether they fit what the text writes.
             Self::Own(_) => &[],
         }

@@ -39,8 +39,6 @@ pub enum Layer {
     /// view's cell ([`Camera::cell`](crate::scene::Camera::cell); w: 1), on reliefs that of the point which the ray meets;
     /// and the same two numbers.
     Measure,
-    /// Texture coordinates and alpha, with depth, into one colour.
-    Uv,
     /// What the caller's output writes ([`OutputProgram`](super::OutputProgram)), with depth.
     Own,
 }
@@ -55,7 +53,6 @@ impl Layer {
             Self::Surface => "surface",
             Self::Velocity => "velocity",
             Self::Measure => "measure",
-            Self::Uv => "uv",
             Self::Own => "",
         }
     }
@@ -68,7 +65,7 @@ impl Layer {
     /// What of surfaces it needs.
     pub(crate) fn shown(self) -> Shown {
         match self {
-            Self::Color | Self::Transparent | Self::Own | Self::Uv => Shown::Lit,
+            Self::Color | Self::Transparent | Self::Own => Shown::Lit,
             Self::Surface => Shown::Surface,
             Self::Depth | Self::Velocity | Self::Measure => Shown::Place,
         }
