@@ -147,6 +147,29 @@ fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
     assert!(!Difference::of(&other, &native, TOLERANCE.levels).within(TOLERANCE), "another scene passes");
 }
 
+/// A kind of the caller's: grass, whose text is composed in the browser, is that which is drawn natively.
+#[test]
+fn a_kind_of_the_callers_in_the_browser_equals_the_native_one() {
+    let gpu = gpu();
+    let drawn = async { World::meadow(&gpu).await?.draw(&gpu).await };
+    let (native, browser) = (reduced(driven(&gpu, drawn).expect("drawn")), picture("kind"));
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("web-scene");
+    std::fs::create_dir_all(&folder).expect("writable");
+    for (name, picture) in [("kind-native", &native), ("kind-browser", &browser)] {
+        picture.save(folder.join(format!("{name}.png"))).expect("writable");
+    }
+    let difference = Difference::of(&browser, &native, TOLERANCE.levels);
+    let beyond = foreign(&browser, &native, TOLERANCE.levels);
+    println!("{difference:?}, {beyond} foreign; see {}", folder.display());
+    assert!(difference.within(TOLERANCE), "{difference:?}; see {}", folder.display());
+    assert!(beyond <= FOREIGN, "{beyond} foreign; see {}", folder.display());
+    // Another scene is refused.
+    assert!(
+        !Difference::of(&picture("day"), &native, TOLERANCE.levels).within(TOLERANCE),
+        "another scene passes"
+    );
+}
+
 /// Levels that were made beforehand are those that the browser would make.
 #[test]
 fn meshes_are_simplified_alike_in_the_browser() {

@@ -1,5 +1,8 @@
-//! A small scene and a picture of it: a patch of terrain, three walking creatures that stand on it, and a relief wall.
-//! The page and the native test draw it with this code.
+//! A small scene and a picture of it: a patch of terrain, three walking creatures that stand on it, and a relief wall; and another
+//! with a kind of object that the library does not know. The page and the native test draw them with this code.
+
+#[path = "../../../../../../examples/kind/grass.rs"]
+mod grass;
 
 use std::path::Path;
 
@@ -55,6 +58,27 @@ impl World {
         }
         let focus = ground(&scene, 15.0, 17.0).world().as_vec3() + Vec3::Y * 2.0;
         let position = focus + Vec3::new(-4.0, 4.0, 13.0);
+        Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
+    }
+
+    /// Builds a meadow: grass, a kind of the caller's, on a patch of terrain.
+    pub async fn meadow(gpu: &Gpu) -> Result<Self, Error> {
+        let mut scene = Scene::new_async(gpu).await?;
+        let config = Config::new(33, 4.0, "browser")?;
+        let land = scene.add_terrain_async(&TerrainSource::new(config)).await?;
+        let meadow = scene.add_kind(grass::Grass::new(gpu, 24)?, 36)?;
+        let ground = |x: f64, z: f64| {
+            let found = scene.ground(land, x, z).ok().flatten();
+            glam::DVec3::new(x, found.map_or(0.0, |point| point.height), z)
+        };
+        let places: Vec<_> = (0..36)
+            .map(|at| ground(12.0 + 1.6 * f64::from(at % 6), 12.0 + 1.6 * f64::from(at / 6)))
+            .collect();
+        let focus = ground(16.0, 17.0).as_vec3() + 0.5 * Vec3::Y;
+        for (at, place) in places.into_iter().enumerate() {
+            scene.spawn(meadow, Placement::at_world(place).turned(at as f32).scaled(3.0))?;
+        }
+        let position = focus + Vec3::new(-1.0, 3.0, 9.0);
         Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
     }
 
