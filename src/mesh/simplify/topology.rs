@@ -208,6 +208,17 @@ impl Topology {
         &self.rings[self.spans[point as usize].range()]
     }
 
+    /// The two neighbours of a point on a border that lie on that border.
+    pub(crate) fn along_border(&self, point: u32) -> Option<[u32; 2]> {
+        if self.kind(point) != Kind::Border {
+            return None;
+        }
+        let ring = self.ring(point);
+        let [first, _] = ring.iter().find(|[next, _]| ring.iter().all(|[_, last]| last != next))?;
+        let [_, last] = ring.iter().find(|[_, last]| ring.iter().all(|[next, _]| next != last))?;
+        Some([*first, *last])
+    }
+
     /// The numbers of the triangles of a point, if they matter.
     pub(crate) fn around(&self, point: u32) -> &[u32] {
         self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()
