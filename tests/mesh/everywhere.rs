@@ -5,7 +5,7 @@ use crate::alike::{hashes, reduced};
 /// Known answers; a change of these is a change of every level that anybody has stored.
 const KNOWN: [&str; 4] = [
     "9b9f232afa39563f2e6cbc136ac8219866cb6246426633230b792f075bb66919",
-    "a1b56002a5d7ffb9b44a434d23cf9bfd30217e5adb305fb56eddc89c5a130fd2",
+    "47c7289c8b6ddc1261ea57602ab80649dc1d9fc91cd6695b20828399ea533652",
     "2d489b76e21f2801bf17b7cc6e22902870551d3949ef0e4b0b7481a8a8702aca",
     "9ac3532a09de83eb94aa891d20b76c61258b5e44d36fa3156958809a28d0be36",
 ];

@@ -33,9 +33,9 @@ fn is_flat(square: f64, [first, second]: [DVec3; 2]) -> bool {
 const LEAST: f64 = 0.0625;
 
 /// The square of the largest distance of a point from the planes of its triangles after a collapse, and from the border if it
-/// is on one, in any pose. `None` if the collapse turns a triangle by more than 75°, or takes its area away, in any pose. Triangles that have no area before
-/// may turn. The search begins with the triangle number `first` of the point, and leaves there the one that turns: what turns
-/// for one neighbour mostly does for the next.
+/// is on one, in any pose. `None` if the collapse turns a triangle by more than 75°, or takes its area away, in any pose.
+/// Triangles that have no area before may turn. The search begins with the triangle number `first` of the point, and sets
+/// `first` to the triangle that turns: that one mostly turns for the next neighbour as well.
 pub(crate) fn deviation(
     topology: &Topology,
     points: &Points,
@@ -43,13 +43,10 @@ pub(crate) fn deviation(
     first: &mut usize,
 ) -> Option<f64> {
     let mut worst = 0.0_f64;
-    let body = points.common_body(&[point, neighbor]);
-    let is_rigid = topology.ring(point).iter().all(|others| points.common_body(others) == body);
-    let poses = if is_rigid { points.poses_between(body, body) } else { points.poses() };
     // The neighbour to which the new edge of the border leads.
     let border =
         topology.along_border(point).map(|[first, last]| if first == neighbor { last } else { first });
-    for pose in 0..poses {
+    for pose in 0..topology.poses_around(points, [point, neighbor]) {
         let (from, to) = (points.position(point, pose), points.position(neighbor, pose));
         let moved = from - to;
         if let Some(end) = border {
