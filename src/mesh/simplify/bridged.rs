@@ -51,7 +51,7 @@ mod tests {
     use super::super::turned::deviation;
     use super::*;
 
-    /// Four triangles around a point at the bottom of a valley; its two ends are as deep as `depth`.
+    /// Four triangles around a point at the bottom of a valley, whose two ends lie `depth` lower.
     #[test]
     fn edges_across_a_valley_are_off_by_their_middle() {
         let valley = |depth: f32| {
