@@ -263,10 +263,10 @@ fn compare_level(
 ) -> Result<([f64; 2], Vec<u32>), Box<dyn Error>> {
     let Task { mesh, suffix, .. } = task;
     let target = mesh.triangles() * percent / 100;
-    // Either may stop early, where nothing more is legal.
+    // Either may stop early, where nothing more is legal, or late, where a whole part vanishes: both get the same number.
     let reached = theirs(task, target)?.len() / 3;
     let reached = ours(task, reached)?.len() / 3;
-    let target = if reached > target + 2 { reached } else { target };
+    let target = if reached.abs_diff(target) > 2 { reached } else { target };
     let both: [Simplify; 2] = [ours, theirs];
     let (mut times, mut levels) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
     for round in 0..asked.rounds() {

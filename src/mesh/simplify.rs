@@ -45,6 +45,7 @@
 //! Quadrics take 88 bytes per point and pose.
 
 mod attributes;
+mod bridged;
 mod marks;
 mod melax;
 mod neighbors;
@@ -84,11 +85,12 @@ pub struct Surface<'a> {
 pub enum Cost {
     /// The root mean square distance from the planes of all triangles that were merged into the point, weighted by the
     /// square root of area so that details count (Garland and Heckbert, "Surface Simplification Using Quadric Error
-    /// Metrics", SIGGRAPH 1997); or a quarter of the point's own distance from the planes of its triangles after the
-    /// collapse, whichever is larger, since a mean hides a single spot. Planes perpendicular to borders and seams hold
-    /// these in place (their section 6). Attributes add a cost of their own, separately for each wedge (Hoppe, "New
-    /// Quadric Metric for Simplifying Meshes with Appearance Attributes", Visualization 1999); beside them, the point's
-    /// own distance counts by 0.6, always.
+    /// Metrics", SIGGRAPH 1997); or 0.35 of the point's own distance from the planes of its triangles after the collapse,
+    /// whichever is larger, since a mean hides a single spot. On a border, the distance from the border's new edge counts
+    /// as well. Planes perpendicular to borders and seams hold these in place (their section 6). Attributes add a cost of
+    /// their own, separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance Attributes",
+    /// Visualization 1999). The larger of two distances is added to it: 0.63 of the point's own distance, and 1.26 of the
+    /// distance between the middle of a new edge and the triangles before.
     #[default]
     Quadric,
     /// The length of the edge times a measure of how far the normals of the point's triangles turn from those

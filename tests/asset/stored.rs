@@ -1,11 +1,16 @@
 //! Models stored with serde, and read again.
 
+use glam::Vec3;
 use image::{Rgba, RgbaImage};
 use relievo::asset::material::{Alpha, Sampling, Texture};
 use relievo::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
 use relievo::asset::{Interpolation, Material, Model};
+use relievo::gpu::Gpu;
+use relievo::render::{Layer, Offscreen, Renderer};
+use relievo::scene::{Camera, Placement, Play, Quality, Scene};
 use relievo::skinning::{Blend, InstanceLod, add_levels};
 use relievo_lab::portrait::{Portrait, PosedModel};
+use relievo_testing::gpu;
 use serde_json::{Value, json};
 
 /// The creature with levels of detail, a morph target, and a material with an image.
@@ -47,6 +52,44 @@ fn models_are_read_back_to_the_bit_with_levels_and_images() {
     let text = serde_json::to_string(&model).expect("stored");
     let again: Model = serde_json::from_str(&text).expect("read");
     assert!(postcard::to_allocvec(&again).expect("stored") == bytes);
+}
+
+/// Four characters in a row, each three times as far away as the one before, where up to 4 pixels of error are allowed.
+fn scene(gpu: &Gpu, model: &Model) -> RgbaImage {
+    let mut scene = Scene::new(gpu).expect("compiled");
+    let crowd = scene.add_character(model, 4).expect("added");
+    for (at, away) in [3.0, 9.0, 27.0, 81.0].into_iter().enumerate() {
+        let place = [0.25 * away * (at as f64 - 1.5), 0.0, -away];
+        let walker = scene.spawn(crowd, Placement::at_world(place)).expect("room");
+        scene.play(walker, &Play { start: -0.2 * at as f64, ..Play::new("0") }).expect("a clip");
+    }
+    let target = Offscreen::new(gpu, [160, 90], true, 1, false).expect("a target");
+    let mut renderer = Renderer::new(gpu, target.format()).expect("compiled");
+    renderer.prepare(&scene).expect("compiled");
+    let mut view = scene.view(Quality { pixels: 4.0 }).expect("a view");
+    let (eye, focus) = (Vec3::new(0.0, 1.5, 0.0), Vec3::new(0.0, 0.5, -10.0));
+    view.set(Camera::looking_at(eye, focus, 0.8, [0.1, 200.0], target.size())).expect("a camera");
+    let mut encoder = gpu.encoder("frame");
+    scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+    let draw =
+        target.record(&mut encoder, [0.4, 0.6, 0.8], |pass| renderer.draw(pass, &scene, &view, Layer::Color));
+    draw.expect("drawn");
+    gpu.queue().submit([encoder.finish()]);
+    target.read(gpu).expect("read")
+}
+
+#[test]
+fn scenes_of_restored_models_are_those_of_the_originals() {
+    let (gpu, model) = (gpu(), model());
+    let bytes = postcard::to_allocvec(&model).expect("stored");
+    let again: Model = postcard::from_bytes(&bytes).expect("read");
+    let picture = scene(&gpu, &model);
+    assert!(scene(&gpu, &again) == picture);
+    // The levels are seen.
+    let mut whole = model;
+    whole.meshes[0].levels.clear();
+    whole.meshes[0].partners.clear();
+    assert!(scene(&gpu, &whole) != picture);
 }
 
 /// A stored model with another value at a path of names and numbers.

@@ -8,9 +8,10 @@ use super::quadric::Quadric;
 use super::topology::{Kind, Topology};
 use super::turned::normal;
 
-/// How much more the planes across edges of borders count than those of triangles: a border has one triangle for an edge,
-/// and whatever lies behind shows what it lacks.
-const BORDER: f64 = 10.0;
+/// How much more the planes across edges of borders count than those of triangles: an edge has one triangle there, and two
+/// elsewhere. A single spot of a border that is off is seen by its distance from the border (`deviation`); with five times as
+/// much, models with many borders keep points on these that they need elsewhere.
+const BORDER: f64 = 2.0;
 
 /// As [`BORDER`], of each of the two triangles at an edge of a seam. The surface goes on there: a seam only holds its way.
 /// With more of it, models of many hard-edged parts are further off.

@@ -208,6 +208,26 @@ impl Topology {
         &self.rings[self.spans[point as usize].range()]
     }
 
+    /// Number of poses, from the first on, that show all distances between the triangles of the first point, before and after
+    /// it collapses into the second.
+    #[inline]
+    pub(crate) fn poses_around(&self, points: &Points, both: [u32; 2]) -> usize {
+        let body = points.common_body(&both);
+        let is_rigid = self.ring(both[0]).iter().all(|others| points.common_body(others) == body);
+        if is_rigid { points.poses_between(body, body) } else { points.poses() }
+    }
+
+    /// The two neighbours of a point on a border that lie on that border.
+    pub(crate) fn along_border(&self, point: u32) -> Option<[u32; 2]> {
+        if self.kind(point) != Kind::Border {
+            return None;
+        }
+        let ring = self.ring(point);
+        let [first, _] = ring.iter().find(|[next, _]| ring.iter().all(|[_, last]| last != next))?;
+        let [_, last] = ring.iter().find(|[_, last]| ring.iter().all(|[next, _]| next != last))?;
+        Some([*first, *last])
+    }
+
     /// The numbers of the triangles of a point, if they matter.
     pub(crate) fn around(&self, point: u32) -> &[u32] {
         self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()

@@ -32,10 +32,10 @@ fn is_flat(square: f64, [first, second]: [DVec3; 2]) -> bool {
 /// to 90° no triangle would turn around at once, but several collapses in a row could turn one.
 const LEAST: f64 = 0.0625;
 
-/// The square of the largest distance of a point from the planes of its triangles after a collapse, in any pose. `None` if
-/// the collapse turns a triangle by more than 75°, or takes its area away, in any pose. Triangles that have no area before
-/// may turn. The search begins with the triangle number `first` of the point, and leaves there the one that turns: what turns
-/// for one neighbour mostly does for the next.
+/// The square of the largest distance of a point from the planes of its triangles after a collapse, and from the border if it
+/// is on one, in any pose. `None` if the collapse turns a triangle by more than 75°, or takes its area away, in any pose.
+/// Triangles that have no area before may turn. The search begins with the triangle number `first` of the point, and sets
+/// `first` to the triangle that turns: that one mostly turns for the next neighbour as well.
 pub(crate) fn deviation(
     topology: &Topology,
     points: &Points,
@@ -43,12 +43,15 @@ pub(crate) fn deviation(
     first: &mut usize,
 ) -> Option<f64> {
     let mut worst = 0.0_f64;
-    let body = points.common_body(&[point, neighbor]);
-    let is_rigid = topology.ring(point).iter().all(|others| points.common_body(others) == body);
-    let poses = if is_rigid { points.poses_between(body, body) } else { points.poses() };
-    for pose in 0..poses {
+    // The neighbour to which the new edge of the border leads.
+    let border =
+        topology.along_border(point).map(|[first, last]| if first == neighbor { last } else { first });
+    for pose in 0..topology.poses_around(points, [point, neighbor]) {
         let (from, to) = (points.position(point, pose), points.position(neighbor, pose));
         let moved = from - to;
+        if let Some(end) = border {
+            worst = worst.max(square_from_segment(from, [to, points.position(end, pose)]));
+        }
         let ring = topology.ring(point);
         let start = (*first).min(ring.len());
         for at in (start..ring.len()).chain(0..start) {
@@ -76,4 +79,41 @@ pub(crate) fn deviation(
         }
     }
     Some(worst)
+}
+
+/// The square of the distance of a place from a segment.
+fn square_from_segment(from: DVec3, [start, end]: [DVec3; 2]) -> f64 {
+    let (edge, to) = (end - start, from - start);
+    let square = edge.length_squared();
+    let along = if square > 0.0 { (to.dot(edge) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (to - edge * along).length_squared()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A flat fan around a point on a border: the planes do not see that the border moves.
+    #[test]
+    fn points_on_borders_are_off_by_their_distance_from_the_border() {
+        let at = |x: f32, y: f32| [x, y, 0.0];
+        let corners = |notch: f32| {
+            vec![at(0.0, notch), at(-2.0, 0.0), at(-1.0, -1.0), at(1.0, -1.0), at(2.0, 0.0), at(0.0, -3.0)]
+        };
+        let indices = [0, 1, 2, 0, 2, 3, 0, 3, 4, 2, 5, 3];
+        let off = |poses: &[Vec<[f32; 3]>], neighbor: u32| {
+            let points = Points::new(poses);
+            let topology = Topology::new(&points, &indices, false);
+            assert_eq!(topology.along_border(0), Some([1, 4]));
+            assert_eq!(topology.along_border(2).map(|ends| ends.contains(&1)), Some(true));
+            deviation(&topology, &points, [0, neighbor], &mut 0).map(|square| square.sqrt() / points.scale())
+        };
+        for (notch, neighbor) in [(0.0, 1), (0.25, 4), (-0.25, 1), (-0.25, 4)] {
+            let found = off(&[corners(notch)], neighbor);
+            assert!(found.is_some_and(|off| (off - f64::from(notch.abs())).abs() < 1e-9), "{found:?}");
+        }
+        // The worst of several poses.
+        let found = off(&[corners(0.0), corners(-0.125)], 1);
+        assert!(found.is_some_and(|off| (off - 0.125).abs() < 1e-9), "{found:?}");
+    }
 }
