@@ -76,7 +76,7 @@ mod shaders {
     fn write_core(root: &Path, out: &Path, manifest: &mut String) {
         let files = output_files(root);
         let (outputs, _) = outputs(&files, root, true);
-        let outputs: Vec<_> = outputs.iter().map(|output| (output.name, output.moves)).collect();
+        let outputs: Vec<_> = outputs.iter().map(|output| (&*output.name, output.moves)).collect();
         let file = root.join(CORE);
         let core = flatten(root, &file, Keep::All, wesl::ManglerKind::None);
         let kind = KindText { name: "least", discards: true, blends: true, deep: true, moves: false };
@@ -142,17 +142,13 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
     }
 
     /// The outputs of all kinds, and the imports of what their entry points use.
-    fn outputs<'a>(
-        files: &'a [(PathBuf, String)],
-        root: &Path,
-        blends: bool,
-    ) -> (Vec<OutputText<'a>>, String) {
+    fn outputs(files: &[(PathBuf, String)], root: &Path, blends: bool) -> (Vec<OutputText>, String) {
         let (mut all, mut imports) = (Vec::new(), String::new());
         for (file, text) in files {
             let relative = file.strip_prefix(root).expect("below the root");
             let outputs = OutputText::declared(text).unwrap_or_else(|why| refuse(relative, &why));
             for output in outputs.into_iter().filter(|output| blends || output.name != "transparent") {
-                let (targets, name) = (output.targets(), output.name);
+                let (targets, name) = (output.targets(), &output.name);
                 writeln!(imports, "import {}::{{{targets}, {name}_write}};", module_path(relative))
                     .expect("a string");
                 all.push(output);

@@ -45,26 +45,43 @@ impl<'a> KindText<'a> {
 }
 
 /// An output of surfaces. `depth`, which needs no surface of parts that are drawn whole, is generated beside these.
-#[derive(Debug, Clone, Copy)]
-pub struct OutputText<'a> {
-    /// What the names of its exports begin with, and the name of its entry point.
-    pub name: &'a str,
-    /// The text that declares them.
-    pub text: &'a str,
+#[derive(Debug, Clone)]
+pub struct OutputText {
+    /// What the names of its exports begin with.
+    pub name: String,
+    /// What the names of its entry points begin with.
+    pub entry: String,
+    /// The declarations of the colours in the struct of its targets, in order: attribute, name and type.
+    pub members: Vec<String>,
     /// Whether it needs `Surface.last_position`.
     pub moves: bool,
 }
 
-impl<'a> OutputText<'a> {
+impl OutputText {
+    /// An output of the crate's, whose targets a text declares.
+    pub fn new(name: &str, text: &str, moves: bool) -> Self {
+        let head = format!("struct {} {{", targets_of(name));
+        let (_, rest) = text.split_once(&head).expect("an output declares its targets");
+        let body = rest.split_once('}').map_or(rest, |(body, _)| body);
+        let members = body.split(',').filter_map(|text| Some(text[text.find('@')?..].trim_end().to_owned()));
+        Self { name: name.to_owned(), entry: name.to_owned(), members: members.collect(), moves }
+    }
+
+    #[allow(dead_code)] // build.rs has none
+    /// An output of the caller's. Its entry points have names of their own, so that it may be called as one of the crate's.
+    pub fn own(name: &str, members: Vec<String>, moves: bool) -> Self {
+        Self { name: name.to_owned(), entry: format!("own_{name}"), members, moves }
+    }
+
     /// The outputs that a text declares, with lines such as `// output velocity: moves`.
     ///
     /// # Errors
     /// The word that is no property of an output.
-    pub fn declared(text: &'a str) -> Result<Vec<Self>, String> {
+    pub fn declared(text: &str) -> Result<Vec<Self>, String> {
         let lines = text.lines().filter_map(|line| line.strip_prefix("// output "));
-        let output = |line: &'a str| match line.split_once(": ") {
-            None => Ok(Self { name: line, text, moves: false }),
-            Some((name, "moves")) => Ok(Self { name, text, moves: true }),
+        let output = |line: &str| match line.split_once(": ") {
+            None => Ok(Self::new(line, text, false)),
+            Some((name, "moves")) => Ok(Self::new(name, text, true)),
             Some((name, other)) => Err(format!("// output {name}: `{other}` is not moves")),
         };
         lines.map(output).collect()
@@ -72,25 +89,23 @@ impl<'a> OutputText<'a> {
 
     /// The struct of its targets.
     pub fn targets(&self) -> String {
-        let (first, rest) = self.name.split_at(1);
-        format!("{}{rest}Targets", first.to_uppercase())
+        targets_of(&self.name)
     }
 
-    /// The members of that struct: name, and declaration.
-    pub fn members(&self) -> Vec<(&str, &str)> {
-        let head = format!("struct {} {{", self.targets());
-        let (_, rest) = self.text.split_once(&head).expect("an output declares its targets");
-        let body = rest.split_once('}').map_or(rest, |(body, _)| body);
-        let declared = body.split(',').filter_map(|text| Some(text[text.find('@')?..].trim_end()));
-        let named =
-            declared.filter_map(|text| Some((text.split_once(':')?.0.split_whitespace().last()?, text)));
-        named.collect()
+    /// The names of the members of that struct.
+    fn member_names(&self) -> impl Iterator<Item = &str> {
+        self.members.iter().filter_map(|member| member.split(':').next()?.split_whitespace().last())
     }
 }
 
+/// The struct of an output's targets: `UvTargets` of `uv`.
+pub fn targets_of(name: &str) -> String {
+    let (first, rest) = name.split_at(1);
+    format!("{}{rest}Targets", first.to_uppercase())
+}
+
 /// The name of the fragment entry of an output: for parts that discard, and for those that write their own depth.
-/// `src/render/renderer/programs.rs` knows it.
-fn fragment_entry(output: &str, discards: bool, deep: bool) -> String {
+pub fn fragment_entry(output: &str, discards: bool, deep: bool) -> String {
     format!("{output}{}{}", if discards { "_cut" } else { "" }, if deep { "_deep" } else { "" })
 }
 
@@ -102,14 +117,14 @@ pub fn exports(kind: &KindText<'_>) -> [String; 3] {
 /// What a caller's kind stands beside: `core`, the flat text of everything that entry points use, with the entry points of the
 /// outputs that it has. All names but the caller's have the prefix of the crate.
 pub fn composed(kind: &KindText<'_>, core: &str, outputs: &[(&str, bool)]) -> String {
-    let outputs: Vec<_> =
-        outputs.iter().map(|(name, moves)| OutputText { name, text: core, moves: *moves }).collect();
-    super::prefix::prefixed(&format!("{core}\n{}", entries(kind, &outputs)))
+    let output = |(name, moves): &(&str, bool)| OutputText::new(name, core, *moves);
+    let outputs: Vec<_> = outputs.iter().map(output).collect();
+    super::prefix::prefixed_with(&super::prefix::prefixed(core), &entries(kind, &outputs), &exports(kind))
 }
 
 /// The entry points of a kind: `vertex`, `vertex_moving` with the last position, `vertex_depth` with the position alone, and
 /// the fragment entries of `depth` and of each output.
-pub fn entries(kind: &KindText<'_>, outputs: &[OutputText<'_>]) -> String {
+pub fn entries(kind: &KindText<'_>, outputs: &[OutputText]) -> String {
     let name = kind.name;
     let mut text = String::new();
     for (varyings, entry, moves) in [("Varyings", "vertex", false), ("MovingVaryings", "vertex_moving", true)]
@@ -176,7 +191,7 @@ fn depth() {{}}
 }
 
 /// The fragment entries of an output, for every part that a kind may have.
-pub fn fragments(kind: &KindText<'_>, output: &OutputText<'_>) -> String {
+pub fn fragments(kind: &KindText<'_>, output: &OutputText) -> String {
     let mut text = String::new();
     for deep in [false, true].into_iter().filter(|deep| kind.deep || !deep) {
         for discards in [false, true].into_iter().filter(|discards| kind.discards || !discards) {
@@ -187,8 +202,8 @@ pub fn fragments(kind: &KindText<'_>, output: &OutputText<'_>) -> String {
 }
 
 /// A fragment entry of an output.
-fn fragment(kind: &KindText<'_>, output: &OutputText<'_>, discards: bool, deep: bool) -> String {
-    let entry = fragment_entry(output.name, discards, deep);
+fn fragment(kind: &KindText<'_>, output: &OutputText, discards: bool, deep: bool) -> String {
+    let entry = fragment_entry(&output.entry, discards, deep);
     let (seen, discard) = (seen(kind.name, output.moves), if discards { DISCARD } else { "" });
     let (targets, varyings) = (output.targets(), if output.moves { "MovingVaryings" } else { "Varyings" });
     let write = format!("{}_write(surface)", output.name);
@@ -198,14 +213,12 @@ fn fragment(kind: &KindText<'_>, output: &OutputText<'_>, discards: bool, deep: 
             "@fragment\nfn {entry}({arguments}) -> {targets} {{\n{seen}    let targets = {write};\n{discard}    return targets;\n}}\n\n"
         );
     }
-    let members = output.members();
-    let declared: String = members.iter().map(|(_, member)| format!("    {member},\n")).collect();
-    let values: String = members.iter().map(|(member, _)| format!("targets.{member}, ")).collect();
-    let structure = if discards { "Cut" } else { "" };
+    let declared: String = output.members.iter().map(|member| format!("    {member},\n")).collect();
+    let values: String = output.member_names().map(|member| format!("targets.{member}, ")).collect();
     format!(
-        "struct {targets}Deep{structure} {{\n{declared}    @builtin(frag_depth) depth: f32,\n}}\n\n\
-         @fragment\nfn {entry}({arguments}) -> {targets}Deep{structure} {{\n{seen}    let targets = {write};\n{discard}    \
-         return {targets}Deep{structure}({values}surface.depth);\n}}\n\n"
+        "struct {entry}_targets {{\n{declared}    @builtin(frag_depth) depth: f32,\n}}\n\n\
+         @fragment\nfn {entry}({arguments}) -> {entry}_targets {{\n{seen}    let targets = {write};\n{discard}    \
+         return {entry}_targets({values}surface.depth);\n}}\n\n"
     )
 }
 

@@ -20,11 +20,17 @@ pub fn prefixed(flat: &str) -> String {
     renamed(&text, &names.collect())
 }
 
-/// What stands behind a text that was prefixed, written with the names that it had before, with the prefix too.
-#[allow(dead_code)] // build.rs writes no such text
-pub fn prefixed_behind(prefixed: &str, more: &str) -> String {
+/// A text that was prefixed, with more before the function that may be replaced: written with the names that the text had
+/// before, which get the prefix too, but for names that stay as they are.
+pub fn prefixed_with(prefixed: &str, more: &str, kept: &[String]) -> String {
+    let (ours, replaced) = prefixed.split_at(prefixed.rfind(REPLACED).unwrap_or(prefixed.len()));
+    format!("{ours}\n{}\n{replaced}", prefixed_behind(prefixed, more, kept))
+}
+
+fn prefixed_behind(prefixed: &str, more: &str, kept: &[String]) -> String {
     let (before, own) = (declared(prefixed, &words(prefixed)), declared(more, &words(more)));
-    renamed(more, &before.into_iter().filter_map(|name| name.strip_prefix(PREFIX)).chain(own).collect())
+    let names = before.into_iter().filter_map(|name| name.strip_prefix(PREFIX)).chain(own);
+    renamed(more, &names.filter(|name| !kept.iter().any(|kept| kept == name)).collect())
 }
 
 /// The text with the prefix before these names, where they are no names of members.
@@ -70,12 +76,13 @@ struct Word {
 /// The words of a shader without comments.
 fn words(text: &str) -> Vec<Word> {
     let bytes = text.as_bytes();
-    let is_part = |at: usize| bytes.get(at).is_some_and(|c| c.is_ascii_alphanumeric() || *c == b'_');
+    let is_part =
+        |at: usize| bytes.get(at).is_some_and(|c| c.is_ascii_alphanumeric() || *c == b'_' || !c.is_ascii());
     let (mut words, mut depth, mut at, mut last) = (Vec::new(), 0_usize, 0, b' ');
     let (mut in_struct, mut attribute) = (false, false);
     while at < bytes.len() {
-        if text[at..].starts_with("//") {
-            at += text[at..].find('\n').unwrap_or(text.len() - at);
+        if bytes[at..].starts_with(b"//") {
+            at += bytes[at..].iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len() - at);
             continue;
         }
         let start = at;
@@ -96,7 +103,7 @@ fn words(text: &str) -> Vec<Word> {
         }
         let name = &text[start..at];
         in_struct |= name == "struct";
-        let is_member = in_struct && depth == 1 && text[at..].trim_start().starts_with(':');
+        let is_member = in_struct && depth == 1 && bytes[at..].trim_ascii_start().starts_with(b":");
         if !bytes[start].is_ascii_digit() {
             let is_local = matches!(last, b'.' | b'@') || attribute || is_member;
             words.push(Word { range: start..at, is_local, depth });

@@ -45,6 +45,9 @@ fn grass_last_position(entry: u32, vertex: u32) -> vec3<f32> {
 
 fn grass_surface(in: relievo_SceneFragment) -> Surface {
     var surface = relievo_scene_surface(in);
+    // Both sides of a blade are lit like the ground.
+    surface.normal = normalize(in.normal);
+    surface.geometric_normal = surface.normal;
     surface.color = mix(vec3<f32>(0.05, 0.12, 0.02), vec3<f32>(0.35, 0.55, 0.12), in.uv.y) * surface.tint.rgb;
     return surface;
 }

@@ -4,13 +4,13 @@ use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use crate::InputError;
-use crate::scene::caller_text::{CallerText, discard_in, without_comments};
-use crate::scene::program::entries::OutputText;
-use crate::scene::program::prefix::declarations;
-use crate::scene::program::{KindProgram, is_of, with_output};
+use crate::scene::caller_text::{CallerText, without_comments};
+use crate::scene::program::{KindProgram, with_output};
 use crate::scene::specialization::Program;
+use crate::scene::wgsl::entries::{OutputText, targets_of};
+use crate::scene::wgsl::prefix::declarations;
 
-/// What a target holds of each surface, from the caller's WGSL: for [`TargetFormat::of_output`](super::TargetFormat::of_output)
+/// Colours that a target stores for each surface, computed by the caller's WGSL: for [`TargetFormat::of_output`](super::TargetFormat::of_output)
 /// and [`Layer::Own`](super::Layer::Own). It works with every kind of object.
 ///
 /// # Examples
@@ -41,10 +41,11 @@ pub struct OutputProgram(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
-    name: String,
-    source: String,
-    moves: bool,
-    colors: usize,
+    output: OutputText,
+    /// Without comments.
+    code: String,
+    /// The names that the text declares.
+    declared: Vec<String>,
 }
 
 impl PartialEq for OutputProgram {
@@ -64,11 +65,10 @@ impl Hash for OutputProgram {
 impl OutputProgram {
     /// Checks a text. It needs no device, and compiles nothing.
     ///
-    /// `name` is what the names begin with that the text declares at module scope. For `uv` the text has a struct `UvTargets`,
-    /// whose members are the colours at `@location(0)` and so on, and a function `fn uv_write(surface: Surface) -> UvTargets`,
-    /// which must not discard. `Surface` is that of [`Renderer::with_shading`](super::Renderer::with_shading); its
-    /// `last_position` is that of the last frame if the text names it, which needs
-    /// [`Scene::keep_last_frame`](crate::scene::Scene::keep_last_frame). `relievo_view` is the view
+    /// `name` is the prefix of every name that the text declares. For `uv` the text has a struct `UvTargets`, whose members are the
+    /// colours at `@location(0)` and so on, and a function `fn uv_write(surface: Surface) -> UvTargets`, which must not discard.
+    /// `Surface` is that of [`Renderer::with_shading`](super::Renderer::with_shading). `surface.last_position` is filled only if the
+    /// text names it, which needs [`Scene::keep_last_frame`](crate::scene::Scene::keep_last_frame). `relievo_view` is the view
     /// (`clip_from_world`, `last_clip_from_world`, `eye`), and `relievo_lit(surface) -> vec4<f32>` the shaded colour. The text
     /// binds nothing.
     ///
@@ -82,30 +82,28 @@ impl OutputProgram {
             return Err(InputError::new("output.name", format!("`{name}`"), bound));
         }
         let code = without_comments(source);
-        let moves = code.contains("last_position");
-        let output = OutputText { name, text: &code, moves };
-        let (targets, writes) = (output.targets(), format!("{name}_write"));
-        let declared = declarations(&code);
-        let least = Program::Own(KindProgram::least()?);
-        let is_declared = |what: &str| declared.iter().any(|range| &code[range.clone()] == what);
-        let form = format!("must be `struct {targets}` and `fn {writes}(surface: Surface) -> {targets}`");
+        let (targets, writes) = (targets_of(name), format!("{name}_write"));
+        let declared: Vec<String> =
+            declarations(&code).into_iter().map(|range| code[range].to_owned()).collect();
         for what in [&targets, &writes] {
-            if !is_declared(what) {
+            if !declared.contains(what) {
                 let own = CallerText { path: "output", source, text: source };
+                let form =
+                    format!("must be `struct {targets}` and `fn {writes}(surface: Surface) -> {targets}`");
                 let error = own.refused(std::iter::empty(), form);
                 return Err(InputError { value: format!("no `{what}`"), ..error });
             }
         }
-        let text = with_output(least.text(), &least.kind(), source, &output);
+        let least = Program::Own(KindProgram::least()?);
+        // The least kind's parts write no depth of their own, so that members are not needed yet.
+        let mut generated = least.generated();
+        generated.kind.deep = false;
+        let moves = ["last_position", "velocity_write"].iter().any(|name| code.contains(name));
+        let text = with_output(&generated, &code, &OutputText::own(name, Vec::new(), moves));
         let own = CallerText { path: "output", source, text: &text };
-        for range in &declared {
-            if !is_of(name, &code[range.clone()]) {
-                let span = naga::Span::new(range.start as u32, range.end as u32);
-                let bound = format!("must begin with `{name}`, as every name that the text declares");
-                return Err(own.refused(std::iter::once(span), bound));
-            }
-        }
+        own.check_declarations(name)?;
         let module = own.parsed()?;
+        own.check(name, &module)?;
         own.validated(&module)?;
         for (handle, variable) in module.global_variables.iter() {
             let at = module.global_variables.get_span(handle);
@@ -113,36 +111,87 @@ impl OutputProgram {
                 return Err(own.refused(std::iter::once(at), "must not be bound".to_owned()));
             }
         }
-        for (handle, function) in module.functions.iter() {
-            let discard =
-                discard_in(&function.body).filter(|_| own.is_in(&module.functions.get_span(handle)));
-            if let Some(at) = discard {
-                return Err(own.refused(std::iter::once(at), "must not discard".to_owned()));
-            }
-        }
-        let colors = output.members().len();
-        Ok(Self(Arc::new(Inner { name: name.to_owned(), source: source.to_owned(), moves, colors })))
+        let output = OutputText::own(name, members(&own, &module, &targets)?, moves);
+        Ok(Self(Arc::new(Inner { output, code, declared })))
     }
 
     /// The name.
     pub fn name(&self) -> &str {
-        &self.0.name
+        &self.0.output.name
     }
 
     /// The number of colours that it writes, from the first on.
     pub fn colors(&self) -> usize {
-        self.0.colors
+        self.0.output.members.len()
     }
 
     /// Whether it needs the last frame.
     pub(crate) fn moves(&self) -> bool {
-        self.0.moves
+        self.0.output.moves
+    }
+
+    /// What the names of its entry points begin with.
+    pub(super) fn entry(&self) -> &str {
+        &self.0.output.entry
+    }
+
+    /// The names that the text declares.
+    pub(super) fn declared(&self) -> &[String] {
+        &self.0.declared
     }
 
     /// The shader of a kind with entry points for this output.
     pub(super) fn beside(&self, program: &Program) -> String {
-        let Inner { name, source, moves, .. } = &*self.0;
-        let output = OutputText { name, text: source, moves: *moves };
-        with_output(program.text(), &program.kind(), source, &output)
+        with_output(&program.generated(), &self.0.code, &self.0.output)
     }
+}
+
+/// The declarations of the members of the targets.
+fn members(own: &CallerText<'_>, module: &naga::Module, targets: &str) -> Result<Vec<String>, InputError> {
+    let mut found = module.types.iter().filter(|(_, ty)| ty.name.as_deref() == Some(targets));
+    let (handle, members) = match found.next() {
+        Some((handle, naga::Type { inner: naga::TypeInner::Struct { members, .. }, .. })) => {
+            (handle, members)
+        }
+        _ => return Err(own.refused(std::iter::empty(), format!("must have `struct {targets}`"))),
+    };
+    let mut declared = Vec::new();
+    for (at, member) in members.iter().enumerate() {
+        let name = member.name.as_deref().unwrap_or_default();
+        let place = match member.binding {
+            Some(naga::Binding::Location { location, .. }) => Some(location as usize),
+            _ => None,
+        };
+        let scalar = match module.types[member.ty].inner {
+            naga::TypeInner::Scalar(scalar) => Some((scalar, 1)),
+            naga::TypeInner::Vector { size, scalar } => Some((scalar, size as usize)),
+            _ => None,
+        };
+        let ty = scalar.and_then(|(scalar, size)| color_type(scalar.kind, size));
+        let (Some(ty), true) = (ty, place == Some(at)) else {
+            let bound =
+                format!("must be at `@location({at})`, the number of the member, and of numbers of 32 bits");
+            let error = own.refused(std::iter::once(module.types.get_span(handle)), bound);
+            return Err(InputError { value: format!("{targets}.{name}"), ..error });
+        };
+        declared.push(format!("@location({at}) {name}: {ty}"));
+    }
+    match declared.is_empty() {
+        true => {
+            let span = module.types.get_span(handle);
+            Err(own.refused(std::iter::once(span), "must have a colour".to_owned()))
+        }
+        false => Ok(declared),
+    }
+}
+
+/// The WGSL type of a colour with so many components.
+fn color_type(kind: naga::ScalarKind, size: usize) -> Option<String> {
+    let scalar = match kind {
+        naga::ScalarKind::Float => "f32",
+        naga::ScalarKind::Sint => "i32",
+        naga::ScalarKind::Uint => "u32",
+        _ => return None,
+    };
+    Some(if size == 1 { scalar.to_owned() } else { format!("vec{size}<{scalar}>") })
 }

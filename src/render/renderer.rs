@@ -127,6 +127,7 @@ impl Renderer {
     ) -> Result<(), Error> {
         let parts: Vec<&Specialization> =
             objects.flat_map(Drawable::parts).map(|part| part.specialization).collect();
+        parts.iter().try_for_each(|part| self.check_names(part))?;
         let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
             for part in parts.iter().filter(|part| is_in(part, layer)) {

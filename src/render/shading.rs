@@ -8,9 +8,10 @@ use crate::gpu::shaders::RENDER_SCENE_MESH;
 use crate::gpu::{Gpu, GpuError};
 use crate::render::format::TargetFormat;
 use crate::render::layer::Layer;
-use crate::scene::caller_text::{CallerText, discard_in};
+use crate::scene::caller_text::{CallerText, discard_in, without_comments};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::Program;
+use crate::scene::wgsl::prefix::declarations;
 use crate::{Error, InputError};
 
 /// Where the function begins that the caller's text replaces. It is the last one of each shader.
@@ -23,6 +24,8 @@ const OWN_GROUP: u32 = 3;
 #[derive(Debug, Clone)]
 pub(super) struct Shading {
     source: String,
+    /// The names that it declares.
+    declared: Vec<String>,
     /// The layout of bind group 3.
     pub layout: Option<wgpu::BindGroupLayout>,
 }
@@ -39,7 +42,14 @@ impl Shading {
         own.0.check_names()?;
         own.check(&module, layout.is_some())?;
         own.0.validated(&module)?;
-        Ok(Self { source: source.to_owned(), layout: layout.cloned() })
+        let code = without_comments(source);
+        let declared = declarations(&code).into_iter().map(|range| code[range].to_owned()).collect();
+        Ok(Self { source: source.to_owned(), declared, layout: layout.cloned() })
+    }
+
+    /// The names that the text declares.
+    pub fn declared(&self) -> &[String] {
+        &self.declared
     }
 
     /// The same text with another layout of bind group 3.
@@ -63,7 +73,7 @@ impl Shading {
             return Ok(());
         };
         for program in [Program::Mesh, Program::Relief, Program::Terrain] {
-            let groups = layouts.of(gpu, &program);
+            let groups = layouts.of(gpu, &program)?;
             let groups: Vec<_> = groups.iter().chain([own]).map(Some).collect();
             let compiled = gpu.scoped_with(|| self.compile(gpu, format, &groups));
             let compiled = compiled.map_err(|error| match error {
@@ -112,7 +122,7 @@ impl Shading {
 
     /// The text of a shader that shades as the caller does.
     pub fn text(&self, shader: &str) -> String {
-        let ours = shader.find(REPLACED).map_or(shader, |end| &shader[..end]);
+        let ours = shader.rfind(REPLACED).map_or(shader, |end| &shader[..end]);
         format!("{}\n{ours}", self.source)
     }
 }

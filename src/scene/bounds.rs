@@ -104,10 +104,12 @@ impl Scene {
 }
 
 impl Object {
-    /// The corners of a box around the bounding sphere of an instance that is not scaled.
+    /// The corners of a box around the bounding sphere of an instance.
     fn box_of_sphere(&self, index: u32, placed: DAffine3) -> [DVec3; 2] {
-        let [x, y, z, radius] = self.instances.all()[index as usize].bounding_sphere.map(f64::from);
+        let instance = &self.instances.all()[index as usize];
+        let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);
         let middle = placed.transform_point3(DVec3::new(x, y, z));
+        let radius = radius * f64::from(instance.largest_scale());
         [middle - radius, middle + radius]
     }
 }

@@ -7,6 +7,7 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Block, Module, Span, Statement};
 
 use crate::InputError;
+use crate::scene::wgsl::prefix::declarations;
 
 /// What the crate's names begin with beside the caller's text.
 pub(crate) const PREFIX: &str = "relievo_";
@@ -62,6 +63,74 @@ impl CallerText<'_> {
         InputError::new(format!("{}:{line}:{column}", self.path), value, bound)
     }
 
+    /// Checks a valid text of a kind or an output: its names begin with `name`, and it has no entry points, override constants,
+    /// discards or memory of workgroups.
+    ///
+    /// # Errors
+    /// [`InputError`] for the first mistake.
+    pub fn check(&self, name: &str, module: &Module) -> Result<(), InputError> {
+        let refuse = |at: Span, bound: &str| Err(self.refused(std::iter::once(at), bound.to_owned()));
+        if let Some(entry) = module.entry_points.iter().find(|entry| !entry.name.starts_with(PREFIX)) {
+            let at = self.source.find(&entry.name).unwrap_or(0);
+            return refuse(
+                span(at..at + entry.name.len()),
+                "must not be an entry point: these are generated",
+            );
+        }
+        self.check_declarations(name)?;
+        for (handle, _) in module.overrides.iter() {
+            let at = module.overrides.get_span(handle);
+            if self.is_in(&at) {
+                return refuse(at, "must not be an override constant");
+            }
+        }
+        for (handle, variable) in module.global_variables.iter() {
+            let at = module.global_variables.get_span(handle);
+            if self.is_in(&at) && variable.space == naga::AddressSpace::WorkGroup {
+                return refuse(at, "must not lie in workgroup memory, which these stages do not have");
+            }
+        }
+        for (handle, function) in module.functions.iter() {
+            if let Some(at) = discard_in(&function.body)
+                && self.is_in(&module.functions.get_span(handle))
+            {
+                return refuse(
+                    at,
+                    "must not discard: parts that are cut out leave out pixels (KindPart::cut_out)",
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that every name that the text declares begins with `name`, and has more letters: `grass_bend`, `GRASS_HEIGHT`,
+    /// `GrassBlade`. A text for several shaders has no directives.
+    ///
+    /// # Errors
+    /// [`InputError`] for the first mistake.
+    pub fn check_declarations(&self, name: &str) -> Result<(), InputError> {
+        let code = without_comments(self.source);
+        let plain = |text: &str| text.replace('_', "").to_lowercase();
+        for range in declarations(&code) {
+            let declared = &code[range.clone()];
+            let is_own =
+                plain(declared).len() > plain(name).len() && plain(declared).starts_with(&plain(name));
+            if !is_own || declared.starts_with(PREFIX) {
+                let bound = format!("must begin with `{name}`, as every name that the text declares");
+                return Err(self.refused(std::iter::once(span(range)), bound));
+            }
+        }
+        for directive in ["enable", "requires", "diagnostic"] {
+            let begins = code.trim_start().strip_prefix(directive);
+            if begins.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_')) {
+                let at = code.len() - code.trim_start().len();
+                let bound = "must not begin with a directive, since the text stands beside others";
+                return Err(self.refused(std::iter::once(span(at..at + directive.len())), bound.to_owned()));
+            }
+        }
+        Ok(())
+    }
+
     /// Names with the crate's prefix are the crate's. naga drops constants and aliases that nothing uses, so this reads the text.
     pub fn check_names(&self) -> Result<(), InputError> {
         let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
@@ -82,21 +151,28 @@ fn chain(error: &dyn std::error::Error) -> String {
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
-/// A valid text with spaces in the place of its comments: each byte stays where it is.
+fn span(range: std::ops::Range<usize>) -> Span {
+    Span::new(range.start as u32, range.end as u32)
+}
+
+/// A valid text with spaces in the place of its comments: each byte stays where it is, and each line.
 pub(crate) fn without_comments(source: &str) -> String {
     let (mut code, mut rest) = (String::with_capacity(source.len()), source);
     while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
         let (before, comment) = rest.split_at(at);
         let length = match comment.starts_with("//") {
-            true => comment.find('\n').unwrap_or(comment.len()),
+            true => comment.find(LINE_ENDS).unwrap_or(comment.len()),
             false => block_comment(comment),
         };
         code.push_str(before);
-        code.extend(std::iter::repeat_n(' ', length));
+        code.extend(comment[..length].bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }));
         rest = &comment[length..];
     }
     code + rest
 }
+
+/// What ends a line comment.
+const LINE_ENDS: &[char] = &['\n', '\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
 
 /// The length of the block comment with which a text begins. Such comments nest.
 fn block_comment(text: &str) -> usize {

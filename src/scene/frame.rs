@@ -118,7 +118,11 @@ impl Scene {
         let sent = self.upload()?;
         self.provide(views)?;
         self.fit(views)?;
-        self.stage(views)?;
+        if let Err(error) = self.stage(views) {
+            // Some changes were taken, which the next frame would miss.
+            self.is_broken = true;
+            return Err(error);
+        }
         let gpu = self.gpu.clone();
         self.uploaded = sent + self.staged.len();
         if !self.staging.record(&gpu, encoder, &mut self.staged)? {

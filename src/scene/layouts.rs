@@ -126,15 +126,18 @@ impl SceneLayouts {
     }
 
     /// The layouts of groups 0 to 2 of a program.
-    pub fn of(&self, gpu: &Gpu, program: &Program) -> [wgpu::BindGroupLayout; 3] {
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn of(&self, gpu: &Gpu, program: &Program) -> Result<[wgpu::BindGroupLayout; 3], GpuError> {
         let view = self.mesh.groups[0].clone();
         let [object, part] = match program {
             Program::Mesh => [self.mesh.groups[1].clone(), self.mesh.groups[2].clone()],
             Program::Relief => [self.mesh.groups[1].clone(), self.relief.groups[2].clone()],
             Program::Terrain => [self.terrain.groups[1].clone(), self.terrain.groups[2].clone()],
-            Program::Own(program) => [self.own_object.clone(), program.layout(gpu)],
+            Program::Own(program) => [self.own_object.clone(), program.layout(gpu)?],
         };
-        [view, object, part]
+        Ok([view, object, part])
     }
 }
 

@@ -59,6 +59,7 @@ pub(crate) mod terrain;
 mod uploads;
 mod view;
 mod watch;
+pub(crate) mod wgsl;
 
 pub use crate::lod::transition::Transition;
 pub use bounds::Bounds;

@@ -161,6 +161,17 @@ impl Scene {
         Ok(self.add(object.awaiting(pending)))
     }
 
+    /// As [`Scene::add_kind`], but completes once the device has told its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are any, nothing is added.
+    ///
+    /// # Errors
+    /// As [`Scene::add_kind`].
+    pub async fn add_kind_async(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
+        let (gpu, pending) = self.uploader();
+        let object = Object::own(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
+        self.add_checked(object.awaiting(pending)).await
+    }
+
     /// Adds an object, unless the device tells errors of it.
     async fn add_checked(&mut self, object: Object) -> Result<ObjectId, Error> {
         self.gpu.check_async().await?;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
 use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_TERRAIN};
 use crate::scene::options::TerrainStyle;
-use crate::scene::program::KindProgram;
-use crate::scene::program::entries::KindText;
+use crate::scene::program::{self, KindProgram};
+use crate::scene::wgsl::entries::KindText;
 use crate::surface::{Green, ReliefOptions, Shadow};
 
 /// The shader of a kind of object.
@@ -39,6 +39,16 @@ impl Program {
             Self::Terrain => of("terrain", false, false, false),
             Self::Own(program) => program.kind(),
         }
+    }
+
+    /// The shader with what an output needs to know of it.
+    pub fn generated(&self) -> program::Program<'_> {
+        program::Program { text: self.text(), kind: self.kind(), is_own: matches!(self, Self::Own(_)) }
+    }
+
+    /// The names that a caller's text declares.
+    pub fn declared(&self) -> &[String] {
+        if let Self::Own(program) = self { program.declared() } else { &[] }
     }
 
     /// The WGSL, which ends with the function `shade`.

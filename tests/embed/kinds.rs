@@ -615,6 +615,73 @@ fn parts_are_blended_cut_out_and_have_their_own_depth() {
     }
 }
 
+/// Names that the crate has too are the caller's own in a kind and in an output.
+#[test]
+fn names_of_the_crate_are_free() {
+    let gpu = device();
+    let text = "
+        fn scene_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
+            let at = vec2<f32>(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
+            return relievo_scene_placed(
+                entry, vec3<f32>(at, 0.0), vec3<f32>(0.0, 0.0, 1.0), vec4<f32>(1.0, 0.0, 0.0, 1.0), vec4<f32>());
+        }
+        fn scene_surface(in: relievo_SceneFragment) -> Surface {
+            var surface = relievo_scene_surface(in);
+            surface.alpha = 0.5;
+            return surface;
+        }";
+    let format = relievo::wgpu::TextureFormat::Rgba32Float;
+    for (kind, output) in [("scene", "color"), ("triangle", "mesh"), ("mesh", "depth"), ("grass", "vertex")] {
+        let mut scene = Scene::new(&gpu).expect("compiled");
+        for sample in &SAMPLES {
+            let object = (sample.add)(&gpu, &mut scene);
+            scene.show(object, false).expect("there");
+        }
+        let program =
+            relievo::scene::kind::KindProgram::new(kind, &text.replace(" scene_", &format!(" {kind}_")));
+        let card = mistakes::Card::new(&gpu, &program.expect("valid"), |part| part);
+        let card = scene.add_kind(card, 1).expect("added");
+        scene.spawn(card, Placement::default()).expect("room");
+        let mut view = scene.view(Quality::default()).expect("a view");
+        let eye = Camera::looking_at(Vec3::new(0.0, 0.0, 6.0), Vec3::ZERO, 0.7, [0.5, 60.0], SIZE);
+        view.set(eye).expect("a camera");
+        let upper = format!("{}{}", output[..1].to_uppercase(), &output[1..]);
+        let text = format!(
+            "struct {upper}Targets {{ @location(0) it: vec4<f32>, }}
+            fn {output}_write(surface: Surface) -> {upper}Targets {{
+                return {upper}Targets(vec4<f32>(surface.alpha, f32(surface.object), 0.0, 1.0));
+            }}"
+        );
+        let program = OutputProgram::new(output, &text).expect("valid");
+        let raw = Raw::new(&gpu, TargetFormat::of_output(&program, &[format]), SIZE);
+        let renderer = raw.renderer(&gpu, &scene);
+        raw.frame(&mut scene, &mut view, &renderer, &[Layer::Own]);
+        let middle = raw.floats(&gpu, 0)[(SIZE[0] * SIZE[1] / 2 + SIZE[0] / 2) as usize];
+        assert_eq!(middle, [0.5, card.number() as f32, 0.0, 1.0], "{kind} {output}");
+    }
+}
+
+/// The box of an instance holds what it draws, and is not far larger.
+#[test]
+fn bounds_hold_what_is_drawn() {
+    let gpu = device();
+    for sample in &SAMPLES {
+        let world = World::new(&gpu, sample);
+        for instance in &world.instances {
+            let corners = (sample.triangles)(&world.scene, *instance).into_iter().flatten();
+            let [low, high] = corners
+                .fold([DVec3::MAX, DVec3::MIN], |[low, high], corner| [low.min(corner), high.max(corner)]);
+            for bounds in [world.scene.bounds(*instance), world.scene.tight_bounds(*instance)] {
+                let [least, most] = bounds.expect("there").world();
+                let is_inside = least.cmple(low).all() && most.cmpge(high).all();
+                assert!(is_inside, "{}: {low} to {high} in {least} to {most}", sample.name);
+                let larger = (most - least).length() / (high - low).length();
+                assert!(larger < 4.0, "{}: {larger} times as large", sample.name);
+            }
+        }
+    }
+}
+
 /// On another device everything is as it was.
 #[test]
 fn kinds_outlive_a_device() {

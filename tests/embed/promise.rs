@@ -141,7 +141,7 @@ fn a_model_in_other_units_is_where_it_belongs() {
     check("armature", &levelled(Model::from_file(&path).expect("a model"), usize::MAX), measured());
 }
 
-/// The same for files of yours: `RELIEVO_MODELS=a.glb:b.glb cargo test --features verify --test embed promise -- --ignored`.
+/// The same for files of yours: `RELIEVO_MODELS=a.glb:b.glb cargo test --test embed promise -- --ignored`.
 #[test]
 #[ignore = "needs files"]
 fn models_are_where_they_belong() {

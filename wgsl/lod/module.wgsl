@@ -1,7 +1,9 @@
-// Level of detail in scenes: instances, objects and views as a scene keeps them on the device, and the displacement that a
-// camera allows. `build.rs` joins this file and what it imports into one text, for shaders that are not composed with
-// WESL: put that text before your own code.
+// Level of detail in scenes: instances, objects and views as a scene keeps them on the device, the displacement that a
+// camera allows, and the decision that follows from it. `build.rs` joins this file and what it imports into one text, for
+// shaders that are not composed with WESL: put that text before your own code.
 import package::wgsl::lod::instance::{Axes, SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::object::{LodObject, SceneDraw};
 import package::wgsl::lod::allowed::camera_allows;
 import package::wgsl::lod::view::{LodCamera, SelectView};
+import package::wgsl::lod::criterion::criterion_metric;
+import package::wgsl::lod::transition::transition_decision;

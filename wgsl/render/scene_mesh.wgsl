@@ -84,12 +84,11 @@ fn mesh_surface(in: SceneFragment) -> Surface {
         let texel = textureSample(albedo, filtering, in.uv.xy, select(material.layer, 0u, has_none));
         color *= select(texel, vec4<f32>(1.0), has_none);
     }
-    var outwards = surface.geometric_normal;
+    var outwards = normalize(in.normal);
     if NORMAL_MAPPED {
         outwards = bumpy_normal(in, material, outwards);
     }
     surface.normal = facing(outwards, in);
-    surface.geometric_normal = facing(surface.geometric_normal, in);
     surface.color = color.rgb;
     surface.alpha = color.a;
     let is_dithered = material.cutoff == CUTOFF_DITHERED;

@@ -28,6 +28,9 @@ use relievo_samples::creature;
 /// The program that README.md shows whole.
 const PROGRAM: &str = include_str!("../../../examples/first.rs");
 
+/// The document of callers' kinds and outputs.
+const KINDS: &str = "docs/kinds.md";
+
 /// A Markdown file of the repository, and its text.
 struct Document {
     path: String,
@@ -133,7 +136,9 @@ fn table(head: &str) -> Vec<Vec<&'static str>> {
 
 /// The lines of all code blocks in `language`, without comments.
 fn code(language: &str, comment: &str) -> Vec<&'static str> {
-    let blocks = DOCUMENTS.iter().flat_map(Document::blocks).filter(|[other, _]| *other == language);
+    // Texts of kinds and outputs stand by themselves.
+    let documents = DOCUMENTS.iter().filter(|document| document.path != KINDS);
+    let blocks = documents.flat_map(Document::blocks).filter(|[other, _]| *other == language);
     blocks
         .flat_map(|[_, code]| code.lines())
         .filter_map(|line| line.split(comment).next())
@@ -415,6 +420,16 @@ fn wgsl_is_compiled_as_it_stands_there() {
         gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("documents"), source });
     let error = pollster::block_on(scope.pop());
     assert!(error.is_none(), "{error:?}");
+}
+
+/// The texts of a kind and of an output are what the library takes.
+#[test]
+fn kinds_and_outputs_are_valid_as_they_stand_there() {
+    let texts: Vec<_> =
+        document(KINDS).blocks().into_iter().filter(|[language, _]| *language == "wgsl").collect();
+    let [[_, kind], [_, output]] = texts[..] else { panic!("{} texts", texts.len()) };
+    relievo::scene::kind::KindProgram::new("card", kind).expect("a kind");
+    assert_eq!(relievo::render::OutputProgram::new("uv", output).expect("an output").colors(), 1);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::render::layer::Layer;
 use crate::render::output::OutputProgram;
 use crate::scene::Scene;
 use crate::scene::drawable::{DrawnObject, DrawnView};
+use crate::scene::specialization::Specialization;
 
 /// What to do about an object for which pipelines are missing.
 const PREPARE: &str = "must be compiled for this renderer: call Renderer::prepare after an object or a SunShadow was added, and \
@@ -19,6 +20,24 @@ impl Renderer {
             true => Ok(()),
             false => Err(InputError::new("scene", "of another device", bound)),
         }
+    }
+
+    /// Whether the caller's texts declare names of their own each, which stand beside each other in a shader.
+    pub(super) fn check_names(&self, part: &Specialization) -> Result<(), InputError> {
+        let kind = ("the kind", part.program().declared());
+        let output = self.format.output().map(|output| ("the output", output.declared()));
+        let shading = self.shading.as_ref().map(|shading| ("the shading", shading.declared()));
+        let all: Vec<_> = [Some(kind), output, shading].into_iter().flatten().collect();
+        for (at, (one, names)) in all.iter().enumerate() {
+            for (other, others) in &all[at + 1..] {
+                if let Some(name) = names.iter().find(|name| others.contains(name)) {
+                    let bound = format!("must be declared by {one} or by {other}, and not by both");
+                    let path = format!("{}.name", part.program().name());
+                    return Err(InputError::new(path, format!("`{name}`"), bound));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Whether a layer of these objects can be drawn in a view.

@@ -10,6 +10,7 @@ use crate::render::shading::Shading;
 use crate::scene::caller_text::PREFIX;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::{OwnDepth, Program, Specialization};
+use crate::scene::wgsl::entries::fragment_entry;
 
 /// A pipeline of a renderer, as it is looked up: for a part in a layer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -45,12 +46,10 @@ impl PipelineKey {
         // Without a depth attachment no shader may write depth.
         let deep = own_depth && format.depth.is_some();
         let is_plain_depth = layer == Layer::Depth && !state.cut_out && !deep;
-        let [cut, deep] =
-            [(state.cut_out, "_cut"), (deep, "_deep")].map(|(is, end)| if is { end } else { "" });
         let own = format.output().filter(|_| layer == Layer::Own);
-        let name = own.map_or(layer.entry(), OutputProgram::name);
+        let entry = own.map_or(layer.entry(), OutputProgram::entry);
         let moves = own.map_or(layer == Layer::Velocity, OutputProgram::moves);
-        let entry = format!("{PREFIX}{name}{cut}{deep}");
+        let entry = format!("{PREFIX}{}", fragment_entry(entry, state.cut_out, deep));
         let vertex = match (is_plain_depth, moves) {
             (true, _) => "vertex_depth",
             (false, true) => "vertex_moving",
@@ -101,7 +100,7 @@ impl PipelineSource {
         shading: Option<&Shading>,
     ) -> Result<wgpu::RenderPipeline, GpuError> {
         let shading = shading.filter(|_| self.layer.is_shaded());
-        let groups = layouts.of(gpu, &self.program);
+        let groups = layouts.of(gpu, &self.program)?;
         let own = shading.and_then(|shading| shading.layout.as_ref());
         let groups: Vec<_> = groups.iter().chain(own).map(Some).collect();
         let text = match format.output().filter(|_| self.layer == Layer::Own) {

@@ -10,11 +10,11 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::Error;
 use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::mesh::ray::distance_to;
 pub use crate::scene::program::KindProgram;
 use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::{Error, InputError};
 pub(in crate::scene) use own::OwnKind;
 
 /// A kind of object: what the instances of one object share, on the host and on the device.
@@ -57,7 +57,8 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
     /// [`crate::gpu::GpuError`], and the kind's own. The scene stays as it was then.
     fn rebuild(&self, gpu: &Gpu) -> Result<Box<dyn Kind>, Error>;
 
-    /// Where a ray hits an instance first, for [`Scene::pick`](crate::scene::Scene::pick): by default the bounding sphere.
+    /// Where a ray hits an instance first, for [`Scene::pick`](crate::scene::Scene::pick). The default is the bounding sphere, from
+    /// outside.
     fn hit(&self, ray: &KindRay) -> Option<KindHit> {
         let sphere = self.bounding_sphere();
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
@@ -77,7 +78,7 @@ pub struct KindPart {
     pub group: wgpu::BindGroup,
     /// For each level of detail, the range of [`Kind::indices`] that is drawn; it may be empty.
     pub levels: Vec<Range<u32>>,
-    /// Whether pixels are left out whose `Surface.alpha` is below `Surface.cutoff`.
+    /// Whether pixels with `Surface.alpha` below `Surface.cutoff`, 0 unless it is set, are discarded.
     pub cut_out: bool,
     /// Whether it is drawn in [`Layer::Transparent`](crate::render::Layer::Transparent) alone, blended by `Surface.alpha`.
     pub blended: bool,
@@ -101,20 +102,37 @@ pub struct KindFrame {
     pub seconds: f64,
     /// The same in the last frame, for velocities.
     pub last_seconds: f64,
-    /// Whether nothing that was written before counts: in the first frame, and where the scene started afresh.
+    /// True if the kind must write everything again: in its first frame, after it grew, and after the scene started afresh
+    /// ([`Scene::refresh`](crate::scene::Scene::refresh), a dropped encoder, another device).
     pub is_fresh: bool,
 }
 
-/// Takes the writes of a kind for a frame. They happen before what the frame records, on the device's queue.
+/// Takes the writes of a kind for a frame. They are recorded at the start of the frame in its encoder: each frame sees its own
+/// values, also if several are submitted at once.
 #[derive(Debug)]
 pub struct KindUploads<'a>(pub(in crate::scene) &'a mut Staged);
 
 impl KindUploads<'_> {
-    /// Writes bytes into a buffer with the usage `COPY_DST`, from `offset` on. Offset and length are multiples of 4.
+    /// Writes bytes into a buffer with the usage `COPY_DST`, from `offset` on.
     ///
     /// # Errors
-    /// [`crate::gpu::GpuError`] for bytes that reach beyond the buffer's end.
+    /// [`InputError`] for a buffer without that usage, for an offset or a length that is no multiple of 4, and for bytes that reach
+    /// beyond the buffer's end.
     pub fn write(&mut self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) -> Result<(), Error> {
+        let length = bytes.len() as u64;
+        if !buffer.usage().contains(wgpu::BufferUsages::COPY_DST) {
+            let value = format!("{:?}", buffer.usage());
+            return Err(InputError::new("buffer.usage", value, "must have COPY_DST").into());
+        }
+        for (path, value) in [("offset", offset), ("bytes.len", length)] {
+            if !value.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT) {
+                return Err(InputError::new(path, value, "must be a multiple of 4").into());
+            }
+        }
+        if offset.checked_add(length).is_none_or(|end| end > buffer.size()) {
+            let bound = format!("must end within the {} bytes of the buffer", buffer.size());
+            return Err(InputError::new("bytes", format!("{length} bytes from {offset} on"), bound).into());
+        }
         Ok(self.0.bytes(buffer, offset, bytes)?)
     }
 }
@@ -124,7 +142,7 @@ impl KindUploads<'_> {
 pub struct KindRay {
     /// Where it begins.
     pub origin: DVec3,
-    /// The way along which it goes 1 world unit. Its length is 1 divided by the instance's scale.
+    /// One world unit along the ray, in the model's space.
     pub direction: DVec3,
 }
 

@@ -19,7 +19,7 @@ const MAX_DRAWS: usize = 64;
 #[derive(Debug)]
 pub(in crate::scene) struct OwnKind {
     pub kind: Box<dyn Kind>,
-    /// Whether nothing that it wrote counts.
+    /// True if the kind must write everything again.
     pub is_fresh: bool,
 }
 
@@ -31,6 +31,27 @@ impl OwnKind {
     pub fn new(kind: Box<dyn Kind>) -> Result<Self, InputError> {
         check(&*kind)?;
         Ok(Self { kind, is_fresh: true })
+    }
+
+    /// The same kind on another device.
+    ///
+    /// # Errors
+    /// [`InputError`] for a kind with other levels, parts or another sphere; those of [`Kind::rebuild`].
+    pub fn rebuilt(&self, gpu: &Gpu) -> Result<Self, Error> {
+        let fresh = Self::new(self.kind.rebuild(gpu)?)?;
+        let levels =
+            |kind: &dyn Kind| kind.parts().iter().map(|part| part.levels.clone()).collect::<Vec<_>>();
+        let (old, new) = (&*self.kind, &*fresh.kind);
+        let is_same = old.errors() == new.errors()
+            && levels(old) == levels(new)
+            && old.bounding_sphere() == new.bounding_sphere();
+        match is_same {
+            true => Ok(fresh),
+            false => {
+                let bound = "must have the errors, the parts and the sphere that it had";
+                Err(InputError::new("kind.rebuild", "another kind", bound).into())
+            }
+        }
     }
 
     /// How it is drawn.
@@ -54,8 +75,9 @@ impl OwnKind {
 
     /// Stages what the kind writes in a frame.
     pub fn stage(&mut self, staged: &mut Staged, frame: KindFrame) -> Result<(), Error> {
-        let is_fresh = std::mem::take(&mut self.is_fresh);
-        self.kind.upload(&KindFrame { is_fresh, ..frame }, &mut KindUploads(staged))
+        self.kind.upload(&KindFrame { is_fresh: self.is_fresh, ..frame }, &mut KindUploads(staged))?;
+        self.is_fresh = false;
+        Ok(())
     }
 
     /// The first hit of an instance by a ray with a unit direction, up to a distance. `placed` leads from the model's space into

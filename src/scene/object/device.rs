@@ -88,7 +88,7 @@ impl Object {
                 });
             }
             ObjectKind::Own(own) => {
-                let own = OwnKind::new(own.kind.rebuild(gpu)?)?;
+                let own = own.rebuilt(gpu)?;
                 let chunks = whole(&self.instances, own.drawn(gpu, layouts)?).0;
                 return Ok(OnDevice { chunks, character: None, morphing: None, own: Some(own) });
             }

@@ -1,25 +1,17 @@
 //! The shader of a kind of object, from the caller's text.
 
-// Both are build.rs's, which uses more of them.
-#[allow(dead_code)]
-#[path = "../../../build/entries.rs"]
-pub(crate) mod entries;
-#[allow(dead_code)]
-#[path = "../../../build/prefix.rs"]
-pub(crate) mod prefix;
-
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use naga::valid::ModuleInfo;
-use naga::{AddressSpace, Handle, ImageClass, Module, ScalarKind, Span, StorageAccess, TypeInner};
+use naga::{AddressSpace, Handle, ImageClass, Module, ScalarKind, StorageAccess, TypeInner};
 
 use crate::InputError;
-use crate::gpu::Gpu;
 use crate::gpu::shaders::{SCENE_CORE, SCENE_OUTPUTS};
-use crate::scene::caller_text::{CallerText, PREFIX, discard_in, without_comments};
-use entries::{KindText, OutputText, composed, fragments};
-use prefix::{declarations, prefixed_behind};
+use crate::gpu::{Gpu, GpuError};
+use crate::scene::caller_text::{CallerText, without_comments};
+use crate::scene::wgsl::entries::{KindText, OutputText, composed, exports, fragments};
+use crate::scene::wgsl::prefix::{declarations, prefixed_with};
 
 /// The bind group of a kind's own resources.
 const GROUP: u32 = 2;
@@ -34,6 +26,8 @@ pub struct KindProgram(Arc<Inner>);
 struct Inner {
     name: String,
     text: String,
+    /// The names that the text declares.
+    declared: Vec<String>,
     /// Whether vertices move in the model's space.
     moves: bool,
     entries: Vec<wgpu::BindGroupLayoutEntry>,
@@ -56,7 +50,7 @@ impl Hash for KindProgram {
 impl KindProgram {
     /// Checks a text and writes its entry points. It needs no device, and compiles nothing.
     ///
-    /// `name` is what the names begin with that the text declares at module scope: `grass_bend`, `GRASS_HEIGHT`, `GrassBlade`.
+    /// `name` is the prefix of every name that the text declares: `grass_bend`, `GRASS_HEIGHT`, `GrassBlade` of `grass`.
     /// The text has two functions, and a third if vertices move in the model's space:
     ///
     /// ```wgsl
@@ -79,8 +73,8 @@ impl KindProgram {
     ///
     /// `Surface` is that of [`Renderer::with_shading`](crate::render::Renderer::with_shading).
     ///
-    /// Of WebGPU's default limits for a stage, the crate's part is 3 storage buffers, 3 uniform buffers, 1 texture and 1
-    /// sampler; a caller's shading may need some of the rest in the fragment stage.
+    /// Of WebGPU's default limits for a stage, the crate's part is 3 storage buffers, 2 uniform buffers, 1 texture and 1
+    /// sampler. A kind and the caller's shading share the rest: 5, 10, 15 and 15 in the fragment stage.
     ///
     /// # Errors
     /// [`InputError`] for the first mistake, with the path `kind:LINE:COLUMN`, both counted from 1, and for a name that is not
@@ -100,27 +94,23 @@ impl KindProgram {
         };
         let kind =
             KindText { name, discards: true, blends: true, deep: true, moves: declares("last_position") };
-        let text = format!("{source}\n{}", composed(&kind, SCENE_CORE, SCENE_OUTPUTS));
+        // Without comments, so that nothing in them is taken for code; what stands where stays.
+        let text = format!("{code}\n{}", composed(&kind, SCENE_CORE, SCENE_OUTPUTS));
         let own = CallerText { path: "kind", source, text: &text };
-        for range in &declared {
-            if !is_of(name, &code[range.clone()]) {
-                let bound = format!("must begin with `{name}`, as every name that the text declares");
-                return Err(own.refused(std::iter::once(span(range)), bound));
-            }
-        }
+        own.check_declarations(name)?;
         for what in ["place", "surface"] {
             if !declares(what) {
                 let error = own.refused(std::iter::empty(), signature(name, what));
                 return Err(InputError { value: format!("no function `{name}_{what}`"), ..error });
             }
         }
-        let in_own = |error: InputError| own.explained(name, error);
-        let module = own.parsed().map_err(in_own)?;
-        let info = own.validated(&module).map_err(in_own)?;
-        check(&own, &module)?;
+        let module = own.parsed().map_err(|error| own.explained(name, error))?;
+        own.check(name, &module)?;
+        let info = own.validated(&module).map_err(|error| own.explained(name, error))?;
         let entries = bound(&own, &module, &info)?;
-        let moves = kind.moves;
-        Ok(Self(Arc::new(Inner { name: name.to_owned(), text: text.clone(), moves, entries })))
+        let (moves, declared) =
+            (kind.moves, declared.iter().map(|range| code[range.clone()].to_owned()).collect());
+        Ok(Self(Arc::new(Inner { name: name.to_owned(), text: text.clone(), declared, moves, entries })))
     }
 
     /// The name.
@@ -131,6 +121,11 @@ impl KindProgram {
     /// The WGSL, which ends with the function `shade`.
     pub(crate) fn text(&self) -> &str {
         &self.0.text
+    }
+
+    /// The names that the text declares.
+    pub(crate) fn declared(&self) -> &[String] {
+        &self.0.declared
     }
 
     /// What its entry points are generated from.
@@ -144,33 +139,39 @@ impl KindProgram {
     }
 
     /// The layout of bind group 2: what the text binds, visible where entry points use it.
-    pub fn layout(&self, gpu: &Gpu) -> wgpu::BindGroupLayout {
-        gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(&self.0.name),
-            entries: &self.0.entries,
+    ///
+    /// # Errors
+    /// [`GpuError`] for more than the device's limits.
+    pub fn layout(&self, gpu: &Gpu) -> Result<wgpu::BindGroupLayout, GpuError> {
+        gpu.scoped(|| {
+            gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(&self.0.name),
+                entries: &self.0.entries,
+            })
         })
     }
 
     /// Bind group 2, from the resources of its bindings in any order, for a [`KindPart`](crate::scene::kind::KindPart).
     ///
     /// # Errors
-    /// [`crate::gpu::GpuError`] for a resource that does not fit.
+    /// [`GpuError`] for a resource that does not fit.
     pub fn bind(
         &self,
         gpu: &Gpu,
         resources: &[(u32, wgpu::BindingResource<'_>)],
-    ) -> Result<wgpu::BindGroup, crate::Error> {
+    ) -> Result<wgpu::BindGroup, GpuError> {
         let entries: Vec<_> = (resources.iter())
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
             .collect();
-        let layout = self.layout(gpu);
+        let layout = self.layout(gpu)?;
         let descriptor =
             wgpu::BindGroupDescriptor { label: Some(&self.0.name), layout: &layout, entries: &entries };
-        Ok(gpu.scoped(|| gpu.device().create_bind_group(&descriptor))?)
+        gpu.scoped(|| gpu.device().create_bind_group(&descriptor))
     }
 }
 
-const LEAST: &str = "
+/// A kind that binds nothing.
+pub(crate) const LEAST: &str = "
 fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
     return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
 }
@@ -179,28 +180,21 @@ fn least_surface(in: relievo_SceneFragment) -> Surface {
 }
 ";
 
-/// The function that the caller's shading replaces: the last one of every shader.
-const SHADE: &str = "fn shade(";
-
-/// The shader of a kind with an output of the caller's: `source` in front, and entry points for it.
-pub(crate) fn with_output(
-    shader: &str,
-    kind: &KindText<'_>,
-    source: &str,
-    output: &OutputText<'_>,
-) -> String {
-    let (ours, shade) = shader.split_at(shader.find(SHADE).unwrap_or(shader.len()));
-    format!("{source}\n{ours}\n{}\n{shade}", prefixed_behind(shader, &fragments(kind, output)))
+/// The shader of a kind with an output of the caller's: the output's text in front, and entry points for it.
+pub(crate) fn with_output(program: &Program<'_>, source: &str, output: &OutputText) -> String {
+    let Program { text, kind, is_own } = program;
+    let mut kept = vec![output.targets(), format!("{}_write", output.name)];
+    if *is_own {
+        kept.extend(exports(kind));
+    }
+    format!("{source}\n{}", prefixed_with(text, &fragments(kind, output), &kept))
 }
 
-/// Whether a text may declare a name: `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` are of `grass`.
-pub(crate) fn is_of(kind: &str, name: &str) -> bool {
-    let plain = |text: &str| text.replace('_', "").to_lowercase();
-    plain(name).starts_with(&plain(kind)) && !name.starts_with(PREFIX)
-}
-
-fn span(range: &std::ops::Range<usize>) -> Span {
-    Span::new(range.start as u32, range.end as u32)
+/// A shader, what its entry points are generated from, and whether the kind is the caller's.
+pub(crate) struct Program<'a> {
+    pub text: &'a str,
+    pub kind: KindText<'a>,
+    pub is_own: bool,
 }
 
 /// The function that a text must have.
@@ -214,41 +208,18 @@ fn signature(name: &str, what: &str) -> String {
 }
 
 impl CallerText<'_> {
-    /// An error of naga's: one outside of the caller's text is in an entry point, which calls a function of another form.
+    /// An error of naga's: a type that does not fit outside of the caller's text is in an entry point, which calls a function of
+    /// another form.
     fn explained(&self, name: &str, error: InputError) -> InputError {
         let end = self.refused(std::iter::empty(), String::new());
-        if error.path != end.path {
+        let is_of_types = ["Call to", "type"].iter().any(|word| error.bound.contains(word));
+        if error.path != end.path || !is_of_types {
             return error;
         }
         let forms = ["place", "surface", "last_position"].map(|what| signature(name, what));
         let bound = format!("{} (the functions {})", error.bound, forms.join(", "));
         InputError { value: "a function of another form".to_owned(), bound, ..error }
     }
-}
-
-/// What a valid text must not do here.
-fn check(own: &CallerText<'_>, module: &Module) -> Result<(), InputError> {
-    let refuse = |at: Span, bound: &str| Err(own.refused(std::iter::once(at), bound.to_owned()));
-    if let Some(entry) = module.entry_points.iter().find(|entry| !entry.name.starts_with(PREFIX)) {
-        let at = own.source.find(&entry.name).unwrap_or(0);
-        return refuse(span(&(at..at + entry.name.len())), "must not be an entry point: these are generated");
-    }
-    for (handle, _) in module.overrides.iter() {
-        let at = module.overrides.get_span(handle);
-        if own.is_in(&at) {
-            return refuse(at, "must not be an override constant");
-        }
-    }
-    for (handle, function) in module.functions.iter() {
-        if let Some(at) = discard_in(&function.body).filter(|_| own.is_in(&module.functions.get_span(handle)))
-        {
-            return refuse(
-                at,
-                "must not discard: parts that are cut out leave out pixels (KindPart::cut_out)",
-            );
-        }
-    }
-    Ok(())
 }
 
 /// The entries of bind group 2: what the text binds, visible where it is used.
@@ -280,6 +251,9 @@ fn bound(
             }
         }
         let binding = binding.binding;
+        if entries.iter().any(|entry: &wgpu::BindGroupLayoutEntry| entry.binding == binding) {
+            return refuse("must have a binding of its own");
+        }
         entries.push(wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None });
     }
     entries.sort_by_key(|entry| entry.binding);
@@ -293,7 +267,9 @@ fn layout_type(
     handle: Handle<naga::GlobalVariable>,
 ) -> Option<wgpu::BindingType> {
     let variable = &module.global_variables[handle];
-    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let size = u64::from(module.types[variable.ty].inner.size(module.to_ctx()));
+    let min_binding_size = std::num::NonZeroU64::new(size);
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size };
     Some(match (variable.space, &module.types[variable.ty].inner) {
         (AddressSpace::Uniform, _) => buffer(wgpu::BufferBindingType::Uniform),
         (AddressSpace::Storage { access }, _) if !access.contains(StorageAccess::STORE) => {

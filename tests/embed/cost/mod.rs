@@ -1,6 +1,6 @@
 //! What frames cost, in processor time of the process, which on a software adapter is host and device together. Programs
 //! take turns, and ratios are taken round by round. The tests print tables; they are ignored because they take minutes:
-//! `cargo test --features verify --test embed cost -- --ignored --nocapture --test-threads 1`.
+//! `cargo test --test embed cost -- --ignored --nocapture --test-threads 1`.
 
 mod clock;
 mod crowd;

@@ -184,7 +184,7 @@ fn models_keep_to_what_is_allowed_on_the_way() {
     assert!(include_str!("../../../docs/pixel-bounds.md").contains(&stated), "{stated}");
 }
 
-/// The same for files of yours: `RELIEVO_MODELS=a.glb:b.glb cargo test --features verify --test embed geomorph -- --ignored`.
+/// The same for files of yours: `RELIEVO_MODELS=a.glb:b.glb cargo test --test embed geomorph -- --ignored`.
 #[test]
 #[ignore = "needs files"]
 fn files_keep_to_what_is_allowed_on_the_way() {

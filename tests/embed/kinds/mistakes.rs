@@ -1,11 +1,13 @@
 //! Mistakes of callers in kinds are told by the place in their text, or by the field.
 
 use std::iter;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 use relievo::gpu::Gpu;
 use relievo::render::{OutputProgram, Renderer, TargetFormat};
-use relievo::scene::Scene;
-use relievo::scene::kind::{Kind, KindPart, KindProgram};
+use relievo::scene::kind::{Kind, KindFrame, KindPart, KindProgram, KindUploads};
+use relievo::scene::{Camera, Placement, Quality, Scene};
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::{Error, wgpu};
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
@@ -20,6 +22,9 @@ pub struct Card {
     parts: Vec<KindPart>,
     pub errors: Vec<f32>,
     pub radius: f32,
+    /// Whether `upload` fails, and the frames that it was asked for.
+    pub fails: Arc<AtomicBool>,
+    pub frames: Arc<Mutex<Vec<KindFrame>>>,
 }
 
 impl Card {
@@ -32,7 +37,15 @@ impl Card {
             usage,
         });
         let own = KindPart::new(program.bind(gpu, &[]).expect("nothing to bind"), iter::once(0..6).collect());
-        Self { program: program.clone(), indices, parts: vec![part(own)], errors: vec![0.0], radius: 1.5 }
+        Self {
+            program: program.clone(),
+            indices,
+            parts: vec![part(own)],
+            errors: vec![0.0],
+            radius: 1.5,
+            fails: Arc::default(),
+            frames: Arc::default(),
+        }
     }
 }
 
@@ -57,6 +70,15 @@ impl Kind for Card {
         BoundingSphere { center: glam::Vec3::ZERO, radius: self.radius }
     }
 
+    fn upload(&mut self, frame: &KindFrame, uploads: &mut KindUploads<'_>) -> Result<(), Error> {
+        if self.fails.load(Ordering::Relaxed) {
+            // Indices cannot be written to.
+            return uploads.write(&self.indices, 0, &[0; 4]);
+        }
+        self.frames.lock().expect("no panic").push(*frame);
+        Ok(())
+    }
+
     fn rebuild(&self, gpu: &Gpu) -> Result<Box<dyn Kind>, Error> {
         Ok(Box::new(Self::new(gpu, &self.program, |part| part)))
     }
@@ -71,11 +93,19 @@ const SURFACE: &str = "fn card_surface(in: relievo_SceneFragment) -> Surface {
 }
 ";
 
+/// Two variables of one binding.
+const TWICE: &str = "@group(2) @binding(0) var<uniform> card_x: f32;
+@group(2) @binding(0) var<uniform> card_y: f32;
+";
+const USED: &str = "    var surface = relievo_scene_surface(in);
+    surface.alpha = card_x;
+    return surface;";
+
 #[test]
 fn mistakes_in_a_text_are_told_by_their_place() {
     let good = format!("{PLACE}{SURFACE}");
     KindProgram::new("card", &good).expect("valid");
-    let cases: [(&str, String, &str, &str); 14] = [
+    let cases: [(&str, String, &str, &str); 19] = [
         ("Card", good.clone(), "kind.name", "lower-case"),
         ("card", SURFACE.to_owned(), "kind:4:1", "must be `fn card_place(entry: u32, vertex: u32)"),
         (
@@ -118,7 +148,20 @@ fn mistakes_in_a_text_are_told_by_their_place() {
             "kind:5:5",
             "must not discard",
         ),
+        ("card", format!("{good}const card = 1;"), "kind:7:7", "must begin with `card`"),
+        ("card", format!("{good}fn größe() {{}}"), "kind:7:4", "must begin with `card`"),
+        ("card", format!("diagnostic(off, derivative_uniformity);\n{good}"), "kind:1:1", "directive"),
+        ("card", format!("{good}var<workgroup> card_w: f32;"), "kind:7:", "workgroup"),
+        (
+            "card",
+            format!("{TWICE}{good}").replace("    return relievo_scene_surface(in);", USED),
+            "kind:",
+            "own",
+        ),
     ];
+    // Comments are no code, in any script.
+    let noted = format!("/* {{ größe */ {good}// fn shade( struct UvTargets {{ }}\n");
+    KindProgram::new("card", &noted).expect("valid");
     for (name, text, path, bound) in cases {
         let error = KindProgram::new(name, &text).expect_err(&text);
         assert!(error.path.starts_with(path), "{error}\n{text}");
@@ -137,7 +180,7 @@ fn uv_write(surface: Surface) -> UvTargets {
 #[test]
 fn mistakes_in_an_output_are_told_by_their_place() {
     let uv = OutputProgram::new("uv", UV).expect("valid");
-    let cases: [(&str, String, &str, &str); 8] = [
+    let cases: [(&str, String, &str, &str); 12] = [
         ("uv_2", UV.to_owned(), "output.name", "letters and digits"),
         (
             "uv",
@@ -156,7 +199,18 @@ fn mistakes_in_an_output_are_told_by_their_place() {
         ),
         ("uv", UV.replace("    return", "    discard;\n    return"), "output:5:5", "must not discard"),
         ("uv", UV.replace("surface: Surface", "surface: f32"), "output:", ""),
+        ("uv", UV.replace("location(0)", "location(1)"), "output:1:", "@location(0)"),
+        ("uv", UV.replace("@location(0)", "@builtin(frag_depth)").replace("vec4<f32>", "f32"), "output:", ""),
+        ("uv", UV.replace("vec4<f32>,", "f16,"), "output:", ""),
+        (
+            "uv",
+            format!("alias UvTargets = UvTarget;\n{}", UV.replace("struct UvTargets", "struct UvTarget")),
+            "output:",
+            "",
+        ),
     ];
+    let noted = UV.replace("struct UvTargets {", "struct UvTargets/* } */\n{ // , @ größe }");
+    assert_eq!(OutputProgram::new("uv", &noted).expect("valid").colors(), 1);
     for (name, text, path, bound) in cases {
         let error = OutputProgram::new(name, &text).expect_err(&text);
         assert!(error.path.starts_with(path), "{error}\n{text}");
@@ -207,4 +261,67 @@ fn vertices(gpu: &Gpu) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::VERTEX,
         mapped_at_creation: false,
     })
+}
+
+/// A kind whose upload fails draws nothing stale: the frame is not recorded, and the next one starts afresh.
+#[test]
+fn a_failed_upload_is_told_and_done_again() {
+    let gpu = device();
+    let program = KindProgram::new("card", &format!("{PLACE}{SURFACE}")).expect("valid");
+    let card = Card::new(&gpu, &program, |part| part);
+    let (fails, frames) = (card.fails.clone(), card.frames.clone());
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let object = scene.add_kind(card, 1).expect("added");
+    scene.spawn(object, Placement::default()).expect("room");
+    let mut view = scene.view(Quality::default()).expect("a view");
+    let eye = glam::Vec3::new(0.0, 0.0, 5.0);
+    view.set(Camera::looking_at(eye, glam::Vec3::ZERO, 0.8, [0.1, 50.0], [64, 64])).expect("a camera");
+    let mut frame = |scene: &mut Scene| {
+        scene.advance(0.5).expect("finite");
+        let mut encoder = gpu.encoder("frame");
+        let recorded = scene.record(&mut encoder, &mut [&mut view]);
+        gpu.queue().submit([encoder.finish()]);
+        recorded
+    };
+    frame(&mut scene).expect("recorded");
+    frame(&mut scene).expect("recorded");
+    fails.store(true, Ordering::Relaxed);
+    let error = frame(&mut scene).expect_err("a failed upload").to_string();
+    assert!(error.starts_with("buffer.usage"), "{error}");
+    fails.store(false, Ordering::Relaxed);
+    frame(&mut scene).expect("recorded");
+    frame(&mut scene).expect("recorded");
+    scene.refresh().expect("afresh");
+    frame(&mut scene).expect("recorded");
+    // More than there is room for.
+    for _ in 0..70 {
+        scene.spawn(object, Placement::default()).expect("room");
+    }
+    frame(&mut scene).expect("recorded");
+    let frames = frames.lock().expect("no panic");
+    let fresh: Vec<bool> = frames.iter().map(|frame| frame.is_fresh).collect();
+    assert_eq!(fresh, [true, false, true, false, true, true]);
+    assert_eq!((frames[1].seconds, frames[1].last_seconds), (1.0, 0.5));
+}
+
+/// Texts of the caller's that declare a name twice are refused before anything is compiled.
+#[test]
+fn names_that_two_texts_declare_are_told() {
+    let gpu = device();
+    let program =
+        KindProgram::new("uv", &format!("{PLACE}{SURFACE}fn uv_write() {{}}").replace("card", "uv"));
+    let uv = OutputProgram::new("uv", UV).expect("valid");
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    scene.add_kind(Card::new(&gpu, &program.expect("valid"), |part| part), 1).expect("added");
+    let format = TargetFormat::of_output(&uv, &[wgpu::TextureFormat::Rgba16Float]);
+    let mut renderer = Renderer::new(&gpu, &format).expect("a format");
+    let error = renderer.prepare(&scene).expect_err("refused").to_string();
+    assert!(error.starts_with("uv.name = `uv_write`") && error.contains("the output"), "{error}");
+    let shade =
+        "fn uv_place() {} fn shade(surface: Surface, view: View) -> vec4<f32> { return vec4<f32>(1.0); }";
+    let renderer =
+        Renderer::new(&gpu, &TargetFormat::new(wgpu::TextureFormat::Rgba8Unorm)).expect("a format");
+    let mut renderer = renderer.with_shading(shade, None).expect("valid");
+    let error = renderer.prepare(&scene).expect_err("refused").to_string();
+    assert!(error.starts_with("uv.name = `uv_place`") && error.contains("the shading"), "{error}");
 }

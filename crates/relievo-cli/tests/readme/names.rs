@@ -7,7 +7,8 @@ use relievo::asset::Model;
 use relievo::asset::material::Alpha;
 use relievo::lod::LodCamera;
 use relievo::mesh::{Options, Simplified};
-use relievo::render::{Layer, Renderer, TargetFormat};
+use relievo::render::{Layer, OutputProgram, Renderer, TargetFormat};
+use relievo::scene::kind::KindProgram;
 use relievo::scene::{Scene, Transition};
 use relievo::skinning::Extent;
 use relievo::surface::ReliefOptions;
@@ -21,6 +22,9 @@ fn items() {
     use relievo::mesh::simplify as _; // mesh::simplify
     use relievo::mesh::simplify_within as _; // mesh::simplify_within
     use relievo::scene::TerrainSource as _; // TerrainSource
+    use relievo::render::OutputProgram as _; // render::OutputProgram
+    use relievo::scene::kind::Kind as _; // scene::kind::Kind
+    use relievo::scene::kind::KindPart as _; // KindPart
     use relievo::terrain::thermal as _; // terrain::thermal
     use relievo::skinning::Extent as _; // skinning::Extent
     use relievo::skinning::FadeRange as _; // skinning::FadeRange
@@ -45,7 +49,10 @@ fn items() {
 fn members() {
     let _ = Alpha::Blended; // Alpha::Blended
     let _ = |frame: relievo::animation::Frame| frame.ahead; // Frame::ahead
+    let _ = KindProgram::bind; // KindProgram::bind
+    let _ = KindProgram::new; // KindProgram::new
     let _ = Layer::Measure; // Layer::Measure
+    let _ = Layer::Own; // Layer::Own
     let _ = Layer::Surface; // Layer::Surface
     let _ = Layer::Transparent; // Layer::Transparent
     let _ = Layer::Velocity; // Layer::Velocity
@@ -54,7 +61,12 @@ fn members() {
     let _ = Model::to_glb; // Model::to_glb
     let _ = Model::to_obj; // Model::to_obj
     let _ = |options: Options| options.prune; // Options::prune
+    let _ = OutputProgram::new; // OutputProgram::new
     let _ = Renderer::with_shading; // Renderer::with_shading
+    fn added(scene: &mut Scene, kind: impl relievo::scene::kind::Kind) { let _ = scene.add_kind(kind, 1); } // Scene::add_kind
+    let _ = Scene::move_to; // Scene::move_to
+    let _ = Scene::spawn; // Scene::spawn
+    let _ = TargetFormat::of_output; // TargetFormat::of_output
     let _ = Scene::draws; // Scene::draws
     let _ = Scene::health; // Scene::health
     let _ = Scene::keep_last_frame; // Scene::keep_last_frame

@@ -6,6 +6,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Binding, Module, ShaderStage, TypeInner};
 
 use crate::scene::kind::KindProgram;
+use crate::scene::program::LEAST;
 use crate::scene::specialization::Program;
 
 /// Bindings of a stage by class, and locations between the stages.
@@ -29,13 +30,6 @@ impl Taken {
 /// What vertex and fragment stages may take: the rest is the caller's.
 const VERTEX: Taken = Taken { storage: 7, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
 const FRAGMENT: Taken = Taken { storage: 4, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
-
-/// A kind that binds nothing.
-const LEAST: &str = "
-    fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
-        return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
-    }
-    fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_surface(in); }";
 
 /// The number of locations of a type: those of its members, or one.
 fn locations(module: &Module, ty: naga::Handle<naga::Type>) -> usize {
@@ -99,6 +93,10 @@ fn every_kind_stays_within_its_part_of_the_limits_in_every_output() {
         }
     }
     println!("vertex: {:?}, fragment: {:?}", largest[0], largest[1]);
+    // What a kind that binds nothing takes, as `KindProgram::new` says.
+    let least = Taken { storage: 3, uniforms: 2, textures: 1, samplers: 1, locations: 7 };
+    let own = taken(KindProgram::least().expect("valid").text());
+    assert!(own.iter().all(|(_, _, taken)| taken.is_within(&least)), "{own:?}");
     // The caller has everything that the kinds do not take: what is stated is not more than is taken.
     assert_eq!((largest[0].storage, largest[0].locations), (VERTEX.storage, VERTEX.locations));
     assert_eq!((largest[1].textures, largest[1].samplers), (FRAGMENT.textures, FRAGMENT.samplers));

@@ -61,25 +61,17 @@ impl World {
         Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
     }
 
-    /// Builds a meadow: grass, a kind of the caller's, on a patch of terrain.
+    /// Builds a meadow: tufts of grass, a kind of the caller's.
     pub async fn meadow(gpu: &Gpu) -> Result<Self, Error> {
         let mut scene = Scene::new_async(gpu).await?;
-        let config = Config::new(33, 4.0, "browser")?;
-        let land = scene.add_terrain_async(&TerrainSource::new(config)).await?;
-        let meadow = scene.add_kind(grass::Grass::new(gpu, 24)?, 36)?;
-        let ground = |x: f64, z: f64| {
-            let found = scene.ground(land, x, z).ok().flatten();
-            glam::DVec3::new(x, found.map_or(0.0, |point| point.height), z)
-        };
-        let places: Vec<_> = (0..36)
-            .map(|at| ground(12.0 + 1.6 * f64::from(at % 6), 12.0 + 1.6 * f64::from(at / 6)))
-            .collect();
-        let focus = ground(16.0, 17.0).as_vec3() + 0.5 * Vec3::Y;
-        for (at, place) in places.into_iter().enumerate() {
-            scene.spawn(meadow, Placement::at_world(place).turned(at as f32).scaled(3.0))?;
+        let meadow = scene.add_kind(grass::Grass::new(gpu, 8)?, 9)?;
+        for at in 0..9_u8 {
+            let place = [1.6 * f32::from(at % 3), 0.0, 1.6 * f32::from(at / 3)];
+            scene.spawn(meadow, Placement::at(place).turned(f32::from(at)).scaled(4.0))?;
         }
-        let position = focus + Vec3::new(-1.0, 3.0, 9.0);
-        Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
+        let camera =
+            Camera::looking_at(Vec3::new(0.8, 2.6, 8.5), Vec3::new(1.6, 0.8, 1.6), 0.7, [0.1, 200.0], SIZE);
+        Self::seen(gpu, scene, camera).await
     }
 
     /// Builds the scene of a file, which names no other files.

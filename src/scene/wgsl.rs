@@ -1,0 +1,9 @@
+//! The generator of entry points, which `build.rs` uses for the crate's own kinds.
+
+// Each user leaves out some of both.
+#[allow(dead_code)]
+#[path = "../../build/entries.rs"]
+pub(crate) mod entries;
+#[allow(dead_code)]
+#[path = "../../build/prefix.rs"]
+pub(crate) mod prefix;
