@@ -8,7 +8,7 @@ use relievo::asset::material::Alpha;
 use relievo::lod::LodCamera;
 use relievo::mesh::{Options, Simplified};
 use relievo::render::{Layer, OutputProgram, Renderer, TargetFormat};
-use relievo::scene::kind::KindProgram;
+use relievo::scene::kind::{Kind, KindProgram};
 use relievo::scene::{Scene, Transition};
 use relievo::skinning::Extent;
 use relievo::surface::ReliefOptions;
@@ -63,9 +63,6 @@ fn members() {
     let _ = |options: Options| options.prune; // Options::prune
     let _ = OutputProgram::new; // OutputProgram::new
     let _ = Renderer::with_shading; // Renderer::with_shading
-    fn added(scene: &mut Scene, kind: impl relievo::scene::kind::Kind) { let _ = scene.add_kind(kind, 1); } // Scene::add_kind
-    let _ = Scene::move_to; // Scene::move_to
-    let _ = Scene::spawn; // Scene::spawn
     let _ = TargetFormat::of_output; // TargetFormat::of_output
     let _ = Scene::draws; // Scene::draws
     let _ = Scene::health; // Scene::health
@@ -117,4 +114,9 @@ fn decided() {
     let _ = |march: relievo::surface::March| march.steps; // surface::March::steps
     let _ = |material: relievo::surface::Material| material.plane; // surface::Material::plane
     let _ = |config: relievo::terrain::config::Config| config.scale_factor; // terrain::config::Config::scale_factor
+}
+
+#[rustfmt::skip]
+fn generic(scene: &mut Scene, kind: impl Kind) {
+    let _ = Scene::add_kind(scene, kind, 1); // Scene::add_kind
 }
