@@ -4,9 +4,11 @@
 use glam::Vec3;
 
 use super::{LodCamera, LodObject};
+#[cfg(feature = "gpu")]
 use crate::shared::lod::criterion::CRITERION_ERROR;
 
 /// What chooses the levels of an object.
+#[cfg(feature = "gpu")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Criterion {
     /// The projected error: the coarsest level whose error a view allows. It alone keeps the promise of
@@ -15,6 +17,7 @@ pub(crate) enum Criterion {
     Error,
 }
 
+#[cfg(feature = "gpu")]
 impl Criterion {
     /// Its code in an object's flags.
     pub fn code(self) -> u32 {

@@ -3,10 +3,13 @@
 use super::object::level_within;
 use super::{LodObject, OBJECT_LEVELS};
 use crate::shared::lod::object::{MORPH_STEPS, decision_word, morph_word, object_flags_transition};
-use crate::shared::lod::transition::{TRANSITION_GEOMORPH, TRANSITION_HARD};
+use crate::shared::lod::transition::TRANSITION_GEOMORPH;
+#[cfg(feature = "gpu")]
+use crate::shared::lod::transition::TRANSITION_HARD;
 
 /// How far the surface between two levels may be off, as a multiple of the coarser one's error: an allowance from
 /// measurements, not a bound (`docs/pixel-bounds.md`).
+#[cfg(feature = "gpu")]
 const ON_THE_WAY: f32 = 1.2;
 
 /// How the levels of detail of an object's instances change.
@@ -35,6 +38,7 @@ impl Transition {
     pub const NAMES: [(&'static str, Self); 2] = [("hard", Self::Hard), ("geomorph", Self::Geomorph)];
 
     /// Its code in an object's flags.
+    #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
             Self::Hard => TRANSITION_HARD,
@@ -45,6 +49,7 @@ impl Transition {
     /// From the thresholds of an object's levels, ascending from 0: the metric from which on each level is drawn. With a
     /// geomorph it begins to move there, [`ON_THE_WAY`] times the error of the next one, and level 0, which is drawn before,
     /// too. The last level then begins at twice as much.
+    #[cfg(feature = "gpu")]
     pub(crate) fn begins(self, errors: &[f32]) -> Vec<f32> {
         match (self, errors.last()) {
             (Self::Geomorph, Some(last)) => {
@@ -77,7 +82,7 @@ pub fn decision(object: &LodObject, is_mirrored: bool, metric: f32) -> u32 {
     decision_word(1 + 2 * level + u32::from(is_mirrored), morph_within(object, level, metric))
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "gpu"))]
 mod tests {
     use super::*;
 
