@@ -158,3 +158,73 @@ fn poses_of_rigid_parts_cost_little() {
     let [few, many] = [48, 960].map(seconds);
     assert!(many < 2.0 * few, "{few} s, {many} s");
 }
+
+/// A piece of a mesh that becomes a point on another mesh is as far off as the nearest triangle of its own mesh: another mesh does
+/// not stand for it.
+#[test]
+fn a_piece_that_vanishes_is_as_far_off_as_its_own_mesh() {
+    let mut model = model();
+    model.meshes[0].levels.clear();
+    // The other mesh has two pieces: some triangles at the top, and many at one side.
+    let whole = model.meshes[0].clone();
+    let mut triangles: Vec<[u32; 3]> = whole.indices.as_chunks::<3>().0.to_vec();
+    let middle = |triangle: &[u32; 3], axis: usize| -> f32 {
+        triangle.iter().map(|vertex| whole.positions[*vertex as usize][axis]).sum()
+    };
+    triangles.sort_by(|a, b| middle(b, 1).total_cmp(&middle(a, 1)));
+    let top: Vec<[u32; 3]> = triangles.drain(..40).collect();
+    triangles.sort_by(|a, b| middle(a, 0).total_cmp(&middle(b, 0)));
+    let side: Vec<[u32; 3]> = triangles.drain(..900).collect();
+    let flat = |all: &[&[[u32; 3]]]| all.iter().flat_map(|part| part.as_flattened()).copied().collect();
+    let mut pieces = whole.clone();
+    pieces.indices = flat(&[&top, &side]);
+    model.meshes[0].indices = flat(&[&triangles]);
+    model.meshes.push(pieces);
+    let poses = 9;
+    add_levels(&mut model, &[0], poses).expect("valid");
+    let mesh = &model.meshes[1];
+    let used: Vec<u32> = top.as_flattened().to_vec();
+    let mut vanished = 0;
+    for level in &mesh.levels {
+        let is_left = used.iter().any(|vertex| level.indices.contains(vertex));
+        vanished += usize::from(!is_left);
+        let mut largest = 0.0_f32;
+        for at in 0..poses {
+            let time = model.clips[0].duration() * at as f32 / (poses - 1) as f32;
+            let bones = Palette::Linear(palette(&model.skins[mesh.skin], &models(&model, "walk", time)));
+            let vertices = skin(&morph(mesh, &[]), &mesh.influences, &bones, InstanceLod::FULL);
+            let place = |vertex: &u32| Vec3::from(vertices[*vertex as usize].position);
+            let drawn: Vec<[Vec3; 3]> = level
+                .indices
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .map(|corners| corners.each_ref().map(place))
+                .collect();
+            for wanted in used.iter().map(place) {
+                let off = drawn.iter().map(|corners| distance_to_triangle(wanted, *corners));
+                largest = largest.max(off.fold(f32::INFINITY, f32::min));
+            }
+        }
+        assert!(largest <= 1.001 * level.error + 1e-5, "{largest} is more than {}", level.error);
+    }
+    assert!(vanished > 0, "no level without the piece");
+}
+
+/// The distance of a point from a triangle.
+fn distance_to_triangle(point: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
+    let on_edge = |from: Vec3, to: Vec3| {
+        let along = to - from;
+        let part = (point - from).dot(along) / along.length_squared().max(f32::MIN_POSITIVE);
+        point.distance(from + part.clamp(0.0, 1.0) * along)
+    };
+    let normal = (b - a).cross(c - a);
+    let is_inside = [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|(from, to)| (*to - *from).cross(point - *from).dot(normal) >= 0.0);
+    let edges = on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a));
+    match is_inside && normal != Vec3::ZERO {
+        true => ((point - a).dot(normal) / normal.length()).abs(),
+        false => edges,
+    }
+}

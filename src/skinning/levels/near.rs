@@ -145,14 +145,11 @@ fn before(
     let (mut is_used, mut is_left) = (vec![false; whole.vertices()], vec![false; whole.vertices()]);
     whole.indices.iter().for_each(|vertex| is_used[*vertex as usize] = true);
     level.iter().for_each(|vertex| is_left[*vertex as usize] = true);
-    // Whether a mesh has triangles that are not one point.
-    let mut has = vec![false; whole.meshes.len()];
-    for corners in level.as_chunks::<3>().0.iter().filter(|[a, b, c]| a != b || b != c) {
-        has[whole.member_of(corners) as usize] = true;
-    }
     let mut search = Search::new(level, keys, bodies);
     // Many vertices have collapsed into the same one.
     let mut rings: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
+    // The triangles of each mesh, once they are needed.
+    let mut owned: HashMap<u32, Vec<u32>> = HashMap::new();
     let near = |vertex: u32| {
         if is_left[vertex as usize] {
             return Vec::new();
@@ -166,14 +163,11 @@ fn before(
         if !candidates.is_empty() || !is_used[vertex as usize] {
             return search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], candidates);
         }
-        // A piece of the mesh has become a point between triangles of other meshes.
+        // A piece of the mesh has become a point between triangles of other meshes, or the whole mesh has become one. What shows
+        // the mesh there is its own nearest triangle.
         let member = whole.member[vertex as usize];
-        if has[member as usize] {
-            return vec![[target; 3]];
-        }
-        // The whole mesh has become a point.
-        let all: Vec<u32> = (0..level.len() as u32 / 3).filter(is_own).collect();
-        search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], &all)
+        let all = owned.entry(member).or_insert_with(|| (0..level.len() as u32 / 3).filter(is_own).collect());
+        search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], all)
     };
     (0..whole.vertices() as u32).map(near).collect()
 }
