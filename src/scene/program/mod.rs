@@ -62,16 +62,45 @@ impl KindProgram {
     /// fn NAME_last_position(entry: u32, vertex: u32) -> vec3<f32>
     /// ```
     ///
-    /// Its resources are in bind group 2: uniform buffers, storage buffers that are read, textures and samplers. The crate's
-    /// own names begin with `relievo_`. These are what a kind uses, with that prefix:
+    /// Its resources are in bind group 2: uniform buffers, storage buffers that are read, textures and samplers. The crate's own
+    /// names begin with `relievo_`:
     ///
     /// ```wgsl
-    #[doc = include_str!("../../../wgsl/render/scene_kind.wgsl")]
-    #[doc = ""]
-    #[doc = include_str!("../../../wgsl/render/scene_instances.wgsl")]
+    /// // A vertex. Positions are relative to the corner of the view's cell.
+    /// struct relievo_SceneVertex {
+    ///     position: vec3<f32>,
+    ///     normal: vec3<f32>,   // outwards, of any length but 0
+    ///     tangent: vec4<f32>,  // along u; w: the bitangent along v is w · normal × tangent, of unit vectors
+    ///     uv: vec4<f32>,       // two sets of texture coordinates
+    ///     values: vec4<f32>,   // the kind's own, interpolated
+    ///     words: vec3<u32>,    // the kind's own, the same at all vertices of a triangle
+    ///     side: f32,           // -1 if the placement mirrors, else 1
+    /// }
+    ///
+    /// // A fragment: what its vertices have, interpolated, and more.
+    /// struct relievo_SceneFragment {
+    ///     position: vec3<f32>,
+    ///     normal: vec3<f32>,
+    ///     tangent: vec4<f32>,
+    ///     uv: vec4<f32>,
+    ///     values: vec4<f32>,
+    ///     words: vec3<u32>,
+    ///     instance: u32,             // counted from the object's first one
+    ///     last_position: vec3<f32>,  // in the last frame, where the layer needs motion; else `position`
+    ///     clip: vec4<f32>,           // the position in the target in pixels, and the depth
+    ///     is_outside: bool,          // whether the outer side of the triangle is seen
+    /// }
     /// ```
     ///
-    /// `Surface` is that of [`Renderer::with_shading`](crate::render::Renderer::with_shading).
+    /// | function | |
+    /// |---|---|
+    /// | `relievo_scene_placed(entry, position, normal, tangent, uv) -> relievo_SceneVertex` | a vertex of the model's space, at the instance's place |
+    /// | `relievo_scene_surface(fragment) -> Surface` | white, opaque, on the side that is seen, with the tint, the word and the numbers of the instance; the tint is not in the colour yet |
+    /// | `relievo_scene_last_placed(entry, position) -> vec3<f32>` | where a point of the model's space was in the last frame |
+    /// | `relievo_scene_last_rigid(entry, position) -> vec3<f32>` | where a placed point was that does not move in the model's space |
+    ///
+    /// `relievo_view` is the view: `clip_from_world`, `eye`, `light`. `Surface` is that of
+    /// [`Renderer::with_shading`](crate::render::Renderer::with_shading).
     ///
     /// Of WebGPU's default limits for a stage, the crate's part is 3 storage buffers, 2 uniform buffers, 1 texture and 1
     /// sampler. A kind and the caller's shading share the rest: 5, 10, 15 and 15 in the fragment stage.
@@ -309,4 +338,33 @@ fn layout_type(
         }
         _ => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A kind that uses every name of the documentation, in its order.
+    #[test]
+    fn every_name_of_the_documentation_is_there() {
+        let text = "
+fn all_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
+    let placed = relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
+    return relievo_SceneVertex(
+        placed.position, placed.normal, placed.tangent, placed.uv, placed.values, placed.words, placed.side);
+}
+fn all_last_position(entry: u32, vertex: u32) -> vec3<f32> {
+    let rigid = relievo_scene_last_rigid(entry, all_place(entry, vertex).position);
+    return rigid + relievo_scene_last_placed(entry, vec3<f32>());
+}
+fn all_surface(in: relievo_SceneFragment) -> Surface {
+    let same = relievo_SceneFragment(
+        in.position, in.normal, in.tangent, in.uv, in.values, in.words, in.instance, in.last_position, in.clip,
+        in.is_outside);
+    var surface = relievo_scene_surface(same);
+    surface.color = relievo_view.eye.xyz + relievo_view.light.xyz + relievo_view.clip_from_world[0].xyz;
+    return surface;
+}";
+        KindProgram::new("all", text).expect("valid");
+    }
 }
