@@ -67,8 +67,8 @@ impl OutputText {
         Self { name: name.to_owned(), entry: name.to_owned(), members: members.collect(), moves }
     }
 
-    #[allow(dead_code)] // build.rs has none
     /// An output of the caller's. Its entry points have names of their own, so that it may be called as one of the crate's.
+    #[allow(dead_code)] // build.rs has none
     pub fn own(name: &str, members: Vec<String>, moves: bool) -> Self {
         Self { name: name.to_owned(), entry: format!("own_{name}"), members, moves }
     }

@@ -64,6 +64,12 @@ pub fn declarations(text: &str) -> Vec<Range<usize>> {
     declared(text, &words(text)).into_iter().map(range).collect()
 }
 
+/// The names that a text without comments declares at module scope.
+#[allow(dead_code)] // build.rs needs it only inside `prefixed`
+pub fn declared_names(text: &str) -> Vec<String> {
+    declarations(text).into_iter().map(|range| text[range].to_owned()).collect()
+}
+
 /// An identifier or a keyword.
 struct Word {
     range: Range<usize>,

@@ -8,7 +8,7 @@ use crate::scene::caller_text::{CallerText, without_comments};
 use crate::scene::program::{KindProgram, with_output};
 use crate::scene::specialization::Program;
 use crate::scene::wgsl::entries::{OutputText, targets_of};
-use crate::scene::wgsl::prefix::declarations;
+use crate::scene::wgsl::prefix::declared_names;
 
 /// Colours that a target stores for each surface, computed by the caller's WGSL: for [`TargetFormat::of_output`](super::TargetFormat::of_output)
 /// and [`Layer::Own`](super::Layer::Own). It works with every kind of object.
@@ -83,8 +83,7 @@ impl OutputProgram {
         }
         let code = without_comments(source);
         let (targets, writes) = (targets_of(name), format!("{name}_write"));
-        let declared: Vec<String> =
-            declarations(&code).into_iter().map(|range| code[range].to_owned()).collect();
+        let declared = declared_names(&code);
         for what in [&targets, &writes] {
             if !declared.contains(what) {
                 let own = CallerText { path: "output", source, text: source };
@@ -103,7 +102,7 @@ impl OutputProgram {
         let own = CallerText { path: "output", source, text: &text };
         own.check_declarations(name)?;
         let module = own.parsed()?;
-        own.check(name, &module)?;
+        own.check(&module)?;
         own.validated(&module)?;
         for (handle, variable) in module.global_variables.iter() {
             let at = module.global_variables.get_span(handle);

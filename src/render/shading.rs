@@ -11,7 +11,7 @@ use crate::render::layer::Layer;
 use crate::scene::caller_text::{CallerText, discard_in, without_comments};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::Program;
-use crate::scene::wgsl::prefix::declarations;
+use crate::scene::wgsl::prefix::declared_names;
 use crate::{Error, InputError};
 
 /// Where the function begins that the caller's text replaces. It is the last one of each shader.
@@ -43,8 +43,7 @@ impl Shading {
         own.check(&module, layout.is_some())?;
         own.0.validated(&module)?;
         let code = without_comments(source);
-        let declared = declarations(&code).into_iter().map(|range| code[range].to_owned()).collect();
-        Ok(Self { source: source.to_owned(), declared, layout: layout.cloned() })
+        Ok(Self { source: source.to_owned(), declared: declared_names(&code), layout: layout.cloned() })
     }
 
     /// The names that the text declares.

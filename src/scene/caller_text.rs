@@ -9,8 +9,7 @@ use naga::{Block, Module, Span, Statement};
 use crate::InputError;
 use crate::scene::wgsl::prefix::declarations;
 
-/// What the crate's names begin with beside the caller's text.
-pub(crate) const PREFIX: &str = "relievo_";
+pub(crate) use crate::scene::wgsl::prefix::PREFIX;
 
 /// The caller's text, and the one that is parsed, which begins with it.
 pub(crate) struct CallerText<'a> {
@@ -63,12 +62,12 @@ impl CallerText<'_> {
         InputError::new(format!("{}:{line}:{column}", self.path), value, bound)
     }
 
-    /// Checks a valid text of a kind or an output: its names begin with `name`, and it has no entry points, override constants,
-    /// discards or memory of workgroups.
+    /// Checks a text of a kind or an output that was parsed: it has no entry points, override constants, discards or memory of
+    /// workgroups.
     ///
     /// # Errors
     /// [`InputError`] for the first mistake.
-    pub fn check(&self, name: &str, module: &Module) -> Result<(), InputError> {
+    pub fn check(&self, module: &Module) -> Result<(), InputError> {
         let refuse = |at: Span, bound: &str| Err(self.refused(std::iter::once(at), bound.to_owned()));
         if let Some(entry) = module.entry_points.iter().find(|entry| !entry.name.starts_with(PREFIX)) {
             let at = self.source.find(&entry.name).unwrap_or(0);
@@ -77,7 +76,6 @@ impl CallerText<'_> {
                 "must not be an entry point: these are generated",
             );
         }
-        self.check_declarations(name)?;
         for (handle, _) in module.overrides.iter() {
             let at = module.overrides.get_span(handle);
             if self.is_in(&at) {
@@ -138,8 +136,7 @@ impl CallerText<'_> {
         let begins = |(at, _): &(usize, &str)| !code[..*at].ends_with(is_part);
         let Some((at, _)) = code.match_indices(PREFIX).find(begins) else { return Ok(()) };
         let length = code[at..].find(|letter| !is_part(letter)).unwrap_or(code.len() - at);
-        let span = Span::new(at as u32, (at + length) as u32);
-        Err(self.refused([span].into_iter(), OURS.to_owned()))
+        Err(self.refused([span(at..at + length)].into_iter(), OURS.to_owned()))
     }
 }
 

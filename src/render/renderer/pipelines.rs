@@ -107,7 +107,10 @@ impl PipelineSource {
             Some(output) => output.beside(&self.program).into(),
             None => Cow::from(self.program.text()),
         };
-        let text = shading.map_or_else(|| text.clone(), |shading| shading.text(&text).into());
+        let text = match shading {
+            Some(shading) => shading.text(&text).into(),
+            None => text,
+        };
         gpu.scoped(|| self.compile(gpu, format, text, &groups))
     }
 

@@ -11,7 +11,7 @@ use crate::gpu::shaders::{SCENE_CORE, SCENE_OUTPUTS};
 use crate::gpu::{Gpu, GpuError};
 use crate::scene::caller_text::{CallerText, without_comments};
 use crate::scene::wgsl::entries::{KindText, OutputText, composed, exports, fragments};
-use crate::scene::wgsl::prefix::{declarations, prefixed_with};
+use crate::scene::wgsl::prefix::{declared_names, prefixed_with};
 
 /// The bind group of a kind's own resources.
 const GROUP: u32 = 2;
@@ -116,11 +116,8 @@ impl KindProgram {
             return Err(InputError::new("kind.name", format!("`{name}`"), bound));
         }
         let code = without_comments(source);
-        let declared = declarations(&code);
-        let declares = |what: &str| {
-            let wanted = format!("{name}_{what}");
-            declared.iter().any(|range| code[range.clone()] == wanted)
-        };
+        let declared = declared_names(&code);
+        let declares = |what: &str| declared.contains(&format!("{name}_{what}"));
         let kind =
             KindText { name, discards: true, blends: true, deep: true, moves: declares("last_position") };
         // Without comments, so that nothing in them is taken for code; what stands where stays.
@@ -134,12 +131,11 @@ impl KindProgram {
             }
         }
         let module = own.parsed().map_err(|error| own.explained(name, error))?;
-        own.check(name, &module)?;
+        own.check(&module)?;
         let info = own.validated(&module).map_err(|error| own.explained(name, error))?;
         let entries = bound(&own, &module, &info)?;
-        let (moves, declared) =
-            (kind.moves, declared.iter().map(|range| code[range.clone()].to_owned()).collect());
-        Ok(Self(Arc::new(Inner { name: name.to_owned(), text: text.clone(), declared, moves, entries })))
+        let moves = kind.moves;
+        Ok(Self(Arc::new(Inner { name: name.to_owned(), text, declared, moves, entries })))
     }
 
     /// The name.

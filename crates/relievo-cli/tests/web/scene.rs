@@ -129,22 +129,26 @@ fn a_scene_in_the_browser_equals_the_native_one_and_another_light_does_not() {
     );
 }
 
-#[test]
-fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
-    let (native, browser) = (native_of_file(), picture("file"));
+/// Saves both pictures, compares them, and compares another scene of the page, which is refused.
+fn assert_alike(name: &str, native: &RgbaImage) {
+    let browser = picture(name);
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("web-scene");
     std::fs::create_dir_all(&folder).expect("writable");
-    for (name, picture) in [("file-native", &native), ("file-browser", &browser)] {
-        picture.save(folder.join(format!("{name}.png"))).expect("writable");
+    for (side, picture) in [("native", native), ("browser", &browser)] {
+        picture.save(folder.join(format!("{name}-{side}.png"))).expect("writable");
     }
-    let difference = Difference::of(&browser, &native, TOLERANCE.levels);
-    let beyond = foreign(&browser, &native, TOLERANCE.levels);
+    let difference = Difference::of(&browser, native, TOLERANCE.levels);
+    let beyond = foreign(&browser, native, TOLERANCE.levels);
     println!("{difference:?}, {beyond} foreign; see {}", folder.display());
     assert!(difference.within(TOLERANCE), "{difference:?}; see {}", folder.display());
     assert!(beyond <= FOREIGN, "{beyond} foreign; see {}", folder.display());
-    // Another scene is refused.
     let other = picture("day");
-    assert!(!Difference::of(&other, &native, TOLERANCE.levels).within(TOLERANCE), "another scene passes");
+    assert!(!Difference::of(&other, native, TOLERANCE.levels).within(TOLERANCE), "another scene passes");
+}
+
+#[test]
+fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
+    assert_alike("file", &native_of_file());
 }
 
 /// A kind of the caller's: grass, whose text is composed in the browser, is that which is drawn natively.
@@ -152,22 +156,7 @@ fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
 fn a_kind_of_the_callers_in_the_browser_equals_the_native_one() {
     let gpu = gpu();
     let drawn = async { World::meadow(&gpu).await?.draw(&gpu).await };
-    let (native, browser) = (reduced(driven(&gpu, drawn).expect("drawn")), picture("kind"));
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("web-scene");
-    std::fs::create_dir_all(&folder).expect("writable");
-    for (name, picture) in [("kind-native", &native), ("kind-browser", &browser)] {
-        picture.save(folder.join(format!("{name}.png"))).expect("writable");
-    }
-    let difference = Difference::of(&browser, &native, TOLERANCE.levels);
-    let beyond = foreign(&browser, &native, TOLERANCE.levels);
-    println!("{difference:?}, {beyond} foreign; see {}", folder.display());
-    assert!(difference.within(TOLERANCE), "{difference:?}; see {}", folder.display());
-    assert!(beyond <= FOREIGN, "{beyond} foreign; see {}", folder.display());
-    // Another scene is refused.
-    assert!(
-        !Difference::of(&picture("day"), &native, TOLERANCE.levels).within(TOLERANCE),
-        "another scene passes"
-    );
+    assert_alike("kind", &reduced(driven(&gpu, drawn).expect("drawn")));
 }
 
 /// Levels that were made beforehand are those that the browser would make.
