@@ -40,6 +40,7 @@ mod shaders {
         for input in ["kernels", "wgsl", "build", "build.rs"] {
             println!("cargo::rerun-if-changed={input}");
         }
+        let core = flatten(&root, &root.join(CORE), Keep::All, wesl::ManglerKind::None);
         let mut bindings = Bindings::default();
         let mut manifest = String::new();
         let mut all = Vec::new();
@@ -55,12 +56,12 @@ mod shaders {
                 bindings.add(&root, &file, &shader);
                 let shader = shader.published(&root, &file);
                 std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
-                shader.describe(&mut manifest, &path);
+                shader.describe(&mut manifest, &core, &path);
                 all.push(shader);
             }
         }
         bindings.write(&out);
-        write_core(&root, &out, &mut manifest);
+        write_core(&root, &core, &out, &mut manifest);
         refuse_unused_module_bindings(&root, &all);
         write_modules(&root, &out, &mut manifest);
         let list = all.iter().map(|shader| format!("&{}", shader.constant())).collect::<Vec<_>>().join(", ");
@@ -73,14 +74,13 @@ mod shaders {
     const CORE: &str = "wgsl/render/scene_core.wgsl";
 
     /// Writes what the texts of callers' kinds stand beside, and checks it with the least kind.
-    fn write_core(root: &Path, out: &Path, manifest: &mut String) {
+    fn write_core(root: &Path, core: &str, out: &Path, manifest: &mut String) {
         let files = output_files(root);
         let (outputs, _) = outputs(&files, root, true);
         let outputs: Vec<_> = outputs.iter().map(|output| (&*output.name, output.moves)).collect();
         let file = root.join(CORE);
-        let core = flatten(root, &file, Keep::All, wesl::ManglerKind::None);
         let kind = KindText { name: "least", discards: true, blends: true, deep: true, moves: false };
-        let entries = composed(&kind, &core, &outputs);
+        let entries = composed(&kind, core, &outputs);
         let least = "fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
     return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
 }
@@ -88,7 +88,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
 ";
         Shader::validated(root, &file, "render/scene_core".to_owned(), format!("{least}\n{entries}"));
         let path = out.join("scene_core.wgsl");
-        std::fs::write(&path, &core).expect("OUT_DIR is writable");
+        std::fs::write(&path, core).expect("OUT_DIR is writable");
         writeln!(
             manifest,
             "/// What the texts of kinds stand beside, without entry points; its names have no prefix yet.\n\
@@ -369,8 +369,8 @@ import package::wgsl::render::scene_view::view;
             self.name.replace('/', "_").to_uppercase()
         }
 
-        fn describe(&self, manifest: &mut String, path: &Path) {
-            let mut bindings = self.bindings();
+        fn describe(&self, manifest: &mut String, core: &str, path: &Path) {
+            let mut bindings = self.bindings(core);
             bindings.sort();
             let bindings: String = bindings.into_iter().map(|(_, _, text)| text).collect();
             writeln!(
@@ -450,7 +450,8 @@ import package::wgsl::render::scene_view::view;
             self.module.to_ctx().type_to_string(ty)
         }
 
-        fn bindings(&self) -> Vec<(u32, u32, String)> {
+        /// Its bindings; `core` is what the texts of callers' kinds stand beside.
+        fn bindings(&self, core: &str) -> Vec<(u32, u32, String)> {
             let mut found = Vec::new();
             for (handle, variable) in self.module.global_variables.iter() {
                 let Some(binding) = &variable.binding else { continue };
@@ -478,11 +479,14 @@ import package::wgsl::render::scene_view::view;
                     .map(|(_, entry)| format!("Stage::{:?}", entry.stage))
                     .collect::<Vec<_>>();
                 stages.dedup();
-                // All kinds share the layout of the view.
-                let is_shared = binding.group == 0 && self.takes_shading();
+                let name = variable.name.as_deref().unwrap_or_default();
+                // All kinds share the layout of the view, and the caller's may use it in either stage.
+                let own = name.strip_prefix(self.prefix()).unwrap_or(name);
+                let of_core =
+                    core.lines().any(|line| line.starts_with("var") && line.contains(&format!(" {own}:")));
+                let is_shared = binding.group == 0 && self.takes_shading() && of_core;
                 let stages =
                     if is_shared { "Stage::Vertex, Stage::Fragment".to_owned() } else { stages.join(", ") };
-                let name = variable.name.as_deref().unwrap_or_default();
                 let (group, binding) = (binding.group, binding.binding);
                 let ty = self.type_name(variable.ty);
                 found.push((group, binding, format!(

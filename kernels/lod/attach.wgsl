@@ -13,8 +13,8 @@ struct AttachParams {
     bones: u32,
     // The index in the scene of the character's first instance.
     first: u32,
-    // The index in `rows` of the transforms of the last frame: three times the number of instances; 0 if it is not kept.
-    last_rows: u32,
+    // The index in `placements` of the first one of the last frame: the number of instances; 0 if it is not kept.
+    first_last: u32,
     // The number of the frame, from 1 on.
     frame: u32,
     // The number of the frame before; 0 if nothing is known of it.
@@ -63,10 +63,10 @@ struct KeptBone {
 // For each instance of the scene the displacement that the views of the frame allow; negative if none sees it.
 // length: instances
 @group(0) @binding(5) var<storage, read> allowed: array<f32>;
-// Written for the attached meshes, three for each instance of the scene: the rows of the transform from the model's space
-// to the corner of the view's cell; from `last_rows` on the same for the last frame, relative to the same cell.
-// length: rows
-@group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
+// For each instance of the scene the transform from the model's space to the corner of the view's cell, three rows, and from
+// `first_last` on the same for the last frame, relative to the same cell. Those of the attached meshes are written.
+// length: placements
+@group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
 // All instances of the scene as they were in the last frame; the same buffer as `instances` if it is not kept.
 // length: instances
 @group(0) @binding(7) var<storage, read> last_instances: array<SceneInstance>;
@@ -74,14 +74,14 @@ struct KeptBone {
 // length: 2 * attachments
 @group(0) @binding(8) var<storage, read_write> kept: array<KeptBone>;
 
-// The rows of an instance's placement, followed from the right by those of a transform in its space.
-fn write_placed(instance: SceneInstance, local: array<vec4<f32>, 3>, first: u32, is_seen: bool) {
+// Writes an instance's placement times a transform in its space.
+fn write_placed(instance: SceneInstance, local: array<vec4<f32>, 3>, to: u32, is_seen: bool) {
     let axes = instance_axes(instance);
     let at = instance_position(instance, view.cell);
     for (var row = 0u; row < 3u; row++) {
         let placed = vec4<f32>(axes.x[row], axes.y[row], axes.z[row], at[row]);
         let moved = product_row(placed, local[0], local[1], local[2]);
-        rows[first + row] = select(vec4<f32>(0.0, 0.0, 0.0, at[row]), moved, is_seen);
+        placements[to][row] = select(vec4<f32>(0.0, 0.0, 0.0, at[row]), moved, is_seen);
     }
 }
 
@@ -100,8 +100,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         product_row(model_matrices[bone + 1u], offset[0], offset[1], offset[2]),
         product_row(model_matrices[bone + 2u], offset[0], offset[1], offset[2]));
     let is_seen = allowed[character] >= 0.0;
-    write_placed(instances[character], local, 3u * attachment.mesh, is_seen);
-    if params.last_rows == 0u {
+    write_placed(instances[character], local, attachment.mesh, is_seen);
+    if params.first_last == 0u {
         return;
     }
     // The views of a frame write the same, and read what none of them writes.
@@ -110,7 +110,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     if params.last_frame != 0u && last.frame == params.last_frame && last.key == attachment.key {
         last_local = last.rows;
     }
-    write_placed(last_instances[character], last_local, params.last_rows + 3u * attachment.mesh, is_seen);
+    write_placed(last_instances[character], last_local, params.first_last + attachment.mesh, is_seen);
     if is_seen {
         kept[2u * index + (params.frame & 1u)] = KeptBone(local, params.frame, attachment.key, 0u, 0u);
     }

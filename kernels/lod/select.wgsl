@@ -3,7 +3,7 @@
 import package::wgsl::lod::allowed::{MAX_ALLOWED, allowed_in_model, camera_allows};
 import package::wgsl::lod::criterion::criterion_metric;
 import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, Axes, SceneInstance, instance_axes, instance_flags_mask, instance_position};
-import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, decision_list, decision_morph, morph_steps, object_flags_shown};
+import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, decision_list, object_flags_shown};
 import package::wgsl::lod::transition::transition_decision;
 import package::wgsl::lod::view::{POSITION_SLACK, SelectView, VIEW_CAMERAS};
 
@@ -27,18 +27,18 @@ const MAX_METRIC: f32 = 3e38;
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
 // Written, one for each instance: 0 if the view does not see it, else a decision word for list
-// 2 · level + mirrored. The decisions of the last frame must be kept where
-// `SelectView::last_levels` is not 0.
+// 2 · level + mirrored. Where `SelectView::is_next` is 1, it holds the decisions of the last frame before.
 // length: BLOCK * blocks
 @group(0) @binding(5) var<storage, read_write> decisions: array<u32>;
-// Written, three for each instance that is seen: the rows of the transform from the model's space to the corner of the
-// view's cell. Where `SelectView::last_levels` is not 0, an element for each instance from it on: the level of the last
-// frame, as `level_told` packs it.
-// length: 3 * BLOCK * blocks
-@group(0) @binding(6) var<storage, read_write> rows: array<vec4<f32>>;
+// Written for each instance that is seen: the transform from the model's space to the corner of the view's cell, three rows.
+// length: BLOCK * blocks
+@group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
 // Written, for each block the number of its instances in each of `OBJECT_LISTS` lists.
 // length: OBJECT_LISTS * blocks
 @group(0) @binding(7) var<storage, read_write> counts: array<u32>;
+// Written, one for each instance: the decision of the last frame; 0 if the view was not in it.
+// length: BLOCK * blocks
+@group(0) @binding(8) var<storage, read_write> last_decisions: array<u32>;
 
 var<workgroup> tally: array<atomic<u32>, 16>;
 
@@ -81,7 +81,7 @@ fn seen_by(object: LodObject, center: vec3<f32>, radius: f32, scale: f32) -> See
     return seen;
 }
 
-// The decision for an instance. Writes its rows and its allowed displacement.
+// The decision for an instance. Writes its placement and its allowed displacement.
 fn decide(index: u32, object: LodObject) -> u32 {
     let instance = instances[index];
     let before = select(allowed[index], UNSEEN_ALLOWED, view.is_first != 0u);
@@ -94,9 +94,10 @@ fn decide(index: u32, object: LodObject) -> u32 {
         // Rounding of the center must not move the sphere off what it contains.
         let radius = sphere.w * scale + POSITION_SLACK * (length(at) + scale * length(sphere.xyz));
         if is_inside(center, radius) {
-            rows[3u * index] = vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x);
-            rows[3u * index + 1u] = vec4<f32>(axes.x.y, axes.y.y, axes.z.y, at.y);
-            rows[3u * index + 2u] = vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z);
+            placements[index] = array<vec4<f32>, 3>(
+                vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x),
+                vec4<f32>(axes.x.y, axes.y.y, axes.z.y, at.y),
+                vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z));
             let seen = seen_by(object, center, radius, scale);
             allowed[index] = select(seen.allowed, min(before, seen.allowed), before >= 0.0);
             let s = instance.scale;
@@ -106,14 +107,6 @@ fn decide(index: u32, object: LodObject) -> u32 {
     }
     allowed[index] = before;
     return 0u;
-}
-
-// What a decision tells of an instance's level: 1 + the level, or 0 if the instance is not seen, and the steps that the level
-// has moved to the next one.
-fn level_told(decision: u32) -> vec4<f32> {
-    let level = (max(decision_list(decision), 1u) - 1u) >> 1u;
-    let steps = morph_steps(decision_morph(decision));
-    return select(vec4<f32>(f32(1u + level), f32(steps), 0.0, 0.0), vec4<f32>(0.0), decision == 0u);
 }
 
 @compute @workgroup_size(64)
@@ -136,10 +129,7 @@ fn main(
     workgroupBarrier();
     let index = BLOCK * block + lane;
     let decision = decide(index, objects[owner]);
-    // No decision has all bits: a branch over uniforms alone would let lavapipe compile the kernel anew in each submission.
-    if view.last_levels != 0u && decision != 0xffffffffu {
-        rows[view.last_levels + index] = level_told(select(0u, decisions[index], view.is_next != 0u));
-    }
+    last_decisions[index] = select(0u, decisions[index], view.is_next != 0u);
     decisions[index] = decision;
     if decision > 0u {
         atomicAdd(&tally[decision_list(decision) - 1u], 1u);

@@ -1,6 +1,7 @@
 //! The bind groups with which a scene is drawn, and their layouts. Group 0 is the view, group 1 the object, group 2 the
 //! surface, and group 3 is left to the caller's shading.
 
+use crate::asset::Affine;
 use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Layouts, Uniform};
 use crate::scene::specialization::Program;
@@ -23,6 +24,19 @@ pub(crate) struct SceneLayouts {
     own_object: wgpu::BindGroupLayout,
     /// What views without a shadow bind.
     shadow: ShadowBindings,
+}
+
+/// The instances of a scene in a view, which have an element each.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct InstancesInView<'a> {
+    /// The transforms from the model's space to the corner of the view's cell, and as many for the last frame, if it is kept.
+    pub placements: &'a Buffer<Affine>,
+    /// All instances of the scene.
+    pub instances: &'a Buffer<SceneInstance>,
+    /// The same in the last frame.
+    pub last_instances: &'a Buffer<SceneInstance>,
+    /// What the view decided in the last frame.
+    pub last_decisions: &'a Buffer<u32>,
 }
 
 /// The sampler of sun shadows, and a map for views that have none.
@@ -79,8 +93,7 @@ impl SceneLayouts {
         })
     }
 
-    /// Group 0: a view, its `rows` (three for each instance of the scene), all instances of the scene, as they are and as
-    /// they were in the last frame, and the map of its shadow, if it has one.
+    /// Group 0: a view, the instances of the scene in it, and the map of its shadow, if it has one.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -88,15 +101,15 @@ impl SceneLayouts {
         &self,
         gpu: &Gpu,
         view: &Uniform<SceneView>,
-        rows: &Buffer<[f32; 4]>,
-        [instances, last]: [&Buffer<SceneInstance>; 2],
+        instances: &InstancesInView<'_>,
         shadow_map: Option<&wgpu::TextureView>,
     ) -> Result<Group, GpuError> {
         let group = scene_mesh::Group {
             view,
-            rows: rows.slice(),
-            instances: instances.slice(),
-            last_instances: last.slice(),
+            placements: instances.placements.slice(),
+            instances: instances.instances.slice(),
+            last_instances: instances.last_instances.slice(),
+            last_decisions: instances.last_decisions.slice(),
             shadow_map: shadow_map.unwrap_or(&self.shadow.nothing),
             shadow_sampler: &self.shadow.sampler,
         };

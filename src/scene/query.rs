@@ -109,7 +109,7 @@ mod drawn {
         /// How far its level had moved to the next coarser one, 0 to 1.
         pub way: f64,
         /// The transform from the model's space to the corner of the view's cell.
-        pub rows: Affine,
+        pub placement: Affine,
     }
 
     /// For the laboratory, which measures what was drawn.
@@ -127,7 +127,7 @@ mod drawn {
             let buffers = self.lists_of(view)?;
             let draws = buffers.arguments.read_blocking(&self.gpu)?;
             let lists = buffers.lists.read_blocking(&self.gpu)?;
-            let rows = buffers.rows.read_blocking(&self.gpu)?;
+            let placements = buffers.placements.read_blocking(&self.gpu)?;
             let mut drawn = vec![None; entry.instances.capacity()];
             for chunk in &entry.chunks {
                 let (range, room) = (chunk.range, chunk.room() as usize);
@@ -137,9 +137,8 @@ mod drawn {
                         let index = list_entry_instance(*entry);
                         let steps = morph_steps(list_entry_morph(*entry));
                         let way = f64::from(steps) / f64::from(MORPH_STEPS);
-                        let first = 3 * (range.first + index) as usize;
-                        let rows: Affine = [0, 1, 2].map(|row| rows[first + row]);
-                        let drawn_as = DrawnAs { list: list as u32, way, rows };
+                        let placement = placements[(range.first + index) as usize];
+                        let drawn_as = DrawnAs { list: list as u32, way, placement };
                         drawn[chunk.slots.start + index as usize] = Some(drawn_as);
                     }
                 }

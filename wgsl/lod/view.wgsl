@@ -39,13 +39,11 @@ struct SelectView {
     casters: u32,
     // Number of blocks of instances.
     blocks: u32,
-    // The element of the placements' rows from which on each instance has its level of detail of the last frame; 0 if that is
-    // not kept.
-    last_levels: u32,
     // 1 if the view was in the last frame too, so that the decisions before this one are that frame's.
     is_next: u32,
     unused_a: u32,
     unused_b: u32,
+    unused_c: u32,
 }
 
 // How far rounding may move what is computed from positions relative to the corner of the view's cell, as a fraction of

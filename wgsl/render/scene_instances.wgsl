@@ -6,12 +6,10 @@ import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 
-// Three rows per instance of the scene: the transform from the model's space to positions relative to the corner of the
-// view's cell. Only those of instances that the view sees are written. If the scene keeps its last frame, as many follow, of
-// which those of meshes that are attached to bones are written: the transforms that they had then; and then an element for
-// each instance, of which x is 1 + the level of detail at which the view drew it then, or 0 if it did not, and y the steps
-// that the level had moved.
-@group(0) @binding(1) var<storage, read> rows: array<vec4<f32>>;
+// For each instance of the scene the transform from the model's space to positions relative to the corner of the view's cell,
+// three rows. Those of instances that the view sees are written. If the scene keeps its last frame, as many follow: the
+// transforms of that frame. Those of meshes that are attached to bones are written.
+@group(0) @binding(1) var<storage, read> placements: array<array<vec4<f32>, 3>>;
 // All instances of the scene.
 @group(0) @binding(2) var<storage, read> instances: array<SceneInstance>;
 // All instances of the scene as they were in the last frame, if it keeps it; else as they are.
@@ -43,18 +41,17 @@ fn instance_index(entry: u32) -> u32 {
 }
 
 // The transform of an instance from the model's space to positions relative to the corner of the view's cell.
-fn instance_rows(index: u32) -> Rows {
-    return Rows(rows[3u * index], rows[3u * index + 1u], rows[3u * index + 2u]);
+fn instance_placement(index: u32) -> Rows {
+    return Rows(placements[index][0], placements[index][1], placements[index][2]);
 }
 
 // The same as it was in the last frame. A mesh that was attached to a bone and is no longer counts as if it had been where it
 // is.
-fn last_rows(index: u32) -> Rows {
+fn last_placement(index: u32) -> Rows {
     let instance = last_instances[index];
     if (instance.flags & INSTANCE_FOLLOWS) != 0u {
         let follows = (instances[index].flags & INSTANCE_FOLLOWS) != 0u;
-        let first = 3u * index + select(0u, 3u * arrayLength(&last_instances), follows);
-        return Rows(rows[first], rows[first + 1u], rows[first + 2u]);
+        return instance_placement(index + select(0u, arrayLength(&last_instances), follows));
     }
     let axes = instance_axes(instance);
     let at = instance_position(instance, view.cell);
@@ -66,8 +63,8 @@ fn last_rows(index: u32) -> Rows {
 
 // The transform from where an instance is to where it was, for what does not move in the model's space.
 fn rows_to_last(index: u32) -> Rows {
-    let now = instance_rows(index);
-    let last = last_rows(index);
+    let now = instance_placement(index);
+    let last = last_placement(index);
     // The columns of the inverse, times the determinant.
     let a = cross(now.y.xyz, now.z.xyz);
     let b = cross(now.z.xyz, now.x.xyz);
@@ -90,7 +87,7 @@ fn rows_to_last(index: u32) -> Rows {
 // Where a point of the model's space was in the last frame, relative to the corner of the view's cell: `position` is where the
 // point was in the model's space then.
 fn scene_last_placed(entry: u32, position: vec3<f32>) -> vec3<f32> {
-    return placed_position(last_rows(instance_index(entry)), position);
+    return placed_position(last_placement(instance_index(entry)), position);
 }
 
 // Where a point was in the last frame that does not move in the model's space; both are relative to the corner of the view's
@@ -102,7 +99,7 @@ fn scene_last_rigid(entry: u32, position: vec3<f32>) -> vec3<f32> {
 // A vertex given in the model's space, at the placement of the instance of a list's entry. The tangent's w is the side of the
 // bitangent in the model's space.
 fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec4<f32>, uv: vec4<f32>) -> SceneVertex {
-    let placement = instance_rows(instance_index(entry));
+    let placement = instance_placement(instance_index(entry));
     let along = vec3<f32>(
         dot(placement.x.xyz, tangent.xyz), dot(placement.y.xyz, tangent.xyz), dot(placement.z.xyz, tangent.xyz));
     let determinant = dot(placement.x.xyz, cross(placement.y.xyz, placement.z.xyz));

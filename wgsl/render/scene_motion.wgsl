@@ -1,8 +1,11 @@
 // Where the vertices of a mesh were in the last frame.
-import package::wgsl::lod::object::OBJECT_LEVELS;
-import package::wgsl::render::scene_instances::{entry_instance, instance_index, last_instances, rows, scene_last_placed};
+import package::wgsl::lod::object::{OBJECT_LEVELS, decision_list, decision_morph, morph_steps};
+import package::wgsl::render::scene_instances::{entry_instance, instance_index, scene_last_placed};
 import package::wgsl::render::scene_vertex::{MORPHED, VertexMorph, material_of, mesh, morphed, partner_index, partner_level, vertex_index_of, vertex_morph, vertices, way_of};
 import package::wgsl::skinning::vertex::vertex_position;
+
+// For each instance of the scene the decision of the view in the last frame; 0 if the view did not see it then.
+@group(0) @binding(6) var<storage, read> last_decisions: array<u32>;
 
 // Where a vertex of an instance was in the model's space.
 fn last_local(instance: u32, vertex: u32) -> vec3<f32> {
@@ -20,11 +23,11 @@ struct LastMorph {
 // If the last frame had a coarser level of detail, a vertex was where the one was that had taken its place; if it had a finer
 // one, the vertex had not moved. An instance that the view did not see then counts as if its level had been as it is.
 fn last_morph(entry: u32, vertex: u32) -> LastMorph {
-    let known = rows[6u * arrayLength(&last_instances) + instance_index(entry)];
-    if known.x == 0.0 || mesh.partners == 0u {
+    let decision = last_decisions[instance_index(entry)];
+    if decision == 0u || mesh.partners == 0u {
         return LastMorph(vertex, vertex_morph(entry, vertex));
     }
-    let level = u32(known.x) - 1u;
+    let level = (decision_list(decision) - 1u) >> 1u;
     var standing = vertex;
     var word = material_of[mesh.partners + standing];
     for (var step = 0u; step < OBJECT_LEVELS && partner_level(word) < level; step++) {
@@ -34,7 +37,7 @@ fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     if partner_level(word) != level {
         return LastMorph(standing, VertexMorph(standing, 0.0));
     }
-    return LastMorph(standing, VertexMorph(partner_index(word), way_of(u32(known.y))));
+    return LastMorph(standing, VertexMorph(partner_index(word), way_of(morph_steps(decision_morph(decision)))));
 }
 
 // Where a vertex of an instance, given by the entry of its list, was, relative to the corner of the view's cell.

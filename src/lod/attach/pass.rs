@@ -28,7 +28,7 @@ impl AttachPass {
     /// selection of the view and the model matrices of the character.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for `allowed`, rows, last instances or kept bones of fewer elements than there are;
+    /// [`InputError`](crate::InputError) for `allowed`, placements, last instances or kept bones of fewer elements than there are;
     /// [`GpuError`].
     pub fn prepare(
         &self,
@@ -38,8 +38,8 @@ impl AttachPass {
     ) -> Result<Job, Error> {
         let (instances, attachments) = (buffers.instances.len(), buffers.attachments.len());
         let is_kept = buffers.last_instances.raw() != buffers.instances.raw();
-        let rows = if is_kept { 6 } else { 3 } * instances;
-        let lengths = bindings::Lengths { attachments, instances, rows };
+        let placements = if is_kept { 2 } else { 1 } * instances;
+        let lengths = bindings::Lengths { attachments, instances, placements };
         let group = buffers.bind(gpu, &self.kernel, params, &lengths)?;
         Ok(Job::spread(gpu, "lod/attach", (&self.kernel, group), attachments as u32)?)
     }

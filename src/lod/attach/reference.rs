@@ -15,7 +15,7 @@ pub fn local(params: &AttachParams, attachment: &Attachment, model_matrices: &[A
     product(bone, &attachment.offset)
 }
 
-/// The rows of an attached mesh: the transform from its space to the corner of a cell. `instances` are those of the scene,
+/// The placement of an attached mesh: the transform from its space to the corner of a cell. `instances` are those of the scene,
 /// `allowed` what the views of the frame allow each of them, and `local` the product of bone and offset.
 ///
 /// # Panics

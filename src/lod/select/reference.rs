@@ -2,6 +2,7 @@
 
 use glam::{IVec3, Vec3};
 
+use crate::asset::Affine;
 use crate::lod::allowed::allowed_by;
 use crate::lod::criterion::metric;
 use crate::lod::transition::decision;
@@ -10,7 +11,7 @@ use crate::lod::{
     instance_flags_mask,
 };
 use crate::shared::lod::allowed::MAX_ALLOWED;
-use crate::shared::lod::object::{decision_list, decision_morph, morph_steps, object_flags_shown};
+use crate::shared::lod::object::{decision_list, object_flags_shown};
 use crate::shared::lod::select::{MAX_METRIC, UNSEEN_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
 
@@ -21,8 +22,8 @@ pub struct Selected {
     pub decision: u32,
     /// The displacement that the view allows, in the model's units.
     pub allowed: f32,
-    /// The rows of the transform from the model's space to the corner of the view's cell.
-    pub rows: [[f32; 4]; 3],
+    /// The transform from the model's space to the corner of the view's cell.
+    pub placement: Affine,
 }
 
 /// The bounding sphere of an instance, relative to the corner of a cell: center and radius. The radius includes what
@@ -71,18 +72,8 @@ pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -
     };
     let metric = view.cameras().iter().map(metric_of).fold(MAX_METRIC, f32::min);
     let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
-    let rows = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
-    Some(Selected { decision: decision(object, instance.is_mirrored(), metric), allowed, rows })
-}
-
-/// What a decision tells of an instance's level: 1 + the level, or 0 if the instance is not seen, and the steps that the
-/// level has moved to the next one. The last two are 0.
-pub fn level_told(decision: u32) -> [f32; 4] {
-    if decision == 0 {
-        return [0.0; 4];
-    }
-    let level = (decision_list(decision).max(1) - 1) >> 1;
-    [(1 + level) as f32, morph_steps(decision_morph(decision)) as f32, 0.0, 0.0]
+    let placement = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
+    Some(Selected { decision: decision(object, instance.is_mirrored(), metric), allowed, placement })
 }
 
 /// The displacement that is allowed an instance after another view of the frame. `before` is what the views before it

@@ -80,7 +80,7 @@ impl Attachments {
                 of_chunk.entry(key).or_default().push(attachment);
             }
         }
-        let last_rows = if layout.keeps_last { 3 * layout.instances.len() as u32 } else { 0 };
+        let first_last = if layout.keeps_last { layout.instances.len() as u32 } else { 0 };
         for (key, mut attachments) in of_chunk {
             let (object, chunk) = key;
             let Some([first, bones]) = first_of(objects, object, chunk) else {
@@ -89,7 +89,7 @@ impl Attachments {
                 continue;
             };
             attachments.sort_by_key(|attachment| attachment.key);
-            let value = AttachParams { attached: 0, bones, first, last_rows, frame: 0, last_frame: 0 };
+            let value = AttachParams { attached: 0, bones, first, first_last, frame: 0, last_frame: 0 };
             self.write(gpu, (key, value), &attachments, staged)?;
         }
         self.written = Some(layout.version);

@@ -102,8 +102,8 @@ impl KindProgram {
     /// `relievo_view` is the view: `clip_from_world`, `eye`, `light`. `Surface` is that of
     /// [`Renderer::with_shading`](crate::render::Renderer::with_shading).
     ///
-    /// Of WebGPU's default limits for a stage, the crate's part is 3 storage buffers, 2 uniform buffers, 1 texture and 1
-    /// sampler. A kind and the caller's shading share the rest: 5, 10, 15 and 15 in the fragment stage.
+    /// Of WebGPU's default limits for a stage, the crate's part is 3 storage buffers (4 in the vertex stage), 2 uniform buffers, 1
+    /// texture and 1 sampler. A kind and the caller's shading share the rest: 5, 10, 15 and 15 in the fragment stage.
     ///
     /// # Errors
     /// [`InputError`] for the first mistake, with the path `kind:LINE:COLUMN`, both counted from 1, and for a name that is not

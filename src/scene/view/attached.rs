@@ -41,7 +41,7 @@ impl View {
                 model_matrices: &model_matrices.buffer().cast(),
                 instances: &layout.instances,
                 allowed: &layout.allowed,
-                rows: &lists.rows,
+                placements: &lists.placements,
                 last_instances: &layout.last_instances,
                 kept: &list.kept,
             };

@@ -2,13 +2,14 @@
 
 use super::attached::AttachedJobs;
 use crate::Error;
+use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
 use crate::lod::SelectView;
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
 use crate::lod::single::{SingleBuffers, SinglePass};
 use crate::scene::layout::Layout;
-use crate::scene::layouts::SceneLayouts;
+use crate::scene::layouts::{InstancesInView, SceneLayouts};
 use crate::scene::order::Ordered;
 use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_terrain::TerrainView;
@@ -31,10 +32,11 @@ pub(crate) struct ViewLists {
     pub lists: Buffer<u32>,
     /// The draws of all objects.
     pub arguments: Buffer<SceneDraw>,
-    /// For each instance that is seen, the rows of its transform from the model's space to the corner of the view's cell.
-    /// If the last frame is kept, as many follow for meshes on bones as they were then, and then a level for each instance.
-    pub rows: Buffer<[f32; 4]>,
-    keeps_last: bool,
+    /// For each instance that is seen, the transform from the model's space to the corner of the view's cell. If the last frame
+    /// is kept, as many follow for meshes on bones as they were then.
+    pub placements: Buffer<Affine>,
+    /// For each instance the decision of the last frame.
+    last_decisions: Buffer<u32>,
     /// Bind group 0.
     pub group: Group,
     /// The map of the sun's shadow in it.
@@ -61,8 +63,9 @@ impl ViewLists {
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
         let counts = Buffer::new(gpu, "counts of blocks", 16 * layout.blocks as usize)?;
-        let each = if layout.keeps_last { 7 } else { 3 };
-        let rows = Buffer::new(gpu, "placements in the view", each * instances)?;
+        let last_decisions = Buffer::new(gpu, "decisions of the last frame", instances)?;
+        let frames = if layout.keeps_last { 2 } else { 1 };
+        let placements = Buffer::new(gpu, "placements in the view", frames * instances)?;
         let lists = Buffer::new(gpu, "lists of instances", layout.list_words as usize)?;
         let arguments = Buffer::from_slice(gpu, "draws", &layout.draws)?;
         let buffers = SelectBuffers {
@@ -72,8 +75,9 @@ impl ViewLists {
             instances: &layout.instances,
             allowed: &layout.allowed,
             decisions: &decisions,
-            rows: &rows,
+            placements: &placements,
             counts: &counts,
+            last_decisions: &last_decisions,
         };
         let select = select.prepare(gpu, buffers)?;
         let buffers = ListBuffers {
@@ -85,15 +89,16 @@ impl ViewLists {
             arguments: &arguments,
         };
         let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
-        let group = layouts.view(gpu, drawn, &rows, [&layout.instances, &layout.last_instances], map)?;
+        let instances = in_view(layout, &placements, &last_decisions);
+        let group = layouts.view(gpu, drawn, &instances, map)?;
         let terrain = (0..terrains).map(|_| ground(gpu, layouts)).collect::<Result<_, GpuError>>()?;
         Ok(Self {
             singles: singles(gpu, layout, single, (&decisions, &arguments))?,
             version: layout.version,
             lists,
             arguments,
-            rows,
-            keeps_last: layout.keeps_last,
+            placements,
+            last_decisions,
             group,
             map: map.cloned(),
             terrain,
@@ -106,11 +111,6 @@ impl ViewLists {
 }
 
 impl ViewLists {
-    /// Where the levels of the last frame begin in the rows; 0 if it is not kept.
-    pub(super) fn last_levels(&self) -> u32 {
-        if self.keeps_last { 6 * (self.rows.len() as u32 / 7) } else { 0 }
-    }
-
     /// Binds another map of the sun's shadow, unless it is bound.
     pub(super) fn bind_map(
         &mut self,
@@ -120,12 +120,21 @@ impl ViewLists {
         map: Option<&wgpu::TextureView>,
     ) -> Result<(), GpuError> {
         if self.map.as_ref() != map {
-            let instances = [&layout.instances, &layout.last_instances];
-            self.group = layouts.view(gpu, drawn, &self.rows, instances, map)?;
+            let instances = in_view(layout, &self.placements, &self.last_decisions);
+            self.group = layouts.view(gpu, drawn, &instances, map)?;
             self.map = map.cloned();
         }
         Ok(())
     }
+}
+
+fn in_view<'a>(
+    layout: &'a Layout,
+    placements: &'a Buffer<Affine>,
+    last_decisions: &'a Buffer<u32>,
+) -> InstancesInView<'a> {
+    let Layout { instances, last_instances, .. } = layout;
+    InstancesInView { placements, instances, last_instances, last_decisions }
 }
 
 /// The draws of instances that are drawn one by one, if there are any, and the job that writes them.

@@ -268,7 +268,6 @@ impl View {
     ) -> Result<(), Error> {
         let last = self.last.filter(|(last, _)| *last + 1 == frame).map(|(_, camera)| camera);
         let (camera, mut view) = self.select_view(blocks, is_first)?;
-        view.last_levels = self.lists.as_ref().map_or(0, ViewLists::last_levels);
         view.is_next = last.is_some().into();
         staged.uniform(&self.select, &view)?;
         staged.uniform(

@@ -106,10 +106,10 @@ impl SelectView {
             is_first: 1,
             casters: 0,
             blocks: 0,
-            last_levels: 0,
             is_next: 0,
             unused_a: 0,
             unused_b: 0,
+            unused_c: 0,
         }
     }
 }

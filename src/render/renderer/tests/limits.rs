@@ -28,7 +28,7 @@ impl Taken {
 }
 
 /// What vertex and fragment stages may take: the rest is the caller's.
-const VERTEX: Taken = Taken { storage: 7, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
+const VERTEX: Taken = Taken { storage: 8, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
 const FRAGMENT: Taken = Taken { storage: 4, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
 
 /// The number of locations of a type: those of its members, or one.

@@ -10,7 +10,7 @@ use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw, SceneInstance};
 use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView};
-use crate::scene::layouts::SceneLayouts;
+use crate::scene::layouts::{InstancesInView, SceneLayouts};
 use crate::shared::lod::object::object_flags_word;
 use crate::shared::render::scene_view::SceneView;
 
@@ -80,16 +80,20 @@ impl Stage {
             ..LodObject::NONE
         };
         let (lists, draws) = listed(&lod, placements, parts);
-        let nowhere = vec![[f32::NAN; 4]; 3 * BLOCK as usize];
-        let rows: Vec<[f32; 4]> = nowhere.into_iter().chain(placements.iter().flatten().copied()).collect();
-        let instances = vec![SceneInstance::new([0.0; 4]); BLOCK as usize + placements.len()];
+        let nowhere = [[[f32::NAN; 4]; 3]; BLOCK as usize];
+        let placements = [&nowhere[..], placements].concat();
+        let instances = vec![SceneInstance::new([0.0; 4]); placements.len()];
         let up = "uploaded";
         let instances = Buffer::from_slice(gpu, "instances", &instances).expect(up);
         let group = layouts.view(
             gpu,
             &Uniform::new(gpu, "view", &view).expect(up),
-            &Buffer::from_slice(gpu, "rows", &rows).expect(up),
-            [&instances, &instances],
+            &InstancesInView {
+                placements: &Buffer::from_slice(gpu, "placements", &placements).expect(up),
+                instances: &instances,
+                last_instances: &instances,
+                last_decisions: &Buffer::new(gpu, "last decisions", placements.len()).expect(up),
+            },
             None,
         );
         let z = view.clip_from_world.row(2);

@@ -100,18 +100,18 @@ impl Case {
             })
         };
         let kept = (0..).zip(&past).map(kept).collect();
-        let last_rows = if frames.is_some() { 3 * INSTANCES } else { 0 };
-        let params = AttachParams { attached, bones: BONES, first: FIRST, last_rows, frame, last_frame };
+        let first_last = if frames.is_some() { INSTANCES } else { 0 };
+        let params = AttachParams { attached, bones: BONES, first: FIRST, first_last, frame, last_frame };
         Self { params, attachments, instances, last_instances, allowed, model_matrices, kept }
     }
 
-    /// The rows of attached meshes, prepared. There is room for more than there are.
+    /// The placements of attached meshes, prepared. There is room for more than there are.
     fn prepared(
         &self,
         gpu: &Gpu,
         pass: &AttachPass,
         view: &SelectView,
-        (rows, kept): (&Buffer<[f32; 4]>, &Buffer<KeptBone>),
+        (placements, kept): (&Buffer<Affine>, &Buffer<KeptBone>),
     ) -> Result<Job, Error> {
         let mut room = self.attachments.clone();
         room.resize(room.len() + ROOM as usize, Attachment { mesh: 0, ..FREE });
@@ -122,7 +122,7 @@ impl Case {
             model_matrices: &matrices.buffer().cast(),
             instances: &Buffer::from_slice(gpu, "instances", &self.instances)?,
             allowed: &Buffer::from_slice(gpu, "allowed", &self.allowed)?,
-            rows,
+            placements,
             last_instances: &Buffer::from_slice(gpu, "last instances", &self.last_instances)?,
             kept,
         };
@@ -130,16 +130,16 @@ impl Case {
     }
 
     async fn compared(&self, gpu: &Gpu, view: &SelectView) -> Result<Comparison, Error> {
-        let rows = Poisoned::<[f32; 4]>::new(gpu, 6 * INSTANCES as usize)?;
+        let placements = Poisoned::<Affine>::new(gpu, 2 * INSTANCES as usize)?;
         let kept = Buffer::from_slice(gpu, "kept", self.kept.as_flattened())?;
-        let job = self.prepared(gpu, &AttachPass::new(gpu)?, view, (&rows.buffer, &kept))?;
+        let job = self.prepared(gpu, &AttachPass::new(gpu)?, view, (&placements.buffer, &kept))?;
         gpu.submit("verify", |encoder| {
             job.record(encoder);
             job.record(encoder);
         })?;
         let found = bytemuck::cast_slice(&kept.read(gpu).await?).to_vec();
         match self.is_kept(&found) {
-            true => Ok(rows.check(gpu, |found| self.judged(view.cell, found)).await?),
+            true => Ok(placements.check(gpu, |found| self.judged(view.cell, found)).await?),
             false => Ok(Comparison::failed(2 * self.kept.len(), "kept bones are wrong".to_owned())),
         }
     }
@@ -161,7 +161,7 @@ impl Case {
         let mut expected = self.kept.clone();
         for (at, attachment) in self.there() {
             let is_seen = self.allowed[(FIRST + attachment.character) as usize] >= 0.0;
-            if self.params.last_rows != 0 && is_seen {
+            if self.params.first_last != 0 && is_seen {
                 let (frame, key) = (self.params.frame, attachment.key);
                 let rows = self.locals(at)[0];
                 let now = KeptBone { rows, frame, key, unused_a: 0, unused_b: 0 };
@@ -181,12 +181,12 @@ impl Case {
         bytemuck::cast_slice::<_, u32>(&expected) == bytemuck::cast_slice::<_, u32>(found)
     }
 
-    /// Rows of attached meshes must be those of the reference within their bound, and all others untouched.
-    fn judged(&self, cell: IVec3, found: &[[f32; 4]]) -> Comparison {
+    /// Placements of attached meshes must be those of the reference within their bound, and all others untouched.
+    fn judged(&self, cell: IVec3, found: &[Affine]) -> Comparison {
         let mut expected: Vec<Option<(Affine, Affine)>> = vec![None; 2 * INSTANCES as usize];
         for (at, attachment) in self.there() {
             let all = [&self.instances[..], &self.last_instances[..]];
-            let frames = if self.params.last_rows == 0 { 1 } else { 2 };
+            let frames = if self.params.first_last == 0 { 1 } else { 2 };
             for (frame, (instances, local)) in all.into_iter().zip(self.locals(at)).enumerate().take(frames) {
                 let scene = (instances, &self.allowed[..]);
                 let right = attached(&self.params, attachment, cell, scene, &local);
@@ -204,9 +204,10 @@ impl Case {
             let bound = f64::from(ATTACH_BOUND) * f64::from(sizes[row][column]);
             Judgement { ratio: if error == 0.0 { 0.0 } else { error / bound }, error, touches: false }
         };
-        let judgements: Vec<Judgement> = found.as_flattened().iter().enumerate().map(judge).collect();
+        let judgements: Vec<Judgement> =
+            found.as_flattened().as_flattened().iter().enumerate().map(judge).collect();
         each(&judgements, "entry", 0.0, |at| {
-            format!("{:?} instead of {:?}", found[at / 4], expected[at / 12])
+            format!("{:?} instead of {:?}", found[at / 12][at / 4 % 3], expected[at / 12])
         })
     }
 
@@ -263,7 +264,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
                 attached: count,
                 bones: MEASURED_BONES,
                 first: 0,
-                last_rows: 0,
+                first_last: 0,
                 frame: 1,
                 last_frame: 0,
             },
@@ -274,8 +275,9 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             instances,
             kept: Vec::new(),
         };
-        let (entries, rows) = ((count + ROOM) as usize, 6 * case.instances.len());
-        let outputs = (&Buffer::new(gpu, "rows", rows)?, &Buffer::new(gpu, "kept", 2 * entries)?);
+        let (entries, instances) = ((count + ROOM) as usize, case.instances.len());
+        let outputs =
+            (&Buffer::new(gpu, "placements", 2 * instances)?, &Buffer::new(gpu, "kept", 2 * entries)?);
         let job = case.prepared(gpu, &pass, &view, outputs)?;
         // The kernel reads an attachment, a bone, an instance and what it is allowed, and writes three rows.
         let words = (16 + 12 + 24 + 1 + 12) * count as usize;
@@ -294,43 +296,48 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 mod tests {
     use super::*;
 
-    /// The rows that are right, with poison where nothing is written.
-    fn right(case: &Case) -> Vec<[f32; 4]> {
-        let mut rows = vec![[f32::from_bits(POISON); 4]; 6 * INSTANCES as usize];
+    /// The placements that are right, with poison where nothing is written.
+    fn right(case: &Case) -> Vec<Affine> {
+        let mut placements = vec![[[f32::from_bits(POISON); 4]; 3]; 2 * INSTANCES as usize];
         for (at, attachment) in case.there() {
             let [now, last] = case.locals(at);
             for (first, instances, local) in
-                [(0, &case.instances, now), (3 * INSTANCES, &case.last_instances, last)]
+                [(0, &case.instances, now), (INSTANCES, &case.last_instances, last)]
             {
                 let scene = (&instances[..], &case.allowed[..]);
                 let right = attached(&case.params, attachment, CELL, scene, &local);
-                rows[(first + 3 * attachment.mesh) as usize..][..3].copy_from_slice(&right);
+                placements[(first + attachment.mesh) as usize] = right;
             }
         }
-        rows
+        placements
     }
 
     #[test]
     fn what_is_wrong_of_one_mesh_is_seen() {
         let case = Case::random(3, 65, Some([8, 7]));
-        let rows = right(&case);
-        assert!(case.judged(CELL, &rows).holds);
+        let placements = right(&case);
+        assert!(case.judged(CELL, &placements).holds);
         let is_seen = |attachment: &Attachment| case.allowed[(FIRST + attachment.character) as usize] >= 0.0;
         let [seen, unseen] = [true, false].map(|seen| {
             let found = case.there().find(|(_, attachment)| is_seen(attachment) == seen);
-            3 * found.expect("some").1.mesh as usize
+            found.expect("some").1.mesh as usize
         });
-        let untouched = rows.iter().position(|row| row[0].to_bits() == POISON).expect("some");
-        let last = 3 * INSTANCES as usize + seen;
-        for (at, wrong) in
-            [(seen, 1.001), (seen + 2, f32::NAN), (last, 1.001), (unseen, 2.0), (untouched, 0.5)]
-        {
-            let mut found = rows.clone();
-            found[at][3] = if found[at][3] == 0.0 { 1.0 } else { wrong * found[at][3] };
+        let untouched = placements.iter().position(|rows| rows[0][0].to_bits() == POISON).expect("some");
+        let last = INSTANCES as usize + seen;
+        for ([at, row], wrong) in [
+            ([seen, 0], 1.001),
+            ([seen, 2], f32::NAN),
+            ([last, 0], 1.001),
+            ([unseen, 0], 2.0),
+            ([untouched, 0], 0.5),
+        ] {
+            let mut found = placements.clone();
+            let value = &mut found[at][row][3];
+            *value = if *value == 0.0 { 1.0 } else { wrong * *value };
             assert!(!case.judged(CELL, &found).holds, "{at} {wrong}");
         }
-        let mut found = rows.clone();
-        found[unseen][0] = 1e-3;
+        let mut found = placements.clone();
+        found[unseen][0][0] = 1e-3;
         assert!(!case.judged(CELL, &found).holds, "an unseen mesh that is drawn");
     }
 

@@ -162,10 +162,10 @@ pub(crate) fn view(
         is_first: 0,
         casters: 0,
         blocks: u32::MAX,
-        last_levels: 0,
         is_next: 0,
         unused_a: 0,
         unused_b: 0,
+        unused_c: 0,
     })
 }
 

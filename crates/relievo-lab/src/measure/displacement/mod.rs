@@ -207,7 +207,7 @@ fn instance_found(
         };
         return Ok(watched.primitives.par_iter().map(missing).collect());
     };
-    let shown = transformed(&watched.drawn(vertices, drawn)?, &matrix(&drawn.rows));
+    let shown = transformed(&watched.drawn(vertices, drawn)?, &matrix(&drawn.placement));
     let moves = watched.moves(drawn);
     let nothing = Surface::default();
     let both = |Primitive { mesh, full, lists, .. }: &Primitive| {

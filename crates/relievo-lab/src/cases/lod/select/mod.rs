@@ -1,10 +1,11 @@
 //! Parity and benchmark cases of `kernels/lod/select.wgsl`.
 
 use relievo::Error;
+use relievo::asset::Affine;
 use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
 use relievo::lod::allowed::allowed_by;
 use relievo::lod::object::level_within;
-use relievo::lod::select::reference::{counts, depth_inside, is_shown, level_told, placed_sphere, select};
+use relievo::lod::select::reference::{counts, depth_inside, is_shown, placed_sphere, select};
 use relievo::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
 use relievo::lod::transition::morph_within;
 use relievo::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
@@ -43,13 +44,11 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let scene = Scene::new(case, sizes);
         let outputs = Outputs::new(cases.gpu, scene.instances.len())?;
         let mut state = vec![State::Untouched; scene.instances.len()];
-        let count = scene.instances.len() as u32;
         for (at, (name, view)) in (0..).zip(frame()?) {
             // The last block is the scene's but not the view's, except in the smallest scene.
             let all = scene.blocks.block_objects.len() as u32;
-            let last_levels = if at == 0 { 0 } else { 3 * count };
             let blocks = all - u32::from(all > 2);
-            let view = SelectView { blocks, last_levels, is_next: u32::from(at != 2), ..view };
+            let view = SelectView { blocks, is_next: u32::from(at != 2), ..view };
             let name = format!("{} blocks, {name}", view.blocks);
             let found = outputs.run(cases, &name, &scene, &view).await?;
             for (what, comparison) in found.compared(&scene, &view, &mut state) {
@@ -83,8 +82,9 @@ impl Scene {
 struct Outputs {
     allowed: Poisoned<f32>,
     decisions: Poisoned<u32>,
-    rows: Poisoned<[f32; 4]>,
+    placements: Poisoned<Affine>,
     counts: Poisoned<u32>,
+    last_decisions: Poisoned<u32>,
 }
 
 /// What the kernel wrote.
@@ -92,10 +92,9 @@ struct Outputs {
 struct Found {
     allowed: Vec<f32>,
     decisions: Vec<u32>,
-    rows: Vec<[f32; 4]>,
-    /// The levels of the last frame.
-    levels: Vec<[f32; 4]>,
+    placements: Vec<Affine>,
     counts: Vec<u32>,
+    last_decisions: Vec<u32>,
 }
 
 impl Outputs {
@@ -103,7 +102,8 @@ impl Outputs {
         Ok(Self {
             allowed: Poisoned::new(gpu, instances)?,
             decisions: Poisoned::new(gpu, instances)?,
-            rows: Poisoned::new(gpu, 4 * instances)?,
+            placements: Poisoned::new(gpu, instances)?,
+            last_decisions: Poisoned::new(gpu, instances)?,
             counts: Poisoned::new(gpu, instances / (BLOCK / OBJECT_LISTS) as usize)?,
         })
     }
@@ -117,12 +117,10 @@ impl Outputs {
         view: &SelectView,
     ) -> Result<Found, Error> {
         let gpu = cases.gpu;
-        self.decisions.poison(gpu)?;
-        if view.last_levels != 0 {
-            self.decisions.buffer.write(gpu, &before(scene.instances.len()))?;
-        }
-        self.rows.poison(gpu)?;
+        self.decisions.buffer.write(gpu, &before(scene.instances.len()))?;
+        self.placements.poison(gpu)?;
         self.counts.poison(gpu)?;
+        self.last_decisions.poison(gpu)?;
         let buffers = SelectBuffers {
             view: &Uniform::new(gpu, "view", view)?,
             objects: &Buffer::from_slice(gpu, "objects", &scene.blocks.objects)?,
@@ -130,20 +128,19 @@ impl Outputs {
             instances: &Buffer::from_slice(gpu, "instances", &scene.instances)?,
             allowed: &self.allowed.buffer,
             decisions: &self.decisions.buffer,
-            rows: &self.rows.buffer,
+            placements: &self.placements.buffer,
             counts: &self.counts.buffer,
+            last_decisions: &self.last_decisions.buffer,
         };
         let job = SelectPass::new(gpu)?.prepare(gpu, buffers)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
         let end = |output| format!("{name}: the end of {output}");
-        let mut rows = cases.values(end("rows"), &self.rows).await?;
-        let levels = rows.split_off(3 * scene.instances.len());
         Ok(Found {
             allowed: cases.values(end("allowed"), &self.allowed).await?,
             decisions: cases.values(end("decisions"), &self.decisions).await?,
-            rows,
-            levels,
+            placements: cases.values(end("placements"), &self.placements).await?,
             counts: cases.values(end("counts"), &self.counts).await?,
+            last_decisions: cases.values(end("last decisions"), &self.last_decisions).await?,
         })
     }
 }
@@ -238,15 +235,16 @@ impl Found {
         [
             ("decisions", self.compared_decisions(scene, view)),
             ("counts", self.compared_counts(scene, view)),
-            ("rows", self.compared_rows(scene, view)),
-            ("levels", self.compared_levels(scene, view)),
+            ("placements", self.compared_placements(scene, view)),
+            ("last decisions", self.compared_last_decisions(scene, view)),
             ("allowed", self.compared_allowed(scene, view, state)),
         ]
     }
 
     fn compared_decisions(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let before = before(self.decisions.len());
         let judge = |(index, decision): (usize, &u32)| match scene.object_of(view, index) {
-            None => judgement(*decision == untouched(view, self.decisions.len(), index), false),
+            None => judgement(*decision == before[index], false),
             Some(object) => {
                 let instance = &scene.instances[index];
                 let range = Range::of(view, object, instance);
@@ -274,9 +272,9 @@ impl Found {
         compare::exact(&self.counts, &expected)
     }
 
-    fn compared_rows(&self, scene: &Scene, view: &SelectView) -> Comparison {
-        let mut judgements = Vec::with_capacity(4 * self.rows.len());
-        for (index, rows) in self.rows.chunks(3).enumerate() {
+    fn compared_placements(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let mut judgements = Vec::with_capacity(12 * self.placements.len());
+        for (index, rows) in self.placements.iter().enumerate() {
             let instance = &scene.instances[index];
             let is_seen = self.decisions[index] != 0 && scene.object_of(view, index).is_some();
             if !is_seen {
@@ -296,20 +294,18 @@ impl Found {
                 }));
             }
         }
-        each(&judgements, "units", MAY_TOUCH, |at| format!("{:?} of instance {}", self.rows[at / 4], at / 12))
+        each(&judgements, "units", MAY_TOUCH, |at| {
+            format!("{:?} of instance {}", self.placements[at / 12][at / 4 % 3], at / 12)
+        })
     }
 
-    fn compared_levels(&self, scene: &Scene, view: &SelectView) -> Comparison {
-        let poison = [f32::from_bits(POISON); 4];
-        let before = before(self.levels.len());
+    fn compared_last_decisions(&self, scene: &Scene, view: &SelectView) -> Comparison {
         let expected = |(index, before): (usize, &u32)| match scene.object_of(view, index) {
-            Some(_) if view.last_levels != 0 && view.is_next != 0 => level_told(*before),
-            Some(_) if view.last_levels != 0 => level_told(0),
-            _ => poison,
+            Some(_) => *before * view.is_next,
+            None => POISON,
         };
-        let expected: Vec<[f32; 4]> = before.iter().enumerate().map(expected).collect();
-        let bits = bytemuck::cast_slice::<[f32; 4], u32>;
-        compare::exact(bits(&self.levels), bits(&expected))
+        let expected: Vec<u32> = before(self.last_decisions.len()).iter().enumerate().map(expected).collect();
+        compare::exact(&self.last_decisions, &expected)
     }
 
     fn compared_allowed(&self, scene: &Scene, view: &SelectView, state: &mut [State]) -> Comparison {
@@ -345,11 +341,6 @@ fn before(count: usize) -> Vec<u32> {
     (0..count as u32).map(decision).collect()
 }
 
-/// What a decision is that a view does not write.
-fn untouched(view: &SelectView, count: usize, index: usize) -> u32 {
-    if view.last_levels == 0 { POISON } else { before(count)[index] }
-}
-
 #[cfg(test)]
 mod tests;
 
@@ -374,13 +365,14 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             instances: &Buffer::from_slice(gpu, "instances", &instances)?,
             allowed: &Buffer::new(gpu, "allowed", count)?,
             decisions: &decisions,
-            rows: &Buffer::new(gpu, "rows", 3 * count)?,
+            placements: &Buffer::new(gpu, "placements", count)?,
             counts: &Buffer::new(gpu, "counts", (OBJECT_LISTS * blocks) as usize)?,
+            last_decisions: &Buffer::new(gpu, "last decisions", count)?,
         };
         let job = pass.prepare(gpu, buffers)?;
         let seen = instances.iter().filter(|instance| select(&view, &objects[0], instance).is_some()).count();
-        // The kernel reads 18 of an instance's words and writes two, and the rows of those that are seen.
-        let words = 20 * count + 12 * seen;
+        // The kernel reads 18 of an instance's words and a decision and writes three, and the placements of those that are seen.
+        let words = 22 * count + 12 * seen;
         let case = format!("{count} instances, {seen} seen");
         measure(bench, case, (count, "instance"), words, &|encoder| job.record(encoder), || {
             instances.iter().map(|instance| select(&view, &objects[0], instance)).collect::<Vec<_>>()

@@ -1,6 +1,6 @@
 //! Every comparator of these cases fails on planted faults.
 
-use relievo::lod::select::reference::{level_told, merged};
+use relievo::lod::select::reference::merged;
 
 use crate::cases::lod::select::*;
 
@@ -10,19 +10,20 @@ fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
     let poison = f32::from_bits(POISON);
     let mut found = Found {
         allowed: allowed.to_vec(),
-        decisions: vec![POISON; count],
-        rows: vec![[poison; 4]; 3 * count],
-        levels: vec![[poison; 4]; count],
+        decisions: before(count),
+        placements: vec![[[poison; 4]; 3]; count],
         counts: vec![POISON; count / 4],
+        last_decisions: vec![POISON; count],
     };
     for (index, before) in allowed.iter().enumerate() {
         let Some(object) = scene.object_of(view, index) else { continue };
         let selected = select(view, object, &scene.instances[index]);
         let before = (view.is_first == 0).then_some(*before);
         found.allowed[index] = merged(before, selected.as_ref());
+        found.last_decisions[index] = found.decisions[index] * view.is_next;
         found.decisions[index] = selected.map_or(0, |selected| selected.decision);
         if let Some(selected) = selected {
-            found.rows[3 * index..][..3].copy_from_slice(&selected.rows);
+            found.placements[index] = selected.placement;
         }
     }
     for block in 0..count / 64 {
@@ -51,12 +52,14 @@ fn what_is_wrong_of_one_instance_is_seen() {
     let count = scene.instances.len();
     let right = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
     assert_eq!(faults(&scene, &view, &right), Vec::<&str>::new());
-    let seen =
-        right.decisions.iter().position(|decision| (1..=16).contains(&(decision & 0xff))).expect("some");
-    let moved =
-        right.decisions.iter().position(|decision| decision >> 11 > 1 && *decision != POISON).expect("some");
-    let unseen = right.decisions.iter().position(|decision| *decision == 0).expect("some");
-    let foreign = right.decisions.iter().position(|decision| *decision == POISON).expect("some");
+    let own = |index: &usize| scene.object_of(&view, *index).is_some();
+    let first = |is: &dyn Fn(u32) -> bool| {
+        (0..count).filter(own).find(|index| is(right.decisions[*index])).expect("some")
+    };
+    let seen = first(&|decision| (1..=16).contains(&(decision & 0xff)));
+    let moved = first(&|decision| decision >> 11 > 1);
+    let unseen = first(&|decision| decision == 0);
+    let foreign = (0..count).find(|index| !own(index)).expect("some");
     let with = |change: &dyn Fn(&mut Found)| {
         let mut found = right.clone();
         change(&mut found);
@@ -64,16 +67,16 @@ fn what_is_wrong_of_one_instance_is_seen() {
     };
     assert_eq!(with(&|found| found.decisions[seen] ^= 3)[0], "decisions");
     assert_eq!(with(&|found| found.decisions[unseen] = 1)[0], "decisions");
-    assert_eq!(with(&|found| found.decisions[foreign] = 0), ["decisions"]);
+    assert_eq!(with(&|found| found.decisions[foreign] ^= 1), ["decisions"]);
     assert_eq!(with(&|found| found.decisions[moved] ^= 1 << 8), ["decisions"]);
     assert_eq!(with(&|found| found.decisions[moved] &= 0xff), ["decisions"]);
     assert_eq!(with(&|found| found.decisions[moved] ^= 1 << 13), ["decisions"]);
     assert_eq!(with(&|found| found.counts[seen / 4] += 1), ["counts"]);
     assert_eq!(with(&|found| found.counts[foreign / 64 * 16] = 0), ["counts"]);
-    assert_eq!(with(&|found| found.rows[3 * seen + 1][3] += 1e-3), ["rows"]);
-    assert_eq!(with(&|found| found.rows[3 * seen][0] = f32::NAN), ["rows"]);
-    assert_eq!(with(&|found| found.rows[3 * unseen][0] = 0.0), ["rows"]);
-    assert_eq!(with(&|found| found.levels[seen] = [0.0; 4]), ["levels"]);
+    assert_eq!(with(&|found| found.placements[seen][1][3] += 1e-3), ["placements"]);
+    assert_eq!(with(&|found| found.placements[seen][0][0] = f32::NAN), ["placements"]);
+    assert_eq!(with(&|found| found.placements[unseen][0][0] = 0.0), ["placements"]);
+    assert_eq!(with(&|found| found.last_decisions[seen] += 1), ["last decisions"]);
     assert_eq!(with(&|found| found.allowed[seen] *= 1.02), ["allowed"]);
     assert_eq!(with(&|found| found.allowed[unseen] = 0.0), ["allowed"]);
     assert_eq!(with(&|found| found.allowed[foreign] = -1.0), ["allowed"]);
@@ -100,30 +103,16 @@ fn a_view_that_forgets_the_one_before_is_seen() {
     assert_eq!(compared(&forgetful), [true, true, true, true, false]);
 }
 
-/// What the last frame's decisions tell, and nothing where that frame had no such view.
+/// The decisions of the last frame, and nothing where that frame had no such view.
 #[test]
-fn a_level_of_another_frame_is_seen() {
+fn a_decision_of_another_frame_is_seen() {
     let (scene, view) = scene_and_view();
     let count = scene.instances.len();
-    let view = SelectView { last_levels: 3 * count as u32, is_next: 1, ..view };
-    let mut found = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
-    for (index, before) in before(count).iter().enumerate() {
-        if scene.object_of(&view, index).is_some() {
-            found.levels[index] = level_told(*before);
-        } else {
-            found.decisions[index] = *before;
-        }
-    }
+    let view = SelectView { is_next: 1, ..view };
+    let found = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
     assert_eq!(faults(&scene, &view, &found), Vec::<&str>::new());
     let other = SelectView { is_next: 0, ..view };
-    assert_eq!(faults(&scene, &other, &found), ["levels"]);
-    let moved = found.levels.iter().position(|level| level[1] > 0.0 && level[1] < 512.0).expect("some");
-    found.levels[moved][1] += 1.0;
-    assert_eq!(faults(&scene, &view, &found), ["levels"]);
-    assert_eq!(
-        (level_told(0), level_told((1 + 2 * 3 + 1) | (500 << 11))),
-        ([0.0; 4], [4.0, 500.0, 0.0, 0.0])
-    );
+    assert_eq!(faults(&scene, &other, &found), ["last decisions"]);
 }
 
 /// An instance whose sphere touches a plane may be seen or not; only few may.
