@@ -122,11 +122,11 @@ impl Renderer {
     /// Compiles the pipelines that these objects need, in the shadow of a sun or without, and that are not there yet.
     pub(crate) fn prepare_objects<'a>(
         &mut self,
-        objects: impl Iterator<Item = &'a Drawable>,
+        objects: impl Iterator<Item = &'a dyn Drawable>,
         is_shadowed: bool,
     ) -> Result<(), Error> {
         let parts: Vec<&Specialization> =
-            objects.flat_map(Drawable::parts).map(|part| part.specialization).collect();
+            objects.flat_map(|object| object.parts()).map(|part| part.specialization).collect();
         parts.iter().try_for_each(|part| self.check_names(part))?;
         let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
@@ -226,7 +226,7 @@ impl Renderer {
         self.check(view, objects.clone(), layer)?;
         pass.set_bind_group(0, view.group);
         for object in objects.filter(|object| object.lod.instances > 0) {
-            let Some(group) = object.drawable.group().or(object.ground) else { continue };
+            let Some(group) = object.drawable.group().or(object.view_group) else { continue };
             pass.set_bind_group(1, group);
             pass.set_index_buffer(object.drawable.indices().slice(..));
             for (index, part) in (0..).zip(object.drawable.parts()) {

@@ -5,10 +5,10 @@ use glam::{DAffine3, DVec3};
 use crate::InputError;
 use crate::scene::Scene;
 use crate::scene::handles::InstanceId;
-use crate::scene::object::{Object, ObjectKind};
+use crate::scene::object::Object;
+use crate::scene::object_kind::Placed;
 use crate::scene::pick::MARGIN;
 use crate::scene::placement::Placement;
-use crate::scene::ray::Surface;
 
 /// By how much a box of vertices is enlarged, relative to its size or to its distance from the cell's corner: the host rounds a
 /// vertex to `f32` in a few products, each by 6e-8.
@@ -45,15 +45,10 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
-        let object = self.object_of(instance)?;
-        match &object.kind {
-            ObjectKind::Terrain(_) | ObjectKind::Own(_) => {
-                self.around(instance, MARGIN, |placed| Ok(object.box_of_sphere(instance.index, placed)))
-            }
-            ObjectKind::Character(character) => self.around(instance, MARGIN, |placed| {
-                Ok(character.bounds(&character.pose(instance.index, self.now)?, placed))
-            }),
-            ObjectKind::Mesh(_) => self.tight_bounds(instance),
+        let placed = self.placed_instance(instance)?;
+        match self.object_of(instance)?.kind.wide_box(&placed)? {
+            Some(corners) => Ok(placed.enlarged(corners, MARGIN)),
+            None => self.tight_bounds(instance),
         }
     }
 
@@ -68,48 +63,34 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn tight_bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
-        let object = self.object_of(instance)?;
-        self.around(instance, TIGHT, |placed| {
-            let around = |surfaces: Vec<Surface<'_>>| {
-                let boxes = surfaces.iter().map(|surface| surface.bounds(placed));
-                boxes.reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
-            };
-            let found = match &object.kind {
-                ObjectKind::Mesh(mesh) => around(mesh.surfaces()),
-                ObjectKind::Character(character) => around(character.surface(instance.index, self.now)?),
-                ObjectKind::Own(_) => Some(object.box_of_sphere(instance.index, placed)),
-                ObjectKind::Terrain(terrain) => {
-                    let known = terrain.bounds(instance.index, placed.translation);
-                    known.or_else(|| Some(object.box_of_sphere(instance.index, placed)))
-                }
-            };
-            Ok(found.unwrap_or([placed.translation; 2]))
-        })
+        let placed = self.placed_instance(instance)?;
+        let corners = self.object_of(instance)?.kind.tight_box(&placed)?;
+        Ok(placed.enlarged(corners, TIGHT))
     }
 
-    /// The box of an instance from its corners, which are computed from the transform to the corner of the instance's
-    /// cell, and enlarged by what rounding moves.
-    fn around(
-        &self,
-        instance: InstanceId,
-        margin: f64,
-        corners: impl FnOnce(DAffine3) -> Result<[DVec3; 2], InputError>,
-    ) -> Result<Bounds, InputError> {
-        let cell = self.object_of(instance)?.instances.all()[instance.index as usize].cell;
-        let placed = self.placed(instance, cell)?;
-        let [low, high] = corners(placed)?;
-        let slack = margin * (high - low).length().max(placed.translation.length());
-        Ok(Bounds { cell, low_offset: low - slack, high_offset: high + slack })
+    /// An instance in its place, relative to the corner of its cell.
+    fn placed_instance(&self, instance: InstanceId) -> Result<Placed, InputError> {
+        let object = self.object_of(instance)?;
+        let cell = object.instances.all()[instance.index as usize].cell;
+        Ok(object.placed(instance.index, self.now, self.placed(instance, cell)?, cell))
+    }
+}
+
+impl Placed {
+    /// A box of these corners, enlarged by what rounding moves.
+    fn enlarged(&self, [low, high]: [DVec3; 2], margin: f64) -> Bounds {
+        let slack = margin * (high - low).length().max(self.place.translation.length());
+        Bounds { cell: self.cell, low_offset: low - slack, high_offset: high + slack }
     }
 }
 
 impl Object {
-    /// The corners of a box around the bounding sphere of an instance.
-    fn box_of_sphere(&self, index: u32, placed: DAffine3) -> [DVec3; 2] {
+    /// An instance in a place.
+    pub(super) fn placed(&self, index: u32, now: f64, place: DAffine3, cell: [i32; 3]) -> Placed {
         let instance = &self.instances.all()[index as usize];
         let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);
-        let middle = placed.transform_point3(DVec3::new(x, y, z));
+        let middle = place.transform_point3(DVec3::new(x, y, z));
         let radius = radius * f64::from(instance.largest_scale());
-        [middle - radius, middle + radius]
+        Placed { index, now, place, cell, sphere_box: [middle - radius, middle + radius] }
     }
 }

@@ -16,7 +16,7 @@ pub(crate) struct Chunk {
     pub number: usize,
     pub range: ObjectRange,
     /// What is drawn, part by part.
-    pub drawables: Vec<Drawable>,
+    pub drawables: Vec<Box<dyn Drawable>>,
     /// For each drawable, the chunk as kernels see it, with the draws of the drawable's parts, in the layout for which it
     /// was prepared.
     pub lods: Vec<LodObject>,
@@ -36,7 +36,7 @@ pub(crate) struct SinglePart {
 
 impl Chunk {
     /// A chunk that no layout has yet.
-    pub fn new(slots: Range<usize>, drawables: Vec<Drawable>) -> Self {
+    pub fn new(slots: Range<usize>, drawables: Vec<Box<dyn Drawable>>) -> Self {
         Self {
             slots,
             number: 0,

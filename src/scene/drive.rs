@@ -23,7 +23,7 @@ pub struct Poses<'a> {
 
 impl<'a> Poses<'a> {
     pub(super) fn new(gpu: &'a Gpu, objects: &'a mut Slots<Object>, staging: &'a mut StagingRing) -> Self {
-        let characters = objects.iter().filter_map(|object| object.kind.character());
+        let characters = objects.iter().filter_map(|object| object.character());
         let room = characters.map(Character::driven_bones).sum::<usize>() * size_of::<Local>();
         Self { gpu, objects, stream: staging.stream(gpu, room), failure: None }
     }
@@ -35,7 +35,7 @@ impl<'a> Poses<'a> {
     pub fn of(&self, instance: InstanceId) -> Result<PoseBuffers<'_>, InputError> {
         let scene = self.objects.scene();
         let object = self.objects.existing(instance).ok_or_else(|| missing(scene, instance))?;
-        let found = object.kind.character().and_then(|character| character.pose_buffers(instance.index));
+        let found = object.character().and_then(|character| character.pose_buffers(instance.index));
         found.ok_or_else(no_character)
     }
 
@@ -62,7 +62,7 @@ impl<'a> Poses<'a> {
         self.gpu.check_encoder(encoder)?;
         let (scene, index) = (self.objects.scene(), instance.index);
         let object = self.objects.existing_mut(instance).ok_or_else(|| missing(scene, instance))?;
-        let character = object.kind.character_mut().ok_or_else(no_character)?;
+        let character = object.character_mut().ok_or_else(no_character)?;
         let Some(stream) = &mut self.stream else {
             return Err(InputError::new("recordings", RECORDINGS, format!("must be below {RECORDINGS}")));
         };
@@ -88,7 +88,7 @@ impl<'a> Poses<'a> {
 impl Scene {
     /// Forgets what the host wrote to bones in the last frame.
     pub(super) fn forget_written(&mut self) {
-        let characters = self.objects.iter_mut().filter_map(|object| object.kind.character_mut());
+        let characters = self.objects.iter_mut().filter_map(|object| object.character_mut());
         characters.for_each(Character::forget_written);
     }
 

@@ -2,10 +2,10 @@
 
 use crate::animation::Frame;
 use crate::gpu::Staged;
-use crate::lod::{SceneInstance, SelectView};
+use crate::lod::{LodObject, SceneInstance, SelectView};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
 use crate::scene::drive::Poses;
-use crate::scene::object::{self, Object, ObjectKind};
+use crate::scene::object::{self, Object};
 use crate::scene::order::Ordered;
 use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
@@ -129,11 +129,7 @@ impl Scene {
             let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
         }
-        for object in self.objects.iter_mut() {
-            if let ObjectKind::Terrain(terrain) = &mut object.kind {
-                terrain.morphing.iter_mut().for_each(|morphing| morphing.record(encoder));
-            }
-        }
+        self.objects.iter_mut().for_each(|object| object.kind.record(encoder));
         let staged = self.record_stages(encoder, views, between);
         if staged.is_ok() {
             self.count(encoder, views);
@@ -186,8 +182,7 @@ impl Scene {
         if stage == Stage::Select {
             views.iter().for_each(|view| view.dispatch(pass));
         }
-        let characters = self.objects.iter().filter_map(|object| object.kind.character());
-        characters.for_each(|character| character.dispatch(stage, pass));
+        self.objects.iter().for_each(|object| object.kind.dispatch(stage, pass));
         if stage == Stage::LocalToModel {
             views.iter().for_each(|view| view.dispatch_attached(pass));
         }
@@ -207,7 +202,7 @@ impl Scene {
     }
 
     /// What is drawn, object by object.
-    pub(crate) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
+    pub(crate) fn drawables(&self) -> impl Iterator<Item = &dyn Drawable> {
         self.objects.iter().flat_map(Object::drawables)
     }
 
@@ -244,15 +239,20 @@ impl Scene {
             keeps_last: self.keeps_last,
             is_shadowed: self.is_shadowed,
         };
-        let mut terrains = 0;
         let mut objects = Vec::new();
-        for (object, sides) in self.objects.iter().zip(&recorded.sides) {
-            let ground = object.seen_terrain().and_then(|_| view.ground(terrains));
-            terrains += usize::from(object.seen_terrain().is_some());
+        let own = recorded.sides.iter().zip(&lists.in_view);
+        for (object, (sides, in_view)) in self.objects.iter().zip(own) {
+            let view_group = in_view.as_ref().map(|in_view| in_view.group());
             if object.is_drawn() {
                 let drawn = object.chunks.iter().flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods));
                 let (number, sides) = (object.handle, *sides);
-                let drawn_object = |(drawable, lod)| DrawnObject { number, drawable, lod, sides, ground };
+                let drawn_object = |(drawable, lod): (&'a Box<dyn Drawable>, &'a LodObject)| DrawnObject {
+                    number,
+                    drawable: &**drawable,
+                    lod,
+                    sides,
+                    view_group,
+                };
                 objects.extend(drawn.map(drawn_object));
             }
         }
@@ -272,7 +272,7 @@ impl Scene {
             let Some(chunk) = object.chunk_of(*instance) else { continue };
             let instance = (*instance as usize - chunk.slots.start) as u32;
             for single in &chunk.singles {
-                let drawable = &chunk.drawables[single.drawable];
+                let drawable = &*chunk.drawables[single.drawable];
                 let Some(part) = drawable.part(single.part) else { continue };
                 let draw = single.first + instance;
                 parts.push(DrawnSingle { drawable, part, draw, is_mirrored });
@@ -318,10 +318,9 @@ impl Scene {
             object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
         }
         self.attachments.fit(&self.gpu, &self.objects, layout, (&mut self.staged, self.frames))?;
-        let terrains = self.objects.iter().filter_map(Object::seen_terrain).count();
         for view in views {
             let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
-            view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, terrains))?;
+            view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, &self.objects))?;
             let attachments = (&self.attachments, &self.objects);
             view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;
             view.fit_counts(&self.gpu, self.counted.then_some(&layout.counted))?;
@@ -336,14 +335,13 @@ impl Scene {
         let Some(layout) = &self.layout else { return Ok(()) };
         let seen = views.iter().map(|view| Ok(view.select_view(layout.blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
-        let terrains: Vec<_> = self.objects.iter().filter_map(Object::seen_terrain).collect();
         for (view, selected) in views.iter_mut().zip(&seen) {
             view.order(self.objects.iter(), selected);
         }
         for (at, view) in views.iter_mut().enumerate() {
             let sides = self.objects.iter().map(|object| object.instances.sides());
             let of_frame = (self.frames, at == 0);
-            view.stage(&mut self.staged, (layout.blocks, &self.light), (&terrains, sides), of_frame)?;
+            view.stage(&mut self.staged, (layout.blocks, &self.light), sides, of_frame)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {

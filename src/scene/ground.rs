@@ -2,10 +2,10 @@
 
 use crate::gpu::{Staged, Upload as _};
 use crate::scene::Scene;
-use crate::scene::drawable::Drawable;
 use crate::scene::handles::ObjectId;
-use crate::scene::object::{Object, ObjectKind};
-use crate::scene::terrain::{Terrain, listed};
+use crate::scene::object::Object;
+use crate::scene::object_kind::ObjectKind;
+use crate::scene::terrain::{Terrain, TerrainDrawable, listed};
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use crate::{Error, InputError};
@@ -24,7 +24,7 @@ impl Scene {
                 return Err(InputError::new(path, value, "must be finite"));
             }
         }
-        Ok(terrain_of(&self.object_at(terrain)?.kind)?.point_at(x, z))
+        Ok(terrain_of(&*self.object_at(terrain)?.kind)?.point_at(x, z))
     }
 
     /// Lets the fields of a terrain ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields)) show these
@@ -64,7 +64,7 @@ impl Scene {
     /// Nothing has changed then.
     pub fn morph_terrain(&mut self, terrain: ObjectId, morph: Morph) -> Result<(), InputError> {
         let entry = self.object_mut(terrain)?;
-        terrain_of_mut(&mut entry.kind)?.morph(&mut entry.instances, morph)
+        terrain_of_mut(&mut *entry.kind)?.morph(&mut entry.instances, morph)
     }
 
     /// Reads the heights of a terrain made from fields, as the work that was submitted leaves them: [`Scene::ground`] and
@@ -85,10 +85,10 @@ impl Scene {
     /// # Errors
     /// As `Scene::read_ground`.
     pub async fn read_ground_async(&mut self, terrain: ObjectId) -> Result<(), Error> {
-        let fields = terrain_of(&self.object_at(terrain)?.kind)?.fields()?;
+        let fields = terrain_of(&*self.object_at(terrain)?.kind)?.fields()?;
         let heights = fields.read(&self.gpu).await?;
         let entry = self.object_mut(terrain)?;
-        Ok(terrain_of_mut(&mut entry.kind)?.read(&mut entry.instances, &heights)?)
+        Ok(terrain_of_mut(&mut *entry.kind)?.read(&mut entry.instances, &heights)?)
     }
 }
 
@@ -99,11 +99,11 @@ impl Object {
         patches: &[[i32; 2]],
         heights: [f64; 2],
     ) -> Result<(), Error> {
-        let terrain = terrain_of_mut(&mut self.kind)?;
+        let terrain = terrain_of_mut(&mut *self.kind)?;
         terrain.show(&mut self.instances, patches, heights)?;
         let listed = listed(terrain.source.config(), patches);
         for drawable in self.chunks.iter().flat_map(|chunk| &chunk.drawables) {
-            if let Drawable::Terrain(drawn) = drawable
+            if let Some(drawn) = drawable.downcast::<TerrainDrawable>()
                 && !listed.is_empty()
             {
                 staged.elements(&drawn.geometry.patches, 0, &listed)?;
@@ -113,18 +113,12 @@ impl Object {
     }
 }
 
-fn terrain_of(kind: &ObjectKind) -> Result<&Terrain, InputError> {
-    match kind {
-        ObjectKind::Terrain(terrain) => Ok(terrain),
-        _ => Err(no_terrain()),
-    }
+fn terrain_of(kind: &dyn ObjectKind) -> Result<&Terrain, InputError> {
+    kind.downcast().ok_or_else(no_terrain)
 }
 
-fn terrain_of_mut(kind: &mut ObjectKind) -> Result<&mut Terrain, InputError> {
-    match kind {
-        ObjectKind::Terrain(terrain) => Ok(terrain),
-        _ => Err(no_terrain()),
-    }
+fn terrain_of_mut(kind: &mut dyn ObjectKind) -> Result<&mut Terrain, InputError> {
+    kind.downcast_mut().ok_or_else(no_terrain)
 }
 
 fn no_terrain() -> InputError {

@@ -9,7 +9,6 @@ use crate::asset::{Affine, Skeleton, Transform};
 use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::matrices::affine_of;
-use crate::scene::object::ObjectKind;
 
 /// The pose of an instance of a character on the host ([`Scene::pose`]): the transforms of all of its bones, which the caller
 /// may change, for [`Poses::write`](crate::scene::Poses::write) or for itself. Bones are given by index ([`Scene::bone`]).
@@ -171,7 +170,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character.
     pub fn pose(&self, instance: InstanceId) -> Result<InstancePose, InputError> {
-        let ObjectKind::Character(character) = &self.object_of(instance)?.kind else {
+        let Some(character) = self.object_of(instance)?.character() else {
             return Err(no_character());
         };
         let world = self.world_from_model(instance)?;

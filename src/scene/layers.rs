@@ -78,12 +78,12 @@ impl Scene {
     /// [`InputError`] for an instance that does not exist any more, is no character, or keeps its motion, and for times that are
     /// not finite.
     pub fn root_motion(&self, instance: InstanceId, from: f64, to: f64) -> Result<Transform, InputError> {
-        let character = self.object_of(instance)?.kind.character().ok_or_else(no_character)?;
+        let character = self.object_of(instance)?.character().ok_or_else(no_character)?;
         character.root_motion(instance.index, from, to)
     }
 
     pub(super) fn character_mut(&mut self, instance: InstanceId) -> Result<&mut Character, InputError> {
-        self.instance_mut(instance)?.kind.character_mut().ok_or_else(no_character)
+        self.instance_mut(instance)?.character_mut().ok_or_else(no_character)
     }
 
     /// Sets the sphere of an instance that plays something else.

@@ -5,11 +5,11 @@ use image::RgbaImage;
 use crate::asset::material::{Alpha, Material};
 use crate::gpu::{Gpu, Staged};
 use crate::scene::Scene;
-use crate::scene::drawable::{Drawable, MeshMaterials};
 use crate::scene::handles::ObjectId;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Changed, Looks, PartMaterials};
-use crate::scene::object::{Object, ObjectKind};
+use crate::scene::mesh::{MeshDrawable, MeshMaterials};
+use crate::scene::object::Object;
 use crate::{Error, InputError};
 
 impl Scene {
@@ -137,7 +137,7 @@ impl Object {
         let (Some(looks), Some(first)) = (&self.looks, self.chunks.first()) else { return Ok(()) };
         let mut changes = Vec::new();
         for (at, drawable) in first.drawables.iter().enumerate() {
-            let Drawable::Mesh(mesh) = drawable else { continue };
+            let Some(mesh) = drawable.downcast::<MeshDrawable>() else { continue };
             for (number, part) in mesh.parts.iter().enumerate() {
                 let MeshMaterials::Plain(materials) = part.materials() else { continue };
                 if let Some(changed) = change.of(gpu, looks, materials)? {
@@ -148,7 +148,7 @@ impl Object {
         for (at, number, changed) in changes {
             changed.stage(staged)?;
             for chunk in &mut self.chunks {
-                if let Some(Drawable::Mesh(mesh)) = chunk.drawables.get_mut(at) {
+                if let Some(mesh) = chunk.drawables[at].downcast_mut::<MeshDrawable>() {
                     mesh.parts[number].set_materials(MeshMaterials::Plain(changed.materials.clone()));
                 }
             }
@@ -163,10 +163,5 @@ fn looks(object: &mut Object) -> Result<&mut Looks, InputError> {
 }
 
 fn without_materials(object: &Object) -> InputError {
-    let value = match object.kind {
-        ObjectKind::Terrain(_) => "terrain",
-        ObjectKind::Own(_) => "of a kind of the caller's",
-        _ => "a relief",
-    };
-    InputError::new("object", value, "must be a mesh or a character")
+    InputError::new("object", object.kind.name(), "must be a mesh or a character")
 }

@@ -13,7 +13,7 @@ impl Scene {
     /// [`InputError`](crate::InputError) for an object that is not of this scene; [`crate::gpu::GpuError`].
     pub fn drawn_bones(&self, object: ObjectId) -> Result<Vec<(InstanceId, Vec<Affine>)>, Error> {
         let entry = self.object_at(object)?;
-        let Some(character) = entry.kind.character() else { return Ok(Vec::new()) };
+        let Some(character) = entry.character() else { return Ok(Vec::new()) };
         let (all, bones) = character.read_matrices(&self.gpu)?;
         let own = |[index, generation]: [u32; 2]| {
             (InstanceId { object, index, generation }, all[index as usize * bones..][..bones].to_vec())

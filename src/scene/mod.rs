@@ -35,6 +35,7 @@ mod measured;
 #[doc(hidden)]
 pub mod mesh;
 pub(crate) mod object;
+mod object_kind;
 mod objects;
 mod options;
 pub(crate) mod order;
@@ -284,7 +285,7 @@ impl Scene {
     pub fn set_shares(&mut self, shares: Shares) -> Result<(), InputError> {
         shares.validate()?;
         self.shares = shares;
-        for object in self.objects.iter_mut().filter(|object| object.kind.character().is_some()) {
+        for object in self.objects.iter_mut().filter(|object| object.character().is_some()) {
             object.mesh_fraction = shares.mesh;
         }
         self.layout = None;

@@ -33,7 +33,7 @@ impl Scene {
     /// As `Scene::add_terrain`.
     pub async fn add_terrain_async(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
-        let object = Object::terrain(&gpu, &self.layouts_of_groups, source).await?;
+        let object = Object::of_terrain(&gpu, &self.layouts_of_groups, source).await?;
         self.add_checked(object.awaiting(pending)).await
     }
 
@@ -112,19 +112,19 @@ impl Scene {
         }
         let (gpu, pending) = self.uploader();
         let (layouts, settings) = (&self.layouts_of_groups, (self.shares, self.keeps_last));
-        let object = Object::character(&gpu, layouts, (model, options), capacity, settings)?;
+        let object = Object::of_character(&gpu, layouts, (model, options), capacity, settings)?;
         Ok(object.awaiting(pending))
     }
 
     fn mesh(&self, model: &Model, capacity: usize) -> Result<Object, Error> {
         let (gpu, pending) = self.uploader();
-        let object = Object::mesh(&gpu, &self.layouts_of_groups, model, capacity)?;
+        let object = Object::of_mesh(&gpu, &self.layouts_of_groups, model, capacity)?;
         Ok(object.awaiting(pending))
     }
 
     fn relief(&self, relief: &Relief, capacity: usize) -> Result<Object, Error> {
         let (gpu, pending) = self.uploader();
-        let object = Object::relief(&gpu, &self.layouts_of_groups, relief, capacity)?;
+        let object = Object::of_relief(&gpu, &self.layouts_of_groups, relief, capacity)?;
         Ok(object.awaiting(pending))
     }
 
@@ -157,7 +157,7 @@ impl Scene {
     /// (`kind.parts[0].levels[1]`); [`crate::gpu::GpuError`].
     pub fn add_kind(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
-        let object = Object::own(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
+        let object = Object::of_kind(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
         Ok(self.add(object.awaiting(pending)))
     }
 
@@ -168,7 +168,7 @@ impl Scene {
     /// As [`Scene::add_kind`].
     pub async fn add_kind_async(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
-        let object = Object::own(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
+        let object = Object::of_kind(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
         self.add_checked(object.awaiting(pending)).await
     }
 

@@ -6,8 +6,9 @@ use crate::InputError;
 use crate::scene::Scene;
 use crate::scene::handles::InstanceId;
 use crate::scene::matrices::placed_model;
-use crate::scene::object::{Object, ObjectKind};
-use crate::scene::ray::{Hit, Ray, Surface, SurfaceHit};
+use crate::scene::object::Object;
+use crate::scene::object_kind::{Placed, UnitRay};
+use crate::scene::ray::{Hit, Ray, SurfaceHit};
 use crate::shared::lod::instance::{INSTANCE_ALIVE, instance_flags_mask};
 
 /// By how much a box or a sphere is enlarged, relative to what it is computed from: rounding moves what is drawn, in `f32`,
@@ -42,12 +43,9 @@ impl Scene {
             }
             let InstanceId { index, .. } = candidate.instance;
             let placed = self.placed(candidate.instance, ray.cell)?;
-            let found = candidate.entry.hit(
-                index,
-                self.now,
-                (placed, ray.cell),
-                ([ray.offset, direction], farthest),
-            )?;
+            let placed = candidate.entry.placed(index, self.now, placed, ray.cell);
+            let ray = UnitRay { origin: ray.offset, direction, limit: farthest };
+            let found = candidate.entry.kind.hit(&placed, &ray)?;
             first = found.map(|hit| (hit, candidate.instance)).or(first);
         }
         Ok(first.map(|(hit, instance)| Hit {
@@ -81,7 +79,8 @@ impl Scene {
                     continue;
                 }
                 let placed = placed_model(instance, ray.cell);
-                let (center, radius) = entry.sphere_around(index, self.now, placed)?;
+                let (center, radius) =
+                    entry.sphere_around(&entry.placed(index, self.now, placed, ray.cell))?;
                 let slack = MARGIN * (radius + placed.translation.length());
                 let towards = center - ray.offset;
                 if let Some(distance) = distance_to_sphere(towards, direction, radius + slack)
@@ -115,38 +114,15 @@ fn distance_to_sphere(center: DVec3, direction: DVec3, radius: f64) -> Option<f6
 }
 
 impl Object {
-    /// The center and the radius of a sphere around an instance, which `placed` leads from its model's space. Bones that were
-    /// written may leave the sphere of the clip, so their box decides then.
-    fn sphere_around(&self, index: u32, now: f64, placed: DAffine3) -> Result<(DVec3, f64), InputError> {
-        let written = self.kind.character().filter(|character| character.is_written(index));
-        if let Some(character) = written {
-            let [low, high] = character.bounds(&character.pose(index, now)?, placed);
+    /// The center and the radius of a sphere around an instance.
+    fn sphere_around(&self, instance: &Placed) -> Result<(DVec3, f64), InputError> {
+        if self.kind.may_leave_sphere(instance.index)
+            && let Some([low, high]) = self.kind.wide_box(instance)?
+        {
             return Ok(((low + high) / 2.0, low.distance(high) / 2.0));
         }
-        let instance = &self.instances.all()[index as usize];
-        let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);
-        let center = placed.transform_point3(DVec3::new(x, y, z));
-        Ok((center, radius * f64::from(instance.largest_scale())))
-    }
-
-    /// The nearest hit of an instance by a ray, with a unit direction, up to a distance.
-    fn hit(
-        &self,
-        index: u32,
-        now: f64,
-        (placed, cell): (DAffine3, [i32; 3]),
-        (ray, limit): ([DVec3; 2], f64),
-    ) -> Result<Option<SurfaceHit>, InputError> {
-        let of_all = |surfaces: &[Surface<'_>]| {
-            let hits = surfaces.iter().map(|surface| surface.hit(placed, ray, limit));
-            hits.fold(None, SurfaceHit::nearer)
-        };
-        Ok(match &self.kind {
-            ObjectKind::Mesh(mesh) => of_all(&mesh.surfaces()),
-            ObjectKind::Character(character) => of_all(&character.surface(index, now)?),
-            ObjectKind::Terrain(terrain) => terrain.hit(index, cell, ray, limit),
-            ObjectKind::Own(own) => own.hit(placed, ray, limit),
-        })
+        let [low, high] = instance.sphere_box;
+        Ok(((low + high) / 2.0, (high.x - low.x) / 2.0))
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DAffine3;
 
 use super::handles::missing;
-use super::object::{Object, ObjectKind};
+use super::object::Object;
 use super::{ClipTime, InstanceId, ObjectId, Placement, Scene};
 use crate::InputError;
 use crate::shared::lod::instance::SceneInstance;
@@ -70,7 +70,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     pub fn clip_time(&self, instance: InstanceId) -> Result<Option<ClipTime>, InputError> {
-        let character = self.object_of(instance)?.kind.character();
+        let character = self.object_of(instance)?.character();
         character.map(|character| character.clip_time(instance.index, self.now)).transpose()
     }
 
@@ -87,7 +87,7 @@ mod drawn {
     use crate::asset::Affine;
     use crate::lod::OBJECT_LISTS;
     use crate::scene::View;
-    use crate::scene::drawable::{Drawable, MeshDrawable};
+    use crate::scene::mesh::MeshDrawable;
     use crate::scene::view::lists::ViewLists;
     use crate::shared::lod::object::{MORPH_STEPS, list_entry_instance, list_entry_morph, morph_steps};
     use crate::skinning::vertex::Vertex;
@@ -117,7 +117,7 @@ mod drawn {
     impl Scene {
         /// Whether the instances of an object are animated.
         pub fn is_character(&self, object: ObjectId) -> Result<bool, InputError> {
-            Ok(self.object_at(object)?.kind.character().is_some())
+            Ok(self.object_at(object)?.character().is_some())
         }
 
         /// The instances of an object that a view may show, as its last frame, which must be submitted, drew them. Waits
@@ -174,7 +174,7 @@ mod drawn {
             // All chunks draw the same triangles.
             let chunks = object.chunks.iter().take(1);
             for (drawable, lod) in chunks.flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods)) {
-                let Drawable::Mesh(mesh) = drawable else { continue };
+                let Some(mesh) = drawable.downcast::<MeshDrawable>() else { continue };
                 let indices = mesh.geometry.indices.read_blocking(&self.gpu)?;
                 let of_part = |part: u32| {
                     let draw = &draws[(lod.first_draw + OBJECT_LISTS * part + list) as usize];
@@ -194,14 +194,11 @@ mod drawn {
             instances: &[InstanceId],
         ) -> Result<Vec<Vec<Vec<Option<Vertex>>>>, Error> {
             let object = self.object_at(object)?;
-            if let ObjectKind::Character(character) = &object.kind {
+            if let Some(character) = object.character() {
                 let indices: Vec<u32> = instances.iter().map(|instance| instance.index).collect();
                 return character.skinned(&self.gpu, &indices);
             }
-            let meshes = object.drawables().filter_map(|drawable| match drawable {
-                Drawable::Mesh(mesh) => Some(mesh),
-                Drawable::Terrain(_) | Drawable::Own(_) => None,
-            });
+            let meshes = object.drawables().filter_map(|drawable| drawable.downcast::<MeshDrawable>());
             let vertices = |mesh: &MeshDrawable| mesh.geometry.vertices.read_blocking(&self.gpu);
             let all = meshes.map(|mesh| Ok(vertices(mesh)?.into_iter().map(Some).collect()));
             Ok(vec![all.collect::<Result<_, Error>>()?])

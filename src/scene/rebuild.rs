@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::gpu::{Gpu, Staged, StagingRing};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::object::OnDevice;
+use crate::scene::object_kind::OnDevice;
 use crate::scene::statistics::StageTimer;
 use crate::scene::{Passes, RECORDINGS, Scene};
 

@@ -3,12 +3,15 @@
 use glam::{Vec2, Vec3};
 
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::scene::drawable::{
-    Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, NO_OBJECT,
-};
+use crate::scene::chunk::Chunk;
+use crate::scene::drawable::NO_OBJECT;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::{ReliefLook, ReliefMaterial, check_image};
-use crate::scene::mesh::{Drawn, NOTHING, within_binding};
+use crate::scene::material::{Looks, ReliefLook, ReliefMaterial, check_image};
+use crate::scene::mesh::{
+    Drawn, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, NOTHING, within_binding,
+};
+use crate::scene::object_kind::{Making, ObjectKind, OnDevice};
+use crate::scene::ray::Surface;
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -122,7 +125,7 @@ impl Relief {
     ///
     /// # Errors
     /// [`InputError`] for textures, which were on the device that was lost.
-    pub(super) fn check_can_be_rebuilt(&self) -> Result<(), InputError> {
+    fn check_can_be_rebuilt(&self) -> Result<(), InputError> {
         match &self.maps {
             ReliefSource::Images { .. } => Ok(()),
             ReliefSource::Textures { .. } => {
@@ -130,6 +133,35 @@ impl Relief {
                 Err(InputError::new("relief.maps", "textures on the lost device", bound))
             }
         }
+    }
+}
+
+impl ObjectKind for Relief {
+    fn name(&self) -> &'static str {
+        "a relief"
+    }
+
+    fn is_attachable(&self) -> bool {
+        true
+    }
+
+    fn made_on<'a>(
+        &'a self,
+        gpu: &'a Gpu,
+        layouts: &'a SceneLayouts,
+        _: Option<&'a Looks>,
+        capacity: usize,
+    ) -> Making<'a> {
+        Box::pin(async move {
+            self.check_can_be_rebuilt()?;
+            let (_, (drawables, _)) = drawn(gpu, layouts, self)?;
+            Ok(OnDevice::chunks(vec![Chunk::new(0..capacity, drawables)]))
+        })
+    }
+
+    fn surfaces(&self, _: u32, _: f64) -> Result<Vec<Surface<'_>>, InputError> {
+        let positions = self.mesh.vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>();
+        Ok(vec![Surface::new(positions, &self.mesh.indices, self.double_sided)])
     }
 }
 
@@ -165,12 +197,12 @@ pub(super) fn drawn(
         error => error,
     })?;
     let parts = vec![MeshPart::new(faces, MeshMaterials::Relief(material))];
-    let drawable = Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, parts)?);
+    let drawable = MeshDrawable::new(gpu, layouts, geometry, 0, parts)?;
     let draw = SceneDraw { indices: relief.mesh.indices.len() as u32, ..NOTHING };
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
     draws[..2].fill(draw);
     let sphere = BoundingSphere::around(vertices.iter().map(|vertex| vertex.position.into()));
-    Ok((sphere, (vec![drawable], draws)))
+    Ok((sphere, (vec![Box::new(drawable)], draws)))
 }
 
 /// Checks the mesh and the images.

@@ -3,7 +3,7 @@
 use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId, missing, no_character};
 use crate::scene::instances;
-use crate::scene::object::{Object, ObjectKind};
+use crate::scene::object::Object;
 use crate::scene::placement::{Placement, Play};
 use crate::{Error, InputError};
 
@@ -22,7 +22,7 @@ impl Scene {
         let placement = placement.checked()?;
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let entry = self.object_mut(object)?;
-        if let ObjectKind::Terrain(_) = entry.kind {
+        if !entry.kind.is_spawned() {
             return Err(InputError::new("object", "terrain", "must be a mesh or a character").into());
         }
         let mut has_grown = false;
@@ -34,8 +34,7 @@ impl Scene {
         let Some([index, generation]) = spawned else {
             return Err(InputError::new("object.capacity", entry.capacity(), "must have room").into());
         };
-        if let Some(character) = entry.kind.character_mut() {
-            let sphere = character.play_first(index);
+        if let Some(sphere) = entry.kind.spawned(index) {
             entry.instances.change(index, |instance| instances::bound(instance, &sphere));
         }
         if has_grown {
@@ -52,9 +51,7 @@ impl Scene {
         self.spawned_mut(instance)?;
         self.let_go(instance)?;
         let object = self.instance_mut(instance)?;
-        if let Some(character) = object.kind.character_mut() {
-            character.let_go(instance.index);
-        }
+        object.kind.despawned(instance.index);
         object.instances.despawn(instance.index);
         Ok(())
     }
@@ -83,7 +80,7 @@ impl Scene {
     /// not have, and as [`Play::validate`].
     pub fn play(&mut self, instance: InstanceId, play: &Play<'_>) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
-        let character = object.kind.character_mut().ok_or_else(no_character)?;
+        let character = object.character_mut().ok_or_else(no_character)?;
         let sphere = character.play(instance.index, play)?;
         object.instances.change(instance.index, |instance| instances::bound(instance, &sphere));
         self.carry(instance)
@@ -129,13 +126,11 @@ impl Scene {
     /// As [`Self::instance_mut`], for what was spawned: patches of terrain stay where and what they are.
     fn spawned_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
         let object = self.instance_mut(instance)?;
-        match object.kind {
-            ObjectKind::Terrain(_) => {
-                let bound = "must be an instance of a mesh or a character";
-                Err(InputError::new("instance", "a patch of terrain", bound))
-            }
-            ObjectKind::Mesh(_) | ObjectKind::Character(_) | ObjectKind::Own(_) => Ok(object),
+        if object.kind.is_spawned() {
+            return Ok(object);
         }
+        let bound = "must be an instance of a mesh or a character";
+        Err(InputError::new("instance", "a patch of terrain", bound))
     }
 
     pub(super) fn instance_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {

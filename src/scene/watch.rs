@@ -104,7 +104,7 @@ impl Scene {
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does not
     /// have.
     pub fn bone(&self, instance: InstanceId, name_or_index: &str) -> Result<usize, InputError> {
-        self.object_of(instance)?.kind.character().ok_or_else(no_character)?.bone(name_or_index)
+        self.object_of(instance)?.character().ok_or_else(no_character)?.bone(name_or_index)
     }
 }
 
@@ -137,7 +137,7 @@ impl Watch {
         self.ring.record(encoder, About { frame, time, bones }, |encoder, to| {
             let copies = chosen.iter().filter_map(|(instance, bone)| {
                 let object = objects.existing(*instance)?;
-                let (matrices, own) = object.kind.character()?.model_matrices(instance.index)?;
+                let (matrices, own) = object.character()?.model_matrices(instance.index)?;
                 Some((matrices, own, *bone, object.place(instance.index)?))
             });
             for (at, (matrices, instance, bone, place)) in (0..).zip(copies) {

@@ -173,6 +173,6 @@ fn on_device(
 /// The index in the scene of the first instance of a character's chunk, and the number of the character's bones.
 fn first_of(objects: &Slots<Object>, object: [u32; 2], chunk: usize) -> Option<[u32; 2]> {
     let object = objects.get(object)?;
-    let bones = object.kind.character()?.model().skeleton.len() as u32;
+    let bones = object.character()?.model().skeleton.len() as u32;
     Some([object.chunks.get(chunk)?.range.first, bones])
 }

@@ -14,7 +14,6 @@ use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId};
 use crate::scene::instances;
 use crate::scene::matrices::affine_of;
-use crate::scene::object::ObjectKind;
 use crate::scene::placement::Placement;
 use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -93,9 +92,9 @@ impl Scene {
     ) -> Result<(), InputError> {
         let bone = self.bone(character, bone).map_err(|error| renamed(error, "character"))?;
         let object = self.object_of(mesh).map_err(|error| renamed(error, "mesh"))?;
-        let ObjectKind::Mesh(_) = object.kind else {
+        if !object.kind.is_attachable() {
             return Err(InputError::new("mesh", "no mesh", "must be an instance of a mesh"));
-        };
+        }
         let offset = offset.checked("offset")?;
         let largest = offset.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
         if largest == 0.0 {
@@ -181,8 +180,8 @@ impl Scene {
         let Some(meshes) = self.attachments.carried.get(&character).cloned() else { return Ok(()) };
         let ObjectId { index, generation, .. } = character.object;
         let Some(object) = self.objects.get_mut([index, generation]) else { return Ok(()) };
-        let Some(animated) = object.kind.character() else { return Ok(()) };
-        let mut around = animated.sphere_of(character.index);
+        let Some(animated) = object.character() else { return Ok(()) };
+        let mut around = animated.sphere_as_played(character.index);
         let mut paths = Vec::new();
         for mesh in &meshes {
             let Some(attached) = self.attachments.all.get(mesh) else { continue };
@@ -218,7 +217,7 @@ impl Scene {
     ) -> Result<Option<DAffine3>, InputError> {
         let Some(attached) = self.attachments.all.get(&mesh) else { return Ok(None) };
         let Attached { character, bone, offset, .. } = attached;
-        let Some(animated) = self.object_of(*character)?.kind.character() else { return Ok(None) };
+        let Some(animated) = self.object_of(*character)?.character() else { return Ok(None) };
         let pose = animated.pose(character.index, self.now)?;
         let bone = affine_of(&pose.model_matrices[*bone]) * affine_of(&affine(offset));
         Ok(Some(self.placed(*character, cell)? * bone))

@@ -8,15 +8,19 @@ use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
-use crate::scene::mesh;
-use crate::skinning::paged::PagedSkin;
+use crate::scene::mesh::{self, MeshDrawable};
 
 impl Character {
     /// Binds the pages of all chunks, after some were replaced.
-    pub fn rebind(&self, gpu: &Gpu, layouts: &SceneLayouts, chunks: &mut [Chunk]) -> Result<(), Error> {
+    pub(super) fn rebind(
+        &self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        chunks: &mut [Chunk],
+    ) -> Result<(), Error> {
         for (chunk, runtime) in chunks.iter_mut().zip(&self.runtimes) {
             for (drawable, skin) in chunk.drawables.iter_mut().zip(&runtime.skins) {
-                if let Drawable::Mesh(mesh) = drawable {
+                if let Some(mesh) = drawable.downcast_mut::<MeshDrawable>() {
                     *mesh = mesh.with_pages(gpu, layouts, skin.pages())?;
                 }
             }
@@ -24,52 +28,53 @@ impl Character {
         Ok(())
     }
 
-    /// The chunks of its instances. What is drawn of them differs in the pages; `first` has the meshes and materials.
-    pub fn chunks(&self, gpu: &Gpu, layouts: &SceneLayouts, first: &[Drawable]) -> Result<Vec<Chunk>, Error> {
-        Self::chunks_of((gpu, layouts), first, &self.runtimes)
-    }
-
-    /// As [`Character::chunks`], of these.
-    pub fn chunks_of(
-        (gpu, layouts): (&Gpu, &SceneLayouts),
-        first: &[Drawable],
+    /// The chunks of its instances. What is drawn of them differs in the pages; the first of `known` has the meshes and
+    /// materials.
+    pub(super) fn chunks(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        known: &[Chunk],
         runtimes: &[Runtime],
     ) -> Result<Vec<Chunk>, Error> {
+        let first = known.first().map_or(&[][..], |chunk| &chunk.drawables);
         let chunk = |runtime: &Runtime| {
-            let drawable = |(drawable, skin): (&Drawable, &PagedSkin)| match drawable {
-                Drawable::Mesh(mesh) => Ok(Drawable::Mesh(mesh.beside(gpu, layouts, skin.pages())?)),
-                Drawable::Terrain(_) | Drawable::Own(_) => Ok(drawable.clone()),
-            };
-            let drawables = first.iter().zip(&runtime.skins).map(drawable);
+            let meshes = first.iter().filter_map(|drawable| drawable.downcast::<MeshDrawable>());
+            let drawables = meshes.zip(&runtime.skins).map(|(mesh, skin)| {
+                let drawable: Box<dyn Drawable> = Box::new(mesh.beside(gpu, layouts, skin.pages())?);
+                Ok(drawable)
+            });
             Ok(Chunk::new(runtime.slots.clone(), drawables.collect::<Result<_, Error>>()?))
         };
         runtimes.iter().map(chunk).collect()
     }
 
-    /// What is drawn of the first chunk: each mesh, from the vertices of each instance.
-    pub fn drawables(
+    /// All chunks, with these materials.
+    pub fn chunks_of_looks(
         &self,
         gpu: &Gpu,
         layouts: &SceneLayouts,
         looks: &Looks,
-    ) -> Result<Vec<Drawable>, Error> {
-        self.drawables_of((gpu, layouts), looks, &self.runtimes)
+    ) -> Result<Vec<Chunk>, Error> {
+        let first = self.first_chunk(gpu, layouts, looks, &self.runtimes)?;
+        Self::chunks(gpu, layouts, &[first], &self.runtimes)
     }
 
-    /// As [`Character::drawables`], of these chunks.
-    pub fn drawables_of(
+    /// The first chunk: each mesh, from the vertices of each instance.
+    pub(super) fn first_chunk(
         &self,
-        (gpu, layouts): (&Gpu, &SceneLayouts),
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
         looks: &Looks,
         runtimes: &[Runtime],
-    ) -> Result<Vec<Drawable>, Error> {
-        let drawable = |(index, skin): (usize, &PagedSkin)| {
+    ) -> Result<Chunk, Error> {
+        let mut drawables: Vec<Box<dyn Drawable>> = Vec::new();
+        let skins = runtimes.first().into_iter().flat_map(|runtime| &runtime.skins);
+        for (index, skin) in skins.enumerate() {
             let mesh = (&skin.mesh, &*skin.clusters);
-            mesh::drawable((gpu, layouts), (&self.merged, looks), index, mesh, Some(skin.pages()))
-        };
-        runtimes
-            .first()
-            .map_or(Ok(Vec::new()), |runtime| runtime.skins.iter().enumerate().map(drawable).collect())
+            let of = (&self.merged, looks);
+            drawables.push(Box::new(mesh::drawable((gpu, layouts), of, index, mesh, Some(skin.pages()))?));
+        }
+        Ok(Chunk::new(0..0, drawables))
     }
 
     /// The draws of all parts of a chunk.

@@ -160,7 +160,7 @@ impl Character {
     }
 
     /// Ends fades that have reached their weight at a time of the scene. Returns the instances whose base has changed.
-    pub fn settle(&mut self, now: f64) -> Vec<u32> {
+    pub(super) fn end_fades(&mut self, now: f64) -> Vec<u32> {
         let mut changed = Vec::new();
         for layer in &mut self.layers {
             for index in layer.fading.iter().copied().collect::<Vec<_>>() {

@@ -2,6 +2,7 @@
 
 mod drawn;
 mod driven;
+mod kind;
 mod layers;
 #[cfg(not(target_arch = "wasm32"))]
 mod measured;
@@ -13,16 +14,13 @@ mod runtime;
 use crate::Error;
 use crate::animation::{BoundTable, ClipSet, Gate, RootMotion, RotationPath};
 use crate::asset::mesh::bone_radii;
-use crate::gpu::{Gpu, Staged, Upload as _};
-use crate::lod::assign::AssignPass;
-use crate::scene::chunk::Chunk;
+use crate::gpu::Gpu;
 use crate::scene::instances::Changed;
-use crate::scene::layout::{Layout, error_vectors};
+use crate::scene::layout::error_vectors;
 use crate::scene::mesh;
+use crate::scene::object_kind::{Fitted, Replaced};
 use crate::scene::options::{CharacterOptions, bone_of};
 use crate::scene::playing::Playing;
-use crate::scene::quality::Shares;
-use crate::scene::stage::Stage;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::instance_lod::InstanceLod;
@@ -30,8 +28,7 @@ use crate::skinning::merged::Merged;
 use crate::skinning::{Extent, poses_of};
 use driven::Driven;
 use layers::{CharacterLayer, Reach};
-pub(super) use provide::{Provided, Replaced};
-pub(super) use runtime::{Runtime, Shared};
+use runtime::{Runtime, Shared};
 
 /// A character and all of its instances.
 #[derive(Debug)]
@@ -118,33 +115,6 @@ impl Character {
         })
     }
 
-    /// Keeps last positions from the next [`Character::grow`] on, or does no longer.
-    pub fn keep_last(&mut self, keeps_last: bool) {
-        self.keeps_last = keeps_last;
-    }
-
-    /// Makes room for more instances. All of them start afresh. If it fails, nothing has changed.
-    pub fn grow(&mut self, gpu: &Gpu, capacity: usize) -> Result<(), Error> {
-        let model = &self.merged.model;
-        self.runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
-        self.start_afresh(capacity);
-        Ok(())
-    }
-
-    /// Everything on another device.
-    pub fn on(&self, gpu: &Gpu) -> Result<(Shared, Vec<Runtime>), Error> {
-        let model = &self.merged.model;
-        let shared = self.shared.on(gpu, model)?;
-        let runtimes = Runtime::all(gpu, model, &shared, 0..self.plays.len(), self.keeps_last)?;
-        Ok((shared, runtimes))
-    }
-
-    /// Takes everything on another device. All instances start afresh.
-    pub fn adopt(&mut self, (shared, runtimes): (Shared, Vec<Runtime>)) {
-        (self.shared, self.runtimes) = (shared, runtimes);
-        self.start_afresh(self.plays.len());
-    }
-
     fn start_afresh(&mut self, capacity: usize) {
         self.is_memory_short = false;
         self.plays.resize(capacity, Playing::REST);
@@ -164,44 +134,26 @@ impl Character {
         mesh::errors(&self.merged)
     }
 
-    /// Prepares the assignment of levels for a layout, unless it is prepared. `mesh_fraction` is the fraction of the allowed
-    /// displacement that levels of detail use.
-    pub fn fit(
-        &mut self,
-        gpu: &Gpu,
-        layout: &Layout,
-        pass: &AssignPass,
-        (chunks, errors): (&[Chunk], &[f32]),
-        (shares, mesh_fraction): (Shares, f32),
-    ) -> Result<(), Error> {
-        for (runtime, chunk) in self.runtimes.iter_mut().zip(chunks) {
+    /// Prepares the assignment of levels for a layout, unless it is prepared.
+    fn fit_levels(&mut self, gpu: &Gpu, fitted: &Fitted<'_>) -> Result<(), Error> {
+        let mut errors = fitted.thresholds.to_vec();
+        // Level 0 has no error that counts.
+        errors[0] = 0.0;
+        for (runtime, chunk) in self.runtimes.iter_mut().zip(fitted.chunks) {
             let params = AssignParams {
                 first: chunk.range.first,
                 instances: 0,
                 levels: errors.len() as u32,
                 max_influences: InstanceLod::FULL.max_influences,
-                mesh_fraction,
-                bone_fraction: shares.bones,
-                influence_fraction: shares.influences,
+                mesh_fraction: fitted.mesh_fraction,
+                bone_fraction: fitted.shares.bones,
+                influence_fraction: fitted.shares.influences,
                 unit: self.unit,
                 stray: self.stray,
-                errors: error_vectors(errors),
+                errors: error_vectors(&errors),
             };
-            runtime.fit(gpu, layout, pass, params)?;
+            runtime.fit(gpu, fitted.layout, fitted.assign, params)?;
         }
         Ok(())
-    }
-
-    /// Stages the fraction of the allowed displacement that levels of detail use.
-    pub fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
-        for (params, values, _) in self.runtimes.iter().flat_map(|runtime| &runtime.assign) {
-            staged.uniform(params, &AssignParams { mesh_fraction: fraction, ..*values })?;
-        }
-        Ok(())
-    }
-
-    /// Adds a stage to a compute pass.
-    pub fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
-        self.runtimes.iter().for_each(|runtime| runtime.dispatch(stage, pass));
     }
 }

@@ -22,7 +22,7 @@ impl Character {
         self.plays[index as usize] =
             Playing { clip: clip as u32, wrap: play.wrap, start: play.start, rate: play.rate };
         self.changed.add(index, self.plays.len());
-        Ok(self.sphere_of(index))
+        Ok(self.sphere_as_played(index))
     }
 
     /// Sets that an instance plays the first clip, and returns a sphere around it.
@@ -43,7 +43,7 @@ impl Character {
     }
 
     /// Stages the time, and what instances play.
-    pub fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
+    pub(super) fn stage_played(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
         if (now - self.epoch).abs() > EPOCH {
             self.epoch = now;
             self.changed.all(self.plays.len());

@@ -51,7 +51,7 @@ impl Character {
     }
 
     /// A sphere around an instance as it plays.
-    pub fn sphere_of(&self, index: u32) -> BoundingSphere {
+    pub fn sphere_as_played(&self, index: u32) -> BoundingSphere {
         match &self.reach {
             Some(reach) if self.is_blended(index) => reach.sphere(),
             _ => self.spheres[self.plays[index as usize].clip as usize],
@@ -133,7 +133,7 @@ impl Character {
     }
 
     /// The surface of a posed instance at a time of the scene, in full detail.
-    pub fn surface(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
+    pub(super) fn posed_surfaces(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
         let (ClipTime { clip, seconds }, pose) = (self.clip_time(index, now)?, self.pose(index, now)?);
         let model = &self.merged.model;
         let of_mesh = |(at, mesh): (usize, &crate::asset::Mesh)| {

@@ -4,41 +4,18 @@ use std::ops::Range;
 
 use crate::Error;
 use crate::gpu::Gpu;
-use crate::lod::{LodObject, SceneInstance, SelectView};
 use crate::scene::chunk::halved;
+use crate::scene::object_kind::{Provided, Replaced, SeenBy};
 use crate::scene::paging::{Paging, Seen};
 
 use super::Character;
 use super::runtime::{Runtime, is_out_of_memory};
 
-/// What was provided for a frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::scene) struct Provided {
-    /// The factor by which levels of detail must be coarser: 1 unless memory has ended.
-    pub coarsening: f32,
-    pub replaced: Replaced,
-}
-
-/// What is another than before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::scene) enum Replaced {
-    Nothing,
-    /// The pages of some chunks.
-    Pages,
-    /// The chunks. The instances of those that were divided start afresh.
-    Chunks,
-}
-
 impl Character {
     /// Provides the pages that the views of a frame need. A chunk whose pages would exceed a binding is divided; where
     /// memory ends, levels of detail must be coarser.
-    pub fn provide(
-        &mut self,
-        gpu: &Gpu,
-        views: &[SelectView],
-        object: &LodObject,
-        instances: &[SceneInstance],
-    ) -> Result<Provided, Error> {
+    pub(super) fn provide_pages(&mut self, gpu: &Gpu, seen: &SeenBy<'_>) -> Result<Provided, Error> {
+        let SeenBy { views, object, instances } = *seen;
         let coarsening = match self.runtimes.iter().all(Runtime::is_full) {
             true => 1.0,
             false => self.provide_seen(gpu, &Seen::new(views, object, instances))?,
@@ -57,7 +34,7 @@ impl Character {
             for runtime in &mut self.runtimes {
                 let needed = seen.pages(&runtime.slots, &runtime.paging, coarsening);
                 let [has_other, ends] = runtime.provide(gpu, &needed)?;
-                let replaced = if has_other { Replaced::Pages } else { Replaced::Nothing };
+                let replaced = if has_other { Replaced::Buffers } else { Replaced::Nothing };
                 self.replaced = self.replaced.max(replaced);
                 is_short |= ends;
             }

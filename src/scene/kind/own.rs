@@ -1,15 +1,22 @@
 //! A kind of the caller's as the scene keeps it.
 
-use glam::{DAffine3, DVec3};
+use std::any::Any;
+
+use glam::DVec3;
 
 use super::{Kind, KindFrame, KindPart, KindRay, KindUploads};
-use crate::gpu::{Gpu, Staged};
-use crate::scene::drawable::{Drawable, OwnDrawable};
+use crate::animation::Frame;
+use crate::gpu::{Gpu, GpuError, Group, Staged, Uniform, Upload as _};
+use crate::scene::chunk::Chunk;
+use crate::scene::drawable::{Drawable, NO_OBJECT, Part};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Looks;
 use crate::scene::mesh::{Drawn, NOTHING};
+use crate::scene::object_kind::{Making, ObjectKind, OnDevice, Placed, UnitRay};
 use crate::scene::ray::SurfaceHit;
 use crate::scene::specialization::{OwnDepth, PartState, Specialization};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
+use crate::shared::render::scene_instances::SceneObject;
 use crate::{Error, InputError};
 
 /// The most draws of an object.
@@ -70,23 +77,117 @@ impl OwnKind {
         };
         let of_part = |part: &KindPart| (0..OBJECT_LISTS).map(|list| draw(part, list)).collect::<Vec<_>>();
         let draws = self.kind.parts().iter().flat_map(of_part).collect();
-        Ok((vec![Drawable::Own(drawable)], draws))
+        Ok((vec![Box::new(drawable)], draws))
+    }
+}
+
+impl ObjectKind for OwnKind {
+    fn name(&self) -> &'static str {
+        "of a kind of the caller's"
     }
 
-    /// Stages what the kind writes in a frame.
-    pub fn stage(&mut self, staged: &mut Staged, frame: KindFrame) -> Result<(), Error> {
-        self.kind.upload(&KindFrame { is_fresh: self.is_fresh, ..frame }, &mut KindUploads(staged))?;
+    fn renew(
+        &mut self,
+        _: &Gpu,
+        _: &SceneLayouts,
+        capacity: usize,
+        chunks: &mut Vec<Chunk>,
+    ) -> Result<(), Error> {
+        self.is_fresh = true;
+        chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
+        Ok(())
+    }
+
+    fn made_on<'a>(
+        &'a self,
+        gpu: &'a Gpu,
+        layouts: &'a SceneLayouts,
+        _: Option<&'a Looks>,
+        capacity: usize,
+    ) -> Making<'a> {
+        Box::pin(async move {
+            let own = self.rebuilt(gpu)?;
+            let chunks = vec![Chunk::new(0..capacity, own.drawn(gpu, layouts)?.0)];
+            Ok(OnDevice { chunks, other: Box::new(own) })
+        })
+    }
+
+    fn adopt(&mut self, other: Box<dyn Any>) {
+        if let Ok(own) = other.downcast() {
+            *self = *own;
+        }
+    }
+
+    fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
+        let last_seconds = now - f64::from(frame.ahead);
+        let frame = KindFrame { seconds: now, last_seconds, is_fresh: self.is_fresh };
+        self.kind.upload(&frame, &mut KindUploads(staged))?;
         self.is_fresh = false;
         Ok(())
     }
 
-    /// The first hit of an instance by a ray with a unit direction, up to a distance. `placed` leads from the model's space into
-    /// that of the ray.
-    pub fn hit(&self, placed: DAffine3, [at, direction]: [DVec3; 2], limit: f64) -> Option<SurfaceHit> {
-        let into = placed.inverse();
-        let ray = KindRay { origin: into.transform_point3(at), direction: into.transform_vector3(direction) };
-        let hit = self.kind.hit(&ray).filter(|hit| (0.0..=limit).contains(&hit.distance))?;
-        Some(SurfaceHit { distance: hit.distance, normal: into.matrix3.transpose() * hit.normal })
+    fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
+        let into = instance.place.inverse();
+        let origin = into.transform_point3(ray.origin);
+        let hit = self.kind.hit(&KindRay { origin, direction: into.transform_vector3(ray.direction) });
+        let hit = hit.filter(|hit| (0.0..=ray.limit).contains(&hit.distance));
+        let normal = |normal: DVec3| into.matrix3.transpose() * normal;
+        Ok(hit.map(|hit| SurfaceHit { distance: hit.distance, normal: normal(hit.normal) }))
+    }
+
+    fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {
+        Ok(instance.sphere_box)
+    }
+
+    fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
+        Ok(Some(instance.sphere_box))
+    }
+}
+
+/// An object of a kind of the caller's.
+#[derive(Debug, Clone)]
+struct OwnDrawable {
+    object: Uniform<SceneObject>,
+    /// Bind group 1.
+    group: Group,
+    indices: wgpu::Buffer,
+    /// Its parts, each with bind group 2.
+    parts: Vec<(Specialization, Group)>,
+}
+
+impl OwnDrawable {
+    /// Binds what the scene knows of an object.
+    fn new(
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        indices: &wgpu::Buffer,
+        parts: Vec<(Specialization, Group)>,
+    ) -> Result<Self, GpuError> {
+        let object = Uniform::new(gpu, "object", &NO_OBJECT)?;
+        let group = layouts.own_object(gpu, &object)?;
+        Ok(Self { object, group, indices: indices.clone(), parts })
+    }
+}
+
+impl Drawable for OwnDrawable {
+    fn part_count(&self) -> usize {
+        self.parts.len()
+    }
+
+    fn part(&self, at: usize) -> Option<Part<'_>> {
+        self.parts.get(at).map(|(specialization, group)| Part { specialization, group })
+    }
+
+    fn group(&self) -> Option<&Group> {
+        Some(&self.group)
+    }
+
+    fn indices(&self) -> &wgpu::Buffer {
+        &self.indices
+    }
+
+    fn stage(&self, staged: &mut Staged, object: &SceneObject) -> Result<(), Error> {
+        Ok(staged.uniform(&self.object, object)?)
     }
 }
 

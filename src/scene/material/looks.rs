@@ -16,6 +16,9 @@ pub(crate) struct Looks {
 }
 
 impl Looks {
+    /// No materials and no images.
+    pub const NONE: Self = Self { materials: Vec::new(), images: Vec::new() };
+
     /// Takes those of a model.
     pub fn taken(model: &mut Model) -> Self {
         Self { materials: std::mem::take(&mut model.materials), images: std::mem::take(&mut model.images) }

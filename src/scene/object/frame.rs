@@ -2,26 +2,24 @@
 
 use std::sync::Arc;
 
-use super::{Object, ObjectKind};
+use super::Object;
 use crate::Error;
 use crate::animation::Frame;
 use crate::gpu::{Buffer, Gpu, Staged, Upload as _};
 use crate::lod::assign::AssignPass;
 use crate::lod::{SceneInstance, SelectView};
-use crate::scene::character::{Provided, Replaced};
 use crate::scene::chunk::{Chunk, common};
-use crate::scene::drawable::Drawable;
 use crate::scene::handles::{ObjectId, Slots};
-use crate::scene::kind::KindFrame;
 use crate::scene::layout::{Counted, CountedObject, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::object_kind::{Fitted, Provided, Replaced, SeenBy};
 use crate::scene::quality::Shares;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS};
 use crate::shared::render::scene_instances::SceneObject;
 
 impl Object {
-    /// Provides what the views of a frame need of a character. Where memory ends, its levels of detail are coarser. Returns
-    /// whether its chunks are others than before.
+    /// Provides what the views of a frame need. Where memory ends, levels of detail are coarser. Returns whether the chunks are
+    /// others than before.
     pub(in crate::scene) fn provide(
         &mut self,
         gpu: &Gpu,
@@ -30,19 +28,9 @@ impl Object {
     ) -> Result<bool, Error> {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
         let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object(&all) };
-        let Some(character) = self.kind.character_mut() else { return Ok(false) };
-        let Provided { coarsening, replaced } = character.provide(gpu, views, &lod, self.instances.all())?;
-        match replaced {
-            Replaced::Nothing => {}
-            Replaced::Pages => {
-                character.rebind(gpu, layouts, &mut self.chunks)?;
-                self.is_rebound = true;
-            }
-            Replaced::Chunks => {
-                let first = self.chunks.first().map_or(&[][..], |chunk| &chunk.drawables);
-                self.chunks = character.chunks(gpu, layouts, first)?;
-            }
-        }
+        let seen = SeenBy { views, object: &lod, instances: self.instances.all() };
+        let Provided { coarsening, replaced } = self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
+        self.is_rebound |= replaced == Replaced::Buffers;
         self.is_retuned |= coarsening != self.coarsening;
         self.coarsening = coarsening;
         Ok(replaced == Replaced::Chunks)
@@ -67,21 +55,9 @@ impl Object {
             for chunk in &self.chunks {
                 staged.elements(&layout.objects, chunk.number, &[self.lod_object(chunk)])?;
             }
-            if let Some(character) = self.kind.character() {
-                character.stage_mesh_fraction(staged, self.coarsening * self.mesh_fraction)?;
-            }
+            self.kind.stage_mesh_fraction(staged, self.coarsening * self.mesh_fraction)?;
         }
-        match &mut self.kind {
-            ObjectKind::Character(character) => character.stage(staged, frame, now),
-            ObjectKind::Terrain(terrain) => {
-                terrain.morphing.iter().try_for_each(|morphing| morphing.stage(staged))
-            }
-            ObjectKind::Mesh(_) => Ok(()),
-            ObjectKind::Own(own) => {
-                let last_seconds = now - f64::from(frame.ahead);
-                own.stage(staged, KindFrame { seconds: now, last_seconds, is_fresh: false })
-            }
-        }
+        self.kind.stage(staged, frame, now)
     }
 
     /// Prepares what depends on the layout.
@@ -92,29 +68,28 @@ impl Object {
         (pass, shares): (&AssignPass, Shares),
         staged: &mut Staged,
     ) -> Result<(), Error> {
-        if let Some(character) = self.kind.character_mut() {
-            character.fit_driven(gpu, staged)?;
-        }
-        if self.fitted == layout.version {
-            return Ok(());
-        }
-        let lods: Vec<LodObject> = self.chunks.iter().map(|chunk| self.lod_object(chunk)).collect();
-        for (chunk, mut lod) in self.chunks.iter_mut().zip(lods) {
-            chunk.lods.clear();
-            for drawable in &chunk.drawables {
-                chunk.lods.push(lod);
-                lod.first_draw += OBJECT_LISTS * drawable.part_count() as u32;
+        let is_new = self.fitted != layout.version;
+        if is_new {
+            let lods: Vec<LodObject> = self.chunks.iter().map(|chunk| self.lod_object(chunk)).collect();
+            for (chunk, mut lod) in self.chunks.iter_mut().zip(lods) {
+                chunk.lods.clear();
+                for drawable in &chunk.drawables {
+                    chunk.lods.push(lod);
+                    lod.first_draw += OBJECT_LISTS * drawable.part_count() as u32;
+                }
+                stage_params(staged, chunk, self.handle)?;
             }
-            stage_params(staged, chunk, self.handle)?;
         }
-        let mesh_fraction = self.coarsening * self.mesh_fraction;
-        let mut errors = self.thresholds();
-        if let Some(character) = self.kind.character_mut() {
-            // Level 0 has no error that counts.
-            errors[0] = 0.0;
-            let object = (&*self.chunks, &*errors);
-            character.fit(gpu, layout, pass, object, (shares, mesh_fraction))?;
-        }
+        let fitted = Fitted {
+            layout,
+            is_new,
+            assign: pass,
+            shares,
+            mesh_fraction: self.coarsening * self.mesh_fraction,
+            chunks: &self.chunks,
+            thresholds: &self.thresholds(),
+        };
+        self.kind.fit(gpu, &fitted, staged)?;
         self.fitted = layout.version;
         Ok(())
     }
@@ -137,16 +112,9 @@ fn stage_instances(
 
 /// Stages where the instances and vertices of a chunk of an object lie.
 fn stage_params(staged: &mut Staged, chunk: &Chunk, number: u32) -> Result<(), Error> {
-    for drawable in &chunk.drawables {
-        if let Some(to) = drawable.object() {
-            let (first_instance, first_slot) = (chunk.range.first, chunk.slots.start as u32);
-            staged.uniform(to, &SceneObject { first_instance, number, first_slot })?;
-        }
-        if let Drawable::Mesh(mesh) = drawable {
-            staged.uniform(&mesh.geometry.params, &mesh.params())?;
-        }
-    }
-    Ok(())
+    let (first_instance, first_slot) = (chunk.range.first, chunk.slots.start as u32);
+    let object = SceneObject { first_instance, number, first_slot };
+    chunk.drawables.iter().try_for_each(|drawable| drawable.stage(staged, &object))
 }
 
 /// Lays out the chunks of objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the

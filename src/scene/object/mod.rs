@@ -19,17 +19,15 @@ use crate::scene::kind::{Kind, OwnKind};
 use crate::scene::layout::error_vectors;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
-use crate::scene::mesh::{self, Drawn};
+use crate::scene::mesh::{self, Drawn, MeshAtRest};
+use crate::scene::object_kind::ObjectKind;
 use crate::scene::options::CharacterOptions;
 use crate::scene::quality::Shares;
-use crate::scene::ray::Surface;
 use crate::scene::relief::{self, Relief};
-use crate::scene::terrain::{self, SeenTerrain, Terrain, TerrainSource};
+use crate::scene::terrain::{self, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw, object_flags_word};
 use crate::skinning::bounding_sphere::BoundingSphere;
-use crate::skinning::merged::Merged;
 use crate::{Error, InputError};
-pub(super) use device::OnDevice;
 pub(super) use frame::laid_out;
 
 /// The most instances of an object.
@@ -38,7 +36,7 @@ const MAX_CAPACITY: usize = 1 << 20;
 /// An object of a scene.
 #[derive(Debug)]
 pub(crate) struct Object {
-    pub(super) kind: ObjectKind,
+    pub(super) kind: Box<dyn ObjectKind>,
     pub(super) instances: Instances,
     /// A sphere around an instance that moves no bone.
     pub(super) sphere: BoundingSphere,
@@ -52,7 +50,7 @@ pub(crate) struct Object {
     pub(super) coarsening: f32,
     /// Whether the device does not know the factor yet, or whether the object is drawn.
     pub(super) is_retuned: bool,
-    /// Whether the device does not know where the vertices of new pages lie.
+    /// Whether the device does not know where what is drawn from new buffers lies.
     is_rebound: bool,
     /// The number that its handle tells.
     pub(super) handle: u32,
@@ -68,64 +66,16 @@ pub(crate) struct Object {
     fitted: u64,
 }
 
-/// What the host keeps of a mesh that does not move by itself.
-#[derive(Debug)]
-pub(super) enum MeshOnHost {
-    /// Merged meshes at rest.
-    Model(Box<Merged>),
-    /// A mesh with relief.
-    Relief(Box<Relief>),
-}
-
-impl MeshOnHost {
-    /// Its triangles in full detail.
-    pub fn surfaces(&self) -> Vec<Surface<'_>> {
-        match self {
-            Self::Model(merged) => {
-                let meshes = &merged.model.meshes;
-                let surface = |at: usize| Surface::of_merged(merged, at, &meshes[at].positions[..]);
-                (0..meshes.len()).map(surface).collect()
-            }
-            Self::Relief(relief) => {
-                let positions = relief.mesh.vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>();
-                vec![Surface::new(positions, &relief.mesh.indices, relief.double_sided)]
-            }
-        }
-    }
-}
-
-/// What an object is.
-#[derive(Debug)]
-pub(super) enum ObjectKind {
-    Terrain(Box<Terrain>),
-    Mesh(MeshOnHost),
-    Character(Box<Character>),
-    /// Of a kind of the caller's.
-    Own(Box<OwnKind>),
-}
-
-impl ObjectKind {
-    /// The character, if it is one.
-    pub fn character(&self) -> Option<&Character> {
-        if let Self::Character(character) = self { Some(character) } else { None }
-    }
-
-    /// As [`ObjectKind::character`], to be changed.
-    pub fn character_mut(&mut self) -> Option<&mut Character> {
-        if let Self::Character(character) = self { Some(character) } else { None }
-    }
-}
-
 impl Object {
     /// An object that is shown.
     pub(super) fn new(
-        kind: ObjectKind,
+        kind: impl ObjectKind,
         (instances, sphere): (Instances, BoundingSphere),
         (errors, mesh_fraction): (Vec<f32>, f32),
         (chunks, draws): (Vec<Chunk>, Vec<SceneDraw>),
     ) -> Self {
         Self {
-            kind,
+            kind: Box::new(kind),
             instances,
             sphere,
             errors,
@@ -146,18 +96,18 @@ impl Object {
     }
 
     /// Terrain.
-    pub(super) async fn terrain(
+    pub(super) async fn of_terrain(
         gpu: &Gpu,
         layouts: &SceneLayouts,
         source: &TerrainSource,
     ) -> Result<Self, Error> {
         let (terrain, instances, drawn) = terrain::made(gpu, layouts, source).await?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
-        Ok(Self::new(ObjectKind::Terrain(Box::new(terrain)), (instances, sphere), (vec![0.0], 1.0), drawn))
+        Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
     /// A model's meshes at rest.
-    pub(super) fn mesh(
+    pub(super) fn of_mesh(
         gpu: &Gpu,
         layouts: &SceneLayouts,
         model: &Model,
@@ -169,13 +119,12 @@ impl Object {
         looks.check_all()?;
         let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
         let errors = mesh::errors(&merged);
-        let kind = ObjectKind::Mesh(MeshOnHost::Model(Box::new(merged)));
-        let object = Self::new(kind, (instances, sphere), (errors, 1.0), drawn);
+        let object = Self::new(MeshAtRest(merged), (instances, sphere), (errors, 1.0), drawn);
         Ok(Self { looks: Some(looks), ..object })
     }
 
     /// A mesh with relief.
-    pub(super) fn relief(
+    pub(super) fn of_relief(
         gpu: &Gpu,
         layouts: &SceneLayouts,
         relief: &Relief,
@@ -184,12 +133,11 @@ impl Object {
         let instances = room(capacity)?;
         let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
         let drawn = whole(&instances, drawn);
-        let kind = ObjectKind::Mesh(MeshOnHost::Relief(Box::new(relief.clone())));
-        Ok(Self::new(kind, (instances, sphere), (vec![0.0], 1.0), drawn))
+        Ok(Self::new(relief.clone(), (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
     /// An object of a kind of the caller's.
-    pub(super) fn own(
+    pub(super) fn of_kind(
         gpu: &Gpu,
         layouts: &SceneLayouts,
         kind: Box<dyn Kind>,
@@ -199,11 +147,11 @@ impl Object {
         let own = OwnKind::new(kind)?;
         let drawn = whole(&instances, own.drawn(gpu, layouts)?);
         let (sphere, errors) = (own.kind.bounding_sphere(), own.kind.errors().to_vec());
-        Ok(Self::new(ObjectKind::Own(Box::new(own)), (instances, sphere), (errors, 1.0), drawn))
+        Ok(Self::new(own, (instances, sphere), (errors, 1.0), drawn))
     }
 
     /// A model that has clips.
-    pub(super) fn character(
+    pub(super) fn of_character(
         gpu: &Gpu,
         layouts: &SceneLayouts,
         (model, options): (&Model, &CharacterOptions<'_>),
@@ -215,27 +163,15 @@ impl Object {
         let looks = Looks::taken(&mut merged.model);
         looks.check_all()?;
         let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
-        let first = character.drawables(gpu, layouts, &looks)?;
-        let drawn = (character.chunks(gpu, layouts, &first)?, character.draws());
+        let drawn = (character.chunks_of_looks(gpu, layouts, &looks)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
-        let kind = ObjectKind::Character(Box::new(character));
-        let object = Self::new(kind, (instances, sphere), (errors, shares.mesh), drawn);
+        let object = Self::new(character, (instances, sphere), (errors, shares.mesh), drawn);
         Ok(Self { looks: Some(looks), ..object })
     }
 
     /// The same object, of which some uploads wait.
     pub(super) fn awaiting(self, pending: Option<PendingUploads>) -> Self {
         Self { pending, ..self }
-    }
-
-    /// What views need to know of a terrain.
-    pub(super) fn seen_terrain(&self) -> Option<SeenTerrain> {
-        match &self.kind {
-            ObjectKind::Terrain(terrain) => {
-                Some(SeenTerrain { spacing: terrain.spacing, object: self.handle })
-            }
-            ObjectKind::Mesh(_) | ObjectKind::Character(_) | ObjectKind::Own(_) => None,
-        }
     }
 
     /// A chunk of the object as kernels see it.
@@ -261,19 +197,14 @@ impl Object {
     /// Keeps the last frame, once it is refreshed, or does no longer.
     pub(super) fn keep_last(&mut self, keeps: bool) {
         self.instances.keep_last(keeps);
-        self.kind.character_mut().into_iter().for_each(|character| character.keep_last(keeps));
+        self.kind.keep_last(keeps);
     }
 
     /// The largest number of its draws in a view and a layer.
     pub(super) fn draws(&self) -> usize {
-        let parts: usize = self.drawables().map(Drawable::part_count).sum();
-        match self.kind {
-            ObjectKind::Terrain(_) => parts,
-            ObjectKind::Mesh(_) | ObjectKind::Character(_) | ObjectKind::Own(_) => {
-                let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
-                sides * parts * self.errors.len()
-            }
-        }
+        let parts: usize = self.drawables().map(|drawable| drawable.part_count()).sum();
+        let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
+        sides * parts * self.errors.len()
     }
 
     /// The index of an instance in the buffers of all instances.
@@ -286,9 +217,19 @@ impl Object {
         self.chunks.iter().find(|chunk| chunk.slots.contains(&(index as usize)))
     }
 
+    /// The character, if it is one.
+    pub(super) fn character(&self) -> Option<&Character> {
+        self.kind.downcast()
+    }
+
+    /// As [`Object::character`], to be changed.
+    pub(super) fn character_mut(&mut self) -> Option<&mut Character> {
+        self.kind.downcast_mut()
+    }
+
     /// What is drawn, chunk by chunk.
-    pub(super) fn drawables(&self) -> impl Iterator<Item = &Drawable> {
-        self.chunks.iter().flat_map(|chunk| &chunk.drawables)
+    pub(super) fn drawables(&self) -> impl Iterator<Item = &dyn Drawable> {
+        self.chunks.iter().flat_map(|chunk| chunk.drawables.iter().map(|drawable| &**drawable))
     }
 
     /// Number of instances that there is room for.

@@ -27,8 +27,7 @@ pub(in crate::scene) struct SceneCounts {
 impl SceneCounts {
     /// Room for the counts of these objects.
     pub fn new(gpu: &Gpu, version: u64, objects: &Slots<Object>) -> Result<Self, GpuError> {
-        let character =
-            |(object, entry): (ObjectId, &Object)| Some((object, entry.kind.character()?.counted()));
+        let character = |(object, entry): (ObjectId, &Object)| Some((object, entry.character()?.counted()));
         let characters: Arc<[_]> = objects.each().filter_map(character).collect();
         let words: usize = characters.iter().map(|(_, [meshes, chunks])| chunks * (1 + meshes)).sum();
         let ring = ReadbackRing::new(gpu, "statistics of characters", FRAMES, 4 * words as u64)?;
@@ -39,7 +38,7 @@ impl SceneCounts {
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, objects: &Slots<Object>) {
         self.arrive();
         self.ring.record(encoder, (frame, self.characters.clone()), |encoder, to| {
-            let characters = objects.iter().filter_map(|object| object.kind.character());
+            let characters = objects.iter().filter_map(|object| object.character());
             let counters = characters.flat_map(Character::counters);
             for (at, counter) in (0..).zip(counters) {
                 encoder.copy_buffer_to_buffer(counter.raw(), NUMBER, to, 4 * at, 4);

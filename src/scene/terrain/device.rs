@@ -1,11 +1,11 @@
 //! Terrain on the device: heights that are generated or the caller's, and what is drawn of them.
 
+use super::drawable::{TerrainDrawable, TerrainGeometry, patch_indices};
 use super::morphing::Morphing;
 use super::source::{Origin, TerrainSource, check_fields, check_once, check_patches};
 use super::{Terrain, extremes, placed};
 use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::chunk::Chunk;
-use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::instances::Instances;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh::NOTHING;
@@ -73,7 +73,7 @@ pub(in crate::scene) async fn made(
         }
         let drawable = drawable((gpu, layouts), (source, &zones, &triangles), part, (first, shown))?;
         first = slots.end;
-        chunks.push(Chunk::new(slots, vec![drawable]));
+        chunks.push(Chunk::new(slots, vec![Box::new(drawable)]));
     }
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
     draws[0].indices = indices.len() as u32;
@@ -98,7 +98,7 @@ fn drawable(
     (source, zones, triangles): (&TerrainSource, &Materials, &Buffer<u32>),
     fields: &Fields,
     (first, shown): (usize, &[[i32; 2]]),
-) -> Result<Drawable, Error> {
+) -> Result<TerrainDrawable, Error> {
     let config = source.config();
     let size = config.patch_size;
     let params = TerrainParams {
@@ -125,7 +125,7 @@ fn drawable(
         indices: triangles.clone(),
         zones: zones.clone(),
     };
-    Ok(Drawable::Terrain(TerrainDrawable::new(gpu, layouts, geometry, source.style)?))
+    Ok(TerrainDrawable::new(gpu, layouts, geometry, source.style)?)
 }
 
 /// Patches as shaders see them, the first with the first window.

@@ -1,6 +1,9 @@
 //! Terrain in a scene: patches of one recipe, generated on the device, or of the caller's heights, each an instance.
 
 mod device;
+mod drawable;
+mod in_view;
+mod kind;
 mod morphing;
 mod source;
 
@@ -9,7 +12,6 @@ use glam::{DVec3, Vec3};
 use crate::InputError;
 use crate::scene::instances::{self, Instances};
 use crate::scene::placement::Placement;
-use crate::scene::ray::SurfaceHit;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::terrain::config::{Config, HEIGHT_ONE};
 use crate::terrain::fields::Fields;
@@ -18,18 +20,12 @@ use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use device::MARGIN;
 pub(super) use device::{listed, made};
-pub(super) use morphing::Morphing;
+pub(crate) use drawable::TerrainDrawable;
+#[cfg(test)]
+pub(crate) use drawable::{TerrainGeometry, patch_indices};
+use morphing::Morphing;
 pub use source::TerrainSource;
 use source::check_patches;
-
-/// What a view needs to know of a terrain.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SeenTerrain {
-    /// World units between samples.
-    pub spacing: f64,
-    /// The number of the object.
-    pub object: u32,
-}
 
 /// Terrain in a scene.
 #[derive(Debug)]
@@ -38,38 +34,14 @@ pub(super) struct Terrain {
     /// World units along an edge of a patch.
     edge: f64,
     /// World units between samples.
-    pub spacing: f64,
+    spacing: f64,
     /// What it was made from, with the patch of each instance, in their order.
     pub source: TerrainSource,
     /// The heights between two recipes, if there are two.
-    pub morphing: Option<Morphing>,
+    morphing: Option<Morphing>,
 }
 
 impl Terrain {
-    /// The first hit of a patch by a ray with a unit direction, relative to the corner of a cell.
-    pub fn hit(
-        &self,
-        index: u32,
-        cell: [i32; 3],
-        [at, direction]: [DVec3; 2],
-        limit: f64,
-    ) -> Option<SurfaceHit> {
-        let patch = *self.source.patches.get(index as usize)?;
-        let [x, z] = patch.map(|index| f64::from(index) * self.edge);
-        let at = at + (Placement::corner(cell) - DVec3::new(x, 0.0, z));
-        let hit = self.ground.hit(patch, [at, direction], limit)?;
-        // The ground is seen from both sides.
-        Some(SurfaceHit { distance: hit.distance, normal: hit.normal })
-    }
-
-    /// The corners of the smallest box around a patch whose middle on the plane lies at `middle`; `None` where its heights are
-    /// unknown.
-    pub fn bounds(&self, index: u32, middle: DVec3) -> Option<[DVec3; 2]> {
-        let [lowest, highest] = self.ground.extremes(*self.source.patches.get(index as usize)?)?;
-        let half = DVec3::new(self.edge / 2.0, 0.0, self.edge / 2.0);
-        Some([middle - half + DVec3::Y * lowest, middle + half + DVec3::Y * highest])
-    }
-
     /// The ground at a position of the world, east and south of its origin.
     pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
         self.ground.point_at(x, z)
@@ -107,20 +79,6 @@ impl Terrain {
     /// [`InputError`] for terrain that the scene generated.
     pub fn fields(&self) -> Result<Fields, InputError> {
         self.check_is_of_fields().cloned()
-    }
-
-    /// Whether it can be made again on another device.
-    ///
-    /// # Errors
-    /// [`InputError`] for terrain made from fields, which were on the device that was lost.
-    pub fn check_can_be_rebuilt(&self) -> Result<(), InputError> {
-        match self.source.fields() {
-            None => Ok(()),
-            Some(_) => {
-                let bound = "must be removed before, and added again with fields on the new device";
-                Err(InputError::new("terrain", "made from fields on the lost device", bound))
-            }
-        }
     }
 
     /// Shows other patches, whose heights lie between these two. Patches that stay where they are keep their handles, and what

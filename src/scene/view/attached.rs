@@ -7,7 +7,7 @@ use crate::lod::attach::{AttachBuffers, AttachPass};
 use crate::scene::attach::Attachments;
 use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
-use crate::scene::object::{Object, ObjectKind};
+use crate::scene::object::Object;
 
 /// The jobs that place attached meshes, one for each character that carries any.
 #[derive(Debug, Default)]
@@ -32,8 +32,7 @@ impl View {
         }
         let mut jobs = Vec::new();
         for ((object, chunk), list) in attachments.lists() {
-            let Some(object) = objects.get(object) else { continue };
-            let ObjectKind::Character(character) = &object.kind else { continue };
+            let Some(character) = objects.get(object).and_then(Object::character) else { continue };
             let Some(model_matrices) = character.matrices(chunk) else { continue };
             let buffers = AttachBuffers {
                 view: &self.select,

@@ -8,11 +8,13 @@ use crate::lod::SelectView;
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
 use crate::lod::single::{SingleBuffers, SinglePass};
+use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::{InstancesInView, SceneLayouts};
+use crate::scene::object::Object;
+use crate::scene::object_kind::KindInView;
 use crate::scene::order::Ordered;
 use crate::shared::lod::object::SceneDraw;
-use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 
 /// The draws of instances that are drawn one by one.
@@ -41,8 +43,8 @@ pub(crate) struct ViewLists {
     pub group: Group,
     /// The map of the sun's shadow in it.
     map: Option<wgpu::TextureView>,
-    /// For each terrain, in the order of the objects, where its samples lie, and bind group 1.
-    pub terrain: Vec<(Uniform<TerrainView>, Group)>,
+    /// For each object what its kind has in the view by itself.
+    pub(in crate::scene) in_view: Vec<Option<Box<dyn KindInView>>>,
     /// The draws of instances that are drawn one by one, if there are any.
     pub singles: Option<Singles>,
     /// The instances that are drawn one by one, from back to front.
@@ -58,7 +60,7 @@ impl ViewLists {
         layout: &Layout,
         (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
         (select, list, single): (&SelectPass, &ListPass, &SinglePass),
-        (layouts, terrains, map): (&SceneLayouts, usize, Option<&wgpu::TextureView>),
+        (layouts, objects, map): (&SceneLayouts, &Slots<Object>, Option<&wgpu::TextureView>),
     ) -> Result<Self, Error> {
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
@@ -91,7 +93,7 @@ impl ViewLists {
         let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
         let instances = in_view(layout, &placements, &last_decisions);
         let group = layouts.view(gpu, drawn, &instances, map)?;
-        let terrain = (0..terrains).map(|_| ground(gpu, layouts)).collect::<Result<_, GpuError>>()?;
+        let in_view = objects.iter().map(|object| object.kind.in_view(gpu, layouts, object.handle));
         Ok(Self {
             singles: singles(gpu, layout, single, (&decisions, &arguments))?,
             version: layout.version,
@@ -101,7 +103,7 @@ impl ViewLists {
             last_decisions,
             group,
             map: map.cloned(),
-            terrain,
+            in_view: in_view.collect::<Result<_, Error>>()?,
             order: Vec::new(),
             select,
             list,
@@ -152,11 +154,4 @@ fn singles(
     let entries = Buffer::new(gpu, "lists of one", count)?;
     let buffers = SingleBuffers { singles, decisions, arguments, draws: &draws, entries: &entries };
     Ok(Some(Singles { job: pass.prepare(gpu, buffers, count as u32)?, draws, entries }))
-}
-
-/// Where a terrain lies in a view, and bind group 1.
-fn ground(gpu: &Gpu, layouts: &SceneLayouts) -> Result<(Uniform<TerrainView>, Group), GpuError> {
-    let uniform = Uniform::new(gpu, "terrain in a view", &TerrainView::nowhere())?;
-    let group = layouts.ground(gpu, &uniform)?;
-    Ok((uniform, group))
 }

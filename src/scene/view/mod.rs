@@ -10,7 +10,7 @@ mod uniforms;
 use glam::IVec3;
 
 use crate::asset::Light;
-use crate::gpu::{Gpu, Group, Staged, Uniform, Upload as _};
+use crate::gpu::{Gpu, Staged, Uniform, Upload as _};
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::lod::single::SinglePass;
@@ -18,19 +18,18 @@ use crate::lod::single::SinglePass;
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, instance_flags_mask};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
 use crate::scene::camera::{Camera, Depth};
-use crate::scene::handles::SceneNumber;
+use crate::scene::handles::{SceneNumber, Slots};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object::Object;
 use crate::scene::order::back_to_front;
 use crate::scene::quality::Quality;
 use crate::scene::statistics::view::ViewCounts;
-use crate::scene::terrain::SeenTerrain;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use lists::ViewLists;
 pub(crate) use shadow::ViewShadow;
-use uniforms::{lod_camera, terrain_view};
+use uniforms::lod_camera;
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
 ///
@@ -216,13 +215,13 @@ impl View {
         self.scene == scene
     }
 
-    /// Allocates what the view needs for a layout and so many terrains, unless it has it.
+    /// Allocates what the view needs for a layout of these objects, unless it has it.
     pub(super) fn fit(
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
         passes: (&SelectPass, &ListPass, &SinglePass),
-        (layouts, terrains): (&SceneLayouts, usize),
+        (layouts, objects): (&SceneLayouts, &Slots<Object>),
     ) -> Result<(), Error> {
         let map = self.shadow.as_ref().map(|shadow| &shadow.map);
         match &mut self.lists {
@@ -230,16 +229,11 @@ impl View {
                 lists.bind_map(gpu, layout, (layouts, &self.drawn), map)?;
             }
             lists => {
-                let groups = (layouts, terrains, map);
+                let groups = (layouts, objects, map);
                 *lists = Some(ViewLists::new(gpu, layout, (&self.select, &self.drawn), passes, groups)?);
             }
         }
         Ok(())
-    }
-
-    /// Bind group 1 of a terrain, by its number among the terrains.
-    pub(crate) fn ground(&self, terrain: usize) -> Option<&Group> {
-        self.lists.as_ref()?.terrain.get(terrain).map(|(_, group)| group)
     }
 
     /// What a renderer needs to know of the last frame, if there was one.
@@ -257,13 +251,13 @@ impl View {
         self.last = self.camera.map(|camera| (frame, camera));
     }
 
-    /// Stages the view's uniforms. `terrains` are those of the scene, in their order, `sides` what each object has, as
-    /// [`Recorded::sides`]; a frame has a number, and a first view.
+    /// Stages the view's uniforms. `sides` are what each object has, as [`Recorded::sides`]; a frame has a number, and a first
+    /// view.
     pub(super) fn stage(
         &mut self,
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
-        (terrains, sides): (&[SeenTerrain], impl Iterator<Item = [bool; 2]>),
+        sides: impl Iterator<Item = [bool; 2]>,
         (frame, is_first): (u64, bool),
     ) -> Result<(), Error> {
         let last = self.last.filter(|(last, _)| *last + 1 == frame).map(|(_, camera)| camera);
@@ -278,9 +272,8 @@ impl View {
                 (light, self.shadow.as_ref()),
             ),
         )?;
-        let terrain = self.lists.iter().flat_map(|lists| &lists.terrain);
-        for ((uniform, _), seen) in terrain.zip(terrains) {
-            staged.uniform(uniform, &terrain_view(&camera, seen))?;
+        for in_view in self.lists.iter().flat_map(|lists| lists.in_view.iter().flatten()) {
+            in_view.stage(staged, &camera)?;
         }
         let recorded = self.recorded.get_or_insert_default();
         recorded.mirrors = camera.is_mirrored();

@@ -1,15 +1,13 @@
 //! A view as kernels and shaders see it.
 
-use glam::{DMat4, DVec3, IVec2, IVec3, Mat4, Vec3, Vec4};
+use glam::{DMat4, DVec3, IVec3, Mat4, Vec3, Vec4};
 
 use crate::InputError;
 use crate::asset::Light;
 use crate::lod::{LodCamera, SelectView, VIEW_CAMERAS};
 use crate::scene::camera::{Camera, Depth};
 use crate::scene::placement::Placement;
-use crate::scene::terrain::SeenTerrain;
 use crate::scene::view::ViewShadow;
-use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 
 impl SceneView {
@@ -66,22 +64,6 @@ pub(super) fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> DMat4 {
     let cells = [0, 1, 2].map(|axis| f64::from(cell[axis]) - f64::from(camera.cell[axis]));
     let moved = DMat4::from_translation(DVec3::from(cells) * f64::from(Placement::CELL));
     camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4() * moved
-}
-
-/// Where the samples of a terrain lie in a view: counted from the one nearest to the eye.
-pub(super) fn terrain_view(camera: &Camera, terrain: &SeenTerrain) -> TerrainView {
-    let SeenTerrain { spacing, object } = *terrain;
-    let (corner, eye) = (Placement::corner(camera.cell), camera.world());
-    // Conversion saturates; samples so far away are not drawn precisely.
-    let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
-    let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
-    TerrainView { base, rest: (place - corner).as_vec3(), object }
-}
-
-impl TerrainView {
-    pub(super) fn nowhere() -> Self {
-        Self { base: IVec2::ZERO, rest: Vec3::ZERO, object: 0 }
-    }
 }
 
 impl SelectView {

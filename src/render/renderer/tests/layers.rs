@@ -17,7 +17,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::surface::{Method, ReliefOptions};
 
 /// The number of pixels in which a picture behind a prepass differs from one without, at 1 and at 4 samples.
-fn changed(gpu: &Gpu, drawable: &Drawable, stage: &Stage, ground: Option<&Group>) -> [usize; 2] {
+fn changed(gpu: &Gpu, drawable: &dyn Drawable, stage: &Stage, ground: Option<&Group>) -> [usize; 2] {
     [1, 4].map(|samples| {
         let format = TargetFormat::new(FORMAT).with_samples(samples);
         let format = if stage.seen().reversed { format.reversed() } else { format };

@@ -12,9 +12,9 @@ use crate::picture::texture::Surface;
 use crate::picture::{self, Part};
 use crate::render::{Layer, TargetFormat};
 use crate::samples::creature::creature;
-use crate::scene::drawable::{Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
+use crate::scene::mesh::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::shared::render::scene_instances::SceneObject;
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::buffers::MeshBuffers;
@@ -50,7 +50,7 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
 pub const OBJECT: SceneObject = SceneObject { first_instance: 64, number: 1, first_slot: 0 };
 
 /// The model's first mesh, whose instances have vertices of their own in pages, which lie in reverse order.
-pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (Drawable, u32) {
+pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (MeshDrawable, u32) {
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];
     let count = buffers.clusters();
@@ -86,7 +86,7 @@ pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) 
     let faces = Faces { blended: false, double_sided: model.meshes[0].double_sided };
     let part = MeshPart::new(faces, MeshMaterials::Plain(table));
     let drawable = MeshDrawable::new(gpu, layouts, geometry, params.clusters, vec![part]).expect("bound");
-    (Drawable::Mesh(drawable), buffers.level(0).indices)
+    (drawable, buffers.level(0).indices)
 }
 
 /// Placements that are plain, mirrored, and mirrored with an uneven scale.

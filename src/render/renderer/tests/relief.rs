@@ -9,9 +9,9 @@ use crate::asset::transform::{AFFINE_IDENTITY, rows};
 use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::render::{Layer, TargetFormat};
 use crate::samples::maps::BuiltInMap;
-use crate::scene::drawable::{Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{ReliefLook, ReliefMaterial};
+use crate::scene::mesh::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::vertex::Vertex;
@@ -62,7 +62,7 @@ pub fn square(
     maps: &Maps,
     options: ReliefOptions,
     plane: f32,
-) -> Drawable {
+) -> MeshDrawable {
     let mesh = SurfaceMesh::square(TILES);
     mesh_of(gpu, layouts, (maps, options), (&mesh, 1.0 / TILES), plane)
 }
@@ -74,7 +74,7 @@ fn mesh_of(
     (maps, options): (&Maps, ReliefOptions),
     (square, world): (&SurfaceMesh, f32),
     plane: f32,
-) -> Drawable {
+) -> MeshDrawable {
     let vertex = |vertex: &crate::surface::SurfaceVertex| Vertex {
         position: vertex.position,
         normal: vertex.normal,
@@ -104,7 +104,7 @@ fn mesh_of(
     };
     let relief = ReliefMaterial::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
     let part = MeshPart::new(Faces { blended: false, double_sided: true }, MeshMaterials::Relief(relief));
-    Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))
+    MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound")
 }
 
 /// Where the square stands.

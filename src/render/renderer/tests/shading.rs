@@ -13,9 +13,9 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::render::Layer;
 use crate::render::TargetFormat;
 use crate::samples::creature::creature;
-use crate::scene::drawable::{Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
+use crate::scene::mesh::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::vertex::Vertex;
@@ -47,12 +47,12 @@ fn model() -> Model {
 }
 
 /// A square of two by two units that faces +Z, with u along +X and v along −Y, with the second material.
-fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> Drawable {
+fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> MeshDrawable {
     square_of(gpu, layouts, &mut model(), double_sided)
 }
 
 /// The same with the second of two materials.
-fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided: bool) -> Drawable {
+fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided: bool) -> MeshDrawable {
     let corners = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
     let vertex = |[x, y]: [f32; 2]| Vertex {
         position: [x, y, 0.0],
@@ -75,7 +75,7 @@ fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided:
     let materials =
         PartMaterials::new(gpu, layouts, &Looks::taken(model), &table, Default::default()).expect(up);
     let part = MeshPart::new(Faces { blended: false, double_sided }, MeshMaterials::Plain(materials));
-    Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound"))
+    MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound")
 }
 
 /// A parallel view along −Z (or +Z, from behind), lit in colour from a direction.

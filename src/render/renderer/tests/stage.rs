@@ -120,8 +120,8 @@ impl Stage {
         }
     }
 
-    pub fn object<'a>(&'a self, drawable: &'a Drawable, ground: Option<&'a Group>) -> DrawnObject<'a> {
-        DrawnObject { number: 1, drawable, lod: &self.lod, sides: [true; 2], ground }
+    pub fn object<'a>(&'a self, drawable: &'a dyn Drawable, ground: Option<&'a Group>) -> DrawnObject<'a> {
+        DrawnObject { number: 1, drawable, lod: &self.lod, sides: [true; 2], view_group: ground }
     }
 }
 
@@ -151,7 +151,7 @@ fn listed(lod: &LodObject, placements: &[Affine], parts: &[[u32; 2]]) -> (Vec<u3
 }
 
 /// A renderer with the pipelines of one object.
-pub fn renderer(gpu: &Gpu, format: &TargetFormat, drawable: &Drawable) -> Renderer {
+pub fn renderer(gpu: &Gpu, format: &TargetFormat, drawable: &dyn Drawable) -> Renderer {
     let mut renderer = Renderer::new(gpu, format).expect("a format");
     renderer.prepare_objects([drawable].into_iter(), false).expect("compiled");
     renderer
@@ -161,7 +161,7 @@ pub fn renderer(gpu: &Gpu, format: &TargetFormat, drawable: &Drawable) -> Render
 pub fn drawn(
     gpu: &Gpu,
     format: &TargetFormat,
-    drawable: &Drawable,
+    drawable: &dyn Drawable,
     stage: &Stage,
     ground: Option<&Group>,
     layers: &[Layer],

@@ -6,8 +6,8 @@ use super::stage::{FORMAT, SIZE, Stage, differing, drawn, gpu, through};
 use crate::asset::transform::AFFINE_IDENTITY;
 use crate::gpu::{Buffer, Gpu, Group, Uniform};
 use crate::render::{Layer, TargetFormat};
-use crate::scene::drawable::{Drawable, TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::terrain::{TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::{Camera, Placement, TerrainStyle};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch, TerrainView};
 use crate::shared::render::scene_view::SceneView;
@@ -43,7 +43,7 @@ impl Land {
     }
 
     /// The terrain as an object.
-    pub fn drawable(&self, gpu: &Gpu, layouts: &SceneLayouts, style: TerrainStyle) -> (Drawable, u32) {
+    pub fn drawable(&self, gpu: &Gpu, layouts: &SceneLayouts, style: TerrainStyle) -> (TerrainDrawable, u32) {
         let Config { patch_size: size, terrain_scale, .. } = self.config;
         let tiles = self.config.tiles_per_patch();
         let zones = self.zones(gpu);
@@ -76,7 +76,7 @@ impl Land {
             zones,
         };
         let terrain = TerrainDrawable::new(gpu, layouts, geometry, style).expect("bound");
-        (Drawable::Terrain(terrain), indices.len() as u32)
+        (terrain, indices.len() as u32)
     }
 
     /// The samples counted from `base`, in a view whose cell's corner is the first sample.
@@ -118,7 +118,7 @@ fn terrain_looks_the_same_from_any_sample() {
     let format = TargetFormat::new(FORMAT);
     let (drawable, indices) = land.drawable(&gpu, &layouts, TerrainStyle::Textured);
     let stage = land.stage(&gpu, &layouts, indices);
-    let from = |drawable: &Drawable, base| {
+    let from = |drawable: &TerrainDrawable, base| {
         let ground = land.ground(&gpu, &layouts, base);
         drawn(&gpu, &format, drawable, &stage, Some(&ground), &[Layer::Color])
     };
@@ -127,7 +127,7 @@ fn terrain_looks_the_same_from_any_sample() {
     assert!(differing(&elsewhere, &expected, 2) < 40, "{}", differing(&elsewhere, &expected, 2));
     let covered = expected.iter().filter(|pixel| **pixel != [0; 4]).count();
     assert!(covered > 5000, "{covered} pixels");
-    let Drawable::Terrain(mut turned) = drawable else { panic!("a terrain") };
+    let mut turned = drawable;
     let cells = patch_indices(land.config.patch_size);
     let other = cells.chunks(6).flat_map(|cell| {
         let [a, b, c, d] = [cell[0], cell[1], cell[2], cell[5]];
@@ -135,7 +135,7 @@ fn terrain_looks_the_same_from_any_sample() {
     });
     turned.geometry.indices =
         Buffer::from_slice(&gpu, "indices", &other.collect::<Vec<_>>()).expect("uploaded");
-    let wrong = from(&Drawable::Terrain(turned), [0, 0]);
+    let wrong = from(&turned, [0, 0]);
     assert!(differing(&wrong, &expected, 1) > 200, "{}", differing(&wrong, &expected, 1));
 }
 

@@ -1,10 +1,11 @@
 //! Meshes of objects on the device: those of a model at rest, and those of a character, which its bones move.
 
+mod at_rest;
+mod drawable;
+
 use crate::asset::{Mesh, Model};
 use crate::gpu::{Buffer, Gpu, Uniform};
-use crate::scene::drawable::{
-    Drawable, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, NO_OBJECT,
-};
+use crate::scene::drawable::{Drawable, NO_OBJECT};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::scene::pieces::{Most, indices_of_levels, pieces};
@@ -19,9 +20,11 @@ use crate::skinning::own_levels;
 use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::Vertex;
 use crate::{Error, InputError};
+pub(super) use at_rest::MeshAtRest;
+pub(crate) use drawable::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 
 /// What an object is drawn from: how, and for each part the draws of all lists.
-pub(super) type Drawn = (Vec<Drawable>, Vec<SceneDraw>);
+pub(super) type Drawn = (Vec<Box<dyn Drawable>>, Vec<SceneDraw>);
 
 /// A model's meshes at rest, merged, with a sphere around them.
 pub fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
@@ -52,11 +55,12 @@ pub(super) fn drawn(
     layouts: &SceneLayouts,
     (merged, looks): (&Merged, &Looks),
 ) -> Result<Drawn, Error> {
-    let (mut drawables, mut draws) = (Vec::new(), Vec::new());
+    let (mut drawables, mut draws): Drawn = (Vec::new(), Vec::new());
     let mut upload = |merged: &Merged, index: usize| -> Result<(), Error> {
         let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, &merged.model.meshes[index])?;
         draws.extend(part_draws(merged, index, &buffers));
-        drawables.push(drawable((gpu, layouts), (merged, looks), index, (&buffers, &clusters), None)?);
+        let drawn = drawable((gpu, layouts), (merged, looks), index, (&buffers, &clusters), None)?;
+        drawables.push(Box::new(drawn));
         Ok(())
     };
     let most = |bytes: usize| (gpu.max_binding() / bytes as u64) as usize;
@@ -140,7 +144,7 @@ pub(super) fn drawable(
     index: usize,
     (buffers, clusters): (&MeshBuffers, &Clusters),
     pages: Option<&PageBuffers>,
-) -> Result<Drawable, Error> {
+) -> Result<MeshDrawable, Error> {
     let mesh = &merged.model.meshes[index];
     let own: Vec<&Part> = merged.parts.iter().filter(|part| part.mesh == index).collect();
     let part_of = parts_of_vertices(mesh, &own);
@@ -173,7 +177,7 @@ pub(super) fn drawable(
         partners,
         indices: buffers.indices.clone(),
     };
-    Ok(Drawable::Mesh(MeshDrawable::new(gpu, layouts, geometry, count, parts)?))
+    Ok(MeshDrawable::new(gpu, layouts, geometry, count, parts)?)
 }
 
 /// For each slot, that of the vertex's partner and the coarsest level of the object that has the vertex; none if the mesh has no

@@ -1,0 +1,134 @@
+//! A character as what an object is.
+
+use std::any::Any;
+
+use glam::DVec3;
+
+use super::{Character, Runtime, Shared};
+use crate::animation::Frame;
+use crate::gpu::{Gpu, Staged, Upload as _};
+use crate::scene::chunk::Chunk;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Looks;
+use crate::scene::object_kind::{Fitted, Making, ObjectKind, OnDevice, Placed, Provided, Replaced, SeenBy};
+use crate::scene::ray::Surface;
+use crate::scene::stage::Stage;
+use crate::shared::lod::assign::AssignParams;
+use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::{Error, InputError};
+
+impl ObjectKind for Character {
+    fn name(&self) -> &'static str {
+        "a character"
+    }
+
+    fn sphere_of(&self, index: u32) -> Option<BoundingSphere> {
+        Some(self.sphere_as_played(index))
+    }
+
+    fn spawned(&mut self, index: u32) -> Option<BoundingSphere> {
+        Some(self.play_first(index))
+    }
+
+    fn despawned(&mut self, index: u32) {
+        self.let_go(index);
+    }
+
+    fn renew(
+        &mut self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        capacity: usize,
+        chunks: &mut Vec<Chunk>,
+    ) -> Result<(), Error> {
+        let model = &self.merged.model;
+        self.runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
+        self.start_afresh(capacity);
+        *chunks = Self::chunks(gpu, layouts, chunks, &self.runtimes)?;
+        Ok(())
+    }
+
+    fn made_on<'a>(
+        &'a self,
+        gpu: &'a Gpu,
+        layouts: &'a SceneLayouts,
+        looks: Option<&'a Looks>,
+        capacity: usize,
+    ) -> Making<'a> {
+        Box::pin(async move {
+            let model = &self.merged.model;
+            let shared = self.shared.on(gpu, model)?;
+            let runtimes = Runtime::all(gpu, model, &shared, 0..capacity, self.keeps_last)?;
+            let first = self.first_chunk(gpu, layouts, looks.unwrap_or(&Looks::NONE), &runtimes)?;
+            let chunks = Self::chunks(gpu, layouts, &[first], &runtimes)?;
+            Ok(OnDevice { chunks, other: Box::new((shared, runtimes)) })
+        })
+    }
+
+    fn adopt(&mut self, other: Box<dyn Any>) {
+        if let Ok(made) = other.downcast::<(Shared, Vec<Runtime>)>() {
+            (self.shared, self.runtimes) = *made;
+            self.start_afresh(self.plays.len());
+        }
+    }
+
+    fn keep_last(&mut self, keeps: bool) {
+        self.keeps_last = keeps;
+    }
+
+    /// Fades end that have reached their weight.
+    fn settle(&mut self, now: f64) -> Vec<u32> {
+        self.end_fades(now)
+    }
+
+    /// Pages for the vertices of what is seen. Where memory ends, levels of detail are coarser.
+    fn provide(
+        &mut self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        seen: &SeenBy<'_>,
+        chunks: &mut Vec<Chunk>,
+    ) -> Result<Provided, Error> {
+        let provided = self.provide_pages(gpu, seen)?;
+        match provided.replaced {
+            Replaced::Nothing => {}
+            Replaced::Buffers => self.rebind(gpu, layouts, chunks)?,
+            Replaced::Chunks => *chunks = Self::chunks(gpu, layouts, chunks, &self.runtimes)?,
+        }
+        Ok(provided)
+    }
+
+    fn fit(&mut self, gpu: &Gpu, fitted: &Fitted<'_>, staged: &mut Staged) -> Result<(), Error> {
+        self.fit_driven(gpu, staged)?;
+        if fitted.is_new { self.fit_levels(gpu, fitted) } else { Ok(()) }
+    }
+
+    fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
+        for (params, values, _) in self.runtimes.iter().flat_map(|runtime| &runtime.assign) {
+            staged.uniform(params, &AssignParams { mesh_fraction: fraction, ..*values })?;
+        }
+        Ok(())
+    }
+
+    fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
+        self.stage_played(staged, frame, now)
+    }
+
+    fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
+        self.runtimes.iter().for_each(|runtime| runtime.dispatch(stage, pass));
+    }
+
+    fn surfaces(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
+        self.posed_surfaces(index, now)
+    }
+
+    /// A box around a ball for each bone.
+    fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
+        Ok(Some(self.bounds(&self.pose(instance.index, instance.now)?, instance.place)))
+    }
+
+    /// Bones that were written may leave the sphere of the clip.
+    fn may_leave_sphere(&self, index: u32) -> bool {
+        self.is_written(index)
+    }
+}

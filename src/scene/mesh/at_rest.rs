@@ -1,0 +1,44 @@
+//! Meshes at rest as what an object is.
+
+use super::drawn;
+use crate::InputError;
+use crate::gpu::Gpu;
+use crate::scene::chunk::Chunk;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::material::Looks;
+use crate::scene::object_kind::{Making, ObjectKind, OnDevice};
+use crate::scene::ray::Surface;
+use crate::skinning::merged::Merged;
+
+/// The meshes of a model at rest, merged, without their images.
+#[derive(Debug)]
+pub(in crate::scene) struct MeshAtRest(pub Merged);
+
+impl ObjectKind for MeshAtRest {
+    fn name(&self) -> &'static str {
+        "a mesh"
+    }
+
+    fn is_attachable(&self) -> bool {
+        true
+    }
+
+    fn made_on<'a>(
+        &'a self,
+        gpu: &'a Gpu,
+        layouts: &'a SceneLayouts,
+        looks: Option<&'a Looks>,
+        capacity: usize,
+    ) -> Making<'a> {
+        Box::pin(async move {
+            let (drawables, _) = drawn(gpu, layouts, (&self.0, looks.unwrap_or(&Looks::NONE)))?;
+            Ok(OnDevice::chunks(vec![Chunk::new(0..capacity, drawables)]))
+        })
+    }
+
+    fn surfaces(&self, _: u32, _: f64) -> Result<Vec<Surface<'_>>, InputError> {
+        let meshes = &self.0.model.meshes;
+        let surface = |at: usize| Surface::of_merged(&self.0, at, &meshes[at].positions[..]);
+        Ok((0..meshes.len()).map(surface).collect())
+    }
+}
