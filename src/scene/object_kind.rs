@@ -78,7 +78,7 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
     ) -> Making<'a>;
 
     /// Takes what was made on another device besides chunks: [`OnDevice::other`].
-    fn adopt(&mut self, other: Box<dyn Any>) {
+    fn adopt(&mut self, other: Box<dyn Made>) {
         let _ = other;
     }
 
@@ -205,15 +205,24 @@ pub(super) trait KindInView: Debug + wgpu::WasmNotSendSync {
     fn stage(&self, staged: &mut Staged, camera: &Camera) -> Result<(), Error>;
 }
 
+/// Something that is made on another device. Natively it may move to another thread meanwhile.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>> + Send + 'a>>;
 /// Something that is made on another device.
+#[cfg(target_arch = "wasm32")]
 pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>> + 'a>>;
+
+/// Anything that was made on a device.
+pub(super) trait Made: Any + Debug + wgpu::WasmNotSend {}
+
+impl<T: Any + Debug + wgpu::WasmNotSend> Made for T {}
 
 /// What an object has on a device.
 #[derive(Debug)]
 pub(super) struct OnDevice {
     pub chunks: Vec<Chunk>,
     /// What the kind takes besides ([`ObjectKind::adopt`]).
-    pub other: Box<dyn Any>,
+    pub other: Box<dyn Made>,
 }
 
 impl OnDevice {

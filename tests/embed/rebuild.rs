@@ -6,7 +6,7 @@ use relievo::asset::Transform;
 use relievo::asset::material::{Alpha, Material};
 use relievo::gpu::{Gpu, GpuError};
 use relievo::render::{Layer, Renderer, SunShadow};
-use relievo::scene::{InstanceId, ObjectId, Placement, Quality, Relief, View};
+use relievo::scene::{InstanceId, ObjectId, Placement, Quality, Relief, Scene, View};
 use relievo::wgpu;
 use relievo_samples::maps::BuiltInMap;
 
@@ -264,4 +264,13 @@ fn a_scene_survives_the_end_of_memory() {
     let refused = scene.add_character(&model(), 1000).expect_err("refused").to_string();
     assert!(refused.contains("maxStorageBufferBindingSize"), "{refused}");
     assert!(scene.add_mesh(&relievo::asset::Model { meshes: Vec::new(), ..model() }, 1).is_err());
+}
+
+/// What is awaited while a device is replaced may move to another thread.
+#[test]
+fn a_rebuild_may_move_to_another_thread() {
+    fn moves<T: Send>(_: T) {}
+    let gpu = device();
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    moves(scene.rebuild_async(&gpu));
 }

@@ -10,7 +10,9 @@ use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::scene::chunk::Chunk;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
-use crate::scene::object_kind::{Fitted, Making, ObjectKind, OnDevice, Placed, Provided, Replaced, SeenBy};
+use crate::scene::object_kind::{
+    Fitted, Made, Making, ObjectKind, OnDevice, Placed, Provided, Replaced, SeenBy,
+};
 use crate::scene::ray::Surface;
 use crate::scene::stage::Stage;
 use crate::shared::lod::assign::AssignParams;
@@ -65,7 +67,8 @@ impl ObjectKind for Character {
         })
     }
 
-    fn adopt(&mut self, other: Box<dyn Any>) {
+    fn adopt(&mut self, other: Box<dyn Made>) {
+        let other: Box<dyn Any> = other;
         if let Ok(made) = other.downcast::<(Shared, Vec<Runtime>)>() {
             (self.shared, self.runtimes) = *made;
             self.start_afresh(self.plays.len());

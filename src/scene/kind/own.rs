@@ -12,7 +12,7 @@ use crate::scene::drawable::{Drawable, NO_OBJECT, Part};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::mesh::{Drawn, NOTHING};
-use crate::scene::object_kind::{Making, ObjectKind, OnDevice, Placed, UnitRay};
+use crate::scene::object_kind::{Made, Making, ObjectKind, OnDevice, Placed, UnitRay};
 use crate::scene::ray::SurfaceHit;
 use crate::scene::specialization::{OwnDepth, PartState, Specialization};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
@@ -112,7 +112,8 @@ impl ObjectKind for OwnKind {
         })
     }
 
-    fn adopt(&mut self, other: Box<dyn Any>) {
+    fn adopt(&mut self, other: Box<dyn Made>) {
+        let other: Box<dyn Any> = other;
         if let Ok(own) = other.downcast() {
             *self = *own;
         }

@@ -11,7 +11,7 @@ use crate::gpu::{Gpu, Staged};
 use crate::scene::chunk::Chunk;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
-use crate::scene::object_kind::{KindInView, Making, ObjectKind, OnDevice, Placed, UnitRay};
+use crate::scene::object_kind::{KindInView, Made, Making, ObjectKind, OnDevice, Placed, UnitRay};
 use crate::scene::placement::Placement;
 use crate::scene::ray::SurfaceHit;
 use crate::{Error, InputError};
@@ -62,7 +62,8 @@ impl ObjectKind for Terrain {
         })
     }
 
-    fn adopt(&mut self, other: Box<dyn Any>) {
+    fn adopt(&mut self, other: Box<dyn Made>) {
+        let other: Box<dyn Any> = other;
         if let Ok(morphing) = other.downcast() {
             self.morphing = *morphing;
         }

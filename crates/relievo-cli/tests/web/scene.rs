@@ -5,13 +5,14 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use base64::Engine as _;
+use half::f16;
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 use relievo::gpu::Gpu;
 use serde_json::Value;
 
 use crate::harness::{Difference, Tolerance, browser, gpu};
-use crate::picture::{SIZE, World};
+use crate::picture::{SIZE, World, mistakes};
 use crate::wasm;
 
 /// The results of one page load, which all tests of this file examine.
@@ -151,12 +152,63 @@ fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
     assert_alike("file", &native_of_file());
 }
 
-/// A kind of the caller's: grass, whose text is composed in the browser, is that which is drawn natively.
+/// The meadow, after its frames.
+async fn meadow(gpu: &Gpu) -> Result<(World, Vec<u8>), relievo::Error> {
+    let mut world = World::meadow(gpu).await?;
+    let pixels = world.draw(gpu).await?;
+    Ok((world, pixels))
+}
+
+/// A kind of the caller's: grass, whose text is composed in the browser, is that which is drawn natively, with the shadows that
+/// it casts and receives.
 #[test]
 fn a_kind_of_the_callers_in_the_browser_equals_the_native_one() {
     let gpu = gpu();
-    let drawn = async { World::meadow(&gpu).await?.draw(&gpu).await };
-    assert_alike("kind", &reduced(driven(&gpu, drawn).expect("drawn")));
+    let (_, pixels) = driven(&gpu, meadow(&gpu)).expect("drawn");
+    assert_alike("kind", &reduced(pixels));
+}
+
+/// Velocities in pixels of the picture, from two 16-bit floats a pixel in units of the picture's size.
+fn velocities(bytes: &[u8]) -> Vec<[f32; 2]> {
+    let value = |at: &[u8]| f16::from_le_bytes([at[0], at[1]]).to_f32();
+    bytes.as_chunks::<4>().0.iter().map(|pixel| [value(&pixel[..2]), value(&pixel[2..])]).collect()
+}
+
+#[test]
+fn a_kind_of_the_callers_moves_in_the_browser_as_natively() {
+    let gpu = gpu();
+    let native = async { meadow(&gpu).await?.0.velocities(&gpu).await };
+    let native = velocities(&driven(&gpu, native).expect("drawn"));
+    let said = said();
+    assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
+    let text = said["velocities"].as_str().expect("velocities");
+    let browser = velocities(&base64::prelude::BASE64_STANDARD.decode(text).expect("base64"));
+    let moves = |velocity: &[f32; 2]| velocity[0].abs().max(velocity[1].abs()) > 1e-4;
+    let moving = native.iter().filter(|velocity| moves(velocity)).count();
+    assert_eq!(browser.len(), native.len());
+    // The drivers place edges otherwise: pixels there are of something else.
+    let other = |far: f32| {
+        let pairs = native.iter().zip(&browser);
+        pairs.filter(|(a, b)| (0..2).any(|axis| (a[axis] - far * b[axis]).abs() > 1e-4)).count()
+    };
+    println!("{moving} pixels move, {} differ, {} from still ones", other(1.0), other(0.0));
+    assert!(moving > 2_000 && other(1.0) < moving / 20 && other(0.0) >= moving, "{moving}, {}", other(1.0));
+}
+
+#[test]
+fn a_kind_of_the_callers_is_picked_and_its_mistakes_are_told_in_the_browser() {
+    let gpu = gpu();
+    let native = async { meadow(&gpu).await?.0.picked() };
+    let native = [driven(&gpu, native).expect("picked"), mistakes()].concat();
+    let said = said();
+    assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
+    let lines = said["kind_lines"].as_array().expect("lines").iter();
+    let lines: Vec<&str> = lines.map(|line| line.as_str().expect("text")).collect();
+    assert_eq!(lines, native);
+    let hits = |object: &str| lines.iter().filter(|line| line.starts_with(object)).count();
+    println!("{} of the floor, {} of the grass; {:?}", hits("1 "), hits("2 "), &lines[48..]);
+    assert!(hits("2 ") > 2, "the grass is hit");
+    assert!(lines[48..].len() == 3 && lines[48..].iter().all(|line| line.contains("kind:")), "{lines:?}");
 }
 
 /// Levels that were made beforehand are those that the browser would make.

@@ -51,6 +51,30 @@ pub async fn draw_kind() -> Result<Vec<u8>, JsValue> {
     drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
 }
 
+/// Velocities of the grass, two 16-bit floats a pixel.
+#[wasm_bindgen]
+pub async fn kind_velocities() -> Result<Vec<u8>, JsValue> {
+    let drawn = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        let mut world = World::meadow(&gpu).await?;
+        world.draw(&gpu).await?;
+        world.velocities(&gpu).await
+    };
+    drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
+/// What rays hit of the grass, and what is said of mistakes in its text.
+#[wasm_bindgen]
+pub async fn kind_said() -> Result<Vec<String>, JsValue> {
+    let said = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        let mut world = World::meadow(&gpu).await?;
+        world.draw(&gpu).await?;
+        Ok::<_, relievo::Error>([world.picked()?, picture::mistakes()].concat())
+    };
+    said.await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
 async fn drawn(gpu: &Gpu, mut world: World) -> Result<Vec<u8>, relievo::Error> {
     let pixels = world.draw(gpu).await?;
     gpu.check_async().await?;

@@ -8,12 +8,14 @@ use std::path::Path;
 
 use relievo::Error;
 use relievo::asset::Light;
-use relievo::glam::Vec3;
+use relievo::glam::{Quat, Vec3};
 use relievo::gpu::Gpu;
-use relievo::render::{Layer, Offscreen, Renderer};
-use relievo::scene::{Camera, Depth, Placement, Play, Relief, Scene, TerrainSource, View};
+use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
+use relievo::scene::kind::KindProgram;
+use relievo::scene::{Camera, Depth, Placement, Play, Ray, Relief, Scene, TerrainSource, View};
 use relievo::scene_file::SceneFile;
 use relievo::terrain::config::Config;
+use relievo::wgpu::TextureFormat;
 use relievo_samples::{creature, maps::BuiltInMap};
 
 /// Pixels of the picture.
@@ -28,6 +30,7 @@ const FRAMES: usize = 6;
 pub struct World {
     scene: Scene,
     renderer: Renderer,
+    shadow: Option<SunShadow>,
     eye: View,
     target: Offscreen,
 }
@@ -61,17 +64,26 @@ impl World {
         Self::seen(gpu, scene, Camera::looking_at(position, focus, 0.9, [0.1, 200.0], SIZE)).await
     }
 
-    /// Builds a meadow: tufts of grass, a kind of the caller's.
+    /// Builds a meadow: tufts of grass, a kind of the caller's, on a pavement in the sun. The last frame is kept.
     pub async fn meadow(gpu: &Gpu) -> Result<Self, Error> {
         let mut scene = Scene::new_async(gpu).await?;
-        let meadow = scene.add_kind(grass::Grass::new(gpu, 8)?, 9)?;
+        scene.keep_last_frame(true)?;
+        let bricks = BuiltInMap::Bricks;
+        let relief = Relief::wall(1.0, bricks.height_map(128)?, bricks.albedo(128)?);
+        let floor = scene.add_relief_async(&relief, 1).await?;
+        let lying = Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2);
+        let place = Placement::at([1.6, 0.0, 1.6]).scaled(8.0);
+        scene.spawn(floor, Placement { turn: lying, ..place })?;
+        let meadow = scene.add_kind(grass::Grass::new(gpu, 5)?, 9)?;
         for at in 0..9_u8 {
             let place = [1.6 * f32::from(at % 3), 0.0, 1.6 * f32::from(at / 3)];
             scene.spawn(meadow, Placement::at(place).turned(f32::from(at)).scaled(4.0))?;
         }
+        scene.set_light(Light { direction: Vec3::new(-0.5, 0.6, 0.4), ..Light::default() })?;
+        let shadow = SunShadow::new_async(&mut scene, 2048).await?;
         let camera =
             Camera::looking_at(Vec3::new(0.8, 2.6, 8.5), Vec3::new(1.6, 0.8, 1.6), 0.7, [0.1, 200.0], SIZE);
-        Self::seen(gpu, scene, camera).await
+        Ok(Self { shadow: Some(shadow), ..Self::seen(gpu, scene, camera).await? })
     }
 
     /// Builds the scene of a file, which names no other files.
@@ -89,16 +101,23 @@ impl World {
         renderer.prepare_async(&scene).await?;
         let mut eye = scene.view(Default::default())?;
         eye.set(camera)?;
-        Ok(Self { scene, renderer, eye, target })
+        Ok(Self { scene, renderer, shadow: None, eye, target })
     }
 
     /// Plays some frames, and reads the last one: RGBA in sRGB, row by row.
     pub async fn draw(&mut self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
-        let Self { scene, renderer, eye, target } = self;
+        let Self { scene, renderer, shadow, eye, target } = self;
         for _ in 0..FRAMES {
             scene.advance(0.1)?;
             let mut encoder = gpu.encoder("frame");
-            scene.record(&mut encoder, &mut [&mut *eye])?;
+            match shadow {
+                Some(shadow) => {
+                    shadow.fit(scene, &mut [&mut *eye], 30.0)?;
+                    scene.record(&mut encoder, &mut [&mut *eye, shadow.view()])?;
+                    shadow.draw(&mut encoder, scene)?;
+                }
+                None => scene.record(&mut encoder, &mut [&mut *eye])?,
+            }
             target.record(&mut encoder, SKY, |pass| renderer.draw(pass, scene, eye, Layer::Color))?;
             gpu.queue().submit([encoder.finish()]);
             // As a page waits for its next frame.
@@ -107,4 +126,43 @@ impl World {
         }
         Ok(target.read_async(gpu).await?.into_raw())
     }
+
+    /// The velocities of the last frame, drawn in a frame before: two 16-bit floats a pixel, row by row.
+    pub async fn velocities(&self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        let target = Offscreen::with_format(gpu, SIZE, TargetFormat::velocity())?;
+        let mut renderer = Renderer::new(gpu, target.format())?;
+        renderer.prepare_async(&self.scene).await?;
+        let mut encoder = gpu.encoder("velocities");
+        let Self { scene, eye, .. } = self;
+        target.record(&mut encoder, [0.0; 3], |pass| renderer.draw(pass, scene, eye, Layer::Velocity))?;
+        gpu.queue().submit([encoder.finish()]);
+        target.read_color(gpu, 0, TextureFormat::Rg16Float).await
+    }
+
+    /// What rays through the middles of some pixels hit: distances, or nothing.
+    pub fn picked(&self) -> Result<Vec<String>, Error> {
+        let Some(camera) = self.eye.camera() else { return Ok(Vec::new()) };
+        let mut said = Vec::new();
+        for at in 0..48_u8 {
+            let pixel = [64.0 * f32::from(at % 8) + 32.5, 64.0 * f32::from(at / 8) + 32.5];
+            let hit = self.scene.pick(&Ray::through(camera, pixel)?)?;
+            let hit = hit.map(|hit| format!("{} {:.6}", hit.object.number(), hit.distance));
+            said.push(hit.unwrap_or_else(|| "nothing".to_owned()));
+        }
+        Ok(said)
+    }
+}
+
+/// What the library says of mistakes in the text of a kind.
+pub fn mistakes() -> Vec<String> {
+    let text = include_str!("../../../../../../examples/kind/grass.wgsl");
+    let planted = [
+        ("blade.height * up", "blade.heigth * up"),
+        ("in.uv.y", "in.uv.q"),
+        ("fn grass_place", "fn grass_put"),
+    ];
+    let said = planted.map(|(right, wrong)| KindProgram::new("grass", &text.replacen(right, wrong, 1)));
+    said.into_iter()
+        .map(|made| made.map_or_else(|error| error.to_string(), |_| "nothing".to_owned()))
+        .collect()
 }
