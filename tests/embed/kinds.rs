@@ -520,6 +520,40 @@ fn outputs_of_the_caller_show_every_kind() {
     }
 }
 
+/// What an output writes is blended as its format says: here it counts what is drawn from far to near.
+#[test]
+fn outputs_of_the_caller_are_blended_as_their_formats_say() {
+    use relievo::wgpu::{BlendComponent, BlendFactor, BlendOperation, BlendState, TextureFormat};
+    let gpu = device();
+    let text = "struct CountTargets { @location(0) drawn: vec4<f32> }
+        fn count_write(surface: Surface) -> CountTargets { return CountTargets(vec4<f32>(1.0)); }";
+    let count = OutputProgram::new("count", text).expect("valid");
+    let mut scene = Scene::new(&gpu).expect("compiled");
+    let meadow = scene.add_kind(Grass::new(&gpu, 10).expect("valid"), 8).expect("added");
+    for at in 0..8 {
+        scene.spawn(meadow, Placement::at([0.0, 0.0, -3.0 + 0.3 * at as f32])).expect("room");
+    }
+    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let camera = Camera::looking_at(Vec3::new(0.0, 0.2, 0.5), Vec3::NEG_Z, 0.6, [0.1, 200.0], SIZE);
+    view.set(camera).expect("a camera");
+    let add = BlendComponent {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    };
+    let mut most = |blend| {
+        let mut format = TargetFormat::of_output(&count, &[TextureFormat::Rgba16Float]);
+        format.color[0].as_mut().expect("one").blend = blend;
+        let raw = Raw::new(&gpu, format, SIZE);
+        let renderer = raw.renderer(&gpu, &scene);
+        raw.frame(&mut scene, &mut view, &renderer, &[Layer::Own]);
+        raw.floats(&gpu, 0).iter().map(|drawn| drawn[0]).fold(0.0, f32::max)
+    };
+    assert_eq!(most(None), 1.0);
+    let counted = most(Some(BlendState { color: add, alpha: add }));
+    assert!(counted > 2.0 && counted.fract() == 0.0, "{counted}");
+}
+
 /// Instances out of view are not drawn, and far ones by coarser levels.
 #[test]
 fn grass_is_culled_and_has_levels() {

@@ -63,6 +63,7 @@ fn members() {
     let _ = |options: Options| options.prune; // Options::prune
     let _ = OutputProgram::new; // OutputProgram::new
     let _ = Renderer::with_shading; // Renderer::with_shading
+    let _ = |format: TargetFormat| format.color; // TargetFormat::color
     let _ = TargetFormat::of_output; // TargetFormat::of_output
     let _ = Scene::draws; // Scene::draws
     let _ = Scene::health; // Scene::health
