@@ -62,7 +62,11 @@ impl OwnKind {
     }
 
     /// How it is drawn.
+    ///
+    /// # Errors
+    /// [`InputError`] for a buffer or a group of another device; [`GpuError`].
     pub fn drawn(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<Drawn, Error> {
+        check_device(gpu, &*self.kind)?;
         let part = |part: &KindPart| {
             let KindPart { cut_out, blended, own_depth, double_sided, .. } = *part;
             let own_depth = if own_depth { OwnDepth::Always } else { OwnDepth::Never };
@@ -189,6 +193,42 @@ impl Drawable for OwnDrawable {
 
     fn stage(&self, staged: &mut Staged, object: &SceneObject) -> Result<(), Error> {
         Ok(staged.uniform(&self.object, object)?)
+    }
+}
+
+/// Refuses a buffer and groups of another device.
+fn check_device(gpu: &Gpu, kind: &dyn Kind) -> Result<(), Error> {
+    let (indices, format) = (kind.indices(), wgpu::IndexFormat::Uint32);
+    check_taken(gpu, "kind.indices", |encoder| encoder.set_index_buffer(indices.slice(..), format))?;
+    (kind.parts().iter().enumerate()).try_for_each(|(at, part)| {
+        let path = format!("kind.parts[{at}].group");
+        check_taken(gpu, &path, |encoder| encoder.set_bind_group(2, &part.group, &[]))
+    })
+}
+
+/// Refuses what is recorded if it is of another device: a render bundle takes nothing of that.
+fn check_taken<'a>(
+    gpu: &'a Gpu,
+    path: &str,
+    record: impl FnOnce(&mut wgpu::RenderBundleEncoder<'a>),
+) -> Result<(), Error> {
+    let descriptor = wgpu::RenderBundleEncoderDescriptor {
+        label: Some("what a kind binds"),
+        color_formats: &[Some(wgpu::TextureFormat::Rgba8Unorm)],
+        sample_count: 1,
+        ..Default::default()
+    };
+    let bundled = gpu.scoped_with(|| {
+        let mut encoder = gpu.device().create_render_bundle_encoder(&descriptor);
+        record(&mut encoder);
+        encoder.finish(&wgpu::RenderBundleDescriptor::default());
+    });
+    match bundled {
+        Ok(Some(())) => Ok(()),
+        Ok(None) | Err(GpuError::Validation { .. }) => {
+            Err(InputError::new(path, "of another device", "must be of the scene's device").into())
+        }
+        Err(error) => Err(error.into()),
     }
 }
 

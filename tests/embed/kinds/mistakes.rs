@@ -12,7 +12,7 @@ use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::{Error, wgpu};
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 
-use crate::frame::device;
+use crate::frame::{device, devices};
 
 /// A square of one part.
 #[derive(Debug)]
@@ -231,7 +231,7 @@ fn mistakes_in_an_output_are_told_by_their_place() {
 
 #[test]
 fn what_a_kind_says_of_itself_is_checked_by_field() {
-    let gpu = device();
+    let [gpu, beside] = devices();
     let program = KindProgram::new("card", &format!("{PLACE}{SURFACE}")).expect("valid");
     let mut scene = Scene::new(&gpu).expect("compiled");
     let mut refused = |change: &dyn Fn(&mut Card)| {
@@ -252,6 +252,12 @@ fn what_a_kind_says_of_itself_is_checked_by_field() {
     assert_eq!(refused(&|card| card.parts[0].levels = iter::once(0..7).collect()), "kind.parts[0].levels[0]");
     assert_eq!(refused(&|card| card.parts[0].levels = iter::once(0..9).collect()), "kind.parts[0].levels[0]");
     assert_eq!(refused(&|card| card.indices = vertices(&gpu)), "kind.indices.usage");
+    // What another device has, of the same instance of wgpu and of another.
+    for other in [beside, device()] {
+        let foreign = Card::new(&other, &program, |part| part);
+        assert_eq!(refused(&|card| card.indices = foreign.indices.clone()), "kind.indices");
+        assert_eq!(refused(&|card| card.parts = foreign.parts.clone()), "kind.parts[0].group");
+    }
 }
 
 fn vertices(gpu: &Gpu) -> wgpu::Buffer {
