@@ -69,7 +69,7 @@ fn sum(object: LodObject, lane: u32) {
         before += count;
     }
     for (var part = run; part < object.parts; part += RUNS) {
-        arguments[object.first_draw + OBJECT_LISTS * part + list].instances = all;
+        arguments[object.first_draw + OBJECT_LISTS * part + list].instance_count = all;
     }
 }
 

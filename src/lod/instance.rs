@@ -12,7 +12,7 @@ impl SceneInstance {
             cell: [0; 3],
             flags: instance_flags_word(INSTANCE_ALIVE | INSTANCE_CASTS, 0xffff),
             offset: [0.0; 3],
-            word: 0,
+            user_data: 0,
             rotation: Quat::IDENTITY.to_array(),
             scale: [1.0; 3],
             tint: u32::MAX,

@@ -1,5 +1,5 @@
 //! Level of detail in scenes: which instances a view sees and how fine ([`select`]), in which order it draws them
-//! ([`list`]), how it draws instances one by one ([`single`]), and what gates and skinning make of the displacement that the views
+//! ([`list`]), how it draws instances one by one ([`sorted`]), and what gates and skinning make of the displacement that the views
 //! of a frame allow ([`assign`]). Meshes that are attached to bones are placed once these are posed ([`attach`]).
 //!
 //! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep instances and draws of their
@@ -26,7 +26,7 @@ pub mod list;
 #[doc(hidden)]
 pub mod object;
 pub mod select;
-pub mod single;
+pub mod sorted;
 #[doc(hidden)]
 pub mod transition;
 

@@ -2,14 +2,14 @@
 
 use wgpu::TextureFormat as Format;
 
-use super::contents::{Contents, can_blend};
+use super::attachments::{Attachments, can_blend};
 use super::layer::Layer;
 use super::output::OutputProgram;
 use crate::InputError;
 
 /// The attachments of the render passes, or of the render bundles, into which a [`Renderer`](super::Renderer) draws.
 ///
-/// The first colour attachments are written; [`Contents`] says how many, and with what. Others may belong to the caller's
+/// The first colour attachments are written; [`Attachments`] says how many, and with what. Others may belong to the caller's
 /// own draws: what a renderer draws leaves them as they are.
 ///
 /// # Examples
@@ -35,12 +35,12 @@ use crate::InputError;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with `None` where the pass has none. Those that hold [`TargetFormat::contents`] are
+    /// Colour attachments, at most 8, with `None` where the pass has none. Those that hold [`TargetFormat::attachments`] are
     /// written, with their blending and write masks. Shading writes values in linear light, which a format with `Srgb` in
     /// its name encodes; the format must hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
     /// What the first colours hold.
-    pub contents: Contents,
+    pub attachments: Attachments,
     /// The depth attachment. Without one, what is drawn last covers the rest.
     pub depth: Option<DepthFormat>,
     /// Samples per pixel: 1 or 4.
@@ -66,40 +66,40 @@ impl TargetFormat {
     /// No colour, for shadow maps and prepasses of their own: depth that grows with distance, and one sample.
     pub fn depth_only(format: wgpu::TextureFormat) -> Self {
         let depth = Some(DepthFormat { format, reversed: false });
-        Self { color: Vec::new(), contents: Contents::Color, depth, samples: 1 }
+        Self { color: Vec::new(), attachments: Attachments::Color, depth, samples: 1 }
     }
 
     /// For [`Layer::Surface`]: `Rgba16Float`, `Rgba8Unorm` and `Rg16Uint`, 20 of the 32 bytes that WebGPU allows a sample,
     /// `Depth32Float` that grows with distance, and one sample.
     pub fn surface() -> Self {
-        Self::holding(Contents::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
+        Self::holding(Attachments::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
     }
 
     /// For [`Layer::Velocity`]: `Rg16Float`, `Depth32Float` that grows with distance, and one sample.
     pub fn velocity() -> Self {
-        Self::holding(Contents::Velocity, &[Format::Rg16Float])
+        Self::holding(Attachments::Velocity, &[Format::Rg16Float])
     }
 
     /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, 24 of the 32 bytes that WebGPU allows a sample,
     /// `Depth32Float` that grows with distance, and one sample.
     pub fn measure() -> Self {
-        Self::holding(Contents::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
+        Self::holding(Attachments::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
     }
 
     /// For [`Layer::Own`]: colours of these formats, as many as the output writes, `Depth32Float` that grows with distance, and
     /// one sample.
     pub fn of_output(output: &OutputProgram, formats: &[Format]) -> Self {
-        Self::holding(Contents::Own(output.clone()), formats)
+        Self::holding(Attachments::Own(output.clone()), formats)
     }
 
     /// The caller's output, if it holds one.
     pub(super) fn output(&self) -> Option<&OutputProgram> {
-        if let Contents::Own(output) = &self.contents { Some(output) } else { None }
+        if let Attachments::Own(output) = &self.attachments { Some(output) } else { None }
     }
 
-    fn holding(contents: Contents, formats: &[Format]) -> Self {
+    fn holding(attachments: Attachments, formats: &[Format]) -> Self {
         let color = formats.iter().map(|format| Some((*format).into())).collect();
-        Self { color, contents, ..Self::depth_only(Format::Depth32Float) }
+        Self { color, attachments, ..Self::depth_only(Format::Depth32Float) }
     }
 
     /// The same with one more colour attachment.
@@ -165,13 +165,13 @@ impl TargetFormat {
                 _ => {}
             }
         }
-        let is_plain = self.contents == Contents::Color;
-        for (at, (fits, bound)) in self.contents.wanted().iter().enumerate() {
+        let is_plain = self.attachments == Attachments::Color;
+        for (at, (fits, bound)) in self.attachments.wanted().iter().enumerate() {
             match self.color.get(at).and_then(Option::as_ref) {
                 Some(color) if !fits(color.format) => return refused(at, color.format, bound),
                 Some(color) if !is_plain && color.blend.is_some() => {
                     let path = format!("format.color[{at}].blend");
-                    return Err(InputError::new(path, "blending", "must be none for these contents"));
+                    return Err(InputError::new(path, "blending", "must be none for these attachments"));
                 }
                 None if !is_plain => {
                     return Err(InputError::new(format!("format.color[{at}]"), "nothing", *bound));
@@ -185,9 +185,9 @@ impl TargetFormat {
             return Err(InputError::new(format!("format.color[{at}]"), "nothing", bound));
         }
         if !is_plain && self.depth.is_none() {
-            return Err(InputError::new("format.depth", "nothing", "must be there for these contents"));
+            return Err(InputError::new("format.depth", "nothing", "must be there for these attachments"));
         }
-        if self.contents == Contents::Measure && self.samples != 1 {
+        if self.attachments == Attachments::Measure && self.samples != 1 {
             return Err(InputError::new("format.samples", self.samples, "must be 1 for positions"));
         }
         Ok(())
@@ -266,7 +266,7 @@ impl TargetFormat {
         let is_there = first.is_some();
         let blends = first.is_some_and(|color| can_blend(color.format));
         let is_drawn = move |layer: &Layer| if *layer == Layer::Transparent { blends } else { is_there };
-        let own = self.contents.layers().iter().copied().filter(is_drawn);
+        let own = self.attachments.layers().iter().copied().filter(is_drawn);
         own.chain(self.depth.map(|_| Layer::Depth))
     }
 
@@ -278,7 +278,7 @@ impl TargetFormat {
     /// The colour attachments as a pipeline of a layer sees them.
     pub(super) fn targets(&self, layer: Layer) -> Vec<Option<wgpu::ColorTargetState>> {
         let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
-            color.clone().map(|color| match at < self.contents.colors(layer) {
+            color.clone().map(|color| match at < self.attachments.colors(layer) {
                 true if layer == Layer::Transparent => wgpu::ColorTargetState {
                     blend: color.blend.or(Some(wgpu::BlendState::ALPHA_BLENDING)),
                     ..color

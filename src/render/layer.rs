@@ -2,7 +2,7 @@
 
 use crate::scene::specialization::Shown;
 
-/// What of a scene is drawn. [`Contents`](crate::render::Contents) says which layers a target holds.
+/// What of a scene is drawn. [`Attachments`](crate::render::Attachments) says which layers a target holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Layer {
@@ -26,7 +26,7 @@ pub enum Layer {
     /// The motion of surfaces on the screen since the last frame, with their depth, into one colour: to the right as a
     /// fraction of the picture's width, and downwards as one of its height, so that a pixel was at its place minus this. It
     /// is the motion of what is drawn: of skinned vertices, placements and the camera, and on reliefs of the point which the
-    /// ray meets. It needs [`Scene::keep_last_frame`](crate::scene::Scene::keep_last_frame).
+    /// ray meets. It needs [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history).
     ///
     /// Vertices keep their identity while a character's levels of detail, and the pages of its vertices, change. What was
     /// not there in the last frame counts as if it had stood still: an instance that was spawned, and the vertices in the

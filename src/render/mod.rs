@@ -5,7 +5,7 @@
 //!
 //! [`Offscreen`] is a target for programs without a window, and the shortest way to a picture.
 
-mod contents;
+mod attachments;
 mod format;
 mod layer;
 mod offscreen;
@@ -15,7 +15,7 @@ mod shading;
 mod sun_shadow;
 pub mod target;
 
-pub use contents::Contents;
+pub use attachments::Attachments;
 pub use format::{DepthFormat, TargetFormat};
 pub use layer::Layer;
 pub use offscreen::Offscreen;

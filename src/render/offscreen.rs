@@ -2,7 +2,7 @@
 
 use image::RgbaImage;
 
-use super::contents::Contents;
+use super::attachments::Attachments;
 use super::format::TargetFormat;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, read_texture};
 #[cfg(not(target_arch = "wasm32"))]
@@ -104,9 +104,9 @@ impl Offscreen {
             let bound = format!("must be {DEPTH_FORMAT:?}");
             return Err(InputError::new("format.depth", format!("{depth:?}"), bound).into());
         }
-        if format.samples > 1 && format.contents != Contents::Color {
+        if format.samples > 1 && format.attachments != Attachments::Color {
             return Err(
-                InputError::new("format.samples", format.samples, "must be 1 for these contents").into()
+                InputError::new("format.samples", format.samples, "must be 1 for these attachments").into()
             );
         }
         if let Some(at) = format.color.iter().position(Option::is_none) {
@@ -139,7 +139,7 @@ impl Offscreen {
         self.size
     }
 
-    /// Records a pass that clears colour to `background` (linear), other contents to 0 and depth to the farthest, and then
+    /// Records a pass that clears colour to `background` (linear), other attachments to 0 and depth to the farthest, and then
     /// draws.
     ///
     /// # Errors
@@ -154,8 +154,8 @@ impl Offscreen {
         let views = self.colors.iter().map(|color| (view(&color.drawn), color.resolved.as_ref().map(view)));
         let views: Vec<_> = views.collect();
         let [r, g, b] = background.map(f64::from);
-        let clear = match self.format.contents {
-            Contents::Color => wgpu::Color { r, g, b, a: 1.0 },
+        let clear = match self.format.attachments {
+            Attachments::Color => wgpu::Color { r, g, b, a: 1.0 },
             _ => wgpu::Color::TRANSPARENT,
         };
         let attachment = |(view, resolved)| wgpu::RenderPassColorAttachment {

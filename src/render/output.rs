@@ -68,7 +68,7 @@ impl OutputProgram {
     /// `name` is the prefix of every name that the text declares. For `uv` the text has a struct `UvTargets`, whose members are the
     /// colours at `@location(0)` and so on, and a function `fn uv_write(surface: Surface) -> UvTargets`, which must not discard.
     /// `Surface` is that of [`Renderer::with_shading`](super::Renderer::with_shading). `surface.last_position` is filled only if the
-    /// text names it, which needs [`Scene::keep_last_frame`](crate::scene::Scene::keep_last_frame). `relievo_view` is the view
+    /// text names it, which needs [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history). `relievo_view` is the view
     /// (`clip_from_world`, `last_clip_from_world`, `eye`), and `relievo_lit(surface) -> vec4<f32>` the shaded colour. The text
     /// binds nothing.
     ///

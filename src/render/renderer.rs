@@ -14,7 +14,7 @@ use super::layer::Layer;
 use super::shading::Shading;
 use crate::gpu::{Gpu, foreign};
 use crate::lod::{OBJECT_LISTS, SceneDraw};
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView, Part};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, Part, SortedDraws, SortedPart};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::Specialization;
 use crate::scene::{Scene, View};
@@ -172,7 +172,7 @@ impl Renderer {
     ///
     /// # Errors
     /// [`InputError`] for a scene on another device; a pass of another [`wgpu::Instance`]; a view of another scene; one that the last [`Scene::record`] left out; one
-    /// that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_shares`]; one whose camera has the other direction
+    /// that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_error_budget`]; one whose camera has the other direction
     /// of depth; a layer that the format has no attachment for; objects that were added since [`Renderer::prepare`]; and for
     /// [`Layer::Velocity`] a scene that does not keep its last frame.
     pub fn draw<'a>(
@@ -189,8 +189,8 @@ impl Renderer {
         }
         if layer == Layer::Transparent {
             self.check(&drawn, objects.iter().copied(), layer)?;
-            if let Some(singles) = scene.drawn_singles(view) {
-                self.draw_singles(pass, &drawn, &singles);
+            if let Some(sorted) = scene.sorted_draws(view) {
+                self.draw_sorted(pass, &drawn, &sorted);
             }
             return Ok(());
         }
@@ -237,14 +237,14 @@ impl Renderer {
     }
 
     /// Draws parts of instances one by one.
-    fn draw_singles<'a>(
+    fn draw_sorted<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
         view: &DrawnView<'a>,
-        singles: &DrawnSingles<'a>,
+        sorted: &SortedDraws<'a>,
     ) {
         pass.set_bind_group(0, view.group);
-        for DrawnSingle { drawable, part, draw, is_mirrored } in &singles.parts {
+        for SortedPart { drawable, part, draw, is_mirrored } in &sorted.parts {
             let is_flipped = *is_mirrored != view.mirrors;
             let pipeline = self.pipeline(Layer::Transparent, part.specialization, is_flipped, view);
             let (Some(pipeline), Some(group)) = (pipeline, drawable.group()) else { continue };
@@ -253,9 +253,9 @@ impl Renderer {
             pass.set_bind_group(2, part.group);
             pass.set_index_buffer(drawable.indices().slice(..));
             let bytes = [*draw, draw + 1].map(|index| u64::from(index) * size_of::<u32>() as u64);
-            pass.set_vertex_buffer(0, singles.entries.raw().slice(bytes[0]..bytes[1]));
+            pass.set_vertex_buffer(0, sorted.entries.raw().slice(bytes[0]..bytes[1]));
             let offset = u64::from(*draw) * size_of::<SceneDraw>() as u64;
-            pass.draw_indexed_indirect(singles.draws.raw(), offset);
+            pass.draw_indexed_indirect(sorted.draws.raw(), offset);
         }
     }
 

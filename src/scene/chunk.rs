@@ -21,12 +21,12 @@ pub(crate) struct Chunk {
     /// was prepared.
     pub lods: Vec<LodObject>,
     /// Its parts that are drawn instance by instance.
-    pub singles: Vec<SinglePart>,
+    pub sorted: Vec<SortedParts>,
 }
 
 /// A part of an object that is drawn instance by instance.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SinglePart {
+pub(crate) struct SortedParts {
     /// The drawable, and the part of it.
     pub drawable: usize,
     pub part: usize,
@@ -43,7 +43,7 @@ impl Chunk {
             range: ObjectRange::default(),
             drawables,
             lods: Vec::new(),
-            singles: Vec::new(),
+            sorted: Vec::new(),
         }
     }
 

@@ -85,18 +85,18 @@ pub(crate) struct DrawnObject<'a> {
 
 /// Instances that are drawn one by one.
 #[derive(Debug, Clone)]
-pub(crate) struct DrawnSingles<'a> {
+pub(crate) struct SortedDraws<'a> {
     /// The draws of all of them.
     pub draws: &'a Buffer<SceneDraw>,
     /// The list of each draw, which has one entry.
     pub entries: &'a Buffer<u32>,
     /// The parts, in the order in which they are drawn.
-    pub parts: Vec<DrawnSingle<'a>>,
+    pub parts: Vec<SortedPart<'a>>,
 }
 
 /// A part of an instance that is drawn by itself.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct DrawnSingle<'a> {
+pub(crate) struct SortedPart<'a> {
     /// What is drawn.
     pub drawable: &'a dyn Drawable,
     /// The part of it.

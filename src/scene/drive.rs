@@ -8,7 +8,7 @@ use crate::scene::handles::{InstanceId, Slots, missing, no_character};
 use crate::scene::object::Object;
 use crate::scene::poses::PoseBuffers;
 use crate::scene::view::View;
-use crate::scene::{RECORDINGS, Scene};
+use crate::scene::{FRAMES_IN_FLIGHT, Scene};
 use crate::{Error, InputError};
 
 /// The poses of all characters in a frame whose bones have been sampled, for [`Scene::record_with`].
@@ -64,7 +64,11 @@ impl<'a> Poses<'a> {
         let object = self.objects.existing_mut(instance).ok_or_else(|| missing(scene, instance))?;
         let character = object.character_mut().ok_or_else(no_character)?;
         let Some(stream) = &mut self.stream else {
-            return Err(InputError::new("recordings", RECORDINGS, format!("must be below {RECORDINGS}")));
+            return Err(InputError::new(
+                "recordings",
+                FRAMES_IN_FLIGHT,
+                format!("must be below {FRAMES_IN_FLIGHT}"),
+            ));
         };
         character.note_written(index, bone, local)?;
         let buffers = character.pose_buffers(index).ok_or_else(no_character)?;

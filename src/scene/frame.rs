@@ -3,15 +3,15 @@
 use crate::animation::Frame;
 use crate::gpu::Staged;
 use crate::lod::{LodObject, SceneInstance, SelectView};
-use crate::scene::drawable::{Drawable, DrawnObject, DrawnSingle, DrawnSingles, DrawnView};
+use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, SortedDraws, SortedPart};
 use crate::scene::drive::Poses;
 use crate::scene::object::{self, Object};
 use crate::scene::order::Ordered;
 use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
 use crate::scene::view::View;
-use crate::scene::view::lists::Singles;
-use crate::scene::{RECORDINGS, Scene};
+use crate::scene::view::lists::SortedLists;
+use crate::scene::{FRAMES_IN_FLIGHT, Scene};
 use crate::{Error, InputError};
 
 /// What the caller records between sampling and model matrices.
@@ -63,7 +63,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn keep_last_frame(&mut self, keeps: bool) -> Result<(), Error> {
+    pub fn keep_motion_history(&mut self, keeps: bool) -> Result<(), Error> {
         if std::mem::replace(&mut self.keeps_last, keeps) == keeps {
             return Ok(());
         }
@@ -80,14 +80,14 @@ impl Scene {
     /// vertices whose memory others have taken.
     ///
     /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
-    /// takes one of [`RECORDINGS`] places, which is free again when the device has executed it, and wgpu has noticed
+    /// takes one of [`FRAMES_IN_FLIGHT`] places, which is free again when the device has executed it, and wgpu has noticed
     /// that: in a submission, or in [`wgpu::Device::poll`]. An encoder may be dropped instead: the next recording starts afresh
     /// ([`Scene::invalidate`]). Submit recordings in the order in which they were made: each counts on the changes in those before
     /// it. Of an empty scene nothing is recorded, and nothing drawn.
     ///
     /// # Errors
     /// [`InputError`] for no view, a view of another scene or without a camera, an encoder of another [`wgpu::Instance`] (wgpu
-    /// panics there, which is caught, but the program's panic hook sees it), and if [`RECORDINGS`] frames have been recorded that the device has not executed; [`crate::gpu::GpuError`], also for the loss of
+    /// panics there, which is caught, but the program's panic hook sees it), and if [`FRAMES_IN_FLIGHT`] frames have been recorded that the device has not executed; [`crate::gpu::GpuError`], also for the loss of
     /// the device.
     pub fn record(
         &mut self,
@@ -126,7 +126,8 @@ impl Scene {
         let gpu = self.gpu.clone();
         self.uploaded = sent + self.staged.len();
         if !self.staging.record(&gpu, encoder, &mut self.staged)? {
-            let bound = format!("must be below {RECORDINGS}: submit what was recorded, or call invalidate()");
+            let bound =
+                format!("must be below {FRAMES_IN_FLIGHT}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());
         }
         self.objects.iter_mut().for_each(|object| object.kind.record(encoder));
@@ -260,9 +261,9 @@ impl Scene {
     }
 
     /// What is drawn instance by instance in a view, from back to front.
-    pub(crate) fn drawn_singles<'a>(&'a self, view: &'a View) -> Option<DrawnSingles<'a>> {
+    pub(crate) fn sorted_draws<'a>(&'a self, view: &'a View) -> Option<SortedDraws<'a>> {
         let lists = view.lists.as_ref()?;
-        let Singles { draws, entries, .. } = lists.singles.as_ref()?;
+        let SortedLists { draws, entries, .. } = lists.sorted.as_ref()?;
         let objects: Vec<&Object> = self.objects.iter().collect();
         let mut parts = Vec::new();
         for Ordered { object, instance, .. } in &lists.order {
@@ -271,14 +272,14 @@ impl Scene {
             let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
             let Some(chunk) = object.chunk_of(*instance) else { continue };
             let instance = (*instance as usize - chunk.slots.start) as u32;
-            for single in &chunk.singles {
+            for single in &chunk.sorted {
                 let drawable = &*chunk.drawables[single.drawable];
                 let Some(part) = drawable.part(single.part) else { continue };
                 let draw = single.first + instance;
-                parts.push(DrawnSingle { drawable, part, draw, is_mirrored });
+                parts.push(SortedPart { drawable, part, draw, is_mirrored });
             }
         }
-        Some(DrawnSingles { draws, entries, parts })
+        Some(SortedDraws { draws, entries, parts })
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
@@ -315,11 +316,11 @@ impl Scene {
         }
         let Some(layout) = &self.layout else { return Ok(()) };
         for object in self.objects.iter_mut() {
-            object.fit(&self.gpu, layout, (&self.passes.assign, self.shares), &mut self.staged)?;
+            object.fit(&self.gpu, layout, (&self.passes.assign, self.budget), &mut self.staged)?;
         }
         self.attachments.fit(&self.gpu, &self.objects, layout, (&mut self.staged, self.frames))?;
         for view in views {
-            let passes = (&self.passes.select, &self.passes.list, &self.passes.single);
+            let passes = (&self.passes.select, &self.passes.list, &self.passes.sorted);
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, &self.objects))?;
             let attachments = (&self.attachments, &self.objects);
             view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;

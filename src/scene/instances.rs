@@ -13,7 +13,7 @@ pub(super) const NOBODY: SceneInstance = SceneInstance {
     cell: [0; 3],
     flags: 0,
     offset: [0.0; 3],
-    word: 0,
+    user_data: 0,
     rotation: Transform::IDENTITY.rotation,
     scale: [1.0; 3],
     tint: u32::MAX,
@@ -284,7 +284,7 @@ mod tests {
         let mut frame = |instances: &mut Instances| {
             let runs = instances.take_last();
             for (from, run) in &runs {
-                run.iter().zip(*from..).for_each(|(instance, at)| known[at] = instance.word);
+                run.iter().zip(*from..).for_each(|(instance, at)| known[at] = instance.user_data);
             }
             instances.take_changed();
             (known, runs.iter().map(|(_, run)| run.len()).sum::<usize>())
@@ -293,9 +293,9 @@ mod tests {
         // All of them changed in the frame before, so all are taken once more.
         assert_eq!(frame(&mut instances), ([0; 64], 64));
         let at_9 = |word| std::array::from_fn(|at| if at == 9 { word } else { 0 });
-        instances.change(9, |instance| instance.word = 1);
+        instances.change(9, |instance| instance.user_data = 1);
         assert_eq!(frame(&mut instances), (at_9(0), 1));
-        instances.change(9, |instance| instance.word = 2);
+        instances.change(9, |instance| instance.user_data = 2);
         assert_eq!(frame(&mut instances), (at_9(1), 1));
         assert_eq!(frame(&mut instances), (at_9(2), 1));
         assert_eq!(frame(&mut instances), (at_9(2), 0));
@@ -312,7 +312,7 @@ mod tests {
         let mut instances = Instances::new(64);
         assert_eq!(instances.take_changed().len(), 1, "all of them at first");
         for index in [40, 3, 5, 3, 41] {
-            instances.change(index, |instance| instance.word = index);
+            instances.change(index, |instance| instance.user_data = index);
         }
         let runs: Vec<_> = instances.take_changed().iter().map(|(from, run)| (*from, run.len())).collect();
         assert_eq!(runs, [(3, 3), (40, 2)]);

@@ -6,7 +6,7 @@ use glam::Vec4;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
-use crate::lod::single::Single;
+use crate::lod::sorted::SortedDraw;
 use crate::scene::handles::ObjectId;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
@@ -43,7 +43,7 @@ pub(crate) struct Layout {
     /// The draws of a view that sees nothing.
     pub draws: Vec<SceneDraw>,
     /// The parts of instances that are drawn one by one.
-    pub singles: Buffer<Single>,
+    pub sorted: Buffer<SortedDraw>,
     /// What statistics need to know of the objects.
     pub counted: Arc<Counted>,
 }
@@ -55,7 +55,7 @@ impl Layout {
     /// [`crate::gpu::GpuError`].
     pub(super) fn new(
         gpu: &Gpu,
-        (objects, draws, singles): (&[LodObject], Vec<SceneDraw>, &[Single]),
+        (objects, draws, sorted): (&[LodObject], Vec<SceneDraw>, &[SortedDraw]),
         end: ObjectRange,
         (version, keeps_last, counted): (u64, bool, Arc<Counted>),
     ) -> Result<Self, Error> {
@@ -80,7 +80,7 @@ impl Layout {
             blocks: block_objects.len() as u32,
             list_words: end.first_list,
             draws,
-            singles: Buffer::from_slice(gpu, "single instances", singles)?,
+            sorted: Buffer::from_slice(gpu, "single instances", sorted)?,
             counted,
         })
     }

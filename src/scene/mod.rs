@@ -71,7 +71,7 @@ pub use instance_pose::InstancePose;
 pub use options::{CharacterOptions, LayerMask, RootOptions, TerrainStyle};
 pub use placement::{ClipTime, Placement, Play};
 pub use poses::PoseBuffers;
-pub use quality::{Quality, Shares};
+pub use quality::{ErrorBudget, Quality};
 pub use ray::{Hit, Ray};
 pub use rebuild::Rebuild;
 pub use relief::{Relief, ReliefSource};
@@ -89,7 +89,7 @@ use crate::lod::assign::AssignPass;
 use crate::lod::attach::AttachPass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
-use crate::lod::single::SinglePass;
+use crate::lod::sorted::SortedPass;
 use crate::{Error, InputError};
 use attach::Attachments;
 use handles::Slots;
@@ -100,7 +100,7 @@ use statistics::{SceneCounts, StageTimer};
 use watch::Watch;
 
 /// The number of recordings that may wait for their submission or execution.
-pub const RECORDINGS: usize = 4;
+pub const FRAMES_IN_FLIGHT: usize = 4;
 
 /// Everything there is, on the device: objects, which are terrain, meshes, reliefs and characters, and instances of them.
 ///
@@ -138,7 +138,7 @@ pub struct Scene {
     /// Counts the devices that it has had.
     device: u32,
     objects: Slots<Object>,
-    shares: Shares,
+    budget: ErrorBudget,
     light: Light,
     /// Seconds since the scene began, and seconds since the last frame.
     now: f64,
@@ -174,7 +174,7 @@ pub struct Scene {
 struct Passes {
     select: SelectPass,
     list: ListPass,
-    single: SinglePass,
+    sorted: SortedPass,
     assign: AssignPass,
     attach: AttachPass,
 }
@@ -184,7 +184,7 @@ impl Passes {
         Ok(Self {
             select: SelectPass::new(gpu)?,
             list: ListPass::new(gpu)?,
-            single: SinglePass::new(gpu)?,
+            sorted: SortedPass::new(gpu)?,
             assign: AssignPass::new(gpu)?,
             attach: AttachPass::new(gpu)?,
         })
@@ -202,7 +202,7 @@ impl Scene {
             gpu: gpu.clone(),
             device: 0,
             objects: Slots::default(),
-            shares: Shares::default(),
+            budget: ErrorBudget::default(),
             light: Light::default(),
             now: 0.0,
             step: 0.0,
@@ -212,9 +212,9 @@ impl Scene {
             is_broken: false,
             layout: None,
             layouts: 0,
-            staging: StagingRing::new(RECORDINGS),
+            staging: StagingRing::new(FRAMES_IN_FLIGHT),
             staged: Staged::default(),
-            pose_staging: StagingRing::new(RECORDINGS),
+            pose_staging: StagingRing::new(FRAMES_IN_FLIGHT),
             uploaded: 0,
             upload_budget: None,
             passes,
@@ -281,12 +281,12 @@ impl Scene {
     /// Sets how the permitted displacement of characters is divided, from the next recording on.
     ///
     /// # Errors
-    /// [`InputError`] as [`Shares::validate`].
-    pub fn set_shares(&mut self, shares: Shares) -> Result<(), InputError> {
-        shares.validate()?;
-        self.shares = shares;
+    /// [`InputError`] as [`ErrorBudget::validate`].
+    pub fn set_error_budget(&mut self, budget: ErrorBudget) -> Result<(), InputError> {
+        budget.validate()?;
+        self.budget = budget;
         for object in self.objects.iter_mut().filter(|object| object.character().is_some()) {
-            object.mesh_fraction = shares.mesh;
+            object.mesh_fraction = budget.mesh;
         }
         self.layout = None;
         Ok(())
@@ -310,8 +310,8 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
-    pub fn coarsening(&self, object: ObjectId) -> Result<f32, InputError> {
-        Ok(self.object_at(object)?.coarsening)
+    pub fn lod_bias(&self, object: ObjectId) -> Result<f32, InputError> {
+        Ok(self.object_at(object)?.lod_bias)
     }
 
     /// The largest number of draws that an object takes in a view and a layer. It is at most 64, unless a binding of the

@@ -15,7 +15,7 @@ use crate::scene::chunk::Chunk;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
-use crate::scene::quality::Shares;
+use crate::scene::quality::ErrorBudget;
 use crate::scene::ray::{Surface, SurfaceHit};
 use crate::scene::stage::Stage;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -245,13 +245,13 @@ pub(super) struct SeenBy<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Provided {
     /// The factor by which levels of detail must be coarser: 1 unless memory has ended.
-    pub coarsening: f32,
+    pub lod_bias: f32,
     pub replaced: Replaced,
 }
 
 impl Default for Provided {
     fn default() -> Self {
-        Self { coarsening: 1.0, replaced: Replaced::Nothing }
+        Self { lod_bias: 1.0, replaced: Replaced::Nothing }
     }
 }
 
@@ -272,7 +272,7 @@ pub(super) struct Fitted<'a> {
     /// Whether the layout is another than in the last frame.
     pub is_new: bool,
     pub assign: &'a AssignPass,
-    pub shares: Shares,
+    pub budget: ErrorBudget,
     /// The fraction of the allowed displacement that levels of detail use.
     pub mesh_fraction: f32,
     pub chunks: &'a [Chunk],

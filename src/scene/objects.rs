@@ -111,7 +111,7 @@ impl Scene {
             return self.mesh(model, capacity);
         }
         let (gpu, pending) = self.uploader();
-        let (layouts, settings) = (&self.layouts_of_groups, (self.shares, self.keeps_last));
+        let (layouts, settings) = (&self.layouts_of_groups, (self.budget, self.keeps_last));
         let object = Object::of_character(&gpu, layouts, (model, options), capacity, settings)?;
         Ok(object.awaiting(pending))
     }

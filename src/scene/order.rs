@@ -1,23 +1,23 @@
 //! The order in which transparent surfaces are drawn: instance by instance, from back to front.
 
 use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
-use crate::lod::single::Single;
+use crate::lod::sorted::SortedDraw;
 use crate::lod::{OBJECT_LISTS, SelectView};
 use crate::scene::camera::Camera;
-use crate::scene::chunk::{Chunk, SinglePart};
+use crate::scene::chunk::{Chunk, SortedParts};
 use crate::scene::object::Object;
 
 impl Chunk {
     /// Lays out the parts that are drawn instance by instance, behind those of other objects.
-    pub(super) fn lay_out_singles(&mut self, all: &mut Vec<Single>) {
-        self.singles.clear();
+    pub(super) fn lay_out_sorted(&mut self, all: &mut Vec<SortedDraw>) {
+        self.sorted.clear();
         let (instances, mut first_draw) = (self.slots.len() as u32, self.range.first_draw);
         for (drawable, of) in self.drawables.iter().enumerate() {
             let blended = of.parts().enumerate().filter(|(_, part)| part.specialization.state().blended);
             for (part, _) in blended {
-                self.singles.push(SinglePart { drawable, part, first: all.len() as u32 });
+                self.sorted.push(SortedParts { drawable, part, first: all.len() as u32 });
                 let first_draw = first_draw + OBJECT_LISTS * part as u32;
-                let single = |slot| Single { instance: self.range.first + slot, first_draw, slot };
+                let single = |slot| SortedDraw { instance: self.range.first + slot, first_draw, slot };
                 all.extend((0..instances).map(single));
             }
             first_draw += OBJECT_LISTS * of.part_count() as u32;
@@ -46,7 +46,7 @@ pub(super) fn back_to_front<'a>(
     let (eye, ahead) = (camera.eye_offset().as_dvec3(), camera.ahead().as_dvec3());
     let is_parallel = camera.clip_from_view.row(3).truncate() == glam::Vec3::ZERO;
     for (object, of) in objects.enumerate() {
-        let Some(chunk) = of.chunks.first().filter(|chunk| !chunk.singles.is_empty()) else { continue };
+        let Some(chunk) = of.chunks.first().filter(|chunk| !chunk.sorted.is_empty()) else { continue };
         let lod = of.lod_object(chunk);
         for (instance, placed) in (0..).zip(of.instances.all()) {
             let (center, radius) = placed_sphere(placed, view.cell);

@@ -81,38 +81,37 @@ impl<'a> Seen<'a> {
     }
 
     /// The pages that some of the instances need, for each mesh, where levels may be off by so many times more.
-    fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], coarsening: f32) -> Vec<u64> {
-        let fraction = CAUTION * coarsening * self.object.mesh_fraction;
+    fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u64> {
+        let fraction = CAUTION * lod_bias * self.object.mesh_fraction;
         let seen = || self.allowed[slots.clone()].iter().flatten();
         let levels = || seen().map(|allowed| level(self.object, fraction * allowed));
         meshes.iter().map(|mesh| mesh.needed(levels())).collect()
     }
 
     /// As many pages as [`Seen::fits`] allows, for each mesh.
-    pub fn pages(&self, slots: &Range<usize>, meshes: &[Paging], coarsening: f32) -> Vec<u32> {
-        let pages = self.exactly(slots, meshes, coarsening);
+    pub fn pages(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u32> {
+        let pages = self.exactly(slots, meshes, lod_bias);
         pages.iter().zip(meshes).map(|(pages, mesh)| (*pages).min(mesh.most.into()) as u32).collect()
     }
 
     /// Whether the pages that some of the instances need are no more than there may be.
-    pub fn fits(&self, slots: &Range<usize>, meshes: &[Paging], coarsening: f32) -> bool {
-        let pages = self.exactly(slots, meshes, coarsening);
+    pub fn fits(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> bool {
+        let pages = self.exactly(slots, meshes, lod_bias);
         pages.iter().zip(meshes).all(|(pages, mesh)| *pages <= u64::from(mesh.most))
     }
 
     /// The factor by which the displacement that levels may use must grow, so that all chunks fit: 1 unless there is more to
     /// see than there is memory for.
-    pub fn coarsening<'b>(
+    pub fn lod_bias<'b>(
         &self,
         chunks: impl Iterator<Item = (&'b Range<usize>, &'b [Paging])> + Clone,
     ) -> f32 {
-        let mut coarsening = 1.0;
-        while coarsening < COARSEST
-            && chunks.clone().any(|(slots, meshes)| !self.fits(slots, meshes, coarsening))
+        let mut lod_bias = 1.0;
+        while lod_bias < COARSEST && chunks.clone().any(|(slots, meshes)| !self.fits(slots, meshes, lod_bias))
         {
-            coarsening *= COARSER;
+            lod_bias *= COARSER;
         }
-        coarsening
+        lod_bias
     }
 }
 

@@ -7,11 +7,11 @@ use crate::InputError;
 pub struct Quality {
     /// The largest number of pixels of the camera's viewport by which any point of an instance may be drawn away from its
     /// place, at least 0; 0 shows everything in full detail. It becomes a distance in the world that each instance is allowed,
-    /// and [`Shares`] divide that among levels of detail, bones and influences. Not bounded are shading, textures, and
+    /// and [`ErrorBudget`] divide that among levels of detail, bones and influences. Not bounded are shading, textures, and
     /// shadow edges.
     ///
     /// Where the device has no memory left for the vertices of what is seen of a character, its levels are coarser than that:
-    /// [`Scene::coarsening`](super::Scene::coarsening) says by how much.
+    /// [`Scene::lod_bias`](super::Scene::lod_bias) says by how much.
     pub pixels: f32,
 }
 
@@ -35,32 +35,32 @@ impl Quality {
     }
 }
 
-/// How the distance by which an instance may be off is divided, in fractions that add up to at most 1.
+/// The fractions of the allowed displacement that each source of error may use. They add up to at most 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shares {
-    /// For the levels of detail of characters' meshes. Those of static meshes may use all of it.
+pub struct ErrorBudget {
+    /// Levels of detail of characters' meshes, 0 to 1. Static meshes use the whole displacement.
     pub mesh: f32,
-    /// For bones that keep an old pose.
+    /// Bones that keep an old pose, 0 to 1.
     pub bones: f32,
-    /// For influences that are left out.
+    /// Influences that are left out, 0 to 1.
     pub influences: f32,
 }
 
-impl Default for Shares {
+impl Default for ErrorBudget {
     /// 0.9 for meshes, 0.08 for bones and 0.02 for influences: triangles cost most.
     fn default() -> Self {
         Self { mesh: 0.9, bones: 0.08, influences: 0.02 }
     }
 }
 
-impl Shares {
+impl ErrorBudget {
     /// Checks the fractions.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
     pub fn validate(&self) -> Result<(), InputError> {
         for (path, value) in
-            [("shares.mesh", self.mesh), ("shares.bones", self.bones), ("shares.influences", self.influences)]
+            [("budget.mesh", self.mesh), ("budget.bones", self.bones), ("budget.influences", self.influences)]
         {
             if !(0.0..=1.0).contains(&value) {
                 return Err(InputError::new(path, value, "must be in 0..=1"));
@@ -68,7 +68,7 @@ impl Shares {
         }
         let sum = self.mesh + self.bones + self.influences;
         if sum > 1.000_001 {
-            return Err(InputError::new("shares", sum, "must add up to at most 1"));
+            return Err(InputError::new("budget", sum, "must add up to at most 1"));
         }
         Ok(())
     }

@@ -132,7 +132,7 @@ mod drawn {
             for chunk in &entry.chunks {
                 let (range, room) = (chunk.range, chunk.room() as usize);
                 for list in 0..2 * entry.errors.len() {
-                    let count = draws[range.first_draw as usize + list].instances as usize;
+                    let count = draws[range.first_draw as usize + list].instance_count as usize;
                     for entry in &lists[range.first_list as usize + list * room..][..count] {
                         let index = list_entry_instance(*entry);
                         let steps = morph_steps(list_entry_morph(*entry));
@@ -178,7 +178,7 @@ mod drawn {
                 let indices = mesh.geometry.indices.read_blocking(&self.gpu)?;
                 let of_part = |part: u32| {
                     let draw = &draws[(lod.first_draw + OBJECT_LISTS * part + list) as usize];
-                    indices[draw.first_index as usize..][..draw.indices as usize].as_chunks::<3>().0
+                    indices[draw.first_index as usize..][..draw.index_count as usize].as_chunks::<3>().0
                 };
                 all.push((0..mesh.parts.len() as u32).flat_map(of_part).copied().collect());
             }

@@ -5,7 +5,7 @@ use crate::gpu::{Gpu, Staged, StagingRing};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object_kind::OnDevice;
 use crate::scene::statistics::StageTimer;
-use crate::scene::{Passes, RECORDINGS, Scene};
+use crate::scene::{FRAMES_IN_FLIGHT, Passes, Scene};
 
 /// Something that was made on a scene's device, and is made again after the device was lost: a
 /// [`View`](crate::scene::View), a [`Renderer`](crate::render::Renderer), a [`SunShadow`](crate::render::SunShadow), or a type
@@ -122,9 +122,9 @@ impl Scene {
         (self.passes, self.layouts_of_groups) = (passes, layouts);
         (self.timer, self.watch, self.counts) = (timer, watch, None);
         self.attachments.forget_device();
-        (self.staging, self.staged) = (StagingRing::new(RECORDINGS), Staged::default());
+        (self.staging, self.staged) = (StagingRing::new(FRAMES_IN_FLIGHT), Staged::default());
         self.is_broken = false;
-        self.pose_staging = StagingRing::new(RECORDINGS);
+        self.pose_staging = StagingRing::new(FRAMES_IN_FLIGHT);
         self.layout = None;
         Ok(())
     }

@@ -198,7 +198,7 @@ pub(super) fn drawn(
     })?;
     let parts = vec![MeshPart::new(faces, MeshMaterials::Relief(material))];
     let drawable = MeshDrawable::new(gpu, layouts, geometry, 0, parts)?;
-    let draw = SceneDraw { indices: relief.mesh.indices.len() as u32, ..NOTHING };
+    let draw = SceneDraw { index_count: relief.mesh.indices.len() as u32, ..NOTHING };
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
     draws[..2].fill(draw);
     let sphere = BoundingSphere::around(vertices.iter().map(|vertex| vertex.position.into()));

@@ -100,12 +100,14 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets a word that the caller's own shading may read for an instance; 0 at first.
+    /// Sets 32 bits of an instance for the caller's shading (`surface.user_data`); 0 at first.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
-    pub fn set_word(&mut self, instance: InstanceId, word: u32) -> Result<(), InputError> {
-        self.instance_mut(instance)?.instances.change(instance.index, |instance| instance.word = word);
+    pub fn set_user_data(&mut self, instance: InstanceId, user_data: u32) -> Result<(), InputError> {
+        self.instance_mut(instance)?
+            .instances
+            .change(instance.index, |instance| instance.user_data = user_data);
         Ok(())
     }
 

@@ -14,7 +14,7 @@ use std::process::Command;
 use packed::packed;
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::lod::single::{SingleBuffers, SinglePass};
+use relievo::lod::sorted::{SortedBuffers, SortedPass};
 use relievo::shared::lod::object::{
     decision_list, decision_morph, decision_word, list_entry_instance, list_entry_morph, list_entry_word,
     morph_level, morph_steps, morph_word,
@@ -134,11 +134,11 @@ fn a_cast_to_elements_that_the_bytes_are_not_does_not_compile() {
 #[test]
 fn short_buffers_are_refused_by_name() {
     let gpu = relievo_testing::gpu();
-    let pass = SinglePass::new(&gpu).expect("compiled");
-    for (short, lens) in [("singles", [2, 3, 3]), ("draws", [3, 2, 3]), ("entries", [3, 3, 2])] {
-        let [singles, draws, entries] = lens;
-        let buffers = SingleBuffers {
-            singles: &Buffer::new(&gpu, "singles", singles).expect("allocated"),
+    let pass = SortedPass::new(&gpu).expect("compiled");
+    for (short, lens) in [("sorted", [2, 3, 3]), ("draws", [3, 2, 3]), ("entries", [3, 3, 2])] {
+        let [sorted, draws, entries] = lens;
+        let buffers = SortedBuffers {
+            sorted: &Buffer::new(&gpu, "sorted", sorted).expect("allocated"),
             decisions: &Buffer::new(&gpu, "decisions", 1).expect("allocated"),
             arguments: &Buffer::new(&gpu, "arguments", 1).expect("allocated"),
             draws: &Buffer::new(&gpu, "draws", draws).expect("allocated"),

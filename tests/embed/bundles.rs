@@ -3,7 +3,7 @@
 use glam::Vec3;
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer};
-use relievo::scene::{Camera, RECORDINGS, View};
+use relievo::scene::{Camera, FRAMES_IN_FLIGHT, View};
 use relievo::wgpu;
 
 use crate::frame::{COLOR, Frame, device};
@@ -44,7 +44,7 @@ fn a_bundle_shows_later_recordings() {
     let renderer = frames[0].renderer(&gpu, &world.scene);
     let mut last = frames[0].shot(&mut world.scene, &mut view, &renderer);
     let bundle = bundle(&gpu, &renderer, &world, &view);
-    for at in 0..RECORDINGS + 2 {
+    for at in 0..FRAMES_IN_FLIGHT + 2 {
         view.set(around(at)).expect("a camera");
         world.scene.advance(0.2).expect("finite");
         world.scene.move_to(world.crowd[at], world.placement(10 + at)).expect("there");

@@ -53,8 +53,8 @@ impl Crowd {
         frame.shot(&mut self.scene, &mut self.view, &renderer)
     }
 
-    fn coarsening(&self) -> f32 {
-        self.scene.coarsening(self.creature).expect("there")
+    fn lod_bias(&self) -> f32 {
+        self.scene.lod_bias(self.creature).expect("there")
     }
 
     fn draws(&self) -> usize {
@@ -89,7 +89,7 @@ fn what_exceeds_a_binding_is_divided() {
         // Instances may be drawn in another order, and share the depth of a pixel.
         let difference = Difference::of(&pictures[0], &pictures[1], 0);
         assert!(difference.outliers < 0.001, "at {distance}: {difference:?}");
-        assert_eq!((a.coarsening(), b.coarsening()), (1.0, 1.0), "at {distance}");
+        assert_eq!((a.lod_bias(), b.lod_bias()), (1.0, 1.0), "at {distance}");
     }
     let [divided, whole] = crowds.each_ref().map(Crowd::draws);
     println!("draws: {divided} divided, {whole} whole");
@@ -137,18 +137,18 @@ fn where_memory_ends_levels_are_coarser() {
     let mut crowd = Crowd::new(&gpu, 0.01);
     crowd.look(200.0);
     crowd.shot(&frame);
-    assert_eq!(crowd.coarsening(), 1.0);
+    assert_eq!(crowd.lod_bias(), 1.0);
     gpu.memory().set_limit(gpu.memory().now() + (1 << 20));
     crowd.look(6.0);
     let coarse = crowd.shot(&frame);
-    let coarsening = crowd.coarsening();
-    println!("coarser by {coarsening}");
-    assert!(coarsening > 1.0 && coarsening < 1e5, "{coarsening}");
+    let lod_bias = crowd.lod_bias();
+    println!("coarser by {lod_bias}");
+    assert!(lod_bias > 1.0 && lod_bias < 1e5, "{lod_bias}");
     assert!(gpu.memory().now() <= gpu.memory().limit(), "more memory than there is");
     gpu.memory().set_limit(u64::MAX);
     crowd.scene.refresh().expect("afresh");
     let fine = crowd.shot(&frame);
-    assert_eq!(crowd.coarsening(), 1.0);
+    assert_eq!(crowd.lod_bias(), 1.0);
     let difference = Difference::of(&coarse, &fine, 3);
     assert!(difference.flip > 0.0 && difference.flip < 0.1, "coarse against fine: {difference:?}");
 }
@@ -193,7 +193,7 @@ fn morphed_vertices_are_where_they_belong() {
     let mut divided = Crowd::of(&small, &swollen(true), 0.0);
     divided.look(7.0);
     let in_chunks = divided.shot(&Frame::plain(&small, SIZE));
-    assert!(divided.draws() >= 3 * plain.draws() && divided.coarsening() == 1.0, "{}", divided.draws());
+    assert!(divided.draws() >= 3 * plain.draws() && divided.lod_bias() == 1.0, "{}", divided.draws());
     for picture in [&morphed, &in_chunks] {
         let difference = Difference::of(picture, &expected, 1);
         assert!(difference.outliers < 0.002, "{difference:?}");

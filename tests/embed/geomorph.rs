@@ -11,7 +11,7 @@ use relievo::gpu::Gpu;
 use relievo::mesh::ProgressiveMesh;
 use relievo::render::{Layer, Renderer};
 use relievo::scene::{
-    Camera, ObjectId, Placement, Play, Quality, Scene, Shares, TerrainSource, Transition, View,
+    Camera, ErrorBudget, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition, View,
 };
 use relievo::skinning::add_levels;
 use relievo::skinning::merged::merged;
@@ -52,7 +52,7 @@ struct Stage {
 impl Stage {
     fn new(gpu: &Gpu, model: &Model, size: f32, transition: Transition) -> Self {
         let mut scene = Scene::new(gpu).expect("compiled");
-        scene.set_shares(Shares { mesh: 1.0, bones: 0.0, influences: 0.0 }).expect("valid");
+        scene.set_error_budget(ErrorBudget { mesh: 1.0, bones: 0.0, influences: 0.0 }).expect("valid");
         let object = scene.add_character(model, 1).expect("added");
         let instance = scene.spawn(object, Placement::at([0.0; 3])).expect("room");
         if !model.clips.is_empty() {

@@ -161,7 +161,7 @@ struct Scenery {
 impl World {
     fn new(gpu: &Gpu, sample: &'static Sample) -> Self {
         let mut scene = Scene::new(gpu).expect("compiled");
-        scene.keep_last_frame(true).expect("kept");
+        scene.keep_motion_history(true).expect("kept");
         let object = (sample.add)(gpu, &mut scene);
         let places = [[-1.6, 0.3, 0.0], [1.5, 0.1, -0.6], [0.2, 0.5, -3.0]];
         for (at, place) in places.iter().enumerate().filter(|_| sample.scale > 0.0) {

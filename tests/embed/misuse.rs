@@ -33,7 +33,7 @@ fn handles_of_another_scene_are_refused() {
         ("object", wrong(scene.remove(object))),
         ("object", wrong(scene.show(object, false))),
         ("object", wrong(scene.instances(object))),
-        ("object", wrong(scene.coarsening(object))),
+        ("object", wrong(scene.lod_bias(object))),
         ("object", wrong(scene.ground(one.land, 0.0, 0.0))),
         ("instance", wrong(scene.despawn(instance))),
         ("instance", wrong(scene.move_to(instance, Placement::default()))),

@@ -85,7 +85,7 @@ fn cubes(gpu: &Gpu) -> (World, View) {
     for at in 0..3 {
         let place = Placement::at([3.0 * at as f32 - 3.0, 2.0, -6.0]).turned(0.4 * at as f32);
         let instance = world.scene.spawn(cubes, place).expect("room");
-        world.scene.set_word(instance, 10 + at).expect("there");
+        world.scene.set_user_data(instance, 10 + at).expect("there");
         world.scene.set_tint(instance, [1.0, 0.2 * at as f32, 0.6, 1.0]).expect("in range");
     }
     let mut view = world.scene.view(Quality::default()).expect("a view");
@@ -121,7 +121,7 @@ fn shading_knows_surfaces_and_views() {
     let places = of("vec4<f32>(surface.position, surface.alpha)");
     let facing = of("vec4<f32>(surface.normal, dot(surface.normal, surface.geometric_normal))");
     let numbers =
-        of("vec4<f32>(f32(surface.object), f32(surface.instance), f32(surface.word), surface.sunlit)");
+        of("vec4<f32>(f32(surface.object), f32(surface.instance), f32(surface.user_data), surface.sunlit)");
     let pixels = of("vec4<f32>(surface.pixel, surface.uv)");
     let tints = of("surface.tint");
     let colors = of("vec4<f32>(surface.color, 1.0)");
@@ -205,7 +205,7 @@ fn group_three_is_the_callers() {
     let source = "@group(3) @binding(0) var<uniform> tone: vec4<f32>;
 @group(3) @binding(1) var ramp: texture_2d<f32>;
 fn shade(surface: Surface, view: View) -> vec4<f32> {
-    return tone * textureLoad(ramp, vec2<u32>(surface.word - 10u, 0u), 0).x;
+    return tone * textureLoad(ramp, vec2<u32>(surface.user_data - 10u, 0u), 0).x;
 }";
     let raw = Raw::new(&gpu, TargetFormat::new(wgpu::TextureFormat::Rgba32Float), [96, 64]);
     let renderer = Renderer::new(&gpu, &raw.format).expect("a format");

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use relievo::asset::material::Alpha;
-use relievo::render::{Contents, Layer, Renderer, TargetFormat};
+use relievo::render::{Attachments, Layer, Renderer, TargetFormat};
 use relievo::scene::{Camera, ObjectId, Placement, Quality, Relief, Scene, View};
 use relievo::surface::HeightMap;
 use relievo::wgpu;
@@ -303,6 +303,6 @@ fn targets_hold_their_own_layers() {
         .with_color(Some(wgpu::TextureFormat::R8Unorm.into()));
     let error = Renderer::new(&gpu, &wide).expect_err("33 bytes").to_string();
     assert!(error.contains("format.color") && error.contains("33"), "{error}");
-    let holes = TargetFormat { contents: Contents::Surface, ..TargetFormat::measure() };
+    let holes = TargetFormat { attachments: Attachments::Surface, ..TargetFormat::measure() };
     assert!(Renderer::new(&gpu, &holes).expect_err("refused").to_string().contains("format.color[1].format"));
 }

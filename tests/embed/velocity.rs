@@ -31,7 +31,7 @@ fn moved() -> Camera {
 /// A scene that keeps its last frame, with a view.
 fn scene(gpu: &Gpu) -> (Scene, View) {
     let mut scene = Scene::new(gpu).expect("compiled");
-    scene.keep_last_frame(true).expect("kept");
+    scene.keep_motion_history(true).expect("kept");
     let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
     view.set(camera()).expect("a camera");
     (scene, view)
@@ -203,7 +203,7 @@ fn placements_and_cameras_move() {
 fn terrain_and_reliefs_move_with_the_camera() {
     let gpu = device();
     let mut world = World::empty(&gpu, 1);
-    world.scene.keep_last_frame(true).expect("kept");
+    world.scene.keep_motion_history(true).expect("kept");
     let heights = BuiltInMap::Cobbles.height_map(64).expect("a map");
     let albedo = BuiltInMap::Cobbles.albedo(64).expect("colours");
     let mut relief = Relief::wall(2.0, heights, albedo);
@@ -252,7 +252,7 @@ fn terrain_and_reliefs_move_with_the_camera() {
 fn velocities_need_the_last_frame() {
     let gpu = device();
     let (mut scene, mut view) = scene(&gpu);
-    scene.keep_last_frame(false).expect("not kept");
+    scene.keep_motion_history(false).expect("not kept");
     scene.add_mesh(&model(&cube(), plain([1.0; 4], Alpha::Opaque), false), 1).expect("added");
     let raw = Raw::new(&gpu, TargetFormat::velocity(), SIZE);
     let renderer = raw.renderer(&gpu, &scene);
@@ -263,6 +263,6 @@ fn velocities_need_the_last_frame() {
         refused = renderer.draw(pass, &scene, &view, Layer::Velocity).err();
     });
     let refused = refused.expect("refused");
-    assert!(refused.path == "scene" && refused.bound.contains("keep_last_frame"), "{refused}");
+    assert!(refused.path == "scene" && refused.bound.contains("keep_motion_history"), "{refused}");
     gpu.queue().submit([encoder.finish()]);
 }

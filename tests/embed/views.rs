@@ -92,7 +92,7 @@ fn the_ring_is_full_after_four_recordings() {
     let renderer = frame.renderer(&gpu, &world.scene);
     let expected = frame.shot(&mut world.scene, &mut view, &renderer);
     let mut encoder = gpu.encoder("dropped");
-    for _ in 0..relievo::scene::RECORDINGS {
+    for _ in 0..relievo::scene::FRAMES_IN_FLIGHT {
         world.scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
     }
     let fifth = world.scene.record(&mut encoder, &mut [&mut view]).expect_err("refused").to_string();

@@ -23,8 +23,8 @@ struct SceneInstance {
     flags: u32,
     // Its position in the cell, in world units.
     offset: vec3<f32>,
-    // A word of the caller's.
-    word: u32,
+    // A word of the caller's, for shaders.
+    user_data: u32,
     // A unit quaternion.
     rotation: vec4<f32>,
     // Scale factors along the model's axes, applied before the rotation; negative ones mirror.

@@ -47,8 +47,8 @@ struct LodObject {
 
 // The arguments of an indexed indirect draw.
 struct SceneDraw {
-    indices: u32,
-    instances: u32,
+    index_count: u32,
+    instance_count: u32,
     first_index: u32,
     base_vertex: u32,
     first_instance: u32,

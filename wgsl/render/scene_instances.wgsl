@@ -110,8 +110,8 @@ fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec
         vec4<f32>(along, side * tangent.w), uv, vec4<f32>(0.0), vec3<u32>(0u), side);
 }
 
-// A white, opaque, lit surface of the triangle itself, on the side that is seen, with the tint, the word and the number of
-// its instance. The tint is not in the colour yet.
+// A white, opaque, lit surface of the triangle itself, on the side that is seen, with the tint, the user data and the
+// number of its instance. The colour does not contain the tint yet.
 fn scene_surface(in: SceneFragment) -> Surface {
     var surface = triangle_surface(in);
     let side = select(-1.0, 1.0, in.is_outside);
@@ -119,7 +119,7 @@ fn scene_surface(in: SceneFragment) -> Surface {
     surface.geometric_normal *= side;
     let index = scene_object.first_instance + in.instance;
     surface.tint = unpack4x8unorm(instances[index].tint);
-    surface.word = instances[index].word;
+    surface.user_data = instances[index].user_data;
     surface.object = scene_object.number;
     surface.instance = scene_object.first_slot + in.instance;
     return surface;

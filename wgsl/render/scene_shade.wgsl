@@ -20,8 +20,8 @@ struct Surface {
     sunlit: f32,
     // The tint of the instance: linear red, green, blue, and alpha.
     tint: vec4<f32>,
-    // The word of the instance.
-    word: u32,
+    // The user data of the instance (`Scene::set_user_data`); 0 unless it is set.
+    user_data: u32,
     // The number of the object, from 1 on, and that of the instance in it, from 0 on, as handles tell them.
     object: u32,
     instance: u32,

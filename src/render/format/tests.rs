@@ -27,11 +27,14 @@ fn formats_that_no_pass_has_are_refused_by_field() {
             TargetFormat { color: surface(Format::Rgba8Unorm), ..TargetFormat::surface() },
             "format.color[0].format",
         ),
-        (TargetFormat { contents: Contents::Measure, ..TargetFormat::surface() }, "format.color[0].format"),
+        (
+            TargetFormat { attachments: Attachments::Measure, ..TargetFormat::surface() },
+            "format.color[0].format",
+        ),
         (TargetFormat { color: blended, ..TargetFormat::surface() }, "format.color[1].blend"),
         (TargetFormat::surface().with_depth(None), "format.depth"),
         (TargetFormat::measure().with_samples(4), "format.samples"),
-        (TargetFormat { contents: Contents::Velocity, ..good() }, "format.color[0].format"),
+        (TargetFormat { attachments: Attachments::Velocity, ..good() }, "format.color[0].format"),
     ] {
         assert_eq!(format.validate().expect_err("refused").path, path, "{format:?}");
     }

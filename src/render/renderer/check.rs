@@ -60,7 +60,7 @@ impl Renderer {
         let own = self.format.output().filter(|_| layer == Layer::Own);
         let moves = own.map_or(layer == Layer::Velocity, OutputProgram::moves);
         if moves && !view.keeps_last {
-            let bound = "must keep the last frame: Scene::keep_last_frame";
+            let bound = "must keep the last frame: Scene::keep_motion_history";
             return Err(InputError::new("scene", "does not keep the last frame", bound));
         }
         for object in objects {

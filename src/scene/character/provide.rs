@@ -16,30 +16,30 @@ impl Character {
     /// memory ends, levels of detail must be coarser.
     pub(super) fn provide_pages(&mut self, gpu: &Gpu, seen: &SeenBy<'_>) -> Result<Provided, Error> {
         let SeenBy { views, object, instances } = *seen;
-        let coarsening = match self.runtimes.iter().all(Runtime::is_full) {
+        let lod_bias = match self.runtimes.iter().all(Runtime::is_full) {
             true => 1.0,
             false => self.provide_seen(gpu, &Seen::new(views, object, instances))?,
         };
         // After an error it says what was replaced before.
         let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);
-        Ok(Provided { coarsening, replaced })
+        Ok(Provided { lod_bias, replaced })
     }
 
     /// Provides pages for what is seen; the factor by which levels of detail must be coarser.
     fn provide_seen(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<f32, Error> {
         self.divide(gpu, seen)?;
         loop {
-            let coarsening = seen.coarsening(self.runtimes.iter().map(chunk));
+            let lod_bias = seen.lod_bias(self.runtimes.iter().map(chunk));
             let mut is_short = false;
             for runtime in &mut self.runtimes {
-                let needed = seen.pages(&runtime.slots, &runtime.paging, coarsening);
+                let needed = seen.pages(&runtime.slots, &runtime.paging, lod_bias);
                 let [has_other, ends] = runtime.provide(gpu, &needed)?;
                 let replaced = if has_other { Replaced::Buffers } else { Replaced::Nothing };
                 self.replaced = self.replaced.max(replaced);
                 is_short |= ends;
             }
             if !is_short {
-                return Ok(coarsening);
+                return Ok(lod_bias);
             }
             self.is_memory_short = true;
         }

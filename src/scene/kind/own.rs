@@ -76,7 +76,7 @@ impl OwnKind {
         let parts = self.kind.parts().iter().map(part).collect();
         let drawable = OwnDrawable::new(gpu, layouts, self.kind.indices(), parts)?;
         let draw = |part: &KindPart, list: u32| match part.levels.get(list as usize / 2) {
-            Some(range) => SceneDraw { indices: range.len() as u32, first_index: range.start, ..NOTHING },
+            Some(range) => SceneDraw { index_count: range.len() as u32, first_index: range.start, ..NOTHING },
             None => NOTHING,
         };
         let of_part = |part: &KindPart| (0..OBJECT_LISTS).map(|list| draw(part, list)).collect::<Vec<_>>();

@@ -126,7 +126,7 @@ pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) ->
             let level = list / 2;
             let Some(range) = part.indices.get(level as usize) else { return NOTHING };
             let first_index = buffers.level(level).first_index + range.start;
-            SceneDraw { indices: range.len() as u32, first_index, ..NOTHING }
+            SceneDraw { index_count: range.len() as u32, first_index, ..NOTHING }
         };
         (0..OBJECT_LISTS).map(draw).collect::<Vec<_>>()
     };
@@ -135,7 +135,7 @@ pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) ->
 
 /// A draw of nothing.
 pub(super) const NOTHING: SceneDraw =
-    SceneDraw { indices: 0, instances: 0, first_index: 0, base_vertex: 0, first_instance: 0 };
+    SceneDraw { index_count: 0, instance_count: 0, first_index: 0, base_vertex: 0, first_instance: 0 };
 
 /// A merged mesh, to be drawn from its own vertices, or from those in pages.
 pub(super) fn drawable(

@@ -40,7 +40,7 @@ impl Object {
         self.kind.adopt(other);
         self.chunks = chunks;
         self.mark_transition();
-        self.coarsening = 1.0;
+        self.lod_bias = 1.0;
         self.pending = None;
         (self.is_retuned, self.is_rebound, self.fitted) = (false, false, 0);
         self.instances.change_all();

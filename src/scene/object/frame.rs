@@ -13,7 +13,7 @@ use crate::scene::handles::{ObjectId, Slots};
 use crate::scene::layout::{Counted, CountedObject, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object_kind::{Fitted, Provided, Replaced, SeenBy};
-use crate::scene::quality::Shares;
+use crate::scene::quality::ErrorBudget;
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS};
 use crate::shared::render::scene_instances::SceneObject;
 
@@ -29,10 +29,10 @@ impl Object {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
         let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object(&all) };
         let seen = SeenBy { views, object: &lod, instances: self.instances.all() };
-        let Provided { coarsening, replaced } = self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
+        let Provided { lod_bias, replaced } = self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
         self.is_rebound |= replaced == Replaced::Buffers;
-        self.is_retuned |= coarsening != self.coarsening;
-        self.coarsening = coarsening;
+        self.is_retuned |= lod_bias != self.lod_bias;
+        self.lod_bias = lod_bias;
         Ok(replaced == Replaced::Chunks)
     }
 
@@ -55,7 +55,7 @@ impl Object {
             for chunk in &self.chunks {
                 staged.elements(&layout.objects, chunk.number, &[self.lod_object(chunk)])?;
             }
-            self.kind.stage_mesh_fraction(staged, self.coarsening * self.mesh_fraction)?;
+            self.kind.stage_mesh_fraction(staged, self.lod_bias * self.mesh_fraction)?;
         }
         self.kind.stage(staged, frame, now)
     }
@@ -65,7 +65,7 @@ impl Object {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        (pass, shares): (&AssignPass, Shares),
+        (pass, budget): (&AssignPass, ErrorBudget),
         staged: &mut Staged,
     ) -> Result<(), Error> {
         let is_new = self.fitted != layout.version;
@@ -84,8 +84,8 @@ impl Object {
             layout,
             is_new,
             assign: pass,
-            shares,
-            mesh_fraction: self.coarsening * self.mesh_fraction,
+            budget,
+            mesh_fraction: self.lod_bias * self.mesh_fraction,
             chunks: &self.chunks,
             thresholds: &self.thresholds(),
         };
@@ -128,14 +128,14 @@ pub(in crate::scene) fn laid_out(
     (version, keeps_last): (u64, bool),
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
-    let (mut all, mut draws, mut singles) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut all, mut draws, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
     for object in objects.iter_mut() {
         let levels = object.errors.len() as u32;
         for at in 0..object.chunks.len() {
             let chunk = &mut object.chunks[at];
             chunk.range = range;
             chunk.number = all.len();
-            chunk.lay_out_singles(&mut singles);
+            chunk.lay_out_sorted(&mut sorted);
             let instances = chunk.room();
             range.first += instances;
             range.first_list += 2 * levels * instances;
@@ -145,7 +145,7 @@ pub(in crate::scene) fn laid_out(
         }
     }
     let counted = Arc::new(Counted::new(objects));
-    Layout::new(gpu, (&all, draws, &singles), range, (version, keeps_last, counted))
+    Layout::new(gpu, (&all, draws, &sorted), range, (version, keeps_last, counted))
 }
 
 impl Counted {

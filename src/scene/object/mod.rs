@@ -22,7 +22,7 @@ use crate::scene::material::Looks;
 use crate::scene::mesh::{self, Drawn, MeshAtRest};
 use crate::scene::object_kind::ObjectKind;
 use crate::scene::options::CharacterOptions;
-use crate::scene::quality::Shares;
+use crate::scene::quality::ErrorBudget;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, TerrainSource};
 use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw, object_flags_word};
@@ -47,7 +47,7 @@ pub(crate) struct Object {
     pub(super) transition: Transition,
     pub(super) criterion: Criterion,
     /// The factor by which its levels are coarser than the views ask for: 1 unless memory has ended.
-    pub(super) coarsening: f32,
+    pub(super) lod_bias: f32,
     /// Whether the device does not know the factor yet, or whether the object is drawn.
     pub(super) is_retuned: bool,
     /// Whether the device does not know where what is drawn from new buffers lies.
@@ -82,7 +82,7 @@ impl Object {
             mesh_fraction,
             transition: Transition::default(),
             criterion: Criterion::default(),
-            coarsening: 1.0,
+            lod_bias: 1.0,
             is_retuned: false,
             is_rebound: false,
             handle: 0,
@@ -156,7 +156,7 @@ impl Object {
         layouts: &SceneLayouts,
         (model, options): (&Model, &CharacterOptions<'_>),
         capacity: usize,
-        (shares, keeps_last): (Shares, bool),
+        (budget, keeps_last): (ErrorBudget, bool),
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let mut merged = mesh::moving_merged(model)?;
@@ -165,7 +165,7 @@ impl Object {
         let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
         let drawn = (character.chunks_of_looks(gpu, layouts, &looks)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
-        let object = Self::new(character, (instances, sphere), (errors, shares.mesh), drawn);
+        let object = Self::new(character, (instances, sphere), (errors, budget.mesh), drawn);
         Ok(Self { looks: Some(looks), ..object })
     }
 
@@ -183,7 +183,7 @@ impl Object {
             first_list: chunk.range.first_list,
             first_draw: chunk.range.first_draw,
             parts: self.draws.len() as u32 / OBJECT_LISTS,
-            mesh_fraction: self.coarsening * self.mesh_fraction,
+            mesh_fraction: self.lod_bias * self.mesh_fraction,
             flags: object_flags_word(self.is_drawn().into(), self.transition.code(), self.criterion.code()),
             errors: error_vectors(&self.thresholds()).map(Into::into),
         }

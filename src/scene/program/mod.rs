@@ -95,7 +95,7 @@ impl KindProgram {
     /// | function | |
     /// |---|---|
     /// | `relievo_scene_placed(entry, position, normal, tangent, uv) -> relievo_SceneVertex` | a vertex of the model's space, at the instance's place |
-    /// | `relievo_scene_surface(fragment) -> Surface` | white, opaque, on the side that is seen, with the tint, the word and the numbers of the instance; the tint is not in the colour yet |
+    /// | `relievo_scene_surface(fragment) -> Surface` | white, opaque, on the side that is seen, with the tint, the user data and the numbers of the instance; the colour does not contain the tint yet |
     /// | `relievo_scene_last_placed(entry, position) -> vec3<f32>` | where a point of the model's space was in the last frame |
     /// | `relievo_scene_last_rigid(entry, position) -> vec3<f32>` | where a placed point was that does not move in the model's space |
     ///

@@ -65,7 +65,7 @@ pub struct ViewStatistics {
     /// The frame, as [`SceneStatistics::frame`].
     pub frame: u64,
     /// The largest number of pixels by which anything may have been off: that of [`Quality`](crate::scene::Quality), or that
-    /// of the object for which levels of detail had to be coarser ([`Scene::coarsening`]).
+    /// of the object for which levels of detail had to be coarser ([`Scene::lod_bias`]).
     pub pixels: f32,
     /// One for each object, in the order in which they were added.
     pub objects: Vec<ObjectStatistics>,

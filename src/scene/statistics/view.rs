@@ -18,7 +18,7 @@ struct About {
     /// The smallest focal length in pixels of its perspective cameras, if it has any.
     focal: Option<f32>,
     /// The factors by which levels are coarser, object by object; empty if all are 1.
-    coarsening: Vec<f32>,
+    lod_bias: Vec<f32>,
 }
 
 /// The counts of a view.
@@ -50,9 +50,9 @@ impl ViewCounts {
         objects: &Slots<Object>,
     ) {
         self.arrive();
-        let is_coarser = objects.iter().any(|object| object.coarsening != 1.0);
-        let coarsening = objects.iter().filter(|_| is_coarser).map(|object| object.coarsening).collect();
-        let about = About { frame, counted: self.counted.clone(), pixels, focal, coarsening };
+        let is_coarser = objects.iter().any(|object| object.lod_bias != 1.0);
+        let lod_bias = objects.iter().filter(|_| is_coarser).map(|object| object.lod_bias).collect();
+        let about = About { frame, counted: self.counted.clone(), pixels, focal, lod_bias };
         self.ring.record(encoder, about, |encoder, to| {
             encoder.copy_buffer_to_buffer(draws, 0, to, 0, draws.size());
         });
@@ -70,7 +70,7 @@ impl ViewCounts {
         let draws = bytemuck::pod_collect_to_vec::<u8, SceneDraw>(&bytes[..whole]);
         let objects: Vec<_> = (about.counted.objects.iter().enumerate())
             .map(|(at, counted)| {
-                let coarser = about.coarsening.get(at).copied().unwrap_or(1.0);
+                let coarser = about.lod_bias.get(at).copied().unwrap_or(1.0);
                 let factor = 1.0 + counted.mesh_fraction * (coarser - 1.0);
                 let pixels = coarser_pixels(about.pixels, factor, about.focal);
                 let levels = (0..counted.levels).map(|level| counted.level(level, &draws)).collect();
@@ -91,8 +91,8 @@ impl CountedObject {
             for part in 0..self.parts {
                 let at = (first + OBJECT_LISTS * part + list) as usize;
                 let Some(draw) = draws.get(at) else { continue };
-                found.instances += if part == 0 { draw.instances } else { 0 };
-                found.triangles += u64::from(draw.indices / 3) * u64::from(draw.instances);
+                found.instances += if part == 0 { draw.instance_count } else { 0 };
+                found.triangles += u64::from(draw.index_count / 3) * u64::from(draw.instance_count);
             }
         }
         found

@@ -76,7 +76,7 @@ pub(in crate::scene) async fn made(
         chunks.push(Chunk::new(slots, vec![Box::new(drawable)]));
     }
     let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
-    draws[0].indices = indices.len() as u32;
+    draws[0].index_count = indices.len() as u32;
     let (edge, spacing) = (config.edge_length(), config.terrain_scale);
     let terrain = Terrain { ground, edge, spacing, source: source.clone(), morphing };
     Ok((terrain, instances, (chunks, draws)))

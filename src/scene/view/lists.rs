@@ -7,7 +7,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
 use crate::lod::SelectView;
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
-use crate::lod::single::{SingleBuffers, SinglePass};
+use crate::lod::sorted::{SortedBuffers, SortedPass};
 use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::{InstancesInView, SceneLayouts};
@@ -19,7 +19,7 @@ use crate::shared::render::scene_view::SceneView;
 
 /// The draws of instances that are drawn one by one.
 #[derive(Debug)]
-pub(crate) struct Singles {
+pub(crate) struct SortedLists {
     pub job: Job,
     pub draws: Buffer<SceneDraw>,
     /// The list of each draw, which has one entry.
@@ -46,7 +46,7 @@ pub(crate) struct ViewLists {
     /// For each object what its kind has in the view by itself.
     pub(in crate::scene) in_view: Vec<Option<Box<dyn KindInView>>>,
     /// The draws of instances that are drawn one by one, if there are any.
-    pub singles: Option<Singles>,
+    pub sorted: Option<SortedLists>,
     /// The instances that are drawn one by one, from back to front.
     pub order: Vec<Ordered>,
     pub(super) select: Job,
@@ -59,7 +59,7 @@ impl ViewLists {
         gpu: &Gpu,
         layout: &Layout,
         (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
-        (select, list, single): (&SelectPass, &ListPass, &SinglePass),
+        (select, list, single): (&SelectPass, &ListPass, &SortedPass),
         (layouts, objects, map): (&SceneLayouts, &Slots<Object>, Option<&wgpu::TextureView>),
     ) -> Result<Self, Error> {
         let instances = layout.instances.len();
@@ -95,7 +95,7 @@ impl ViewLists {
         let group = layouts.view(gpu, drawn, &instances, map)?;
         let in_view = objects.iter().map(|object| object.kind.in_view(gpu, layouts, object.handle));
         Ok(Self {
-            singles: singles(gpu, layout, single, (&decisions, &arguments))?,
+            sorted: sorted(gpu, layout, single, (&decisions, &arguments))?,
             version: layout.version,
             lists,
             arguments,
@@ -140,18 +140,18 @@ fn in_view<'a>(
 }
 
 /// The draws of instances that are drawn one by one, if there are any, and the job that writes them.
-fn singles(
+fn sorted(
     gpu: &Gpu,
     layout: &Layout,
-    pass: &SinglePass,
+    pass: &SortedPass,
     (decisions, arguments): (&Buffer<u32>, &Buffer<SceneDraw>),
-) -> Result<Option<Singles>, Error> {
-    let (singles, count) = (&layout.singles, layout.singles.len());
+) -> Result<Option<SortedLists>, Error> {
+    let (sorted, count) = (&layout.sorted, layout.sorted.len());
     if count == 0 {
         return Ok(None);
     }
     let draws = Buffer::new(gpu, "draws of single instances", count)?;
     let entries = Buffer::new(gpu, "lists of one", count)?;
-    let buffers = SingleBuffers { singles, decisions, arguments, draws: &draws, entries: &entries };
-    Ok(Some(Singles { job: pass.prepare(gpu, buffers, count as u32)?, draws, entries }))
+    let buffers = SortedBuffers { sorted, decisions, arguments, draws: &draws, entries: &entries };
+    Ok(Some(SortedLists { job: pass.prepare(gpu, buffers, count as u32)?, draws, entries }))
 }

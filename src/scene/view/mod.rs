@@ -13,7 +13,7 @@ use crate::asset::Light;
 use crate::gpu::{Gpu, Staged, Uniform, Upload as _};
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
-use crate::lod::single::SinglePass;
+use crate::lod::sorted::SortedPass;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, instance_flags_mask};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
@@ -220,7 +220,7 @@ impl View {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        passes: (&SelectPass, &ListPass, &SinglePass),
+        passes: (&SelectPass, &ListPass, &SortedPass),
         (layouts, objects): (&SceneLayouts, &Slots<Object>),
     ) -> Result<(), Error> {
         let map = self.shadow.as_ref().map(|shadow| &shadow.map);
@@ -322,8 +322,8 @@ impl View {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);
             lists.list.dispatch(pass);
-            if let Some(singles) = &lists.singles {
-                singles.job.dispatch(pass);
+            if let Some(sorted) = &lists.sorted {
+                sorted.job.dispatch(pass);
             }
         }
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
-use relievo::scene::{Placement, Play, Quality, Scene, Shares, Transition};
+use relievo::scene::{ErrorBudget, Placement, Play, Quality, Scene, Transition};
 use relievo::skinning::add_levels;
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::merged::merged;
@@ -118,7 +118,7 @@ fn part_of_allowed(gpu: &Gpu, model: &Model, steps: u32) -> f64 {
     let sphere = BoundingSphere::in_clips(model);
     let (size, scale) = (1.4_f32, 0.7 / sphere.radius);
     let mut scene = Scene::new(gpu).expect("compiled");
-    scene.set_shares(Shares { mesh: 1.0, bones: 0.0, influences: 0.0 }).expect("valid");
+    scene.set_error_budget(ErrorBudget { mesh: 1.0, bones: 0.0, influences: 0.0 }).expect("valid");
     let object = scene.add_character(model, 1).expect("added");
     let middle = Vec3::new(0.0, 0.5 * size, 0.0);
     let placement =

@@ -5,7 +5,7 @@ use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 use relievo::asset::{Clip, Mesh, Model};
 use relievo::gpu::Gpu;
 use relievo::mesh::ProgressiveMesh;
-use relievo::scene::{Camera, Placement, Quality, Scene, Shares, Transition, View};
+use relievo::scene::{Camera, ErrorBudget, Placement, Quality, Scene, Transition, View};
 use relievo::skinning::add_levels;
 use relievo::skinning::merged::merged;
 use relievo_samples::rock;
@@ -60,7 +60,7 @@ struct Stage {
 impl Stage {
     fn new(gpu: &Gpu, model: &Model) -> Self {
         let (mut scene, mut view) = super::scene(gpu);
-        scene.set_shares(Shares { mesh: 1.0, bones: 0.0, influences: 0.0 }).expect("valid");
+        scene.set_error_budget(ErrorBudget { mesh: 1.0, bones: 0.0, influences: 0.0 }).expect("valid");
         let object = match model.clips.is_empty() {
             true => scene.add_mesh(model, 1),
             false => scene.add_character(model, 1),

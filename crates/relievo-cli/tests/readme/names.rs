@@ -67,7 +67,7 @@ fn members() {
     let _ = TargetFormat::of_output; // TargetFormat::of_output
     let _ = Scene::draws; // Scene::draws
     let _ = Scene::health; // Scene::health
-    let _ = Scene::keep_last_frame; // Scene::keep_last_frame
+    let _ = Scene::keep_motion_history; // Scene::keep_motion_history
     let _ = Scene::set_material; // Scene::set_material
     let _ = Scene::set_transition; // Scene::set_transition
     let _ = Simplified::hash; // Simplified::hash

@@ -77,7 +77,7 @@ pub static OPERATIONS: &[Operation] = operations![
     skinning / skin,
     lod / select,
     lod / list,
-    lod / single,
+    lod / sorted,
     lod / assign,
     lod / attach,
     // Its benchmark draws pictures, and comes last: lavapipe's timestamps are too short afterwards (see its cases).

@@ -28,8 +28,8 @@ pub struct ObjectReport {
 /// What a frame drew of an object.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ObjectFrame {
-    /// [`Scene::coarsening`](relievo::scene::Scene::coarsening).
-    pub coarsening: f32,
+    /// [`Scene::lod_bias`](relievo::scene::Scene::lod_bias).
+    pub lod_bias: f32,
     /// What was drawn, level by level; of a split picture, what both views drew.
     pub levels: Vec<DrawnLevel>,
     /// Number of bones that were interpolated; missing unless it is a character.
@@ -226,7 +226,7 @@ fn drawn(player: &mut Player) -> Result<Vec<ObjectFrame>, Error> {
     let of = |object: &WorldObject| {
         let own = characters.iter().flatten().find(|own| own.object == object.object);
         Ok(ObjectFrame {
-            coarsening: world.scene.coarsening(object.object)?,
+            lod_bias: world.scene.lod_bias(object.object)?,
             levels: levels(object.object),
             bones: own.map(|own| own.bones),
             clusters: own.map(|own| own.clusters),

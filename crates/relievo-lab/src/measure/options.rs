@@ -190,7 +190,7 @@ impl Serialize for Detail {
 }
 
 /// How a crowd is skinned and drawn. Its scene permits the sum of these pixels and those of the gate, and divides them by
-/// [`Shares`](relievo::scene::Shares) in proportion.
+/// [`ErrorBudget`](relievo::scene::ErrorBudget) in proportion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawnOptions {
     /// The influences that vertices follow; no geomorph. Default: those that half a pixel permits.

@@ -110,7 +110,7 @@ impl Player {
         let format = if depth == Depth::Reversed { format.reversed() } else { format };
         let target = Offscreen::with_format(&gpu, size, format)?;
         if layer == Layer::Velocity {
-            world.scene.keep_last_frame(true)?;
+            world.scene.keep_motion_history(true)?;
         }
         let shadow = match world.shadow.filter(|_| layer == Layer::Color) {
             Some(SunOptions { size, range }) => Some((SunShadow::new(&mut world.scene, size)?, range)),

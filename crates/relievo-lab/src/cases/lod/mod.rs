@@ -4,7 +4,7 @@ pub mod assign;
 pub mod attach;
 pub mod list;
 pub mod select;
-pub mod single;
+pub mod sorted;
 
 use glam::{IVec3, Mat4, Quat, Vec3};
 use relievo::InputError;

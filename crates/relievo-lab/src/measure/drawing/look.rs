@@ -58,10 +58,10 @@ impl Look {
         (placements, camera): (&[relievo::scene::Placement], Camera),
         parts: Parts,
     ) -> Result<Self, Error> {
-        let (quality, shares) = parts.quality();
+        let (quality, budget) = parts.quality();
         let mut scene = Scene::new(gpu)?;
         let crowd = scene.add_character(&drawn.model, placements.len())?;
-        scene.set_shares(shares)?;
+        scene.set_error_budget(budget)?;
         if parts.mesh > 0.0 {
             scene.set_transition(crowd, drawn.transition)?;
         }

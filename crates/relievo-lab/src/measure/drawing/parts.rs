@@ -1,7 +1,7 @@
 //! The pixels that each part of level of detail may take, as a scene takes them: their sum, and fractions of it.
 
 use relievo::InputError;
-use relievo::scene::{Quality, Shares};
+use relievo::scene::{ErrorBudget, Quality};
 
 use crate::measure::gates::GateMode;
 use crate::measure::options::DrawnOptions;
@@ -32,12 +32,12 @@ impl Parts {
     }
 
     /// The quality of a view, and the shares of its scene.
-    pub fn quality(&self) -> (Quality, Shares) {
+    pub fn quality(&self) -> (Quality, ErrorBudget) {
         let Self { bones, influences, mesh } = *self;
         let pixels = bones + influences + mesh;
         let share = |part: f32| if pixels > 0.0 { part / pixels } else { 0.0 };
-        let shares = Shares { mesh: share(mesh), bones: share(bones), influences: share(influences) };
-        (Quality { pixels }, shares)
+        let budget = ErrorBudget { mesh: share(mesh), bones: share(bones), influences: share(influences) };
+        (Quality { pixels }, budget)
     }
 }
 
@@ -47,12 +47,12 @@ mod tests {
 
     #[test]
     fn shares_are_in_proportion_and_add_up() {
-        let (quality, shares) = Parts { bones: 0.5, influences: 0.25, mesh: 0.25 }.quality();
-        assert_eq!((quality.pixels, shares.bones, shares.influences, shares.mesh), (1.0, 0.5, 0.25, 0.25));
-        let (quality, shares) = Parts { bones: 0.0, influences: 0.0, mesh: 3.0 }.quality();
-        assert_eq!((quality.pixels, shares.bones, shares.influences, shares.mesh), (3.0, 0.0, 0.0, 1.0));
-        let (quality, shares) = Parts::NONE.quality();
-        assert_eq!((quality.pixels, shares.bones + shares.influences + shares.mesh), (0.0, 0.0));
+        let (quality, budget) = Parts { bones: 0.5, influences: 0.25, mesh: 0.25 }.quality();
+        assert_eq!((quality.pixels, budget.bones, budget.influences, budget.mesh), (1.0, 0.5, 0.25, 0.25));
+        let (quality, budget) = Parts { bones: 0.0, influences: 0.0, mesh: 3.0 }.quality();
+        assert_eq!((quality.pixels, budget.bones, budget.influences, budget.mesh), (3.0, 0.0, 0.0, 1.0));
+        let (quality, budget) = Parts::NONE.quality();
+        assert_eq!((quality.pixels, budget.bones + budget.influences + budget.mesh), (0.0, 0.0));
         // Whatever is rounded, a scene takes them.
         for part in [1e-30, 1e-3, 1.0 / 3.0, 0.1, 7.7, 1e6] {
             Parts { bones: part, influences: 1.0 / 3.0, mesh: 0.7 }.quality().1.validate().expect("in range");

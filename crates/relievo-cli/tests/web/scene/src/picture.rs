@@ -67,7 +67,7 @@ impl World {
     /// Builds a meadow: tufts of grass, a kind of the caller's, on a pavement in the sun. The last frame is kept.
     pub async fn meadow(gpu: &Gpu) -> Result<Self, Error> {
         let mut scene = Scene::new_async(gpu).await?;
-        scene.keep_last_frame(true)?;
+        scene.keep_motion_history(true)?;
         let bricks = BuiltInMap::Bricks;
         let relief = Relief::wall(1.0, bricks.height_map(128)?, bricks.albedo(128)?);
         let floor = scene.add_relief_async(&relief, 1).await?;

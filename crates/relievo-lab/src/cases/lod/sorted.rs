@@ -1,9 +1,9 @@
-//! Parity and benchmark cases of `kernels/lod/single.wgsl`.
+//! Parity and benchmark cases of `kernels/lod/sorted.wgsl`.
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Job};
-use relievo::lod::single::reference::{draws, entries};
-use relievo::lod::single::{Single, SingleBuffers, SinglePass};
+use relievo::lod::sorted::reference::{draws, entries};
+use relievo::lod::sorted::{SortedBuffers, SortedDraw, SortedPass};
 use relievo::lod::{OBJECT_LISTS, SceneDraw};
 use relievo::shared::lod::object::{decision_word, list_entry_instance};
 
@@ -12,32 +12,32 @@ use crate::cases::measure;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Bench, Cases, compare};
 
-/// Random singles with decisions of which a part sees nothing, and random draws.
+/// Random sorted with decisions of which a part sees nothing, and random draws.
 pub(crate) struct Given {
-    pub singles: Vec<Single>,
+    pub sorted: Vec<SortedDraw>,
     pub decisions: Vec<u32>,
     pub arguments: Vec<SceneDraw>,
 }
 
 impl Given {
-    /// So many singles of as many instances and a few parts.
+    /// So many sorted of as many instances and a few parts.
     pub(crate) fn new(count: usize) -> Self {
         let mut draw = Draw::new(count as u32 ^ 0x51b1);
         let parts = 7;
-        let single = |draw: &mut Draw| Single {
+        let single = |draw: &mut Draw| SortedDraw {
             instance: draw.word() % count.max(1) as u32,
             first_draw: 3 + OBJECT_LISTS * (draw.word() % parts),
             slot: list_entry_instance(draw.word()),
         };
         let argument = |draw: &mut Draw| SceneDraw {
-            indices: draw.word() % 1000,
-            instances: draw.word(),
+            index_count: draw.word() % 1000,
+            instance_count: draw.word(),
             first_index: draw.word(),
             base_vertex: draw.word(),
             first_instance: draw.word(),
         };
         Self {
-            singles: (0..count).map(|_| single(&mut draw)).collect(),
+            sorted: (0..count).map(|_| single(&mut draw)).collect(),
             decisions: (0..count)
                 .map(|_| match (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2) {
                     0 => 0,
@@ -52,22 +52,22 @@ impl Given {
     fn prepared(
         &self,
         gpu: &Gpu,
-        pass: &SinglePass,
+        pass: &SortedPass,
         (draws, entries): (&Buffer<SceneDraw>, &Buffer<u32>),
     ) -> Result<Job, Error> {
-        let buffers = SingleBuffers {
-            singles: &Buffer::from_slice(gpu, "singles", &self.singles)?,
+        let buffers = SortedBuffers {
+            sorted: &Buffer::from_slice(gpu, "sorted", &self.sorted)?,
             decisions: &Buffer::from_slice(gpu, "decisions", &self.decisions)?,
             arguments: &Buffer::from_slice(gpu, "arguments", &self.arguments)?,
             draws,
             entries,
         };
-        pass.prepare(gpu, buffers, self.singles.len() as u32)
+        pass.prepare(gpu, buffers, self.sorted.len() as u32)
     }
 
     /// What the reference writes.
     pub(crate) fn expected(&self) -> Vec<SceneDraw> {
-        draws(&self.singles, &self.decisions, &self.arguments)
+        draws(&self.sorted, &self.decisions, &self.arguments)
     }
 }
 
@@ -77,7 +77,7 @@ impl Given {
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = SinglePass::new(gpu)?;
+    let pass = SortedPass::new(gpu)?;
     for count in [1, 63, 64, 65, 500] {
         let given = Given::new(count);
         let output = Poisoned::<SceneDraw>::new(gpu, count)?;
@@ -87,7 +87,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let expected = given.expected();
         let same = |actual: &[SceneDraw]| compare::exact(words(actual), words(&expected));
         cases.check(format!("{count} draws"), &output, same).await?;
-        let expected = entries(&given.singles, &given.decisions);
+        let expected = entries(&given.sorted, &given.decisions);
         cases.exact(format!("{count} lists of one"), &lists, &expected).await?;
     }
     Ok(())
@@ -103,7 +103,7 @@ fn words(draws: &[SceneDraw]) -> &[u32] {
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let pass = SinglePass::new(gpu)?;
+    let pass = SortedPass::new(gpu)?;
     for count in [1_000, 100_000] {
         let given = Given::new(count);
         let outputs = (&Buffer::new(gpu, "draws", count)?, &Buffer::new(gpu, "entries", count)?);
@@ -112,7 +112,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let words = 15 * count;
         let name = format!("{count} draws");
         measure(bench, name, (count, "draw"), words, &|encoder| job.record(encoder), || {
-            (given.expected(), entries(&given.singles, &given.decisions))
+            (given.expected(), entries(&given.sorted, &given.decisions))
         })?;
     }
     Ok(())
@@ -127,20 +127,20 @@ mod tests {
         let given = Given::new(65);
         let right = given.expected();
         assert!(compare::exact(words(&right), words(&right)).holds);
-        let unseen = given.singles.iter().position(|single| given.decisions[single.instance as usize] == 0);
+        let unseen = given.sorted.iter().position(|single| given.decisions[single.instance as usize] == 0);
         for at in [unseen.expect("one of 65"), 64] {
             let mut wrong = right.clone();
-            wrong[at].instances ^= 1;
+            wrong[at].instance_count ^= 1;
             assert!(!compare::exact(words(&wrong), words(&right)).holds);
         }
-        let lists = entries(&given.singles, &given.decisions);
+        let lists = entries(&given.sorted, &given.decisions);
         let moved = lists.iter().position(|entry| entry >> 20 > 0).expect("one of 65");
-        let still = entries(&given.singles, &[0; 65]);
+        let still = entries(&given.sorted, &[0; 65]);
         assert!(still[moved] != lists[moved] && !compare::exact(&still, &lists).holds);
-        let mut other = given.singles.clone();
+        let mut other = given.sorted.clone();
         other[3].first_draw += OBJECT_LISTS;
         let other = draws(&other, &vec![2; 65], &given.arguments);
-        let all = draws(&given.singles, &vec![2; 65], &given.arguments);
+        let all = draws(&given.sorted, &vec![2; 65], &given.arguments);
         assert!(!compare::exact(words(&other), words(&all)).holds);
     }
 }

@@ -9,6 +9,6 @@
 mod pass;
 pub mod reference;
 
-pub use crate::shared::lod::single::Single;
+pub use crate::shared::lod::sorted::SortedDraw;
 #[cfg(feature = "gpu")]
-pub use pass::{SingleBuffers, SinglePass};
+pub use pass::{SortedBuffers, SortedPass};

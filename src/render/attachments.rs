@@ -9,7 +9,7 @@ use super::output::OutputProgram;
 /// kind need a depth attachment, and no blending.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
-pub enum Contents {
+pub enum Attachments {
     /// One colour in linear light, of floats: [`Layer::Color`] if it is there, [`Layer::Transparent`] if WebGPU can blend
     /// it without features, [`Layer::Depth`] if there is depth.
     #[default]
@@ -29,7 +29,7 @@ pub enum Contents {
 /// What a colour must be, and in words.
 type Wanted = (fn(Format) -> bool, &'static str);
 
-impl Contents {
+impl Attachments {
     /// The layers that such a target shows besides depth.
     pub(super) fn layers(&self) -> &'static [Layer] {
         match self {

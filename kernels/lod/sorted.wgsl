@@ -3,7 +3,7 @@
 import package::wgsl::lod::object::{SceneDraw, decision_list, decision_morph, list_entry_word};
 
 // A part of an instance.
-struct Single {
+struct SortedDraw {
     // The index of the instance.
     instance: u32,
     // The index of the part's first draw.
@@ -12,24 +12,24 @@ struct Single {
     slot: u32,
 }
 
-struct SingleParams {
+struct SortedParams {
     // Number of draws.
     count: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: SingleParams;
+@group(0) @binding(0) var<uniform> params: SortedParams;
 // The parts of instances. Their instances and draws must lie inside `decisions` and `arguments`.
-// length: singles
-@group(0) @binding(1) var<storage, read> singles: array<Single>;
+// length: sorted
+@group(0) @binding(1) var<storage, read> sorted: array<SortedDraw>;
 // The decision word of each instance of the scene.
 @group(0) @binding(2) var<storage, read> decisions: array<u32>;
 // For each part of each object a draw for each list.
 @group(0) @binding(3) var<storage, read> arguments: array<SceneDraw>;
-// Written: one for each of `singles`.
-// length: singles
+// Written: one for each of `sorted`.
+// length: sorted
 @group(0) @binding(4) var<storage, read_write> draws: array<SceneDraw>;
 // Written, for each draw the one entry of its list.
-// length: singles
+// length: sorted
 @group(0) @binding(5) var<storage, read_write> entries: array<u32>;
 
 @compute @workgroup_size(64)
@@ -38,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     if index >= params.count {
         return;
     }
-    let single = singles[index];
+    let single = sorted[index];
     let decision = decisions[single.instance];
     entries[index] = list_entry_word(single.slot, decision_morph(decision));
     if decision == 0u {
@@ -46,5 +46,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         return;
     }
     let draw = arguments[single.first_draw + decision_list(decision) - 1u];
-    draws[index] = SceneDraw(draw.indices, 1u, draw.first_index, draw.base_vertex, 0u);
+    draws[index] = SceneDraw(draw.index_count, 1u, draw.first_index, draw.base_vertex, 0u);
 }

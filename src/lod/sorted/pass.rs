@@ -1,0 +1,37 @@
+//! The GPU pass of `kernels/lod/sorted.wgsl`.
+
+use crate::Error;
+use crate::gpu::bindings::lod::sorted as bindings;
+use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
+use crate::shared::lod::sorted::SortedParams;
+
+/// What the draws of single instances are made from, and where they go.
+#[doc(inline)]
+pub use bindings::Buffers as SortedBuffers;
+
+/// Writes the draws of single instances.
+#[derive(Debug, Clone)]
+pub struct SortedPass {
+    kernel: Kernel,
+}
+
+impl SortedPass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu)? })
+    }
+
+    /// Prepares the draws of the first `count` of the sorted. Record it after [`select`](crate::lod::select).
+    ///
+    /// # Errors
+    /// [`InputError`](crate::InputError) for buffers with fewer; [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, buffers: SortedBuffers<'_>, count: u32) -> Result<Job, Error> {
+        let uniform = Uniform::new(gpu, "single", &SortedParams { count })?;
+        let lengths = bindings::Lengths { sorted: count as usize };
+        let group = buffers.bind(gpu, &self.kernel, &uniform, &lengths)?;
+        Ok(Job::spread(gpu, "lod/sorted", (&self.kernel, group), count)?)
+    }
+}
