@@ -6,7 +6,7 @@
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::{Gpu, Options};
-use relievo::render::{Layer, Offscreen, Renderer};
+use relievo::render::{Layer, Offscreen, Renderer, TargetFormat};
 use relievo::scene::{Camera, Placement, Play, Quality, Scene};
 use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::skinning::{add_levels, poses_of};
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             scene.play(instance, &Play { start, ..Play::new("0") })?;
         }
     }
-    let target = Offscreen::new(&gpu, SIZE, true, 4, false)?; // In your program: any targets.
+    let target = Offscreen::with_format(&gpu, SIZE, TargetFormat::srgb().with_samples(4))?; // In your program: any targets.
     let mut renderer = Renderer::new(&gpu, target.format())?;
     renderer.prepare(&scene)?;
     let mut view = scene.view(Quality { pixels: 0.5 })?;

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // A frame of a program without a window; `Scene` shows how others draw into their own passes.
     let eye = DVec3::new(x, feet.height + 40.0, z).as_vec3();
-    let target = Offscreen::new(&gpu, [960, 540], true, 1, false)?;
+    let target = Offscreen::new(&gpu, [960, 540])?;
     let camera = Camera::looking_at(eye, Vec3::new(192.0, 0.0, 160.0), 0.8, [1.0, 2000.0], target.size());
     target.draw(&mut scene, camera, [0.36, 0.55, 0.80])?;
     target.read(&gpu)?.save("embed.png")?;

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use relievo::asset::Light;
 use relievo::gpu::{Gpu, Options};
-use relievo::render::{Layer, Offscreen, Renderer, SunShadow};
+use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainSource};
 use relievo::skinning::add_levels;
 use relievo::terrain::config::Config;
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let direction = Vec3::new(-0.7, 0.45, 0.3); // towards the light
     scene.set_light(Light { direction, color: Vec3::new(1.4, 1.3, 1.1), ambient: 0.22 })?;
 
-    let target = Offscreen::new(&gpu, [960, 540], true, 4, false)?; // with colour, 4 samples a pixel
+    let target = Offscreen::with_format(&gpu, [960, 540], TargetFormat::srgb().with_samples(4))?;
     let mut shadow = SunShadow::new(&mut scene, 4096)?; // texels along an edge of its map
     let mut renderer = Renderer::new(&gpu, target.format())?;
     renderer.prepare(&scene)?;

@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     let (pipeline, group) = pipeline(gpu.device(), &shader, &textures);
 
-    let target = Offscreen::new(&gpu, [640, 400], true, 1, false)?;
+    let target = Offscreen::new(&gpu, [640, 400])?;
     let mut encoder = gpu.encoder("wall");
     target.record(&mut encoder, [0.0; 3], |pass| {
         pass.set_pipeline(&pipeline);

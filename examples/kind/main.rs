@@ -8,7 +8,7 @@ mod grass;
 use glam::{DVec3, Vec3};
 use relievo::asset::Light;
 use relievo::gpu::{Gpu, Options};
-use relievo::render::{Layer, Offscreen, Renderer, SunShadow};
+use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainSource};
 use relievo::terrain::config::Config;
 use relievo_samples::creature;
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ambient: 0.3,
     })?;
 
-    let target = Offscreen::new(&gpu, [960, 540], true, 4, false)?;
+    let target = Offscreen::with_format(&gpu, [960, 540], TargetFormat::srgb().with_samples(4))?;
     let mut shadow = SunShadow::new(&mut scene, 4096)?;
     let mut renderer = Renderer::new(&gpu, target.format())?;
     renderer.prepare(&scene)?;

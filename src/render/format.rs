@@ -63,6 +63,11 @@ impl TargetFormat {
         Self { color: vec![Some(color.into())], ..Self::depth_only(wgpu::TextureFormat::Depth32Float) }
     }
 
+    /// `Rgba8UnormSrgb` without blending, `Depth32Float` that grows with distance, and one sample: pictures as PNG files have them.
+    pub fn srgb() -> Self {
+        Self::new(wgpu::TextureFormat::Rgba8UnormSrgb)
+    }
+
     /// No colour, for shadow maps and prepasses of their own: depth that grows with distance, and one sample.
     pub fn depth_only(format: wgpu::TextureFormat) -> Self {
         let depth = Some(DepthFormat { format, reversed: false });

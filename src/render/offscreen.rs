@@ -30,7 +30,7 @@ use crate::{Error, InputError};
 /// let gpu = Gpu::headless(&Options::default())?;
 /// let mut scene = Scene::new(&gpu)?;
 /// scene.add_terrain(&TerrainSource::new(Config::new(33, 6.0, "any text")?))?;
-/// let target = Offscreen::new(&gpu, [96, 64], true, 1, false)?;
+/// let target = Offscreen::new(&gpu, [96, 64])?;
 /// let camera = Camera::framing(DVec3::new(0.0, -6.0, 0.0), DVec3::new(32.0, 6.0, 32.0), target.size());
 /// target.draw(&mut scene, camera, [0.36, 0.55, 0.80])?;
 /// let picture = target.read(&gpu)?;
@@ -53,24 +53,13 @@ struct Attachment {
 }
 
 impl Offscreen {
-    /// A target of `size` pixels: sRGB colour if `has_color`, and `Depth32Float`.
+    /// A target of `size` pixels of [`TargetFormat::srgb`]: width and height. [`Offscreen::with_format`] makes others, as with 4
+    /// samples a pixel.
     ///
     /// # Errors
-    /// [`InputError`] for another number of samples than 1 and 4, and for a size of 0 or beyond what the device allows;
-    /// [`GpuError`].
-    pub fn new(
-        gpu: &Gpu,
-        size: [u32; 2],
-        has_color: bool,
-        samples: u32,
-        is_reversed: bool,
-    ) -> Result<Self, Error> {
-        let format = match has_color {
-            true => TargetFormat::new(COLOR_FORMAT),
-            false => TargetFormat::depth_only(DEPTH_FORMAT),
-        };
-        let format = format.with_samples(samples);
-        Self::with_format(gpu, size, if is_reversed { format.reversed() } else { format })
+    /// [`InputError`] for a size of 0 or beyond what the device allows; [`GpuError`].
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
+        Self::with_format(gpu, size, TargetFormat::srgb())
     }
 
     /// A target of `size` pixels in linear light, `Rgba32Float`, whose values depend on no driver's rounding or encoding; with

@@ -101,7 +101,8 @@ impl Instances {
     /// Adds an instance, if there is room; returns its index and its generation.
     pub fn spawn(&mut self, placement: &Placement, sphere: &BoundingSphere) -> Option<[u32; 2]> {
         let index = self.free.pop()?;
-        self.all[index as usize] = SceneInstance { flags: flags(u16::MAX, true), ..NOBODY };
+        let flags = instance_flags_word(INSTANCE_ALIVE | INSTANCE_CASTS, u16::MAX.into());
+        self.all[index as usize] = SceneInstance { flags, ..NOBODY };
         self.change(index, |instance| {
             place(instance, placement);
             bound(instance, sphere);
@@ -172,14 +173,15 @@ impl Instances {
     }
 }
 
-/// Sets the visibility mask of an instance that exists, and whether it casts.
-pub(super) fn set_visibility(instance: &mut SceneInstance, mask: u16, casts: bool) {
-    instance.flags = flags(mask, casts) | instance.flags & (INSTANCE_CARRIES | INSTANCE_FOLLOWS);
+/// Sets the visibility mask of an instance.
+pub(super) fn set_mask(instance: &mut SceneInstance, mask: u16) {
+    let all = INSTANCE_ALIVE | INSTANCE_CASTS | INSTANCE_CARRIES | INSTANCE_FOLLOWS;
+    instance.flags = instance_flags_word(instance.flags & all, mask.into());
 }
 
-/// The flags of an instance that exists.
-fn flags(mask: u16, casts: bool) -> u32 {
-    instance_flags_word(INSTANCE_ALIVE | if casts { INSTANCE_CASTS } else { 0 }, mask.into())
+/// Sets whether an instance casts shadows.
+pub(super) fn set_casts(instance: &mut SceneInstance, casts: bool) {
+    instance.flags = instance.flags & !INSTANCE_CASTS | if casts { INSTANCE_CASTS } else { 0 };
 }
 
 /// Sets the position, rotation and scale of an instance. The placement must be checked.

@@ -13,7 +13,7 @@ pub use drawn::{DrawnAs, DrawnInstance};
 
 impl Scene {
     /// All instances of an object, in the order in which views list them. Those of terrain are its patches: they can be
-    /// hidden ([`Scene::set_visibility`]), but neither moved, removed nor tinted.
+    /// hidden ([`Scene::set_visibility_mask`]), but neither moved, removed nor tinted.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.

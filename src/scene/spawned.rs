@@ -111,17 +111,26 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets the visibility mask of an instance, and whether it casts shadows. At first all bits are set, and it casts. A view
-    /// sees instances that share a bit with its own mask ([`View::set_mask`](crate::scene::View::set_mask)), and, if it is
-    /// for shadows, that cast them ([`View::set_casters_only`](crate::scene::View::set_casters_only)).
+    /// Sets the visibility mask of an instance, `u16::MAX` at first. A view sees the instances whose masks share a bit with its
+    /// own ([`View::set_mask`](crate::scene::View::set_mask)); a mask of 0 hides the instance everywhere.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
-    pub fn set_visibility(&mut self, instance: InstanceId, mask: u16, casts: bool) -> Result<(), InputError> {
+    pub fn set_visibility_mask(&mut self, instance: InstanceId, mask: u16) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
-        object.instances.change(instance.index, |instance| {
-            instances::set_visibility(instance, mask, casts);
-        });
+        object.instances.change(instance.index, |instance| instances::set_mask(instance, mask));
+        Ok(())
+    }
+
+    /// Sets whether an instance casts shadows; at first it does. Views of casters alone
+    /// ([`View::set_casters_only`](crate::scene::View::set_casters_only)), as that of a
+    /// [`SunShadow`](crate::render::SunShadow), leave out the others.
+    ///
+    /// # Errors
+    /// [`InputError`] for an instance that does not exist any more.
+    pub fn set_casts_shadow(&mut self, instance: InstanceId, casts: bool) -> Result<(), InputError> {
+        let object = self.instance_mut(instance)?;
+        object.instances.change(instance.index, |instance| instances::set_casts(instance, casts));
         Ok(())
     }
 

@@ -63,7 +63,7 @@ fn scene(gpu: &Gpu, model: &Model) -> RgbaImage {
         let walker = scene.spawn(crowd, Placement::at_world(place)).expect("room");
         scene.play(walker, &Play { start: -0.2 * at as f64, ..Play::new("0") }).expect("a clip");
     }
-    let target = Offscreen::new(gpu, [160, 90], true, 1, false).expect("a target");
+    let target = Offscreen::new(gpu, [160, 90]).expect("a target");
     let mut renderer = Renderer::new(gpu, target.format()).expect("compiled");
     renderer.prepare(&scene).expect("compiled");
     let mut view = scene.view(Quality { pixels: 4.0 }).expect("a view");

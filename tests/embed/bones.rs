@@ -41,8 +41,8 @@ fn meshes_follow_bones() {
     let (mut attached, mut placed) = (world.view(0.0), world.view(0.0));
     attached.set_mask(0b01);
     placed.set_mask(0b10);
-    world.scene.set_visibility(carried, 0b01, true).expect("there");
-    world.scene.set_visibility(free, 0b10, true).expect("there");
+    world.scene.set_visibility_mask(carried, 0b01).expect("there");
+    world.scene.set_visibility_mask(free, 0b10).expect("there");
     world.scene.attach(carried, carrier, "40", offset()).expect("a bone");
     assert_eq!(world.scene.attached_to(carried).expect("there"), Some((carrier, BONE)));
     let frame = Frame::plain(&gpu, SIZE);
@@ -105,16 +105,16 @@ fn without_its_character(
 ) {
     let gpu = world.scene.gpu().clone();
     let carrier = world.crowd[1];
-    world.scene.set_visibility(free, 0, true).expect("there");
+    world.scene.set_visibility_mask(free, 0).expect("there");
     let renderer = frame.renderer(&gpu, &world.scene);
     let mut shot = |world: &mut World| frame.shot(&mut world.scene, view, &renderer);
-    world.scene.set_visibility(carrier, 0, true).expect("there");
+    world.scene.set_visibility_mask(carrier, 0).expect("there");
     let both_hidden = shot(world);
-    world.scene.set_visibility(carried, 0, true).expect("there");
+    world.scene.set_visibility_mask(carried, 0).expect("there");
     assert!(shot(world) == both_hidden, "a mesh without its character");
-    world.scene.set_visibility(carrier, u16::MAX, true).expect("there");
+    world.scene.set_visibility_mask(carrier, u16::MAX).expect("there");
     let alone = shot(world);
-    world.scene.set_visibility(carried, u16::MAX, true).expect("there");
+    world.scene.set_visibility_mask(carried, u16::MAX).expect("there");
     let together = shot(world);
     assert!(together != alone && alone != both_hidden, "no mesh on its bone");
     let aside = Placement { offset: Vec3::new(2.0, 9.0, 0.0), ..Placement::default() };

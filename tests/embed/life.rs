@@ -29,7 +29,7 @@ fn stale_handles_are_errors() {
     assert_eq!(path(scene.play(old, &Play::new("walk"))), "instance");
     assert_eq!(path(scene.set_tint(old, [1.0; 4])), "instance");
     assert_eq!(path(scene.set_user_data(old, 3)), "instance");
-    assert_eq!(path(scene.set_visibility(old, 1, true)), "instance");
+    assert_eq!(path(scene.set_visibility_mask(old, 1)), "instance");
     assert_eq!(scene.play(new, &Play::new("hop")).expect_err("refused").path, "play.clip");
     assert_eq!(scene.set_tint(new, [0.0, 2.0, 0.0, 1.0]).expect_err("refused").path, "tint[1]");
     scene.remove(world.creature).expect("there");

@@ -62,7 +62,7 @@ fn patches_of_terrain_stay() {
     assert_eq!(wrong(scene.move_to(patch, Placement::default())), refused);
     assert_eq!(wrong(scene.despawn(patch)), refused);
     assert_eq!(wrong(scene.set_tint(patch, [0.5; 4])), refused);
-    scene.set_visibility(patch, 0, true).expect("may be hidden");
+    scene.set_visibility_mask(patch, 0).expect("may be hidden");
     let twice = TerrainSource::new(Config::new(33, 6.0, "twice").expect("valid"));
     let twice = twice.with_patches(&[[0, 0], [1, 0], [0, 0]]);
     assert_eq!(wrong(scene.add_terrain(&twice)), ["patches[2]", "[0, 0]"]);

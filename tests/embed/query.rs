@@ -116,7 +116,7 @@ fn rays_have_limits_and_masks() {
     assert!((same.distance - hit.distance).abs() < 1e-9);
     assert_eq!(first(&scene, &Ray { limit: hit.distance - 0.01, ..ray }), None);
     assert_eq!(first(&scene, &Ray { offset: ray.offset + DVec3::Y * 90.0, ..ray }), None);
-    scene.set_visibility(front, 0b10, true).expect("there");
+    scene.set_visibility_mask(front, 0b10).expect("there");
     assert_eq!(first(&scene, &Ray { mask: 0b01, ..ray }).map(|hit| hit.instance), Some(back));
     assert_eq!(first(&scene, &Ray { mask: 0b11, ..ray }).map(|hit| hit.instance), Some(front));
     scene.show(creature, false).expect("there");

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::render::Offscreen;
+use relievo::render::{Offscreen, TargetFormat};
 use relievo::scene::{Camera, Placement, Relief, ReliefSource, Scene};
 use relievo::surface::{
     Address, ColorTexture, Green, HeightMap, March, Material, Method, Mips, ReliefMaps, ReliefOptions,
@@ -37,7 +37,7 @@ fn camera() -> Camera {
 }
 
 fn picture(gpu: &Gpu, relief: &Relief) -> RgbaImage {
-    let target = Offscreen::new(gpu, SIZE, true, 1, false).expect("a target");
+    let target = Offscreen::new(gpu, SIZE).expect("a target");
     let mut scene = scene_of(gpu, relief).expect("added");
     target.draw(&mut scene, camera(), [0.1, 0.2, 0.3]).expect("drawn");
     target.read(gpu).expect("read")
@@ -98,9 +98,14 @@ fn linear_light_is_encoded_to_the_same_picture() {
     let difference = Difference::of(&found, &expected, 3);
     assert!(difference.worst <= 3 && difference.flip <= 0.01, "{difference:?}");
     assert_eq!(path(target.read(&gpu).expect_err("refused")), "format.color[0].format");
-    let plain = Offscreen::new(&gpu, SIZE, true, 1, false).expect("a target");
+    let plain = Offscreen::new(&gpu, SIZE).expect("a target");
     assert_eq!(path(plain.read_linear(&gpu).expect_err("refused")), "format.color[0].format");
-    let depth = Offscreen::new(&gpu, SIZE, false, 1, false).expect("a target");
+    let depth = Offscreen::with_format(
+        &gpu,
+        SIZE,
+        TargetFormat::depth_only(relievo::wgpu::TextureFormat::Depth32Float),
+    )
+    .expect("a target");
     assert_eq!(path(depth.read_linear(&gpu).expect_err("refused")), "format.color");
     assert_eq!(path(depth.draw(&mut scene, camera(), [0.0; 3]).expect_err("refused")), "layer");
 }

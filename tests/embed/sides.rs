@@ -86,11 +86,11 @@ fn mirrored_instances_have_draws_where_there_are_some() {
     assert_eq!(world.scene.draws(world.creature).expect("there"), 2 * plain);
     let both = frame.shot(&mut world.scene, &mut view, &renderer);
     let hidden = {
-        world.scene.set_visibility(world.crowd[2], 0, true).expect("there");
+        world.scene.set_visibility_mask(world.crowd[2], 0).expect("there");
         frame.shot(&mut world.scene, &mut view, &renderer)
     };
     assert!(both != expected && both != hidden, "the mirrored instance is not drawn");
-    world.scene.set_visibility(world.crowd[2], u16::MAX, true).expect("there");
+    world.scene.set_visibility_mask(world.crowd[2], u16::MAX).expect("there");
     world.scene.move_to(world.crowd[2], usual).expect("there");
     assert_eq!(world.scene.draws(world.creature).expect("there"), plain);
     assert!(frame.shot(&mut world.scene, &mut view, &renderer) == expected, "another picture");

@@ -28,7 +28,7 @@ fn sky_pixels(lift: i32) -> usize {
     let mut scene = Scene::new(&gpu).expect("compiled");
     let first = patches[0].map(|index| 32.0 * f64::from(index));
     scene.add_terrain(&TerrainSource::from_fields(config, fields.clone(), &patches)).expect("added");
-    let target = Offscreen::new(&gpu, [640, 480], true, 1, false).expect("allocated");
+    let target = Offscreen::new(&gpu, [640, 480]).expect("allocated");
     // Positions are relative to a cell near the first patch, which lies elsewhere.
     let Placement { cell, offset: corner, .. } = Placement::at_world(DVec3::new(first[0], 0.0, first[1]));
     let mut sky = 0;

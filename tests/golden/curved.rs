@@ -68,7 +68,7 @@ fn scene_of(gpu: &Gpu, meshes: &[SurfaceMesh], options: ReliefOptions) -> Result
 }
 
 fn drawn(gpu: &Gpu, scene: &mut Scene, camera: Camera) -> image::RgbaImage {
-    let target = Offscreen::new(gpu, [176, 112], true, 1, false).expect("a target");
+    let target = Offscreen::new(gpu, [176, 112]).expect("a target");
     target.draw(scene, camera, SKY).expect("drawn");
     target.read(gpu).expect("read")
 }

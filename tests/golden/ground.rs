@@ -44,7 +44,7 @@ fn seen() -> Seen {
     let Placement { cell, offset: eye, .. } = Placement::at_world(corner + DVec3::new(3.0, 60.0, 5.0));
     let camera = Camera::looking_at(eye, eye + Vec3::new(1.0, -60.0, -1.0), 0.12, [20.0, 100.0], [EDGE; 2]);
     let camera = Camera { cell, ..camera };
-    let target = Offscreen::new(&gpu, [EDGE; 2], true, 1, false).expect("allocated");
+    let target = Offscreen::new(&gpu, [EDGE; 2]).expect("allocated");
     target.draw(&mut scene, camera, [0.0; 3]).expect("drawn");
     let clip_from_world = camera.clip_from_cell().to_cols_array().map(f64::from);
     let world_from_clip = DMat4::from_cols_array(&clip_from_world).inverse();

@@ -103,7 +103,7 @@ fn a_creature_that_is_missing_is_seen() {
     let hit = world.scene.pick(&ray).expect("a ray").expect("a hit");
     let kind = world.objects.iter().find(|object| object.object == hit.object).map(|object| object.kind);
     assert_eq!(kind, Some(WorldKind::Character));
-    world.scene.set_visibility(hit.instance, 0, true).expect("there");
+    world.scene.set_visibility_mask(hit.instance, 0).expect("there");
     player.frame(0.0).expect("drawn");
     let without = difference(NEAR, &picture(&player));
     println!("{with:?} without the creature {without:?}");

@@ -47,7 +47,7 @@ fn picture(sun: Vec3) -> RgbaImage {
         .expect("room");
 
     let size = SIZE.map(|edge| 2 * edge);
-    let target = Offscreen::new(&gpu, size, true, 1, false).expect("allocated");
+    let target = Offscreen::new(&gpu, size).expect("allocated");
     let mut shadow = SunShadow::new(&mut scene, 1024).expect("a shadow");
     let mut renderer = Renderer::new(&gpu, target.format()).expect("a format");
     renderer.prepare(&scene).expect("compiled");

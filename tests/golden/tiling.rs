@@ -45,7 +45,7 @@ fn drawn(gpu: &Gpu, tile: Option<f64>, first: [i32; 2]) -> RgbaImage {
     let Placement { cell, offset: eye, .. } = Placement::at_world(DVec3::new(x + 32.0, 16.0, z + 16.0));
     let field_of_view = std::f32::consts::FRAC_PI_2;
     let camera = Camera::looking_at(eye, eye - 16.0 * Vec3::Y, field_of_view, [1.0, 100.0], [EDGE; 2]);
-    let target = Offscreen::new(gpu, [EDGE; 2], true, 1, false).expect("allocated");
+    let target = Offscreen::new(gpu, [EDGE; 2]).expect("allocated");
     target.draw(&mut scene, Camera { cell, ..camera }, [0.0, 0.0, 1.0]).expect("drawn");
     target.read(gpu).expect("read")
 }

@@ -18,7 +18,7 @@ const LEAST_SIZE: u32 = 16;
 /// The shadow of a scene's light in views of the scene: a map, its camera, and what draws it.
 ///
 /// The map has the depth of what the light reaches first. In every frame, [`SunShadow::fit`] places it around what views show
-/// up to a distance, and [`SunShadow::draw`] draws it. What casts is all that has [`Scene::set_visibility`]'s flag and shares a
+/// up to a distance, and [`SunShadow::draw`] draws it. What casts is all that casts ([`Scene::set_casts_shadow`]) and shares a
 /// bit with [`SunShadow::set_mask`]'s, also outside of what the views show, up to three times as far from it towards the light
 /// as the map is wide. Triangles stop light from both sides, reliefs with their own depth, and cut-out surfaces where they are
 /// opaque; blended ones cast no shadow. All receive it: in the crate's shading, and as `Surface.sunlit` in the caller's
@@ -112,7 +112,7 @@ impl SunShadow {
         self.renderer.prepare_async(scene).await
     }
 
-    /// Lets only instances cast whose visibility mask ([`Scene::set_visibility`]) shares a bit with `mask`; all that cast at
+    /// Lets only instances cast whose visibility mask ([`Scene::set_visibility_mask`]) shares a bit with `mask`; all that cast at
     /// first.
     pub fn set_mask(&mut self, mask: u16) {
         self.view.set_mask(mask);

@@ -188,7 +188,7 @@ impl View {
         Ok(())
     }
 
-    /// Shows only instances whose visibility mask ([`Scene::set_visibility`](super::Scene::set_visibility)) shares a bit with
+    /// Shows only instances whose visibility mask ([`Scene::set_visibility_mask`](super::Scene::set_visibility_mask)) shares a bit with
     /// `mask`; all of them at first.
     pub fn set_mask(&mut self, mask: u16) {
         self.mask = mask;

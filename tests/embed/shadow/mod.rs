@@ -105,7 +105,7 @@ fn shadows_are_where_the_hosts_rays_say() {
     for all_cast in [true, false] {
         if !all_cast {
             for instance in stage.world.crowd.iter().chain([&stage.solids[0].0]) {
-                stage.world.scene.set_visibility(*instance, u16::MAX, false).expect("there");
+                stage.world.scene.set_casts_shadow(*instance, false).expect("there");
             }
         }
         let pixels = [PLACES, NORMALS].map(|expression| stage.values(&gpu, expression));
@@ -139,13 +139,14 @@ fn casters_are_those_of_the_mask() {
     let mut stage = Stage::new(&gpu, 512);
     let all = stage.values(&gpu, PLACES);
     for instance in &stage.world.crowd {
-        stage.world.scene.set_visibility(*instance, 1, true).expect("there");
+        stage.world.scene.set_visibility_mask(*instance, 1).expect("there");
     }
     stage.shadow.set_mask(2);
     let masked = stage.values(&gpu, PLACES);
     stage.shadow.set_mask(u16::MAX);
     for instance in &stage.world.crowd {
-        stage.world.scene.set_visibility(*instance, u16::MAX, false).expect("there");
+        stage.world.scene.set_visibility_mask(*instance, u16::MAX).expect("there");
+        stage.world.scene.set_casts_shadow(*instance, false).expect("there");
     }
     let left_out = stage.values(&gpu, PLACES);
     assert!(masked == left_out, "a mask leaves out others than the flag");

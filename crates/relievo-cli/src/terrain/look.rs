@@ -40,7 +40,7 @@ impl Look<'_> {
         // Draws at twice the size and averages, because edges are jagged with one sample per pixel.
         let twice = self.size.map(|edge| 2 * edge);
         let size = if Offscreen::fits(gpu, twice, COLOR_FORMAT) { twice } else { self.size };
-        let target = Offscreen::new(gpu, size, true, 1, false)?;
+        let target = Offscreen::new(gpu, size)?;
         target.draw(&mut scene, self.camera(range, size), SKY)?;
         let image = target.read(gpu)?;
         Ok(if size == self.size {

@@ -145,7 +145,7 @@ fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
     let gpu = bench.gpu;
     let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
     let albedo = ColorTexture::new(gpu, &albedo, true)?;
-    let target = Offscreen::new(gpu, [EDGE, EDGE], true, 1, false)?;
+    let target = Offscreen::new(gpu, [EDGE, EDGE])?;
     let plain = Drawing::new(gpu, &target, (map, &albedo), Method::Plain)?;
     let (rays, march) = (rays(EDGE, towards()), March::default());
     for method in Method::ALL {

@@ -98,7 +98,7 @@ impl<'a> Drawing<'a> {
         placements: &Placements,
         parts: &[Parts],
     ) -> Result<Self, Error> {
-        let target = Offscreen::new(gpu, PICTURE, true, 1, false)?;
+        let target = Offscreen::new(gpu, PICTURE)?;
         let mut renderer = Renderer::new(gpu, target.format())?;
         let (places, camera) = (placements.in_scene(), camera(stage, placements));
         let look = |parts: &Parts| Look::new(gpu, stage, drawn, (&places, camera), *parts);

@@ -96,7 +96,7 @@ impl World {
     }
 
     async fn seen(gpu: &Gpu, scene: Scene, camera: Camera) -> Result<Self, Error> {
-        let target = Offscreen::new(gpu, SIZE, true, 1, false)?;
+        let target = Offscreen::new(gpu, SIZE)?;
         let mut renderer = Renderer::new(gpu, target.format())?;
         renderer.prepare_async(&scene).await?;
         let mut eye = scene.view(Default::default())?;
