@@ -47,10 +47,7 @@ impl Default for Transform {
 
 /// Refuses values that are not finite, and names the first with its index.
 pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
-    match values.iter().position(|value| !value.is_finite()) {
-        None => Ok(()),
-        Some(at) => Err(InputError::new(format!("{path}[{at}]"), values[at], "must be finite")),
-    }
+    InputError::check_each(path, values, |value| value.is_finite(), "must be finite")
 }
 
 /// The quaternion scaled to length 1.

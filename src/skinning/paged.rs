@@ -79,10 +79,8 @@ impl PagedSkin {
         instances: usize,
         pages: u32,
     ) -> Result<Self, Error> {
-        let Some(mesh) = model.meshes.get(mesh) else {
-            return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
-        };
-        let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
+        InputError::check_below("mesh", mesh, model.meshes.len())?;
+        let (mesh, clusters) = MeshBuffers::new(gpu, model, &model.meshes[mesh])?;
         Self::of_mesh(gpu, (mesh, Arc::new(clusters)), matrices, (instances, pages, false))
     }
 
@@ -167,9 +165,8 @@ impl PagedSkin {
         gpu: &Gpu,
         instances: &[usize],
     ) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
-        if let Some(instance) = instances.iter().find(|instance| **instance >= self.crowd.instances) {
-            let bound = format!("must be below {}", self.crowd.instances);
-            return Err(InputError::new("instance", instance, bound).into());
+        for instance in instances {
+            InputError::check_below("instance", *instance, self.crowd.instances)?;
         }
         let PageBuffers { table, skinned, .. } = &self.paging.pages;
         let (table, skinned) = (table.read_blocking(gpu)?, skinned.read_blocking(gpu)?);

@@ -30,10 +30,8 @@ pub(crate) struct Place {
 pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputError> {
     let mut places = Vec::new();
     for (part, fields) in parts.iter().enumerate() {
-        if fields.width != width {
-            let bound = format!("must be {width}, as parts[0] has it");
-            return Err(InputError::new(format!("parts[{part}].width"), fields.width, bound));
-        }
+        let path = format!("parts[{part}].width");
+        InputError::check_same(path, fields.width, width, "as parts[0] has it")?;
         fields.heights.check_holds(&format!("parts[{part}].heights"), fields.points(0))?;
         places.extend((0..fields.count).map(|index| Place { part, index }));
     }

@@ -34,10 +34,7 @@ impl ClipClockPass {
         crowd: &Crowd,
         state: &GateState,
     ) -> Result<ClipClockJob, Error> {
-        if clips.clips.len() != crowd.clips {
-            let bound = format!("must be {}, as the crowd's", crowd.clips);
-            return Err(InputError::new("clips.len", clips.clips.len(), bound).into());
-        }
+        InputError::check_same("clips.len", clips.clips.len(), crowd.clips, "as the crowd's")?;
         let params = ClipClockParams {
             instances: state.lods.len() as u32,
             elapsed: 0.0,

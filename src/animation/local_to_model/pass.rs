@@ -100,10 +100,7 @@ struct Binder<'a> {
 
 impl<'a> Binder<'a> {
     fn new(gpu: &Gpu, skeleton: &Skeleton, crowd: &'a Crowd) -> Result<Self, Error> {
-        if crowd.bones != skeleton.len() {
-            let bound = format!("must be {}, as the skeleton's", skeleton.len());
-            return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
-        }
+        InputError::check_same("crowd.bones", crowd.bones, skeleton.len(), "as the skeleton's")?;
         let order = Order::new(skeleton);
         let slots = Buffer::from_slice(gpu, "slots", &order.packed_slots())?;
         let chains = Buffer::from_slice(gpu, "chains", &order.chains)?;

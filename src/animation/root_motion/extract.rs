@@ -23,13 +23,8 @@ pub(super) fn extract(
     bone: usize,
     taken: Taken,
 ) -> Result<(Clip, RootMotion), InputError> {
-    if clip.bones() != skeleton.len() {
-        let bound = format!("must be {}, as the skeleton's", skeleton.len());
-        return Err(InputError::new("clip.bones", clip.bones(), bound));
-    }
-    if bone >= skeleton.len() {
-        return Err(InputError::new("bone", bone, format!("must be below {}", skeleton.len())));
-    }
+    InputError::check_same("clip.bones", clip.bones(), skeleton.len(), "as the skeleton's")?;
+    InputError::check_below("bone", bone, skeleton.len())?;
     if !(taken.horizontal || taken.vertical && !taken.yaw) {
         let bound = "must be true unless taken.vertical is, and taken.yaw is not";
         return Err(InputError::new("taken.horizontal", taken.horizontal, bound));

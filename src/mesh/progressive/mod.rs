@@ -224,9 +224,7 @@ impl ProgressiveMesh {
         t: f32,
         values: &[[f32; N]],
     ) -> Result<Vec<[f32; N]>, InputError> {
-        if !(0.0..=1.0).contains(&t) {
-            return Err(InputError::new("t", t, "must be in 0..=1"));
-        }
+        InputError::check_within("t", t, 0.0..=1.0)?;
         if values.len() < self.vertices(level) {
             let bound = format!("must be at least {}, one a vertex", self.vertices(level));
             return Err(InputError::new("values.len", values.len(), bound));

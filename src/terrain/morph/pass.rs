@@ -2,7 +2,7 @@
 
 use super::Morph;
 use crate::gpu::bindings::terrain::morph as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform, Upload};
 use crate::shared::terrain::morph::MorphParams;
 use crate::{Error, InputError};
 
@@ -39,10 +39,7 @@ impl MorphPass {
     pub fn prepare(&self, gpu: &Gpu, buffers: MorphBuffers<'_>) -> Result<MorphJob, Error> {
         let MorphBuffers { from, to, heights } = buffers;
         for (field, len) in [("to.len", to.len()), ("heights.len", heights.len())] {
-            if len != from.len() {
-                let bound = format!("must be {}, as from.len", from.len());
-                return Err(InputError::new(field, len, bound).into());
-            }
+            InputError::check_same(field, len, from.len(), "as from.len")?;
         }
         Ok(self.prepare_first(gpu, buffers, from.len() as u32)?)
     }
@@ -63,10 +60,9 @@ impl MorphPass {
             target_heights: to.slice().cast(),
             heights: heights.slice().cast(),
         };
-        let groups = vec![group.bind(gpu, &self.kernel)?];
-        let workgroups = self.kernel.spread(gpu, vectors);
-        let step = Step { kernel: self.kernel.clone(), groups, workgroups };
-        Ok(MorphJob { params, vectors, job: Job::new(gpu, "terrain/morph", vec![step])? })
+        let group = group.bind(gpu, &self.kernel)?;
+        let job = Job::spread(gpu, "terrain/morph", (&self.kernel, group), vectors)?;
+        Ok(MorphJob { params, vectors, job })
     }
 }
 
