@@ -62,19 +62,6 @@ impl Fields {
         (binding / bytes.max(1)).clamp(1, 65_535) as usize
     }
 
-    /// Fields of heights that the host has, `width`² each, in parts of at most [`Fields::most`].
-    ///
-    /// # Errors
-    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
-    pub fn of_windows(gpu: &Gpu, width: u32, windows: &[Vec<i32>]) -> Result<Vec<Self>, GpuError> {
-        let part = |windows: &[Vec<i32>]| {
-            let fields = Self::new(gpu, "terrain heights", width, windows.len() as u32)?;
-            fields.heights.write(gpu, &windows.concat())?;
-            Ok(fields)
-        };
-        windows.chunks(Self::most(gpu, width)).map(part).collect()
-    }
-
     /// The heights of each field. Waits for the device.
     ///
     /// # Errors

@@ -1,7 +1,5 @@
 //! Triangle meshes of height fields (B section 4.4), for export: relievo itself draws from the heights without
-//! a mesh. The module also answers height queries on the CPU: [`HeightField::triangle_at`] for the triangles
-//! that are drawn, [`HeightField::height_at`] for a bilinear surface. [`crate::terrain::ground::Ground`]
-//! answers for many patches.
+//! a mesh. [`crate::terrain::ground::Ground`] answers height queries on the CPU.
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -50,32 +48,14 @@ impl HeightField {
         [all().min(), all().max()].map(|height| f64::from(height.unwrap_or(0)) / HEIGHT_ONE)
     }
 
-    /// The height and the normal of the triangle at world position (x, z), relative to the first sample; `None`
-    /// outside the field. Use it to place objects on the ground.
+    /// The triangle of the cell (column, row) at the position (u, v) in it, 0 to [`FRACTION_ONE`] east and
+    /// south of the cell's first corner.
     ///
     /// The triangles are those of the drawing pass, of [`HeightField::mesh`] and of
     /// [`HeightField::write_obj`]: the diagonal of each cell runs from its north-eastern to its south-western
-    /// corner, (1, 0) to (0, 1). On it the north-western triangle answers, and between two cells the eastern or
-    /// southern cell does, where the field has one.
+    /// corner, (1, 0) to (0, 1). On it the north-western triangle answers.
     ///
-    /// The position is rounded to 2⁻³⁰ of the distance between samples. The height is exact there, and then
-    /// rounded to `f64`; the normal is computed in `f64`.
-    pub fn triangle_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
-        let last = self.size as i64 - 1;
-        let along = |position: f64| {
-            let (sample, fraction) = sample_and_fraction(position / self.spacing)?;
-            // No cell lies east or south of the last sample, so a position there lies at the end of the last
-            // cell.
-            let (cell, fraction) =
-                if sample == last { (last - 1, fraction + FRACTION_ONE) } else { (sample, fraction) };
-            ((0..last).contains(&cell) && fraction <= FRACTION_ONE).then_some((cell as usize, fraction))
-        };
-        let ((column, u), (row, v)) = (along(x)?, along(z)?);
-        Some(self.triangle([column, row], [u, v]))
-    }
-
-    /// The triangle of the cell (column, row) at the position (u, v) in it, 0 to [`FRACTION_ONE`] east and
-    /// south of the cell's first corner.
+    /// The height is exact, and then rounded to `f64`; the normal is computed in `f64`.
     pub(crate) fn triangle(&self, [column, row]: [usize; 2], [u, v]: [i64; 2]) -> GroundPoint {
         let corner = |dx: usize, dy: usize| i64::from(self.heights[(row + dy) * self.size + column + dx]);
         let (east, south) = (corner(1, 0), corner(0, 1));
@@ -97,27 +77,6 @@ impl HeightField {
             height: sum as f64 / (FRACTION_ONE as f64 * HEIGHT_ONE),
             normal: [x / length, 1.0 / length, z / length],
         }
-    }
-
-    /// The height at world position (x, z), relative to the first sample, by bilinear interpolation; `None`
-    /// outside the field. This surface has no creases along triangles, but it is not the one that is drawn: in
-    /// a cell with corner heights h₀₀, h₁₀, h₀₁ and h₁₁ it differs from [`HeightField::triangle_at`] by up to
-    /// |h₀₀ − h₁₀ − h₀₁ + h₁₁| / 4, which it reaches in the middle of the cell. Throughout a cell the
-    /// difference has one sign.
-    pub fn height_at(&self, x: f64, z: f64) -> Option<f64> {
-        let last = (self.size - 1) as f64;
-        let (column, row) = (x / self.spacing, z / self.spacing);
-        if !((0.0..=last).contains(&column) && (0.0..=last).contains(&row)) {
-            return None;
-        }
-        let cell = |at: f64| (at as usize).min(self.size - 2);
-        let (i, j) = (cell(column), cell(row));
-        let (u, v) = (column - i as f64, row - j as f64);
-        let corner =
-            |dx: usize, dy: usize| f64::from(self.heights[(j + dy) * self.size + i + dx]) / HEIGHT_ONE;
-        let top = corner(0, 0) * (1.0 - u) + corner(1, 0) * u;
-        let bottom = corner(0, 1) * (1.0 - u) + corner(1, 1) * u;
-        Some(top * (1.0 - v) + bottom * v)
     }
 
     /// The mesh of the field: positions (x east, y up, z south), texture coordinates over the patch, and one
@@ -245,17 +204,6 @@ mod tests {
         // The height is 2·column + row, in height units.
         let heights = (0..9).map(|i| (2 * (i % 3) + i / 3) * 65_536).collect();
         HeightField::new(heights, 3, 0.5).expect("nine heights")
-    }
-
-    #[test]
-    fn queries_are_bilinear_and_know_their_bounds() {
-        let field = ramp();
-        assert_eq!(field.point(2, 1), Some(5.0));
-        assert_eq!(field.point(3, 0), None);
-        assert_eq!(field.height_at(0.25, 0.75), Some(2.5));
-        assert_eq!(field.height_at(1.0, 1.0), Some(6.0));
-        assert_eq!(field.height_at(1.0001, 0.0), None);
-        assert_eq!(field.height_at(f64::NAN, 0.0), None);
     }
 
     #[test]
