@@ -13,7 +13,7 @@ use crate::animation::model_matrices::Consumer;
 use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::animation::{ModelMatrices, UpdatedBones};
 use crate::asset::Model;
-use crate::gpu::{Buffer, Gpu, IndirectJob, Job, compute_pass};
+use crate::gpu::{Buffer, Gpu, Job, compute_pass};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
@@ -38,7 +38,7 @@ pub struct SkinFrame {
     /// The selection that keeps the updated bones, and the one that clears them.
     selections: [Job; 2],
     /// The jobs of morph targets, if there are any, and of vertices.
-    jobs: Vec<IndirectJob>,
+    jobs: Vec<Job>,
     reader: Arc<UpdatedBonesReader>,
 }
 

@@ -14,7 +14,7 @@ use crate::InputError;
 use crate::animation::ModelMatrices;
 use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::asset::Model;
-use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
+use crate::gpu::{Buffer, Gpu, Job};
 use crate::skinning::vertex::Blend;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::skinning::vertex::Vertex;
@@ -43,7 +43,7 @@ struct Paging {
     /// The selection that keeps the updated bones, and the one that clears them.
     selections: [Job; 2],
     /// Morphing, if there are targets, and skinning.
-    after: Vec<IndirectJob>,
+    after: Vec<Job>,
 }
 
 impl Paging {
