@@ -61,10 +61,8 @@ impl ClipSet {
             values: Vec::new(),
         };
         for (index, clip) in clips.iter().enumerate() {
-            if clip.bones() != set.bones {
-                let bound = format!("must be {}, as the first clip's", set.bones);
-                return Err(InputError::new(format!("clips[{index}].bones"), clip.bones(), bound));
-            }
+            let path = format!("clips[{index}].bones");
+            InputError::check_same(path, clip.bones(), set.bones, "as the first clip's")?;
             set.add(clip);
         }
         for (field, len) in [("clips.values.len", set.values.len()), ("clips.times.len", set.times.len())] {
@@ -139,10 +137,7 @@ impl ClipSet {
     /// Refuses clips other than those of which the set was made, in its order, because data computed from them
     /// would be attributed to others.
     pub(crate) fn check_clips(&self, clips: &[&Clip]) -> Result<(), InputError> {
-        if clips.len() != self.clips.len() {
-            let bound = format!("must be {}, those of the set", self.clips.len());
-            return Err(InputError::new("clips.len", clips.len(), bound));
-        }
+        InputError::check_same("clips.len", clips.len(), self.clips.len(), "those of the set")?;
         let mut values = self.values.as_slice();
         for (index, (entry, clip)) in self.clips.iter().zip(clips).enumerate() {
             let (own, rest) = values.split_at(clip.values().len().min(values.len()));

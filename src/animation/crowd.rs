@@ -115,11 +115,7 @@ impl Crowd {
             let bound = format!("must be at least 1 and at most {}", (1_u64 << 31) / 3 / bones as u64);
             return Err(InputError::new("instances.len", count, bound).into());
         }
-        if layers.len() >= MAX_LAYERS {
-            return Err(
-                InputError::new("layers.len", layers.len(), format!("must be below {MAX_LAYERS}")).into()
-            );
-        }
+        InputError::check_below("layers.len", layers.len(), MAX_LAYERS)?;
         base.iter().try_for_each(|instance| instance.validate(set.clips().len()))?;
         for (at, layer) in layers.iter().enumerate() {
             layer.validate(&format!("layers[{at}]"), count, set.clips().len(), bones)?;
@@ -166,10 +162,7 @@ impl Crowd {
             let bound = format!("must be in 1..{}, a layer above the base", self.layers);
             return Err(InputError::new("layer", layer, bound).into());
         }
-        if weights.len() != self.len() {
-            let bound = format!("must be {}, one an instance", self.len());
-            return Err(InputError::new("weights.len", weights.len(), bound).into());
-        }
+        InputError::check_len("weights", weights.len(), self.len(), "an instance")?;
         layers::check_weights("weights", weights)?;
         Ok(self.layer_weights.write_at(gpu, (layer - 1) * self.len(), weights)?)
     }

@@ -26,9 +26,7 @@ impl Wrap {
     /// # Errors
     /// [`InputError`] for seconds that are not finite.
     pub fn inside(self, duration: f32, seconds: f64) -> Result<f32, InputError> {
-        if !seconds.is_finite() {
-            return Err(InputError::new("time", seconds, "must be finite"));
-        }
+        InputError::check_finite("time", seconds)?;
         let duration = f64::from(duration);
         Ok(match self {
             _ if duration <= 0.0 => 0.0,
@@ -69,13 +67,9 @@ impl Instance {
     /// # Errors
     /// [`InputError`] that names the field.
     pub fn validate(&self, clips: usize) -> Result<(), InputError> {
-        if self.clip as usize >= clips {
-            return Err(InputError::new("instance.clip", self.clip, format!("must be below {clips}")));
-        }
-        for (field, value) in [("instance.start", self.start), ("instance.rate", self.rate)] {
-            check_seconds(field, value)?;
-        }
-        Ok(())
+        InputError::check_below("instance.clip", self.clip, clips)?;
+        check_seconds("instance.start", self.start)?;
+        check_seconds("instance.rate", self.rate)
     }
 }
 

@@ -73,12 +73,7 @@ impl Layer {
     /// exist.
     pub fn validate(&self, path: &str, count: usize, clips: usize, bones: usize) -> Result<(), InputError> {
         let each = |field: &str, len: usize, wanted: usize, item: &str| {
-            let bound = format!("must be {wanted}, one {item}");
-            if len == wanted {
-                Ok(())
-            } else {
-                Err(InputError::new(format!("{path}.{field}.len"), len, bound))
-            }
+            InputError::check_len(&format!("{path}.{field}"), len, wanted, item)
         };
         each("instances", self.instances.len(), count, "an instance of the base")?;
         each("weights", self.weights.len(), count, "an instance of the base")?;
@@ -93,10 +88,7 @@ impl Layer {
 
 /// Refuses values outside 0..=1, and names the first with its index.
 pub(crate) fn check_weights(path: &str, values: &[f32]) -> Result<(), InputError> {
-    match values.iter().position(|value| !(0.0..=1.0).contains(value)) {
-        None => Ok(()),
-        Some(at) => Err(InputError::new(format!("{path}[{at}]"), values[at], "must be in 0..=1")),
-    }
+    InputError::check_each(path, values, |value| (0.0..=1.0).contains(value), "must be in 0..=1")
 }
 
 /// The mask of a bone and all bones below it: 1 for these, 0 for others.
@@ -104,9 +96,7 @@ pub(crate) fn check_weights(path: &str, values: &[f32]) -> Result<(), InputError
 /// # Errors
 /// [`InputError`] for a bone that the skeleton does not have.
 pub fn mask_below(skeleton: &Skeleton, bone: usize) -> Result<Vec<f32>, InputError> {
-    if bone >= skeleton.len() {
-        return Err(InputError::new("bone", bone, format!("must be below {}", skeleton.len())));
-    }
+    InputError::check_below("bone", bone, skeleton.len())?;
     let mut mask = vec![0.0; skeleton.len()];
     mask[bone] = 1.0;
     for (below, node) in skeleton.bones().iter().enumerate().skip(bone + 1) {

@@ -37,16 +37,6 @@ impl ModelMatrices {
         self.updated_bones.as_ref()
     }
 
-    /// Number of matrices.
-    pub fn len(&self) -> usize {
-        self.matrices.len()
-    }
-
-    /// Whether there are no matrices.
-    pub fn is_empty(&self) -> bool {
-        self.matrices.is_empty()
-    }
-
     /// The wgpu buffer, to bind or to copy: three rows of four `f32` per matrix.
     pub fn raw(&self) -> &wgpu::Buffer {
         self.matrices.raw()

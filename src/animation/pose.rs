@@ -1,22 +1,10 @@
-//! Computes the pose of a skeleton at one time of a clip, on the host or, as a crowd of one instance, on the
-//! device.
+//! Computes the pose of a skeleton at one time of a clip, on the host.
 
 use super::local_to_model::reference::local_to_model;
 use super::sample::reference::sample;
 use crate::InputError;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::{Affine, Clip, Skeleton, Transform};
-#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
-use {
-    super::clip_set::ClipSet,
-    super::crowd::{ClipBuffers, Crowd, unpacked},
-    super::instance::{Instance, Wrap},
-    super::keyframe_cursor::KeyframeCursorPass,
-    super::local_to_model::LocalToModelPass,
-    super::sample::SamplePass,
-    crate::Error,
-    crate::gpu::Gpu,
-};
 
 /// The transforms of all bones at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,17 +22,6 @@ impl Pose {
         Self { model_matrices: local_to_model(skeleton, &locals), locals }
     }
 
-    /// As [`Pose::on_host`], on the device; the results are equal within rounding. Waits for the device.
-    ///
-    /// # Errors
-    /// [`InputError`] for a clip of another skeleton; [`crate::gpu::GpuError`] for errors of the device.
-    #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
-    pub fn on_device(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> Result<Self, Error> {
-        let crowd = posed(gpu, skeleton, clip, time)?;
-        let locals = crowd.locals.read_blocking(gpu)?.iter().map(unpacked).collect();
-        Ok(Self { locals, model_matrices: crowd.model_matrices().read_blocking(gpu)? })
-    }
-
     /// Refuses model matrices with values outside the range of `f32`, as chains of large scales produce.
     ///
     /// # Errors
@@ -60,22 +37,4 @@ impl Pose {
             }
         }
     }
-}
-
-/// Samples and concatenates a crowd of one instance, at a time inside a clip.
-#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
-pub(crate) fn posed(gpu: &Gpu, skeleton: &Skeleton, clip: &Clip, time: f32) -> Result<Crowd, Error> {
-    let set = ClipSet::new(&[clip])?;
-    let clips = ClipBuffers::new(gpu, &set)?;
-    // The time is inside the clip already; clamping keeps the clip's end apart from its start.
-    let crowd = Crowd::new(gpu, &set, &[Instance::new(0, Wrap::Clamp, time, 0.0)])?;
-    let cursors = KeyframeCursorPass::new(gpu)?.prepare(gpu, &clips, &crowd)?;
-    let sample = SamplePass::new(gpu, RotationPath::Slerp)?.prepare(gpu, &clips, &crowd)?;
-    let local_to_model = LocalToModelPass::new(gpu)?.prepare(gpu, skeleton, &crowd)?;
-    gpu.run("pose", |encoder| {
-        cursors.record(encoder);
-        sample.record(encoder);
-        local_to_model.record(encoder);
-    })?;
-    Ok(crowd)
 }

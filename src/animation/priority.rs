@@ -66,9 +66,7 @@ impl Weights {
     /// [`InputError`] for weights outside 0..=1, and for a sum that is more than 1e-4 from 1.
     pub fn validate(&self) -> Result<(), InputError> {
         for (weight, term) in self.0.iter().zip(TERMS) {
-            if !(0.0..=1.0).contains(weight) {
-                return Err(InputError::new(format!("weights.{term}"), weight, "must be in 0..=1"));
-            }
+            InputError::check_within(format!("weights.{term}"), *weight, 0.0..=1.0)?;
         }
         let sum: f64 = self.0.iter().sum();
         if (sum - 1.0).abs() > 1e-4 {
@@ -140,14 +138,8 @@ impl Priorities {
 }
 
 fn check_user(skeleton: &Skeleton, user: &[f32]) -> Result<(), InputError> {
-    if user.len() != skeleton.len() {
-        let bound = format!("must be {}, one a bone", skeleton.len());
-        return Err(InputError::new("user.len", user.len(), bound));
-    }
-    match user.iter().position(|value| !(0.0..=1.0).contains(value)) {
-        None => Ok(()),
-        Some(at) => Err(InputError::new(format!("user[{at}]"), user[at], "must be in 0..=1")),
-    }
+    InputError::check_len("user", user.len(), skeleton.len(), "a bone")?;
+    InputError::check_each("user", user, |value| (0.0..=1.0).contains(value), "must be in 0..=1")
 }
 
 #[cfg(test)]

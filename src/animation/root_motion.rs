@@ -146,12 +146,8 @@ impl RootMotion {
 }
 
 fn check_times(from: f64, to: f64) -> Result<(), InputError> {
-    for (field, value) in [("from", from), ("to", to)] {
-        if !value.is_finite() {
-            return Err(InputError::new(field, value, "must be finite"));
-        }
-    }
-    Ok(())
+    InputError::check_finite("from", from)?;
+    InputError::check_finite("to", to)
 }
 
 /// As [`RootMotion::delta`], for one layer of a whole crowd and without allocation. Deltas of blended clips are
@@ -169,10 +165,7 @@ pub fn deltas(
     deltas: &mut [Transform],
 ) -> Result<(), InputError> {
     check_times(from, to)?;
-    if deltas.len() != instances.len() {
-        let bound = format!("must be {}, one an instance", instances.len());
-        return Err(InputError::new("deltas.len", deltas.len(), bound));
-    }
+    InputError::check_len("deltas", deltas.len(), instances.len(), "an instance")?;
     for (instance, delta) in instances.iter().zip(deltas) {
         instance.validate(motions.len())?;
         let motion = motions[instance.clip as usize].as_ref();

@@ -7,11 +7,11 @@ pub fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(
     if !indices.len().is_multiple_of(3) {
         return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));
     }
-    match indices.iter().position(|index| *index as usize >= vertices) {
-        None => Ok(()),
-        Some(at) => {
-            let bound = format!("must be below {vertices}, the number of vertices");
-            Err(InputError::new(format!("{path}[{at}]"), indices[at], bound))
-        }
-    }
+    check_indices(path, indices, vertices)
+}
+
+/// Checks that indices are of vertices.
+pub(super) fn check_indices(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
+    let bound = format!("must be below {vertices}, the number of vertices");
+    InputError::check_each(path, indices, |index| (*index as usize) < vertices, bound)
 }

@@ -36,10 +36,7 @@ impl Light {
             let value = self.color.to_string();
             return Err(InputError::new("light.color", value, "must be finite and at least 0"));
         }
-        if !(0.0..=1.0).contains(&self.ambient) {
-            return Err(InputError::new("light.ambient", self.ambient, "must be in 0..=1"));
-        }
-        Ok(())
+        InputError::check_within("light.ambient", self.ambient, 0.0..=1.0)
     }
 }
 

@@ -54,28 +54,17 @@ impl Model {
     /// scale of the normal map that is not finite.
     pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
         let Some(index) = mesh.material else { return Ok(None) };
-        let Some(material) = self.materials.get(index) else {
-            let bound = format!("must be below {}", self.materials.len());
-            return Err(InputError::new("mesh.material", index, bound));
-        };
+        InputError::check_below("mesh.material", index, self.materials.len())?;
+        let material = &self.materials[index];
         for (field, texture) in [("texture", material.texture), ("normal", material.normal)] {
             let Some(texture) = texture else { continue };
             let path = format!("materials[{index}].{field}.image");
-            match self.images.get(texture.image) {
-                None => {
-                    let bound = format!("must be below {}", self.images.len());
-                    return Err(InputError::new(path, texture.image, bound));
-                }
-                Some(image) if image.is_empty() => {
-                    return Err(InputError::new(path, texture.image, "must have texels"));
-                }
-                Some(_) => {}
+            InputError::check_below(&path, texture.image, self.images.len())?;
+            if self.images[texture.image].is_empty() {
+                return Err(InputError::new(path, texture.image, "must have texels"));
             }
         }
-        if !material.normal_scale.is_finite() {
-            let path = format!("materials[{index}].normal_scale");
-            return Err(InputError::new(path, material.normal_scale, "must be finite"));
-        }
+        InputError::check_finite(format!("materials[{index}].normal_scale"), material.normal_scale)?;
         Ok(Some(material))
     }
 

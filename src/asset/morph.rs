@@ -104,11 +104,6 @@ impl WeightKeys {
         Ok(Self { times, values, interpolation, targets })
     }
 
-    /// The time of the last key, in seconds.
-    pub fn duration(&self) -> f32 {
-        self.times.last().copied().unwrap_or(0.0)
-    }
-
     /// The weights at a time inside the clip, in seconds.
     pub fn at(&self, time: f32) -> Vec<f32> {
         let KeyframeCursor { key, fraction } = keyframe_cursor(&self.times, time);

@@ -79,9 +79,7 @@ impl Skeleton {
     /// [`InputError`] for no or too many bones, for a parent that does not come before its child, for a rest
     /// pose that is not finite or has no rotation, and for joints that are not bones or are named twice.
     pub fn new(mut bones: Vec<Bone>, joints: Vec<u32>) -> Result<Self, InputError> {
-        if !(1..=MAX_BONES).contains(&bones.len()) {
-            return Err(InputError::new("bones.len", bones.len(), format!("must be in 1..={MAX_BONES}")));
-        }
+        InputError::check_within("bones.len", bones.len(), 1..=MAX_BONES)?;
         for (index, bone) in bones.iter_mut().enumerate() {
             if let Some(parent) = bone.parent.filter(|parent| *parent as usize >= index) {
                 let bound = format!("must be below {index}: parents come before their children");
@@ -229,10 +227,9 @@ impl Skin {
     /// [`InputError`] for bones that the skeleton does not have, for a number of matrices that is not one per
     /// bone, and for matrices that are not finite or not affine.
     pub fn validate(&self, skeleton: &Skeleton) -> Result<(), InputError> {
-        if let Some(at) = self.bones.iter().position(|bone| *bone as usize >= skeleton.len()) {
-            let bound = format!("must be below {}", skeleton.len());
-            return Err(InputError::new(format!("skin.bones[{at}]"), self.bones[at], bound));
-        }
+        let bones = skeleton.len();
+        let bound = format!("must be below {bones}");
+        InputError::check_each("skin.bones", &self.bones, |bone| (*bone as usize) < bones, bound)?;
         InputError::check_len("skin.inverse_binds", self.inverse_binds.len(), self.bones.len(), "a bone")?;
         for (at, matrix) in self.inverse_binds.iter().enumerate() {
             inverse_bind(&format!("skin.inverse_binds[{at}]"), matrix)?;

@@ -41,9 +41,7 @@ impl Mesh<'_> {
         InputError::check_len("uv", self.uv.len(), vertices, "a position")?;
         for (field, len) in [("positions.len", vertices), ("indices.len", self.indices.len())] {
             // The last offset of the adjacency is the number of all corners.
-            if u32::try_from(len).is_err() {
-                return Err(InputError::new(field, len, format!("must be at most {}", u32::MAX)));
-            }
+            InputError::check_most(field, len, u32::MAX as usize)?;
         }
         in_range("positions", self.positions)?;
         in_range("uv", self.uv)?;

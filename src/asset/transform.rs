@@ -27,6 +27,14 @@ impl Transform {
         Self { translation, ..Self::IDENTITY }
     }
 
+    /// The same transform in f64, with its rotation normalized.
+    pub(crate) fn wide(&self) -> glam::DAffine3 {
+        let [scale, translation] =
+            [self.scale, self.translation].map(|vector| glam::DVec3::from(vector.map(f64::from)));
+        let rotation = glam::DQuat::from_array(self.rotation.map(f64::from)).normalize();
+        glam::DAffine3::from_scale_rotation_translation(scale, rotation, translation)
+    }
+
     /// The same transform with a rotation of length 1.
     ///
     /// # Errors
@@ -47,10 +55,7 @@ impl Default for Transform {
 
 /// Refuses values that are not finite, and names the first with its index.
 pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
-    match values.iter().position(|value| !value.is_finite()) {
-        None => Ok(()),
-        Some(at) => Err(InputError::new(format!("{path}[{at}]"), values[at], "must be finite")),
-    }
+    InputError::check_each(path, values, |value| value.is_finite(), "must be finite")
 }
 
 /// The quaternion scaled to length 1.

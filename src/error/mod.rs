@@ -6,6 +6,7 @@ pub(crate) mod json;
 mod names;
 
 use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 #[cfg(feature = "gpu")]
@@ -32,10 +33,76 @@ impl InputError {
 
     /// Refuses a list at `path` whose length is not `wanted`, one a thing: `each` says which.
     pub(crate) fn check_len(path: &str, len: usize, wanted: usize, each: &str) -> Result<(), Self> {
-        if len == wanted {
-            return Ok(());
+        Self::check_same(format!("{path}.len"), len, wanted, &format!("one {each}"))
+    }
+
+    /// Refuses a value that is not `wanted`; `reason` says whose that is.
+    pub(crate) fn check_same<T: PartialEq + Display>(
+        path: impl Into<String>,
+        value: T,
+        wanted: T,
+        reason: &str,
+    ) -> Result<(), Self> {
+        Self::check(value == wanted, path, value, || format!("must be {wanted}, {reason}"))
+    }
+
+    /// Refuses an index that is not below `count`.
+    pub(crate) fn check_below(
+        path: impl Into<String>,
+        index: impl TryInto<usize> + Copy + Display,
+        count: usize,
+    ) -> Result<(), Self> {
+        let is_below = index.try_into().is_ok_and(|index| index < count);
+        Self::check(is_below, path, index, || format!("must be below {count}"))
+    }
+
+    /// Refuses a value above `most`.
+    pub(crate) fn check_most<T: PartialOrd + Display>(
+        path: impl Into<String>,
+        value: T,
+        most: T,
+    ) -> Result<(), Self> {
+        Self::check(value <= most, path, value, || format!("must be at most {most}"))
+    }
+
+    /// Refuses a value outside of a range.
+    pub(crate) fn check_within<T: PartialOrd + Display>(
+        path: impl Into<String>,
+        value: T,
+        range: RangeInclusive<T>,
+    ) -> Result<(), Self> {
+        let bound = || format!("must be in {}..={}", range.start(), range.end());
+        Self::check(range.contains(&value), path, value, bound)
+    }
+
+    /// Refuses a number that is infinite or none.
+    pub(crate) fn check_finite(
+        path: impl Into<String>,
+        value: impl Into<f64> + Copy + Display,
+    ) -> Result<(), Self> {
+        Self::check(value.into().is_finite(), path, value, || "must be finite".to_owned())
+    }
+
+    /// Refuses the first value of a list that is not good.
+    pub(crate) fn check_each<T: Display>(
+        path: &str,
+        values: &[T],
+        is_good: impl Fn(&T) -> bool,
+        bound: impl Into<String>,
+    ) -> Result<(), Self> {
+        match values.iter().position(|value| !is_good(value)) {
+            None => Ok(()),
+            Some(at) => Err(Self::new(format!("{path}[{at}]"), &values[at], bound)),
         }
-        Err(Self::new(format!("{path}.len"), len, format!("must be {wanted}, one {each}")))
+    }
+
+    fn check(
+        is_good: bool,
+        path: impl Into<String>,
+        value: impl Display,
+        bound: impl FnOnce() -> String,
+    ) -> Result<(), Self> {
+        if is_good { Ok(()) } else { Err(Self::new(path, value, bound())) }
     }
 
     /// The same error, of a field of what stands at `parent`.

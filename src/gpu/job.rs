@@ -1,30 +1,44 @@
 //! Jobs: dispatches that are prepared once and recorded every frame.
 
 use super::kernel::{Group, Kernel};
-use super::{Gpu, GpuError};
+use super::{Gpu, GpuError, Uniform};
 
 /// One dispatch with its pipeline and bind groups.
 #[derive(Debug, Clone)]
 pub struct Step {
-    /// The pipeline.
-    pub kernel: Kernel,
-    /// Its bind groups, in order.
-    pub groups: Vec<Group>,
-    /// Workgroups along x, y and z.
-    pub workgroups: [u32; 3],
+    kernel: Kernel,
+    groups: Vec<Group>,
+    workgroups: Workgroups,
+}
+
+/// Workgroups along x, y and z.
+#[derive(Debug, Clone)]
+enum Workgroups {
+    Of([u32; 3]),
+    /// Those that a kernel writes into a buffer, from a byte on.
+    Written(wgpu::Buffer, u64),
 }
 
 impl Step {
+    fn new(kernel: &Kernel, groups: Vec<Group>, workgroups: Workgroups) -> Self {
+        Self { kernel: kernel.clone(), groups, workgroups }
+    }
+
     /// A dispatch of `invocations` threads, numbered across all workgroups ([`Kernel::spread`]).
     pub fn spread(gpu: &Gpu, kernel: &Kernel, groups: Vec<Group>, invocations: u32) -> Self {
-        Self { kernel: kernel.clone(), groups, workgroups: kernel.spread(gpu, invocations) }
+        Self::new(kernel, groups, Workgroups::Of(kernel.spread(gpu, invocations)))
     }
 
     /// A dispatch with so many threads along x, y and z, and more up to whole workgroups.
     pub fn covering(kernel: &Kernel, groups: Vec<Group>, threads: [u32; 3]) -> Self {
         let size = kernel.workgroup_size();
         let workgroups = std::array::from_fn(|axis| threads[axis].div_ceil(size[axis]));
-        Self { kernel: kernel.clone(), groups, workgroups }
+        Self::new(kernel, groups, Workgroups::Of(workgroups))
+    }
+
+    /// A dispatch whose workgroups along x, y and z a kernel writes into `arguments`, from byte `offset` on.
+    pub(crate) fn indirect(kernel: &Kernel, group: Group, arguments: &wgpu::Buffer, offset: u64) -> Self {
+        Self::new(kernel, vec![group], Workgroups::Written(arguments.clone(), offset))
     }
 
     fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
@@ -32,14 +46,21 @@ impl Step {
         for (index, group) in self.groups.iter().enumerate() {
             pass.set_bind_group(index as u32, group, &[]);
         }
-        let [x, y, z] = self.workgroups;
-        pass.dispatch_workgroups(x, y, z);
+        match &self.workgroups {
+            Workgroups::Of([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
+            Workgroups::Written(arguments, offset) => pass.dispatch_workgroups_indirect(arguments, *offset),
+        }
     }
 
-    /// Invocations of the dispatch.
+    /// The workgroups that are known before it runs.
+    fn workgroups(&self) -> [u32; 3] {
+        if let Workgroups::Of(workgroups) = self.workgroups { workgroups } else { [0; 3] }
+    }
+
+    /// Invocations of the dispatch, as far as they are known.
     fn invocations(&self) -> u64 {
         let size = self.kernel.workgroup_size();
-        self.workgroups.into_iter().chain(size).map(u64::from).fold(1, u64::saturating_mul)
+        self.workgroups().into_iter().chain(size).map(u64::from).fold(1, u64::saturating_mul)
     }
 }
 
@@ -61,7 +82,7 @@ impl Job {
     /// [`GpuError::Limit`] when a dispatch is too large.
     pub fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
         let available = gpu.device().limits().max_compute_workgroups_per_dimension;
-        let needed = steps.iter().flat_map(|step| step.workgroups).max().unwrap_or(0);
+        let needed = steps.iter().flat_map(Step::workgroups).max().unwrap_or(0);
         if needed > available {
             return Err(GpuError::Limit {
                 pass: label,
@@ -144,40 +165,23 @@ impl Job {
     }
 }
 
-/// Indirect dispatches, whose numbers of workgroups are written by kernels: prepared once, and recorded as
-/// often as wanted without allocation.
+/// A job, and the parameters of its kernel that change between submissions.
 #[derive(Debug, Clone)]
-pub struct IndirectJob {
-    label: &'static str,
-    kernel: Kernel,
-    arguments: wgpu::Buffer,
-    groups: Vec<(Group, u64)>,
+pub struct ParamsJob<T> {
+    pub(crate) params: T,
+    pub(crate) uniform: Uniform<T>,
+    pub(crate) job: Job,
 }
 
-impl IndirectJob {
-    /// Prepares one dispatch for each bind group, each with the byte offset in `arguments` at which its
-    /// workgroups along x, y and z begin.
-    pub(crate) fn new(
-        label: &'static str,
-        kernel: &Kernel,
-        arguments: &wgpu::Buffer,
-        groups: Vec<(Group, u64)>,
-    ) -> Self {
-        Self { label, kernel: kernel.clone(), arguments: arguments.clone(), groups }
-    }
-
-    /// Records one compute pass with all dispatches, in order.
+impl<T> ParamsJob<T> {
+    /// As [`Job::record`].
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch(&mut compute_pass(encoder, self.label));
+        self.job.record(encoder);
     }
 
-    /// Adds all dispatches, in order, to a compute pass that is being recorded.
-    pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_pipeline(&self.kernel.pipeline);
-        for (group, offset) in &self.groups {
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups_indirect(&self.arguments, *offset);
-        }
+    /// As [`Job::dispatch`].
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.job.dispatch(pass);
     }
 }
 
@@ -209,7 +213,7 @@ mod tests {
             let pieces = job.submissions(most);
             assert_eq!(pieces.iter().map(|steps| steps.len()).sum::<usize>(), iterations as usize);
             let invocations = |steps: &[Step]| {
-                steps.iter().map(|step| 64 * step.workgroups.iter().product::<u32>()).sum::<u32>()
+                steps.iter().map(|step| 64 * step.workgroups().iter().product::<u32>()).sum::<u32>()
             };
             assert!(pieces.iter().all(|steps| steps.len() == 1 || u64::from(invocations(steps)) <= most));
             gpu.block_on(job.run_split(&gpu, most)).expect("run");

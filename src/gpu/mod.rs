@@ -26,6 +26,7 @@ mod readback;
 mod readback_ring;
 pub mod shaders;
 mod shared;
+mod texture;
 mod upload;
 mod wait;
 
@@ -37,7 +38,7 @@ pub use crate::error::GpuError;
 pub use adapter::adapters;
 pub use adapter::{AdapterSummary, Options};
 pub use buffer::{Buffer, Uniform};
-pub use job::{IndirectJob, Job, Step, compute_pass};
+pub use job::{Job, ParamsJob, Step, compute_pass};
 pub use kernel::{Group, Kernel};
 pub(crate) use kernel::{Layouts, rows_of_workgroups};
 pub use memory::Memory;

@@ -41,11 +41,6 @@ impl<T> ReadbackRing<T> {
         Ok(Self { label, bytes, slots, recorded: 0 })
     }
 
-    /// Bytes in each buffer.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
     /// Records a copy into a free buffer, with what it is about. Returns whether a buffer was free: if not, nothing is
     /// recorded, and `copy` is not called.
     pub fn record(

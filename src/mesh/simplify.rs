@@ -417,15 +417,11 @@ pub fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     let vertices = first.len();
     let most = u32::MAX as usize;
     for (field, len) in [("poses[0].len", vertices), ("indices.len", surface.indices.len())] {
-        if len >= most {
-            return Err(InputError::new(field, len, format!("must be below {most}")));
-        }
+        InputError::check_below(field, len, most)?;
     }
     for (pose, positions) in surface.poses.iter().enumerate() {
-        if positions.len() != vertices {
-            let bound = format!("must be {vertices}, as of the first pose");
-            return Err(InputError::new(format!("poses[{pose}].len"), positions.len(), bound));
-        }
+        let path = format!("poses[{pose}].len");
+        InputError::check_same(path, positions.len(), vertices, "as of the first pose")?;
         finite(&format!("poses[{pose}]"), positions.as_flattened(), 3)?;
     }
     crate::asset::indices::check_triangles("indices", surface.indices, vertices)?;

@@ -50,26 +50,6 @@ impl SceneFile {
         self.quality
     }
 
-    /// How the levels of detail of objects change that do not say so themselves and can do so.
-    pub fn transition(&self) -> Transition {
-        self.transition
-    }
-
-    /// The colour behind everything: linear red, green and blue, each 0 to 1.
-    pub fn background(&self) -> [f32; 3] {
-        self.background
-    }
-
-    /// The light.
-    pub fn light(&self) -> Light {
-        self.light
-    }
-
-    /// The shadow of the light, if it casts one.
-    pub fn shadow(&self) -> Option<SunOptions> {
-        self.shadow
-    }
-
     /// The files that the scene names, relative to its own, in ascending order, each once. A browser can fetch them before
     /// it loads the scene. Buffers, images and material libraries beside `.gltf` and `.obj` files are
     /// not among them; `.glb` files need none.

@@ -45,21 +45,6 @@ pub struct WorldObject {
     pub model: Option<Arc<Model>>,
 }
 
-impl World {
-    /// Sets how the levels of detail of all objects change that can do so.
-    ///
-    /// # Errors
-    /// [`InputError`] for an object that the scene has no longer.
-    pub fn set_transitions(&mut self, transition: Transition) -> Result<(), Error> {
-        for WorldObject { object, .. } in &self.objects {
-            if self.scene.can_morph(*object)? {
-                self.scene.set_transition(*object, transition)?;
-            }
-        }
-        Ok(())
-    }
-}
-
 impl WorldObject {
     /// The model, if it is a character.
     pub fn character(&self) -> Option<&Model> {

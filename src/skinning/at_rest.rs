@@ -35,10 +35,7 @@ fn resting(model: &Model, index: usize) -> Result<Vec<Vertex>, InputError> {
 /// [`InputError`] for another number of meshes or vertices than the model has, and for vertices outside the range of
 /// coordinates.
 pub fn still(model: &Model, vertices: &[Vec<Vertex>]) -> Result<Model, InputError> {
-    if vertices.len() != model.meshes.len() {
-        let bound = format!("must be {}, one list for each mesh", model.meshes.len());
-        return Err(InputError::new("vertices.len", vertices.len(), bound));
-    }
+    InputError::check_len("vertices", vertices.len(), model.meshes.len(), "list for each mesh")?;
     let bone = Bone { name: "model".to_owned(), parent: None, rest: Transform::IDENTITY };
     let identity = glam::Mat4::IDENTITY.to_cols_array();
     let meshes = model.meshes.iter().zip(vertices).enumerate();
@@ -54,10 +51,8 @@ pub fn still(model: &Model, vertices: &[Vec<Vertex>]) -> Result<Model, InputErro
 }
 
 fn baked(mesh: &Mesh, index: usize, vertices: &[Vertex]) -> Result<Mesh, InputError> {
-    if vertices.len() != mesh.vertices() {
-        let bound = format!("must be {}, as many as the mesh has", mesh.vertices());
-        return Err(InputError::new(format!("vertices[{index}].len"), vertices.len(), bound));
-    }
+    let path = format!("vertices[{index}].len");
+    InputError::check_same(path, vertices.len(), mesh.vertices(), "as many as the mesh has")?;
     check_range(index, vertices)?;
     Ok(Mesh {
         name: mesh.name.clone(),

@@ -67,10 +67,7 @@ impl Clusters {
     pub fn new(mesh: &Mesh, skins: &[Skin], skeleton: &Skeleton) -> Result<Self, InputError> {
         mesh.validate(skins)?;
         let skin = &skins[mesh.skin];
-        if skin.bones.len() > MAX_SKIN_BONES {
-            let bound = format!("must be at most {MAX_SKIN_BONES}");
-            return Err(InputError::new("skin.bones.len", skin.bones.len(), bound));
-        }
+        InputError::check_most("skin.bones.len", skin.bones.len(), MAX_SKIN_BONES)?;
         skin.validate(skeleton)?;
         let bones = Order::new(skeleton);
         let slot_of = bones.slots_of_bones();

@@ -43,8 +43,7 @@ pub enum KeptBones {
 impl KeptBones {
     fn count(self, bones: usize) -> Result<usize, InputError> {
         match self {
-            Self::Count(count) if (1..=bones).contains(&count) => Ok(count),
-            Self::Count(count) => Err(InputError::new("bones", count, format!("must be in 1..={bones}"))),
+            Self::Count(count) => InputError::check_within("bones", count, 1..=bones).map(|()| count),
             Self::Fraction(part) if part > 0.0 && part <= 1.0 => {
                 Ok((f64::from(part) * bones as f64).ceil() as usize)
             }
@@ -140,9 +139,9 @@ fn looked_at(model: &Model, most: usize) -> Result<Vec<Moment>, InputError> {
 
 fn validate(model: &Model) -> Result<(), InputError> {
     let bones = model.skeleton.len();
-    if let Some(at) = model.clips.iter().position(|clip| clip.bones() != bones) {
-        let bound = format!("must be {bones}, as the skeleton's");
-        return Err(InputError::new(format!("clips[{at}].bones"), model.clips[at].bones(), bound));
+    for (at, clip) in model.clips.iter().enumerate() {
+        let path = format!("clips[{at}].bones");
+        InputError::check_same(path, clip.bones(), bones, "as the skeleton's")?;
     }
     (0..model.skins.len()).try_for_each(|skin| model.check_skin(skin))?;
     (0..model.meshes.len()).try_for_each(|mesh| model.check_mesh(mesh))

@@ -13,7 +13,7 @@ use crate::animation::model_matrices::Consumer;
 use crate::animation::updated_bones::UpdatedBonesReader;
 use crate::animation::{ModelMatrices, UpdatedBones};
 use crate::asset::Model;
-use crate::gpu::{Buffer, Gpu, IndirectJob, Job, compute_pass};
+use crate::gpu::{Buffer, Gpu, Job, compute_pass};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
@@ -38,7 +38,7 @@ pub struct SkinFrame {
     /// The selection that keeps the updated bones, and the one that clears them.
     selections: [Job; 2],
     /// The jobs of morph targets, if there are any, and of vertices.
-    jobs: Vec<IndirectJob>,
+    jobs: Vec<Job>,
     reader: Arc<UpdatedBonesReader>,
 }
 
@@ -61,10 +61,8 @@ impl SkinFrame {
         if blend == Blend::DualQuaternion {
             matrices.consumer().check(Consumer::DualQuaternions)?;
         }
-        let Some(mesh) = model.meshes.get(mesh) else {
-            return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
-        };
-        let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
+        InputError::check_below("mesh", mesh, model.meshes.len())?;
+        let (mesh, clusters) = MeshBuffers::new(gpu, model, &model.meshes[mesh])?;
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
         let mut select = SelectBuffers::new(gpu, &mesh, &crowd)?;
         let updated = match matrices.updated_bones() {
@@ -109,10 +107,7 @@ impl SkinFrame {
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu, instance: usize) -> Result<Vec<Vertex>, Error> {
-        if instance >= self.crowd.instances {
-            let bound = format!("must be below {}", self.crowd.instances);
-            return Err(InputError::new("instance", instance, bound).into());
-        }
+        InputError::check_below("instance", instance, self.crowd.instances)?;
         let vertices = self.mesh.vertices.len();
         let all = self.skinned.read_blocking(gpu)?;
         Ok(self.clusters.in_mesh_order(&all[instance * vertices..][..vertices]))

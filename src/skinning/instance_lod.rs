@@ -23,11 +23,8 @@ impl FadeRange {
     /// [`InputError`] for distances that are not finite, and for a start that is not below the end.
     pub fn validate(&self) -> Result<(), InputError> {
         let Self { start, end } = *self;
-        for (field, value) in [("fade_range.start", start), ("fade_range.end", end)] {
-            if !value.is_finite() {
-                return Err(InputError::new(field, value, "must be finite"));
-            }
-        }
+        InputError::check_finite("fade_range.start", start)?;
+        InputError::check_finite("fade_range.end", end)?;
         if start >= end {
             let bound = format!("must be below {end}, where vertices are rigid");
             return Err(InputError::new("fade_range.start", start, bound));
@@ -75,9 +72,7 @@ impl InstanceLod {
     /// # Errors
     /// [`InputError`] for a distance that is not finite, and as [`FadeRange::validate`].
     pub fn at_distance(distance: f32, fade_range: FadeRange) -> Result<Self, InputError> {
-        if !distance.is_finite() {
-            return Err(InputError::new("distance", distance, "must be finite"));
-        }
+        InputError::check_finite("distance", distance)?;
         fade_range.validate()?;
         let FadeRange { start, end } = fade_range;
         Self::fade(((distance - start) / (end - start)).clamp(0.0, 1.0))
@@ -88,19 +83,8 @@ impl InstanceLod {
     /// # Errors
     /// [`InputError`] that names the field.
     pub fn validate(&self) -> Result<(), InputError> {
-        if !(0.0..=1.0).contains(&self.influence_fade) {
-            return Err(InputError::new("influence_fade", self.influence_fade, "must be in 0..=1"));
-        }
-        if !(1..=MAX_INFLUENCES as u32).contains(&self.max_influences) {
-            return Err(InputError::new(
-                "max_influences",
-                self.max_influences,
-                format!("must be in 1..={MAX_INFLUENCES}"),
-            ));
-        }
-        if self.mesh_lod as usize >= MAX_LEVELS {
-            return Err(InputError::new("mesh_lod", self.mesh_lod, format!("must be below {MAX_LEVELS}")));
-        }
-        Ok(())
+        InputError::check_within("influence_fade", self.influence_fade, 0.0..=1.0)?;
+        InputError::check_within("max_influences", self.max_influences, 1..=MAX_INFLUENCES as u32)?;
+        InputError::check_below("mesh_lod", self.mesh_lod, MAX_LEVELS)
     }
 }

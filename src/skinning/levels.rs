@@ -16,7 +16,6 @@ use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
 use crate::mesh::progressive::{Became, partners};
 use crate::mesh::simplify::{Options, Simplified, Surface, simplify_watched};
 use bodies::Bodies;
-pub use coarsen::{Coarsened, coarsen};
 use errors::{Suspects, errors};
 use keys::{Keys, key_moments};
 use near::{Near, Sides};
@@ -24,7 +23,6 @@ use welded::Welded;
 use whole::{Shared, Whole, shared};
 
 mod bodies;
-mod coarsen;
 mod errors;
 mod keys;
 mod near;

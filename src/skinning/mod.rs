@@ -37,7 +37,7 @@ pub use extent::Extent;
 pub use instance_lod::{FadeRange, InstanceLod};
 #[cfg(feature = "gpu")]
 pub(crate) use levels::add_levels_and_at_rest;
-pub use levels::{Coarsened, MeshLevels, add_levels, add_levels_with_progress, coarsen};
+pub use levels::{MeshLevels, add_levels, add_levels_with_progress};
 pub use merged::{Merged, merged};
 pub use pose::poses_of;
 pub use vertex::{Blend, Vertex};

@@ -13,8 +13,7 @@ use crate::Error;
 use crate::InputError;
 use crate::animation::ModelMatrices;
 use crate::animation::updated_bones::UpdatedBonesReader;
-use crate::asset::Model;
-use crate::gpu::{Buffer, Gpu, IndirectJob, Job};
+use crate::gpu::{Buffer, Gpu, Job};
 use crate::skinning::vertex::Blend;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::skinning::vertex::Vertex;
@@ -43,7 +42,7 @@ struct Paging {
     /// The selection that keeps the updated bones, and the one that clears them.
     selections: [Job; 2],
     /// Morphing, if there are targets, and skinning.
-    after: Vec<IndirectJob>,
+    after: Vec<Job>,
 }
 
 impl Paging {
@@ -65,32 +64,16 @@ impl Paging {
 }
 
 impl PagedSkin {
-    /// Prepares a model's mesh for `instances` instances, whose bones are posed by `matrices`, which must record the
-    /// updated bones, with `pages` pages.
+    /// Prepares a mesh for so many instances, whose bones are posed by `matrices`, which must record the updated bones, with so
+    /// many pages.
+    ///
+    /// With last positions the position that each vertex had before the last [`PagedSkin::dispatch`] is kept behind the vertices
+    /// of all pages ([`PageBuffers::last`]): a page takes 3584 bytes then instead of 2560. What moves is skinned once more after
+    /// it stops. What was not seen in the frame before counts as if it had not moved.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for matrices
-    /// without updated bones and for fewer of them than needed; [`crate::gpu::GpuError`].
-    pub fn new(
-        gpu: &Gpu,
-        model: &Model,
-        mesh: usize,
-        matrices: &ModelMatrices,
-        instances: usize,
-        pages: u32,
-    ) -> Result<Self, Error> {
-        let Some(mesh) = model.meshes.get(mesh) else {
-            return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())).into());
-        };
-        let (mesh, clusters) = MeshBuffers::new(gpu, model, mesh)?;
-        Self::of_mesh(gpu, (mesh, Arc::new(clusters)), matrices, (instances, pages, false))
-    }
-
-    /// As [`PagedSkin::new`], of a mesh that is on the device already: for so many instances, with so many pages, and with last
-    /// positions ([`PagedSkin::keep_last`]) or without.
-    ///
-    /// # Errors
-    /// As [`PagedSkin::new`].
+    /// [`InputError`] for no instances, for matrices without updated bones and for fewer of them than needed;
+    /// [`crate::gpu::GpuError`].
     pub fn of_mesh(
         gpu: &Gpu,
         (mesh, clusters): (MeshBuffers, Arc<Clusters>),
@@ -108,17 +91,6 @@ impl PagedSkin {
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
         let paging = Paging::new(gpu, (&mesh, &crowd), (select, &active), pages)?;
         Ok(Self { mesh, clusters, crowd, active, palette, paging, reader: Arc::new(updated.reader()) })
-    }
-
-    /// Keeps the position that each vertex had before the last [`PagedSkin::dispatch`], behind the vertices of all pages
-    /// ([`PageBuffers::last`]): a page takes 3584 bytes then instead of 2560. What moves is skinned once more after it
-    /// stops. What was not seen in the frame before counts as if it had not moved. Replaces the pages.
-    ///
-    /// # Errors
-    /// [`crate::gpu::GpuError`].
-    pub fn keep_last(&mut self, gpu: &Gpu) -> Result<(), Error> {
-        self.active = ActiveClusters::keeping(gpu, &self.mesh, &self.crowd)?;
-        self.set_pages(gpu, self.pages().pages() as u32)
     }
 
     /// The pages, and the vertices in them.
@@ -150,26 +122,19 @@ impl PagedSkin {
         self.paging.after.iter().for_each(|job| job.dispatch(pass));
     }
 
-    /// Reads the vertices of an instance that have a page, in the mesh's own order; `None` for the others. Waits for
+    /// Reads the vertices of each instance that have a page, in the mesh's own order; `None` for the others. Waits for
     /// the device.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn read(&self, gpu: &Gpu, instance: usize) -> Result<Vec<Option<Vertex>>, Error> {
-        Ok(self.read_each(gpu, &[instance])?.swap_remove(0))
-    }
-
-    /// As [`PagedSkin::read`], of several instances at once.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn read_each(
         &self,
         gpu: &Gpu,
         instances: &[usize],
     ) -> Result<Vec<Vec<Option<Vertex>>>, Error> {
-        if let Some(instance) = instances.iter().find(|instance| **instance >= self.crowd.instances) {
-            let bound = format!("must be below {}", self.crowd.instances);
-            return Err(InputError::new("instance", instance, bound).into());
+        for instance in instances {
+            InputError::check_below("instance", *instance, self.crowd.instances)?;
         }
         let PageBuffers { table, skinned, .. } = &self.paging.pages;
         let (table, skinned) = (table.read_blocking(gpu)?, skinned.read_blocking(gpu)?);
@@ -188,10 +153,5 @@ impl PagedSkin {
     /// Workgroups along x, y and z of the dispatch that skins, the number of clusters that it skins, and a counter.
     pub fn dispatched(&self) -> &Buffer<u32> {
         &self.active.dispatched
-    }
-
-    /// The buffer of updated bones that the selection reads.
-    pub fn updated_bones(&self) -> &Buffer<u32> {
-        &self.paging.select.updated_bones
     }
 }

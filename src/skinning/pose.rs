@@ -66,9 +66,8 @@ pub(super) fn moments(
     clips: &[usize],
     poses: usize,
 ) -> Result<Vec<Moment>, InputError> {
-    let Some(mesh) = model.meshes.get(mesh) else {
-        return Err(InputError::new("mesh", mesh, format!("must be below {}", model.meshes.len())));
-    };
+    InputError::check_below("mesh", mesh, model.meshes.len())?;
+    let mesh = &model.meshes[mesh];
     if poses == 0 {
         return Err(InputError::new("poses", 0, "must be at least 1, to see what vertices do"));
     }

@@ -86,49 +86,13 @@ fn upload(
     format: wgpu::TextureFormat,
     bytes: impl Fn(&image::RgbaImage) -> Vec<u8>,
 ) -> Result<ColorTexture, GpuError> {
-    let size = |level: &image::RgbaImage| wgpu::Extent3d {
-        width: level.width(),
-        height: level.height(),
-        depth_or_array_layers: 1,
-    };
-    let available = gpu.device().limits().max_texture_dimension_2d;
-    let needed = mips.levels[0].width().max(mips.levels[0].height());
-    if needed > available {
-        return Err(GpuError::Limit {
-            pass: "colour",
-            limit: "maxTextureDimension2D",
-            needed: needed.into(),
-            available: available.into(),
-            remedy: "use a smaller image",
-        });
-    }
+    let [width, height] = [mips.levels[0].width(), mips.levels[0].height()];
+    gpu.check_texture("colour", [width, height], "use a smaller image")?;
     gpu.scoped(|| {
-        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-            label: Some("colour"),
-            size: size(&mips.levels[0]),
-            mip_level_count: mips.levels.len() as u32,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
+        let texture = gpu.sampled_texture("colour", [width, height, 1], mips.levels.len() as u32, format);
         for (mip_level, level) in (0..).zip(&mips.levels) {
             gpu.fill_level(&texture, [mip_level, 0], &bytes(level));
         }
-        ColorTexture { texture, sampler: sampler(gpu, wraps) }
-    })
-}
-
-fn sampler(gpu: &Gpu, wraps: bool) -> wgpu::Sampler {
-    let address = if wraps { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
-    gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("colour"),
-        address_mode_u: address,
-        address_mode_v: address,
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
+        ColorTexture { texture, sampler: gpu.trilinear_sampler("colour", wraps) }
     })
 }

@@ -61,10 +61,9 @@ impl HeightMap {
             let bound = format!("must be {width} × {height} heights");
             return Err(InputError::new("heights.len", heights.len(), bound));
         }
-        match heights.iter().position(|height| !(0.0..=1.0).contains(height)) {
-            Some(at) => Err(InputError::new(format!("heights[{at}]"), heights[at], "must be in 0..=1")),
-            None => Ok(Self { width, height, heights }),
-        }
+        let is_fraction = |height: &f32| (0.0..=1.0).contains(height);
+        InputError::check_each("heights", &heights, is_fraction, "must be in 0..=1")?;
+        Ok(Self { width, height, heights })
     }
 
     /// Reads the brightness of an image file, black as 0 and white as 1, in the file's full bit depth.

@@ -1,7 +1,7 @@
 //! Parameters of a relief's material: depth, plane, light, and the width of shadows.
 
 use crate::InputError;
-use crate::surface::relief::MAX_SCALE;
+use crate::surface::relief::{MAX_SCALE, MAX_STEPS};
 
 /// How the surface shades itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
@@ -68,17 +68,11 @@ impl Material {
     /// # Errors
     /// [`InputError`].
     pub fn validate(&self) -> Result<(), InputError> {
-        let within = |field: &str, value: f32, low: f32, high: f32| match (low..=high).contains(&value) {
-            true => Ok(()),
-            false => Err(InputError::new(field, value, format!("must be in {low}..={high}"))),
-        };
-        within("scale", self.scale, 0.0, MAX_SCALE)?;
-        within("plane", self.plane, 0.0, 1.0)?;
-        within("ambient", self.ambient, 0.0, 1.0)?;
-        within("softness", self.softness, 1e-3, 1e3)?;
-        if !(1..=crate::surface::relief::MAX_STEPS).contains(&self.shadow_steps) {
-            return Err(InputError::new("shadow_steps", self.shadow_steps, "must be in 1..=1024"));
-        }
+        InputError::check_within("scale", self.scale, 0.0..=MAX_SCALE)?;
+        InputError::check_within("plane", self.plane, 0.0..=1.0)?;
+        InputError::check_within("ambient", self.ambient, 0.0..=1.0)?;
+        InputError::check_within("softness", self.softness, 1e-3..=1e3)?;
+        InputError::check_within("shadow_steps", self.shadow_steps, 1..=MAX_STEPS)?;
         let length: f32 = self.light.iter().map(|axis| axis * axis).sum();
         if !(0.99..=1.01).contains(&length) {
             let value = format!("{:?}", self.light);

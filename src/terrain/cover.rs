@@ -6,7 +6,7 @@ pub use crate::shared::terrain::tiles::MapZone;
 /// A zone as shaders take it ([`zone_of`]).
 pub use crate::shared::terrain::zones::Zone as ShaderZone;
 use crate::terrain::config::{
-    Config, MAX_REPEATS, MAX_ZONES, Slope, Zone, check_range, check_terrain_scale, finite,
+    Config, MAX_REPEATS, Slope, Zone, check_range, check_terrain_scale, check_zone_count, finite,
 };
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{InputError, srgb};
@@ -89,10 +89,7 @@ impl Cover {
         check_terrain_scale(self.terrain_scale)?;
         finite("tile", self.tile, f64::MIN_POSITIVE, f64::MAX)?;
         finite("variation", self.variation, 0.0, 1.0)?;
-        if self.zones.is_empty() || self.zones.len() > MAX_ZONES {
-            let bound = format!("must hold 1 to {MAX_ZONES} zones");
-            return Err(InputError::new("zones", format!("[{} zones]", self.zones.len()), bound));
-        }
+        check_zone_count(self.zones.len())?;
         for (index, map_zone) in self.zones.iter().enumerate() {
             self.check_zone(&format!("zones[{index}]"), map_zone)?;
         }
@@ -112,13 +109,7 @@ impl Cover {
             return Err(InputError::new(format!("{path}.repeats"), zone.repeats, "must be a whole number"));
         }
         let most = TEXTURE_SIZE.ilog2();
-        if *edge_log2 > most {
-            return Err(InputError::new(
-                format!("{path}.edge_log2"),
-                edge_log2,
-                format!("must be in 0..={most}"),
-            ));
-        }
+        InputError::check_within(format!("{path}.edge_log2"), *edge_log2, 0..=most)?;
         let end = u64::from(*first) + (1 << (2 * edge_log2));
         if end > self.texels.len() as u64 {
             let bound =

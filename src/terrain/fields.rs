@@ -30,10 +30,8 @@ pub(crate) struct Place {
 pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputError> {
     let mut places = Vec::new();
     for (part, fields) in parts.iter().enumerate() {
-        if fields.width != width {
-            let bound = format!("must be {width}, as parts[0] has it");
-            return Err(InputError::new(format!("parts[{part}].width"), fields.width, bound));
-        }
+        let path = format!("parts[{part}].width");
+        InputError::check_same(path, fields.width, width, "as parts[0] has it")?;
         fields.heights.check_holds(&format!("parts[{part}].heights"), fields.points(0))?;
         places.extend((0..fields.count).map(|index| Place { part, index }));
     }
@@ -62,19 +60,6 @@ impl Fields {
         let bytes = 4 * u64::from(width) * u64::from(width);
         let binding = gpu.max_binding().min(wgpu::Limits::default().max_storage_buffer_binding_size);
         (binding / bytes.max(1)).clamp(1, 65_535) as usize
-    }
-
-    /// Fields of heights that the host has, `width`² each, in parts of at most [`Fields::most`].
-    ///
-    /// # Errors
-    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
-    pub fn of_windows(gpu: &Gpu, width: u32, windows: &[Vec<i32>]) -> Result<Vec<Self>, GpuError> {
-        let part = |windows: &[Vec<i32>]| {
-            let fields = Self::new(gpu, "terrain heights", width, windows.len() as u32)?;
-            fields.heights.write(gpu, &windows.concat())?;
-            Ok(fields)
-        };
-        windows.chunks(Self::most(gpu, width)).map(part).collect()
     }
 
     /// The heights of each field. Waits for the device.

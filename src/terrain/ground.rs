@@ -14,7 +14,7 @@ pub use ray::GroundHit;
 /// The heights of any number of patches of one configuration, kept on the CPU, which answer where the ground
 /// is.
 ///
-/// The answers are those of the triangles that relievo draws and exports ([`HeightField::triangle_at`]), so
+/// The answers are those of the triangles that relievo draws and exports ([`HeightField::write_obj`]), so
 /// that what stands on the ground neither floats nor sinks. A patch takes four bytes per sample.
 ///
 /// ```

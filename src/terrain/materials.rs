@@ -27,7 +27,8 @@ impl Materials {
         }
         let shader_zones: Vec<_> = zones.iter().map(zone_of).collect();
         let zone_buffer = Buffer::from_slice(gpu, "zones", &shader_zones)?;
-        let (textures, sampler) = gpu.scoped(|| (upload(gpu, textures), sampler(gpu)))?;
+        let (textures, sampler) =
+            gpu.scoped(|| (upload(gpu, textures), gpu.trilinear_sampler("zone textures", true)))?;
         Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
     }
 
@@ -41,37 +42,13 @@ impl Materials {
 }
 
 fn upload(gpu: &Gpu, layers: &[Texture]) -> wgpu::Texture {
-    let size = |level: u32| wgpu::Extent3d {
-        width: TEXTURE_SIZE >> level,
-        height: TEXTURE_SIZE >> level,
-        depth_or_array_layers: 1,
-    };
-    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-        label: Some("zone textures"),
-        size: wgpu::Extent3d { depth_or_array_layers: layers.len() as u32, ..size(0) },
-        mip_level_count: TEXTURE_SIZE.ilog2() + 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8UnormSrgb,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
+    let (size, levels) = ([TEXTURE_SIZE, TEXTURE_SIZE, layers.len() as u32], TEXTURE_SIZE.ilog2() + 1);
+    let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    let texture = gpu.sampled_texture("zone textures", size, levels, format);
     for (layer, image) in (0..).zip(layers) {
         for (level, texels) in (0..).zip(&image.mips) {
             gpu.fill_level(&texture, [level, layer], texels);
         }
     }
     texture
-}
-
-fn sampler(gpu: &Gpu) -> wgpu::Sampler {
-    gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("zone textures"),
-        address_mode_u: wgpu::AddressMode::Repeat,
-        address_mode_v: wgpu::AddressMode::Repeat,
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
-    })
 }

@@ -1,9 +1,6 @@
 //! Triangle meshes of height fields (B section 4.4), for export: relievo itself draws from the heights without
-//! a mesh. The module also answers height queries on the CPU: [`HeightField::triangle_at`] for the triangles
-//! that are drawn, [`HeightField::height_at`] for a bilinear surface. [`crate::terrain::ground::Ground`]
-//! answers for many patches.
+//! a mesh. [`crate::terrain::ground::Ground`] answers height queries on the CPU.
 
-use std::fmt::Display;
 use std::io::{self, Write};
 
 use crate::asset::obj::{ObjWriter, Object};
@@ -50,32 +47,13 @@ impl HeightField {
         [all().min(), all().max()].map(|height| f64::from(height.unwrap_or(0)) / HEIGHT_ONE)
     }
 
-    /// The height and the normal of the triangle at world position (x, z), relative to the first sample; `None`
-    /// outside the field. Use it to place objects on the ground.
-    ///
-    /// The triangles are those of the drawing pass, of [`HeightField::mesh`] and of
-    /// [`HeightField::write_obj`]: the diagonal of each cell runs from its north-eastern to its south-western
-    /// corner, (1, 0) to (0, 1). On it the north-western triangle answers, and between two cells the eastern or
-    /// southern cell does, where the field has one.
-    ///
-    /// The position is rounded to 2⁻³⁰ of the distance between samples. The height is exact there, and then
-    /// rounded to `f64`; the normal is computed in `f64`.
-    pub fn triangle_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
-        let last = self.size as i64 - 1;
-        let along = |position: f64| {
-            let (sample, fraction) = sample_and_fraction(position / self.spacing)?;
-            // No cell lies east or south of the last sample, so a position there lies at the end of the last
-            // cell.
-            let (cell, fraction) =
-                if sample == last { (last - 1, fraction + FRACTION_ONE) } else { (sample, fraction) };
-            ((0..last).contains(&cell) && fraction <= FRACTION_ONE).then_some((cell as usize, fraction))
-        };
-        let ((column, u), (row, v)) = (along(x)?, along(z)?);
-        Some(self.triangle([column, row], [u, v]))
-    }
-
     /// The triangle of the cell (column, row) at the position (u, v) in it, 0 to [`FRACTION_ONE`] east and
     /// south of the cell's first corner.
+    ///
+    /// The triangles are those of the drawing pass and of [`HeightField::write_obj`]: the diagonal of each cell runs from its north-eastern to its south-western
+    /// corner, (1, 0) to (0, 1). On it the north-western triangle answers.
+    ///
+    /// The height is exact, and then rounded to `f64`; the normal is computed in `f64`.
     pub(crate) fn triangle(&self, [column, row]: [usize; 2], [u, v]: [i64; 2]) -> GroundPoint {
         let corner = |dx: usize, dy: usize| i64::from(self.heights[(row + dy) * self.size + column + dx]);
         let (east, south) = (corner(1, 0), corner(0, 1));
@@ -99,46 +77,6 @@ impl HeightField {
         }
     }
 
-    /// The height at world position (x, z), relative to the first sample, by bilinear interpolation; `None`
-    /// outside the field. This surface has no creases along triangles, but it is not the one that is drawn: in
-    /// a cell with corner heights h₀₀, h₁₀, h₀₁ and h₁₁ it differs from [`HeightField::triangle_at`] by up to
-    /// |h₀₀ − h₁₀ − h₀₁ + h₁₁| / 4, which it reaches in the middle of the cell. Throughout a cell the
-    /// difference has one sign.
-    pub fn height_at(&self, x: f64, z: f64) -> Option<f64> {
-        let last = (self.size - 1) as f64;
-        let (column, row) = (x / self.spacing, z / self.spacing);
-        if !((0.0..=last).contains(&column) && (0.0..=last).contains(&row)) {
-            return None;
-        }
-        let cell = |at: f64| (at as usize).min(self.size - 2);
-        let (i, j) = (cell(column), cell(row));
-        let (u, v) = (column - i as f64, row - j as f64);
-        let corner =
-            |dx: usize, dy: usize| f64::from(self.heights[(j + dy) * self.size + i + dx]) / HEIGHT_ONE;
-        let top = corner(0, 0) * (1.0 - u) + corner(1, 0) * u;
-        let bottom = corner(0, 1) * (1.0 - u) + corner(1, 1) * u;
-        Some(top * (1.0 - v) + bottom * v)
-    }
-
-    /// The mesh of the field: positions (x east, y up, z south), texture coordinates over the patch, and one
-    /// triangle strip.
-    pub fn mesh(&self) -> Mesh {
-        let last = (self.size - 1) as f32;
-        let (mut positions, mut uvs) = (Vec::new(), Vec::new());
-        for y in 0..self.size {
-            for x in 0..self.size {
-                let height = f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE;
-                positions.push([
-                    (x as f64 * self.spacing) as f32,
-                    height as f32,
-                    (y as f64 * self.spacing) as f32,
-                ]);
-                uvs.push([x as f32 / last, y as f32 / last]);
-            }
-        }
-        Mesh { positions, uvs, strip: strip(self.size) }
-    }
-
     /// Writes the mesh as Wavefront OBJ in world space. `first` is the world index of the first sample, such as
     /// patch coordinates times patchSize − 1. Positions are written as decimals in full `f64` precision, so
     /// that patches write the same text for an edge that they share.
@@ -151,7 +89,13 @@ impl HeightField {
             let (x, y) = (index % self.size, index / self.size);
             [at(x, 0), f64::from(*height) / HEIGHT_ONE, at(y, 1)]
         });
-        write_obj(out, positions, &self.mesh())
+        let last = (self.size - 1) as f32;
+        let uv = |index: usize| [(index % self.size) as f32 / last, (index / self.size) as f32 / last];
+        let uv: Vec<_> = (0..self.heights.len()).map(uv).collect();
+        let mut writer = ObjWriter::new(out);
+        writer.comment(format_args!("relievo terrain: {} points", uv.len()))?;
+        let triangles = triangles(self.size);
+        writer.object(Object { name: None, material: None, positions, uv: &uv, normals: &[], triangles })
     }
 }
 
@@ -166,75 +110,11 @@ pub(crate) fn sample_and_fraction(position: f64) -> Option<(i64, i64)> {
     })
 }
 
-/// The indices of one triangle strip over a grid of `size`² points, in which degenerate triangles join the
-/// rows. Front faces look up.
-pub(crate) fn strip(size: usize) -> Vec<u32> {
-    let mut indices = Vec::new();
-    for row in 0..size - 1 {
-        let first = (row * size) as u32;
-        if row > 0 {
-            indices.push(first);
-        }
-        for x in 0..size as u32 {
-            indices.extend([first + x, first + size as u32 + x]);
-        }
-        if row + 2 < size {
-            indices.push(first + 2 * size as u32 - 1);
-        }
-    }
-    indices
-}
-
-/// A triangle-strip mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Mesh {
-    /// Positions in world units: x east, y up, z south.
-    pub positions: Vec<[f32; 3]>,
-    /// Texture coordinates, 0 to 1 over the patch.
-    pub uvs: Vec<[f32; 2]>,
-    /// Indices of one triangle strip.
-    pub strip: Vec<u32>,
-}
-
-impl Mesh {
-    /// The triangles of the strip without the degenerate ones, counter-clockwise when seen from above.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
-        (self.strip.windows(3).enumerate())
-            .map(|(index, triple)| {
-                if index % 2 == 0 {
-                    [triple[0], triple[1], triple[2]]
-                } else {
-                    [triple[1], triple[0], triple[2]]
-                }
-            })
-            .filter(|[a, b, c]| a != b && b != c && a != c)
-            .collect()
-    }
-
-    /// Writes Wavefront OBJ.
-    ///
-    /// # Errors
-    /// The errors of `out`.
-    pub fn write_obj(&self, out: &mut impl Write) -> io::Result<()> {
-        write_obj(out, self.positions.iter().copied(), self)
-    }
-}
-
-fn write_obj<T: Display>(
-    out: &mut impl Write,
-    positions: impl Iterator<Item = [T; 3]>,
-    mesh: &Mesh,
-) -> io::Result<()> {
-    let mut writer = ObjWriter::new(out);
-    writer.comment(format_args!("relievo terrain: {} points", mesh.uvs.len()))?;
-    writer.object(Object {
-        name: None,
-        material: None,
-        positions,
-        uv: &mesh.uvs,
-        normals: &[],
-        triangles: mesh.triangles(),
-    })
+/// The triangles of a grid of `size`² points, counter-clockwise when seen from above.
+fn triangles(size: usize) -> Vec<[u32; 3]> {
+    let cells = (0..size - 1).flat_map(|row| (0..size - 1).map(move |column| (row * size + column) as u32));
+    let south = size as u32;
+    cells.flat_map(|at| [[at, at + south, at + 1], [at + 1, at + south, at + south + 1]]).collect()
 }
 
 #[cfg(test)]
@@ -248,26 +128,16 @@ mod tests {
     }
 
     #[test]
-    fn queries_are_bilinear_and_know_their_bounds() {
-        let field = ramp();
-        assert_eq!(field.point(2, 1), Some(5.0));
-        assert_eq!(field.point(3, 0), None);
-        assert_eq!(field.height_at(0.25, 0.75), Some(2.5));
-        assert_eq!(field.height_at(1.0, 1.0), Some(6.0));
-        assert_eq!(field.height_at(1.0001, 0.0), None);
-        assert_eq!(field.height_at(f64::NAN, 0.0), None);
-    }
-
-    #[test]
-    fn the_strip_covers_every_cell_once_and_faces_up() {
+    fn triangles_cover_every_cell_once_and_face_up() {
         for size in [2, 3, 5, 17] {
-            let field = HeightField::new(vec![0; size * size], size, 1.0).expect("square");
-            let mesh = field.mesh();
-            let triangles = mesh.triangles();
+            let place = |index: u32| {
+                glam::Vec3::new((index as usize % size) as f32, 0.0, (index as usize / size) as f32)
+            };
+            let triangles = triangles(size);
             assert_eq!(triangles.len(), 2 * (size - 1) * (size - 1));
             let mut cells = std::collections::HashMap::new();
             for triangle in triangles {
-                let [a, b, c] = triangle.map(|index| glam::Vec3::from(mesh.positions[index as usize]));
+                let [a, b, c] = triangle.map(place);
                 assert!((b - a).cross(c - a).y > 0.0, "size {size}: {triangle:?} faces down");
                 let center = (a + b + c) / 3.0;
                 *cells.entry((center.x as usize, center.z as usize)).or_insert(0) += 1;
@@ -280,7 +150,7 @@ mod tests {
     #[test]
     fn obj_has_every_point_and_face() {
         let mut text = Vec::new();
-        ramp().mesh().write_obj(&mut text).expect("a vector takes everything");
+        ramp().write_obj(&mut text, [0, 0]).expect("a vector takes everything");
         let text = String::from_utf8(text).expect("ASCII");
         let count = |prefix: &str| text.lines().filter(|line| line.starts_with(prefix)).count();
         assert_eq!((count("v "), count("vt "), count("f ")), (9, 9, 8));
@@ -294,9 +164,6 @@ mod tests {
             ramp().write_obj(&mut text, first).expect("a vector takes everything");
             String::from_utf8(text).expect("ASCII")
         };
-        let mut at_origin = Vec::new();
-        ramp().mesh().write_obj(&mut at_origin).expect("a vector takes everything");
-        assert_eq!(text([0, 0]).as_bytes(), at_origin);
         // Positions that f32 could not tell apart.
         assert!(text([1 << 30, -3]).contains("\nv 536870912.5 3 -1\n"));
     }

@@ -5,7 +5,6 @@
 
 pub mod blend;
 pub mod border;
-pub mod color_maps;
 pub mod config;
 pub mod cover;
 pub mod despike;

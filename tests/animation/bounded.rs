@@ -1,6 +1,5 @@
 //! The bound of `bounded`, on clips that are designed to break it.
 
-use relievo::animation::frame::reference::Crowd;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::order::Order;
@@ -9,6 +8,7 @@ use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Bone, Clip, Skeleton, Transform};
 use relievo_lab::cases::animation::Draw;
+use relievo_lab::crowd::Crowd;
 
 fn skeleton(parents: &[Option<u32>]) -> Skeleton {
     let bone =

@@ -2,7 +2,6 @@
 
 use relievo::animation::budget::reference::rank_of;
 use relievo::animation::compact::reference::Work;
-use relievo::animation::frame::reference::Crowd;
 use relievo::animation::gate::reference::{gate, is_skipped, scramble};
 use relievo::animation::instance::{Instance, Wrap};
 use relievo::animation::lod::OMEGA_ONE;
@@ -16,6 +15,7 @@ use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Skeleton};
 use relievo_lab::cases::animation::{Draw, random_clips, random_skeleton};
+use relievo_lab::crowd::Crowd;
 use relievo_samples::creature;
 
 /// The skeleton, clips and tables that a test plays.

@@ -1,6 +1,5 @@
 //! The guarantee of the `bounded` gate for vertices: a largest error on screen.
 
-use relievo::animation::frame::reference::Crowd;
 use relievo::animation::instance::Instance;
 use relievo::animation::instance::Wrap;
 use relievo::animation::order::Order;
@@ -17,6 +16,7 @@ use relievo::skinning::select::reference::{Now, Skinned, select};
 use relievo::skinning::skin::reference::skin;
 use relievo::skinning::vertex::Blend;
 use relievo::skinning::vertex::Vertex;
+use relievo_lab::crowd::Crowd;
 
 use crate::shapes::model;
 

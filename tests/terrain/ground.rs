@@ -188,66 +188,6 @@ fn an_origin_moves_positions_and_nothing_else() {
 }
 
 #[test]
-fn a_field_answers_as_its_patch_does() {
-    let config = config(0.3);
-    let ground = ground(&config, &[[0, 0]]);
-    let heights = heights(&config, &[[0, 0]]).remove(0);
-    let field = HeightField::new(heights, SIZE as usize, 0.3).expect("square");
-    let mut inside = 0;
-    for [x, z] in positions(0.3) {
-        assert_eq!(field.triangle_at(x, z), ground.point_at(x, z), "({x}, {z})");
-        inside += usize::from(field.triangle_at(x, z).is_some());
-    }
-    assert!(inside > 400, "{inside}");
-    let corner = f64::from(EDGE) * 0.3;
-    assert_eq!(field.triangle_at(corner, corner).map(|point| point.height), field.point(8, 8));
-    for at in [-1e-6, corner + 1e-6, f64::NAN, f64::INFINITY] {
-        assert_eq!((field.triangle_at(at, 0.0), field.triangle_at(0.0, at)), (None, None), "{at}");
-    }
-}
-
-/// The bound that the documentation gives for the distance of the two queries.
-#[test]
-fn the_bilinear_surface_is_off_by_a_quarter_of_the_twist() {
-    let heights: Vec<i32> = (0..25).map(|at| (at * at * 7919 % 4099) << 8).collect();
-    let field = HeightField::new(heights.clone(), 5, 0.5).expect("square");
-    for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
-        let corner = |dx: usize, dy: usize| f64::from(heights[(row + dy) * 5 + column + dx]) / 65_536.0;
-        let twist = corner(0, 0) - corner(1, 0) - corner(0, 1) + corner(1, 1);
-        let apart = |u: f64, v: f64| {
-            let [x, z] = [(column as f64 + u) * 0.5, (row as f64 + v) * 0.5];
-            field.height_at(x, z).expect("inside") - field.triangle_at(x, z).expect("inside").height
-        };
-        assert_eq!(apart(0.5, 0.5), twist / 4.0);
-        for (u, v) in (0..=16).flat_map(|u| (0..=16).map(move |v| (f64::from(u) / 16.0, f64::from(v) / 16.0)))
-        {
-            let share = apart(u, v) / twist;
-            assert!(
-                (-1e-12..=0.25 + 1e-12).contains(&share),
-                "cell ({column}, {row}) at ({u}, {v}): {share}"
-            );
-        }
-    }
-}
-
-/// The largest distance between the bilinear surface and the triangles that are drawn.
-#[test]
-fn the_two_queries_differ_visibly_on_default_terrain() {
-    for terrain_scale in [1.0, 0.25] {
-        let config = Config { terrain_scale, ..Config::new(257, 40.0, "any text").expect("valid") };
-        let heights = field(&Recipe::new(config), &[[0, 0]], 0).expect("valid").remove(0);
-        let field = HeightField::new(heights, 257, terrain_scale).expect("square");
-        let middle = |at: i32| (f64::from(at) + 0.5) * terrain_scale;
-        let worst = (0..256 * 256)
-            .map(|cell| (middle(cell % 256), middle(cell / 256)))
-            .filter_map(|(x, z)| Some((field.height_at(x, z)? - field.triangle_at(x, z)?.height).abs()))
-            .fold(0.0, f64::max);
-        println!("patchSize 257, scaleFactor 40, {terrain_scale} units a sample: {worst:.4} units apart");
-        assert!(worst > 0.1, "{worst}");
-    }
-}
-
-#[test]
 fn margins_are_cut_off_and_other_numbers_of_heights_are_refused() {
     let config = config(1.0);
     let wide = field(&Recipe::new(config.clone()), &[[0, 0]], 2).expect("valid").remove(0);

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod bench;
+mod coarsen;
 mod collapse;
 mod creases;
 mod crowd;

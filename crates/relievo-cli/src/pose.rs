@@ -92,7 +92,7 @@ impl Pose {
         let (clip, time) = self.moment.find(&mut model, &self.model)?;
         let (skeleton, clip) = (&model.skeleton, &model.clips[clip]);
         let pose = match self.backend.gpu(context)? {
-            Some(gpu) => animation::Pose::on_device(&gpu, skeleton, clip, time)?,
+            Some(gpu) => relievo_lab::portrait::pose(&gpu, skeleton, clip, time)?,
             None => animation::Pose::on_host(skeleton, clip, time),
         };
         pose.check_range()?;

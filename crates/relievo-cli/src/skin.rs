@@ -6,7 +6,6 @@ use std::time::Instant;
 use clap::Args;
 use image::RgbaImage;
 use relievo::asset::Model;
-use relievo::skinning::coarsen;
 use relievo::skinning::export::write_obj;
 use relievo::skinning::instance_lod::InstanceLod;
 use relievo::skinning::vertex::{Blend, Vertex};
@@ -16,6 +15,7 @@ use relievo_lab::portrait::{Portrait, PosedModel, portrait};
 
 use crate::Context;
 use crate::arguments::{Backend, ModelArgs};
+use crate::coarsen::coarsen;
 use crate::collapse::CollapseArgs;
 use crate::demo::Shown;
 use crate::output::say;

@@ -1,5 +1,6 @@
 //! `relievo terrain`: heights, colour maps and views of patches of terrain.
 
+mod color_maps;
 mod erosion;
 pub mod export;
 mod frames;
@@ -16,11 +17,9 @@ use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::scene::TerrainStyle;
 use relievo::terrain::blend::{Shading, WeightMode};
-use relievo::terrain::color_maps::ColorMaps;
 use relievo::terrain::despike::Despike;
 use relievo::terrain::export::cropped;
 use relievo::terrain::field::field_with;
-use relievo::terrain::fields::Fields;
 use relievo::terrain::fixed::FeatureMode;
 use relievo::terrain::generator::Generator;
 use relievo::terrain::recipe::Recipe;
@@ -35,6 +34,7 @@ use crate::demo::Shown;
 use crate::memory;
 use crate::output::say;
 use crate::progress::bar;
+use color_maps::{ColorMaps, fields_of};
 use erosion::Erosion;
 use export::{Batch, HeightRange, PatchReport};
 use frames::Frame;
@@ -277,7 +277,7 @@ impl Terrain {
     /// Draws heights that the CPU computed, if there is an adapter; the heights themselves need none.
     fn draw_on_host(&self, plan: &Plan, context: &Context, made: &mut Made) -> Result<(), Error> {
         let drawn = context.gpu().and_then(|gpu| {
-            let parts = Fields::of_windows(&gpu, plan.recipe.config.patch_size + 2, &made.windows)?;
+            let parts = fields_of(&gpu, plan.recipe.config.patch_size + 2, &made.windows)?;
             Ok((self.look(plan).picture(&gpu, &parts, made.range())?, gpu))
         });
         match drawn {

@@ -6,7 +6,7 @@
 //!
 //! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
 //! models, and surface mapping on height maps. [`files`] writes reports and pictures whole or not at all. [`plot`] draws
-//! charts. [`portrait`] draws models, on the host and by a scene. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
+//! charts. [`crowd`] advances gated crowds without a device. [`portrait`] draws models, on the host and by a scene. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
 //! apart.
 //!
 //! On `wasm32` there are the parity cases ([`verify::run_async`]) and reducers: the rest waits for the device, or draws.
@@ -20,6 +20,7 @@ pub mod baseline;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod bench;
 pub mod cases;
+pub mod crowd;
 pub mod distance;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod files;

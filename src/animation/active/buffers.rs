@@ -76,10 +76,7 @@ impl Active {
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
     pub fn new(gpu: &Gpu, order: &Order, crowd: &Crowd) -> Result<Self, Error> {
-        if crowd.bones != order.slots.len() {
-            let bound = format!("must be {}, as the skeleton's", order.slots.len());
-            return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
-        }
+        InputError::check_same("crowd.bones", crowd.bones, order.slots.len(), "as the skeleton's")?;
         let instances = crowd.len();
         let words = order.words();
         let chains = order.levels.windows(2).map(|level| [0, 1, 1, level[1] - level[0]]);

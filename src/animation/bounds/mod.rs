@@ -53,19 +53,9 @@ pub fn bone_radii(skeleton: &Skeleton) -> Vec<f32> {
 /// [`InputError`] for a number of radii that is not one per bone, and for radii that are negative or not
 /// finite.
 pub fn check_bone_radii(bone_radii: &[f32], bones: usize) -> Result<(), InputError> {
-    if bone_radii.len() != bones {
-        return Err(InputError::new(
-            "bone_radii.len",
-            bone_radii.len(),
-            format!("must be {bones}, one a bone"),
-        ));
-    }
-    match bone_radii.iter().position(|bone_radius| !(0.0..f32::INFINITY).contains(bone_radius)) {
-        None => Ok(()),
-        Some(at) => {
-            Err(InputError::new(format!("bone_radii[{at}]"), bone_radii[at], "must be at least 0 metres"))
-        }
-    }
+    InputError::check_len("bone_radii", bone_radii.len(), bones, "a bone")?;
+    let is_good = |radius: &f32| (0.0..f32::INFINITY).contains(radius);
+    InputError::check_each("bone_radii", bone_radii, is_good, "must be at least 0 metres")
 }
 
 #[cfg(test)]

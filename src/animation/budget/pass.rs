@@ -6,7 +6,7 @@ use crate::animation::crowd::Crowd;
 use crate::animation::gate_state::GateState;
 use crate::animation::gate_table::{ExpectationTable, TableBuffers};
 use crate::gpu::bindings::animation::budget as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Step, Uniform};
 use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM, TIES};
 
 /// Decides which bones are sampled.
@@ -69,17 +69,12 @@ impl BudgetPass {
         };
         let threads = [words, 1, words, 1, words];
         let steps = self.stages.iter().zip(threads).map(step).collect::<Result<_, GpuError>>()?;
-        Ok(BudgetJob { params, uniform, job: Job::new(gpu, "animation/budget", steps)? })
+        Ok(ParamsJob { params, uniform, job: Job::new(gpu, "animation/budget", steps)? })
     }
 }
 
 /// A prepared decision: set the budget, then record.
-#[derive(Debug, Clone)]
-pub struct BudgetJob {
-    params: BudgetParams,
-    uniform: Uniform<BudgetParams>,
-    job: Job,
-}
+pub type BudgetJob = ParamsJob<BudgetParams>;
 
 impl BudgetJob {
     /// Sets the number of bones that may be sampled in the next submission.
@@ -88,15 +83,5 @@ impl BudgetJob {
     /// [`GpuError`].
     pub fn set(&self, gpu: &Gpu, budget: u32) -> Result<(), GpuError> {
         self.uniform.write(gpu, &BudgetParams { budget, ..self.params })
-    }
-
-    /// Records the decision.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.job.record(encoder);
-    }
-
-    /// Adds the decision to a compute pass that is being recorded.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.job.dispatch(pass);
     }
 }

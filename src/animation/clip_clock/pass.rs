@@ -4,7 +4,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::{check_elapsed, check_seconds};
 use crate::gpu::bindings::animation::clip_clock as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform, Upload};
+use crate::gpu::{Gpu, GpuError, Job, Kernel, ParamsJob, Uniform, Upload};
 use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
@@ -34,10 +34,7 @@ impl ClipClockPass {
         crowd: &Crowd,
         state: &GateState,
     ) -> Result<ClipClockJob, Error> {
-        if clips.clips.len() != crowd.clips {
-            let bound = format!("must be {}, as the crowd's", crowd.clips);
-            return Err(InputError::new("clips.len", clips.clips.len(), bound).into());
-        }
+        InputError::check_same("clips.len", clips.clips.len(), crowd.clips, "as the crowd's")?;
         let params = ClipClockParams {
             instances: state.lods.len() as u32,
             elapsed: 0.0,
@@ -58,17 +55,12 @@ impl ClipClockPass {
         };
         let group = group.bind(gpu, &self.kernel)?;
         let job = Job::spread(gpu, "animation/clip_clock", (&self.kernel, group), params.instances)?;
-        Ok(ClipClockJob { params, uniform, job })
+        Ok(ParamsJob { params, uniform, job })
     }
 }
 
 /// Prepared clip clocks: set the time, then record.
-#[derive(Debug, Clone)]
-pub struct ClipClockJob {
-    params: ClipClockParams,
-    uniform: Uniform<ClipClockParams>,
-    job: Job,
-}
+pub type ClipClockJob = ParamsJob<ClipClockParams>;
 
 impl ClipClockJob {
     /// Sets the time of the next submission, as [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does,
@@ -89,15 +81,5 @@ impl ClipClockJob {
         check_elapsed(elapsed)?;
         check_seconds("frame.ahead", ahead)?;
         Ok(upload.uniform(&self.uniform, &ClipClockParams { elapsed, ahead, ..self.params })?)
-    }
-
-    /// Records the pass.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.job.record(encoder);
-    }
-
-    /// Adds the pass to a compute pass that is being recorded.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.job.dispatch(pass);
     }
 }

@@ -1,8 +1,7 @@
-//! A frame of a crowd under a gate as one object, on the device and on the CPU.
+//! A frame of a crowd under a gate as one object, on the device.
 
 #[cfg(feature = "gpu")]
 mod pass;
-pub mod reference;
 
 #[cfg(feature = "gpu")]
 pub use pass::GatedFrame;

@@ -10,12 +10,12 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate::{Frame, Gate, GateJob, GatePass};
 use crate::animation::gate_state::GateState;
 use crate::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
-use crate::animation::local_to_model::{LocalToModelActiveJob, LocalToModelPass};
+use crate::animation::local_to_model::LocalToModelPass;
 use crate::animation::model_matrices::ModelMatrices;
 use crate::animation::order::Order;
-use crate::animation::sample::{SampleActiveJob, SamplePass};
+use crate::animation::sample::SamplePass;
 use crate::asset::skeleton::Skeleton;
-use crate::gpu::{Gpu, Upload, compute_pass};
+use crate::gpu::{Gpu, Job, Upload, compute_pass};
 
 /// A prepared frame: set the time, then record.
 #[derive(Debug, Clone)]
@@ -31,8 +31,8 @@ pub struct GatedFrame {
     gate: GateJob,
     lists: CompactJob,
     cursor: KeyframeCursorJob,
-    sample: SampleActiveJob,
-    local_to_model: LocalToModelActiveJob,
+    sample: Job,
+    local_to_model: Job,
 }
 
 impl GatedFrame {

@@ -23,10 +23,7 @@ impl AnimatedBones {
     /// [`InputError`] for clips other than the set's, and for a skeleton with another number of bones.
     pub fn new(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
         set.check_clips(clips)?;
-        if order.slots.len() != set.bones() {
-            let bound = format!("must be {}, as the clips'", set.bones());
-            return Err(InputError::new("skeleton.len", order.slots.len(), bound));
-        }
+        InputError::check_same("skeleton.len", order.slots.len(), set.bones(), "as the clips'")?;
         let words = order.words();
         let mut records = Vec::with_capacity(clips.len() * (words + 1));
         for (entry, clip) in set.clips().iter().zip(clips) {

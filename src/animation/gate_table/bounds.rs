@@ -189,7 +189,7 @@ impl ErrorBudget {
 
 /// Sets each bone's fraction of the error budget that the bones above it leave.
 fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
-    let rates: Vec<f64> = columns.iter().map(|column| column.total().powf(EVENNESS)).collect();
+    let rates: Vec<f64> = columns.iter().map(|column| column.path.total().powf(EVENNESS)).collect();
     for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {
         column.fraction = (FAVOUR * fraction).min(1.0);
     }

@@ -61,13 +61,8 @@ impl TableBuffers {
 
     /// Refuses a crowd with other bones or clips than the table's, and one that uses another rotation path.
     pub fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
-        for (field, value, needed) in
-            [("table.bones", self.bones, crowd.bones), ("table.clips", self.clips, crowd.clips)]
-        {
-            if value != needed {
-                return Err(InputError::new(field, value, format!("must be {needed}, as the crowd's")));
-            }
-        }
+        InputError::check_same("table.bones", self.bones, crowd.bones, "as the crowd's")?;
+        InputError::check_same("table.clips", self.clips, crowd.clips, "as the crowd's")?;
         check_path(self.path, crowd.path())
     }
 }

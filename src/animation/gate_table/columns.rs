@@ -5,10 +5,8 @@ use crate::animation::motion::{BoneMotion, Path};
 
 /// The motion of one bone along a clip.
 pub(super) struct Column {
-    rises: Vec<f64>,
-    jumps: Vec<f64>,
-    wrap: f64,
-    is_boundless: bool,
+    /// The path of points that follow the bone.
+    pub(super) path: Path,
     /// The fraction of what the bones above leave, 0 to 1.
     pub(super) fraction: f64,
 }
@@ -19,17 +17,13 @@ impl Column {
             bone.parts.iter().zip(levers).map(|(part, lever)| lever * of(part)).sum::<f64>()
         };
         let times = bone.parts[0].rises.len();
-        Self {
+        let path = Path {
             rises: (0..times).map(|at| weighed(&|path| path.rises[at])).collect(),
             jumps: (0..times).map(|at| weighed(&|path| path.jumps[at])).collect(),
             wrap: weighed(&|path| path.wrap),
             is_boundless: bone.parts.iter().any(|path| path.is_boundless),
-            fraction: 0.0,
-        }
-    }
-
-    pub(super) fn total(&self) -> f64 {
-        self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
+        };
+        Self { path, fraction: 0.0 }
     }
 
     /// Writes the column into a table.
@@ -41,19 +35,19 @@ impl Column {
     pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;
-        for (row, (rise, jump)) in self.rises.iter().zip(&self.jumps).enumerate() {
+        for (row, (rise, jump)) in self.path.rises.iter().zip(&self.path.jumps).enumerate() {
             sum += jump;
             table[row * stride] = [(sum / unit).round() as u32, (rise / unit).ceil() as u32];
             sum += rise;
             steepest = steepest.max(rise / unit);
         }
-        let slack = match self.is_boundless {
+        let slack = match self.path.is_boundless {
             true => EVERYTHING,
-            false if self.total() > 0.0 => (4 + (steepest / 4096.0).ceil() as u32).next_power_of_two(),
+            false if self.path.total() > 0.0 => (4 + (steepest / 4096.0).ceil() as u32).next_power_of_two(),
             false => 0,
         };
         let budget = ErrorBudget::new(self.fraction, slack);
-        table[self.rises.len() * stride] = [(self.total() / unit).ceil() as u32, budget.0];
+        table[self.path.rises.len() * stride] = [(self.path.total() / unit).ceil() as u32, budget.0];
     }
 }
 

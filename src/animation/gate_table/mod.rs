@@ -33,7 +33,10 @@ const MAX_ENTRIES: usize = 1 << 27;
 
 /// Refuses sampling with another rotation path than the one for which a table's motion was computed. Tables
 /// without motion permit any.
-pub(crate) fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Result<(), InputError> {
+///
+/// # Errors
+/// [`InputError`] that names both paths.
+pub fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Result<(), InputError> {
     match of_table {
         Some(path) if path != sampled => {
             let bound = format!("must be {path:?}, the path whose motion the gate's table holds");

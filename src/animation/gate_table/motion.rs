@@ -42,12 +42,12 @@ impl MotionTable {
     /// Writes the columns of every clip, in the smallest unit in which they fit.
     pub fn fill(&mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<(), InputError> {
         for (clip, columns) in columns.iter().enumerate() {
-            if let Some(bone) = columns.iter().position(|column| !column.total().is_finite()) {
+            if let Some(bone) = columns.iter().position(|column| !column.path.total().is_finite()) {
                 let bound = "must be finite: the scales above it are too large";
                 return Err(InputError::new(format!("clips[{clip}].bones[{bone}].motion"), "inf", bound));
             }
         }
-        let largest = columns.iter().flatten().map(Column::total).fold(0.0, f64::max);
+        let largest = columns.iter().flatten().map(|column| column.path.total()).fold(0.0, f64::max);
         self.unit = if largest > 0.0 { largest / MAX_MOTION } else { 1.0 };
         let stride = self.stride();
         for (entry, columns) in set.clips().iter().zip(columns) {

@@ -30,10 +30,7 @@ impl PriorityTable {
         priorities: &[Priorities],
     ) -> Result<Self, InputError> {
         let animated_bones = AnimatedBones::new(order, set, clips)?;
-        if priorities.len() != clips.len() {
-            let bound = format!("must be {}, one a clip", clips.len());
-            return Err(InputError::new("priorities.len", priorities.len(), bound));
-        }
+        InputError::check_len("priorities", priorities.len(), clips.len(), "a clip")?;
         let stride = animated_bones.bones().div_ceil(4);
         let mut rows = empty_rows(set, 0, stride)?;
         for (entry, priorities) in set.clips().iter().zip(priorities) {

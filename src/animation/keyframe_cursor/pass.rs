@@ -6,7 +6,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::check_elapsed;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Uniform, Upload, compute_pass};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, ParamsJob, Step, Uniform, Upload};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
 
 /// Finds the keyframe cursors of instances.
@@ -39,7 +39,7 @@ impl KeyframeCursorPass {
         let group = bind(&self.all, gpu, &uniform, clips, crowd, &listed)?;
         let threads = params.entries * params.timelines;
         let job = Job::spread(gpu, "animation/keyframe_cursor", (&self.all, group), threads)?;
-        Ok(KeyframeCursorJob { params, uniform, work: Work::All(job) })
+        Ok(ParamsJob { params, uniform, job })
     }
 
     /// Prepares the cursors of instances with an active bone, at the times that the gate saw. Record it after
@@ -61,10 +61,9 @@ impl KeyframeCursorPass {
             Listed { instances: &active.instances, dispatches: &active.dispatches, history: &state.history };
         let group = bind(&self.compacted, gpu, &uniform, clips, crowd, &listed)?;
         let offset = 16 * (active.dispatches.len() as u64 - 1);
-        let arguments = active.dispatches.raw();
-        let job =
-            IndirectJob::new("animation/keyframe_cursor", &self.compacted, arguments, vec![(group, offset)]);
-        Ok(KeyframeCursorJob { params, uniform, work: Work::Active(job) })
+        let step = Step::indirect(&self.compacted, group, active.dispatches.raw(), offset);
+        let job = Job::new(gpu, "animation/keyframe_cursor", vec![step])?;
+        Ok(ParamsJob { params, uniform, job })
     }
 }
 
@@ -108,19 +107,8 @@ fn bind(
     group.bind(gpu, kernel)
 }
 
-#[derive(Debug, Clone)]
-enum Work {
-    All(Job),
-    Active(IndirectJob),
-}
-
 /// Prepared cursors: set the time, then record.
-#[derive(Debug, Clone)]
-pub struct KeyframeCursorJob {
-    params: KeyframeCursorParams,
-    uniform: Uniform<KeyframeCursorParams>,
-    work: Work,
-}
+pub type KeyframeCursorJob = ParamsJob<KeyframeCursorParams>;
 
 impl KeyframeCursorJob {
     /// Sets the time of the next submission, in seconds since the starts of the instances. Move the starts
@@ -139,18 +127,5 @@ impl KeyframeCursorJob {
     pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(upload.uniform(&self.uniform, &KeyframeCursorParams { elapsed, ..self.params })?)
-    }
-
-    /// Records the search.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.dispatch(&mut compute_pass(encoder, "animation/keyframe_cursor"));
-    }
-
-    /// Adds the search to a compute pass that is being recorded.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        match &self.work {
-            Work::All(job) => job.dispatch(pass),
-            Work::Active(job) => job.dispatch(pass),
-        }
     }
 }

@@ -14,7 +14,7 @@ mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::{LocalToModelActiveJob, LocalToModelJob, LocalToModelPass};
+pub use pass::LocalToModelPass;
 
 /// The largest difference allowed between a component and the reference, on any device, relative to the number
 /// of bones of the longest chain times the largest component (at least 1). A local matrix carries 10ε of its

@@ -5,7 +5,7 @@ use crate::animation::crowd::Crowd;
 use crate::animation::order::{Chain, Order};
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::bindings::animation::local_to_model as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform};
 use crate::shared::animation::local_to_model::LocalToModelParams;
 use crate::shared::animation::order::Slot as PackedSlot;
 use crate::{Error, InputError};
@@ -17,12 +17,6 @@ pub struct LocalToModelPass {
     compacted: Kernel,
 }
 
-/// A prepared concatenation, with one dispatch per level of chains.
-pub type LocalToModelJob = Job;
-
-/// A prepared concatenation of updated bones.
-pub type LocalToModelActiveJob = IndirectJob;
-
 impl LocalToModelPass {
     /// Compiles the pipelines.
     ///
@@ -33,11 +27,11 @@ impl LocalToModelPass {
         Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
     }
 
-    /// Prepares the model matrices of a crowd from its local transforms.
+    /// Prepares the model matrices of a crowd from its local transforms, with one dispatch per level of chains.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<LocalToModelJob, Error> {
+    pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<Job, Error> {
         let binder = Binder::new(gpu, skeleton, crowd)?;
         // Every slot is walked: these are not read.
         let (words, dispatches) = (Buffer::new(gpu, "nothing", 0)?, Buffer::new(gpu, "nothing", 1)?);
@@ -62,7 +56,7 @@ impl LocalToModelPass {
         skeleton: &Skeleton,
         crowd: &Crowd,
         active: &Active,
-    ) -> Result<LocalToModelActiveJob, Error> {
+    ) -> Result<Job, Error> {
         active.pairs.check_crowd(crowd)?;
         let binder = Binder::new(gpu, skeleton, crowd)?;
         let lists = Lists {
@@ -72,12 +66,13 @@ impl LocalToModelPass {
             dispatches: &active.dispatches,
         };
         // The first dispatch is over instances.
-        let group = |(dispatch, level): (u64, &[u32])| {
-            Ok((binder.bind(gpu, &self.compacted, level, &lists)?, 16 * dispatch))
+        let step = |(dispatch, level): (u64, &[u32])| {
+            let group = binder.bind(gpu, &self.compacted, level, &lists)?;
+            Ok(Step::indirect(&self.compacted, group, active.dispatches.raw(), 16 * dispatch))
         };
         let levels = binder.order.levels.windows(2);
-        let groups = (1..).zip(levels).map(group).collect::<Result<_, GpuError>>()?;
-        Ok(IndirectJob::new("animation/local_to_model", &self.compacted, active.dispatches.raw(), groups))
+        let steps = (1..).zip(levels).map(step).collect::<Result<_, GpuError>>()?;
+        Ok(Job::new(gpu, "animation/local_to_model", steps)?)
     }
 }
 
@@ -100,10 +95,7 @@ struct Binder<'a> {
 
 impl<'a> Binder<'a> {
     fn new(gpu: &Gpu, skeleton: &Skeleton, crowd: &'a Crowd) -> Result<Self, Error> {
-        if crowd.bones != skeleton.len() {
-            let bound = format!("must be {}, as the skeleton's", skeleton.len());
-            return Err(InputError::new("crowd.bones", crowd.bones, bound).into());
-        }
+        InputError::check_same("crowd.bones", crowd.bones, skeleton.len(), "as the skeleton's")?;
         let order = Order::new(skeleton);
         let slots = Buffer::from_slice(gpu, "slots", &order.packed_slots())?;
         let chains = Buffer::from_slice(gpu, "chains", &order.chains)?;

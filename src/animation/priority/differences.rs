@@ -29,10 +29,7 @@ pub(super) struct Differences {
 
 impl Differences {
     pub(super) fn new(skeleton: &Skeleton, clip: &Clip, loops: bool) -> Result<Self, InputError> {
-        if clip.bones() != skeleton.len() {
-            let bound = format!("must be {}, as the skeleton's", skeleton.len());
-            return Err(InputError::new("clip.bones", clip.bones(), bound));
-        }
+        InputError::check_same("clip.bones", clip.bones(), skeleton.len(), "as the skeleton's")?;
         let mut all = Self { keys: Vec::new(), offsets: vec![0], size: size(skeleton) };
         let above = skeleton.scales_above();
         for (bone, node) in skeleton.bones().iter().enumerate() {

@@ -9,7 +9,6 @@ use crate::asset::clip::{Clip, Interpolation, Keys, Part, Track};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
-use crate::asset::transform::Transform;
 
 /// The largest unevenness or shear of scales above a yaw.
 const UNEVEN: f64 = 1e-4;
@@ -23,13 +22,8 @@ pub(super) fn extract(
     bone: usize,
     taken: Taken,
 ) -> Result<(Clip, RootMotion), InputError> {
-    if clip.bones() != skeleton.len() {
-        let bound = format!("must be {}, as the skeleton's", skeleton.len());
-        return Err(InputError::new("clip.bones", clip.bones(), bound));
-    }
-    if bone >= skeleton.len() {
-        return Err(InputError::new("bone", bone, format!("must be below {}", skeleton.len())));
-    }
+    InputError::check_same("clip.bones", clip.bones(), skeleton.len(), "as the skeleton's")?;
+    InputError::check_below("bone", bone, skeleton.len())?;
     if !(taken.horizontal || taken.vertical && !taken.yaw) {
         let bound = "must be true unless taken.vertical is, and taken.yaw is not";
         return Err(InputError::new("taken.horizontal", taken.horizontal, bound));
@@ -65,7 +59,7 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
                 bound,
             ));
         }
-        above = wide(&sample_bone(clip, ancestor, 0.0, RotationPath::Slerp)) * above;
+        above = sample_bone(clip, ancestor, 0.0, RotationPath::Slerp).wide() * above;
     }
     let matrix = above.matrix3;
     // Also refused if only rounding keeps the determinant from being zero.
@@ -93,13 +87,6 @@ fn wrong_scale(skeleton: &Skeleton, clip: &Clip, bone: usize, bound: &str) -> In
         .min_by(|(_, a), (_, b)| (!mirrors(a)).cmp(&!mirrors(b)).then(evenness(a).total_cmp(&evenness(b))));
     let (above, scale) = worst.map_or((bone as u32, [1.0; 3]), |found| *found);
     InputError::new(format!("clip.bones[{above}].scale"), format!("{scale:?}"), bound)
-}
-
-fn wide(transform: &Transform) -> DAffine3 {
-    let [scale, translation] =
-        [transform.scale, transform.translation].map(|v| DVec3::from(v.map(f64::from)));
-    let rotation = DQuat::from_array(transform.rotation.map(f64::from)).normalize();
-    DAffine3::from_scale_rotation_translation(scale, rotation, translation)
 }
 
 fn moves(clip: &Clip, track: &Track) -> bool {

@@ -10,7 +10,7 @@ pub mod reference;
 
 pub use crate::shared::animation::rotation::{SLERP_U, SLERP_V};
 #[cfg(feature = "gpu")]
-pub use pass::{SampleActiveJob, SamplePass};
+pub use pass::SamplePass;
 
 /// The largest angle, in radians, between a sampled rotation between linear keys and the true one. The
 /// polynomial alone is within 4e-8; the rest is `f32` rounding of keys, products and sums.

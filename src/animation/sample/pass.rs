@@ -5,7 +5,7 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::asset::keyframe::{KeyframeCursor, RotationPath};
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::sample as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, IndirectJob, Job, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform};
 use crate::shared::animation::sample::SampleParams;
 use crate::{Error, InputError};
 
@@ -20,9 +20,6 @@ pub struct SamplePass {
     is_layered: bool,
     path: RotationPath,
 }
-
-/// The prepared sampling of pairs that a kernel or the host selects.
-pub type SampleActiveJob = IndirectJob;
 
 impl SamplePass {
     /// Compiles the pipelines for crowds of one layer.
@@ -75,12 +72,13 @@ impl SamplePass {
         clips: &ClipBuffers,
         crowd: &Crowd,
         active: &ActivePairs,
-    ) -> Result<SampleActiveJob, Error> {
+    ) -> Result<Job, Error> {
         self.check(crowd)?;
         active.check_crowd(crowd)?;
         let kernel = &self.compacted[usize::from(clips.has_splines)];
         let group = bind(kernel, gpu, clips, crowd, [&active.pairs, &active.dispatched])?;
-        Ok(IndirectJob::new("animation/sample", kernel, active.dispatched.raw(), vec![(group, 0)]))
+        let step = Step::indirect(kernel, group, active.dispatched.raw(), 0);
+        Ok(Job::new(gpu, "animation/sample", vec![step])?)
     }
 
     fn check(&self, crowd: &Crowd) -> Result<(), InputError> {

@@ -98,17 +98,9 @@ pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
     if times.is_empty() {
         return Err(InputError::new(format!("{path}.len"), 0, "must be at least 1"));
     }
-    if u32::try_from(times.len()).is_err() {
-        return Err(InputError::new(
-            format!("{path}.len"),
-            times.len(),
-            format!("must be at most {}", u32::MAX),
-        ));
-    }
-    if let Some(at) = times.iter().position(|time| !(0.0..=LONGEST).contains(time)) {
-        let bound = format!("must be in 0..={LONGEST} seconds");
-        return Err(InputError::new(format!("{path}[{at}]"), times[at], bound));
-    }
+    InputError::check_most(format!("{path}.len"), times.len(), u32::MAX as usize)?;
+    let bound = format!("must be in 0..={LONGEST} seconds");
+    InputError::check_each(path, times, |time| (0.0..=LONGEST).contains(time), bound)?;
     match times.windows(2).position(|pair| pair[0] > pair[1]) {
         None => Ok(()),
         Some(at) => {

@@ -27,9 +27,7 @@ impl<'a> Container<'a> {
         if version != 2 {
             return Err(InputError::new("GLB.version", version, "must be 2"));
         }
-        if !(12..=bytes.len()).contains(&length) {
-            return Err(InputError::new("GLB.length", length, format!("must be in 12..={}", bytes.len())));
-        }
+        InputError::check_within("GLB.length", length, 12..=bytes.len())?;
         let mut found = Self { json: &[], binary: None };
         let mut at = 12;
         for chunk in 0.. {

@@ -42,10 +42,8 @@ impl Materials {
         let path = format!("materials[{at}]");
         let material = &document.root.materials[at];
         let Base { color, texture, name } = Base::of(material);
-        if let Some(channel) = color.iter().position(|value| !(0.0..=1.0).contains(value)) {
-            let field = format!("{path}.{name}[{channel}]");
-            return Err(InputError::new(field, color[channel], "must be in 0..=1"));
-        }
+        let is_fraction = |value: &f32| (0.0..=1.0).contains(value);
+        InputError::check_each(&format!("{path}.{name}"), &color, is_fraction, "must be in 0..=1")?;
         let texture = texture.map(|info| self.texture(document, info.index)).transpose()?;
         let (normal, normal_scale) = self.normal(document, &path, index)?;
         let alpha = alpha(&path, material)?;
@@ -69,10 +67,7 @@ impl Materials {
             (Some(info), [Some(of_color), Some(of_normals)]) if of_color.are_same(&of_normals) => info,
             _ => return Ok((None, 1.0)),
         };
-        if !info.scale.is_finite() {
-            let path = format!("{path}.normalTexture.scale");
-            return Err(InputError::new(path, info.scale, "must be finite"));
-        }
+        InputError::check_finite(format!("{path}.normalTexture.scale"), info.scale)?;
         Ok((Some(self.texture(document, info.index)?), info.scale))
     }
 

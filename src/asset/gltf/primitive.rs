@@ -12,6 +12,7 @@ use super::draco::Decompressed;
 use super::materials::Coordinates;
 use super::tangents::{Tangents, generated, solved};
 use crate::InputError;
+use crate::asset::indices::check_indices;
 use crate::asset::influences::{Influence, Influences, MAX_INFLUENCES};
 use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals, unit_normal};
 use crate::asset::morph::{MorphDelta, MorphTarget};
@@ -44,10 +45,7 @@ impl<'d> Reader<'_, 'd> {
             return Err(InputError::new(path, "missing", "must be given"));
         };
         let positions = positions.attributes::<3>()?;
-        if positions.len() > MAX_VERTICES {
-            let bound = format!("must be at most {MAX_VERTICES}");
-            return Err(InputError::new(format!("{path}.count"), positions.len(), bound));
-        }
+        InputError::check_most(format!("{path}.count"), positions.len(), MAX_VERTICES)?;
         in_range(&path, &positions)?;
         let vertices = positions.len();
         self.document.budget.spend(&path, LACKING * vertices)?;
@@ -214,10 +212,7 @@ impl<'d> Reader<'_, 'd> {
             (None, Some(accessor)) => self.document.elements(accessor).integers::<1>()?.into_flattened(),
             (None, None) => (0..vertices as u32).collect(),
         };
-        if let Some(at) = indices.iter().position(|index| *index as usize >= vertices) {
-            let bound = format!("must be below {vertices}, the number of vertices");
-            return Err(InputError::new(format!("{}.indices[{at}]", self.path), indices[at], bound));
-        }
+        check_indices(&format!("{}.indices", self.path), &indices, vertices)?;
         // Draco has triangles, whatever the mode is without compression.
         let mode = if self.decompressed.is_some() { Mode::Triangles } else { self.primitive.mode.unwrap() };
         // Strips and fans have one triangle per index.
@@ -249,10 +244,9 @@ impl<'d> Reader<'_, 'd> {
 
     fn targets(&self, vertices: usize, expected: usize) -> Result<Vec<MorphTarget>, InputError> {
         let targets = self.primitive.targets.as_deref().unwrap_or_default();
-        if targets.len() != expected {
-            let bound = format!("must be {expected}, as many as the mesh's first primitive has");
-            return Err(InputError::new(format!("{}.targets.len", self.path), targets.len(), bound));
-        }
+        let (path, reason) =
+            (format!("{}.targets.len", self.path), "as many as the mesh's first primitive has");
+        InputError::check_same(path, targets.len(), expected, reason)?;
         targets.iter().enumerate().map(|(at, target)| self.target(vertices, at, target)).collect()
     }
 
@@ -285,10 +279,7 @@ fn one_a_vertex<const N: usize>(
 }
 
 fn check_count(path: &str, count: usize, vertices: usize) -> Result<(), InputError> {
-    if count == vertices {
-        return Ok(());
-    }
-    Err(InputError::new(format!("{path}.count"), count, format!("must be {vertices}, one a vertex")))
+    InputError::check_same(format!("{path}.count"), count, vertices, "one a vertex")
 }
 
 /// Leaves the strongest influences of a vertex that has more than [`MAX_INFLUENCES`].

@@ -1,6 +1,6 @@
 //! Meshes without a skin: each follows, as a whole, the lowest node at or above its own that may move.
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::DMat4;
 use gltf_json::Root;
 
 use super::nodes::rest;
@@ -78,8 +78,5 @@ fn local(root: &Root, node: usize) -> Result<DMat4, InputError> {
         inverse_bind(&format!("nodes[{node}].matrix"), matrix)?;
         return Ok(DMat4::from_cols_array(&matrix.map(f64::from)));
     }
-    let rest = rest(node, &root.nodes[node])?;
-    let rotation = DQuat::from_array(rest.rotation.map(f64::from)).normalize();
-    let [scale, translation] = [rest.scale, rest.translation].map(|all| DVec3::from(all.map(f64::from)));
-    Ok(DMat4::from_scale_rotation_translation(scale, rotation, translation))
+    Ok(rest(node, &root.nodes[node])?.wide().into())
 }

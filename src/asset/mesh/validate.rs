@@ -12,9 +12,8 @@ impl Mesh {
     /// # Errors
     /// [`InputError`] that names the field, with its index.
     pub fn validate(&self, skins: &[Skin]) -> Result<(), InputError> {
-        let Some(skin) = skins.get(self.skin) else {
-            return Err(InputError::new("mesh.skin", self.skin, format!("must be below {}", skins.len())));
-        };
+        InputError::check_below("mesh.skin", self.skin, skins.len())?;
+        let skin = &skins[self.skin];
         self.validate_alone()?;
         for vertex in 0..self.vertices() {
             let mut bones = self.influences.of(vertex).iter().map(|influence| influence.bone);
@@ -29,10 +28,7 @@ impl Mesh {
     /// As [`Mesh::validate`], without the skin.
     pub(crate) fn validate_alone(&self) -> Result<(), InputError> {
         let vertices = self.vertices();
-        if vertices > MAX_VERTICES {
-            let bound = format!("must be at most {MAX_VERTICES}");
-            return Err(InputError::new("mesh.positions.len", vertices, bound));
-        }
+        InputError::check_most("mesh.positions.len", vertices, MAX_VERTICES)?;
         for (field, len) in [
             ("normals", self.normals.len()),
             ("tangents", self.tangents.len()),
@@ -52,10 +48,7 @@ impl Mesh {
     }
 
     fn validate_levels(&self) -> Result<(), InputError> {
-        if self.levels.len() >= MAX_LEVELS {
-            let bound = format!("must be at most {}", MAX_LEVELS - 1);
-            return Err(InputError::new("mesh.levels.len", self.levels.len(), bound));
-        }
+        InputError::check_most("mesh.levels.len", self.levels.len(), MAX_LEVELS - 1)?;
         let mut least = 0.0;
         let mut finer = self.used(&self.indices);
         for (at, level) in self.levels.iter().enumerate() {

@@ -36,9 +36,9 @@ impl TryFrom<StoredModel> for Model {
         for (at, mesh) in model.meshes.iter().enumerate() {
             model.check_mesh(at)?;
             model.check_material(at)?;
-            if let Some((clip, _)) = mesh.weight_keys.iter().find(|(clip, _)| *clip >= model.clips.len()) {
-                let bound = format!("must be below {}", model.clips.len());
-                return Err(InputError::new(format!("meshes[{at}].weight_keys.clip"), clip, bound));
+            for (clip, _) in &mesh.weight_keys {
+                let path = format!("meshes[{at}].weight_keys.clip");
+                InputError::check_below(path, *clip, model.clips.len())?;
             }
         }
         if model.skinned > model.meshes.len() {

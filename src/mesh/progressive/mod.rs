@@ -204,13 +204,6 @@ impl ProgressiveMesh {
         (0..self.vertices[level]).map(partner).collect()
     }
 
-    /// The triangles of a level with the partners of its vertices in their corners: those of the next coarser level in the
-    /// same order, and triangles without area.
-    pub fn morphed_indices(&self, level: usize) -> Vec<u32> {
-        let partners = self.partners(level);
-        self.indices(level).iter().map(|vertex| partners[*vertex as usize]).collect()
-    }
-
     /// The values of a level's vertices on the way to the next coarser one: `a · (1 − t) + b · t` for a vertex with the value
     /// a and a partner with b. `values` are positions in any pose, normals or texture coordinates, at least one for each
     /// vertex of the level. At t = 0 they are the level's, and at 1 those of partners, to the bit (but for the sign of 0).
@@ -224,9 +217,7 @@ impl ProgressiveMesh {
         t: f32,
         values: &[[f32; N]],
     ) -> Result<Vec<[f32; N]>, InputError> {
-        if !(0.0..=1.0).contains(&t) {
-            return Err(InputError::new("t", t, "must be in 0..=1"));
-        }
+        InputError::check_within("t", t, 0.0..=1.0)?;
         if values.len() < self.vertices(level) {
             let bound = format!("must be at least {}, one a vertex", self.vertices(level));
             return Err(InputError::new("values.len", values.len(), bound));

@@ -47,21 +47,13 @@ pub(super) fn levelled(
 fn remaps(mesh: &Mesh, simplified: &Simplified, chosen: &[Chosen]) -> Result<Vec<Vec<u32>>, InputError> {
     mesh.validate_alone()?;
     let vertices = simplified.remap(0).len();
-    if mesh.vertices() != vertices {
-        let bound = format!("must be {vertices}, as of the mesh that was simplified");
-        return Err(InputError::new("mesh.positions.len", mesh.vertices(), bound));
-    }
-    if chosen.len() >= MAX_LEVELS {
-        let bound = format!("must be at most {}", MAX_LEVELS - 1);
-        return Err(InputError::new("chosen.len", chosen.len(), bound));
-    }
+    let reason = "as of the mesh that was simplified";
+    InputError::check_same("mesh.positions.len", mesh.vertices(), vertices, reason)?;
+    InputError::check_most("chosen.len", chosen.len(), MAX_LEVELS - 1)?;
     let mut least = 1;
     let most = simplified.collapses().len();
     for (at, Chosen { collapses, .. }) in chosen.iter().enumerate() {
-        if !(least..=most).contains(collapses) {
-            let bound = format!("must be in {least}..={most}");
-            return Err(InputError::new(format!("chosen[{at}].collapses"), collapses, bound));
-        }
+        InputError::check_within(format!("chosen[{at}].collapses"), *collapses, least..=most)?;
         least = collapses + 1;
     }
     Ok(chosen.iter().map(|level| simplified.remap(level.collapses)).collect())

@@ -246,13 +246,7 @@ impl StoredKeys {
 
 /// Refuses what is not each number below `vertices` once.
 fn check_sources(sources: &[u32], vertices: usize) -> Result<(), InputError> {
-    if sources.len() != vertices {
-        return Err(InputError::new(
-            "sources.len",
-            sources.len(),
-            format!("must be {vertices}, one a vertex"),
-        ));
-    }
+    InputError::check_len("sources", sources.len(), vertices, "a vertex")?;
     let mut seen = vec![false; vertices];
     for (at, source) in sources.iter().enumerate() {
         match seen.get_mut(*source as usize) {

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::asset::tangents::Adjacency;
+
 /// Vertices grouped by their positions in all poses. Points are numbered in the order of their first vertices.
 pub(crate) struct Points {
     of: Vec<u32>,
@@ -28,24 +30,14 @@ impl Points {
     pub(crate) fn new(poses: &[Vec<[f32; 3]>]) -> Self {
         let of = weld(poses);
         let count = of.iter().max().map_or(0, |last| *last as usize + 1);
-        let mut starts = vec![0_u32; count + 1];
-        of.iter().for_each(|point| starts[*point as usize + 1] += 1);
-        for point in 0..count {
-            starts[point + 1] += starts[point];
-        }
-        let mut next = starts.clone();
-        let mut wedges = vec![0; of.len()];
-        for (vertex, point) in of.iter().enumerate() {
-            wedges[next[*point as usize] as usize] = vertex as u32;
-            next[*point as usize] += 1;
-        }
-        let firsts = starts[..count].iter().map(|start| wedges[*start as usize] as usize);
+        let Adjacency { offsets, corners: wedges } = Adjacency::new(count, &of);
+        let firsts = offsets[..count].iter().map(|start| wedges[*start as usize] as usize);
         let extent = extent(poses);
         let scale = scale(extent);
         let scaled = |position: [f32; 3]| position.map(|x| (f64::from(x) * scale) as f32);
         let positions =
             firsts.flat_map(|vertex| poses.iter().map(move |pose| scaled(pose[vertex]))).collect();
-        let ranges = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
+        let ranges = offsets.windows(2).map(|ends| [ends[0], ends[1]]).collect();
         let are_vertices = count == of.len();
         Self {
             of,

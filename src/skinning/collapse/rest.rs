@@ -1,9 +1,9 @@
 //! A model at rest: the transforms of its bones, the positions of its vertices, and the distances of vertices
 //! from the bones that they follow.
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DVec3};
 
-use crate::asset::{Model, Transform};
+use crate::asset::Model;
 
 /// A vertex that follows a bone.
 pub(super) struct Follower {
@@ -30,14 +30,6 @@ pub(super) struct Rest {
     pub size: f64,
 }
 
-/// Converts a transform to f64, with its rotation normalized.
-pub(super) fn affine(transform: &Transform) -> DAffine3 {
-    let [scale, translation] =
-        [transform.scale, transform.translation].map(|v| DVec3::from(v.map(f64::from)));
-    let rotation = DQuat::from_array(transform.rotation.map(f64::from)).normalize();
-    DAffine3::from_scale_rotation_translation(scale, rotation, translation)
-}
-
 /// Converts a skin's inverse bind matrix to f64.
 pub(super) fn bind(matrix: &[f32; 16]) -> DAffine3 {
     DAffine3::from_mat4(glam::DMat4::from_cols_array(&matrix.map(f64::from)))
@@ -46,7 +38,7 @@ pub(super) fn bind(matrix: &[f32; 16]) -> DAffine3 {
 impl Rest {
     pub(super) fn new(model: &Model) -> Self {
         let bones = model.skeleton.bones();
-        let locals: Vec<DAffine3> = bones.iter().map(|bone| affine(&bone.rest)).collect();
+        let locals: Vec<DAffine3> = bones.iter().map(|bone| bone.rest.wide()).collect();
         let mut models: Vec<DAffine3> = Vec::with_capacity(bones.len());
         for (bone, local) in bones.iter().zip(&locals) {
             models.push(bone.parent.map_or(*local, |parent| models[parent as usize] * *local));

@@ -7,7 +7,7 @@ use super::choice::Remap;
 use super::compose::{Composed, is_constant, signs_in};
 use super::rest::Rest;
 use crate::InputError;
-use crate::animation::sample::reference::{rotation_at, slerp, vector_at};
+use crate::animation::sample::reference::{sample_parts, slerp};
 use crate::asset::clip::{Clip, Interpolation, Keys, Part};
 use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::finite;
@@ -228,14 +228,7 @@ fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
         };
         (&clip.values()[track.first_value as usize..], interpolation, cursor)
     };
-    let vector = |part| {
-        let (values, interpolation, cursor) = of(part);
-        let [x, y, z, _] = vector_at(values, interpolation, cursor);
-        [x, y, z]
-    };
-    let (values, interpolation, cursor) = of(Part::Rotation);
-    let rotation = rotation_at(values, interpolation, cursor, RotationPath::Slerp);
-    Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
+    sample_parts(of, RotationPath::Slerp)
 }
 
 /// The keyframe cursor at a time, approached from before: at a key, a jump to it has not happened yet.

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::gpu::bind::Slice;
 use crate::gpu::bindings::skinning::morph as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, IndirectJob, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::morph::MorphParams;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::pages::PageBuffers;
@@ -37,7 +37,7 @@ impl MorphPass {
         mesh: &MeshBuffers,
         crowd: &SkinnedCrowd,
         active: &ActiveClusters,
-    ) -> Result<Option<IndirectJob>, Error> {
+    ) -> Result<Option<Job>, Error> {
         if mesh.targets == 0 {
             return Ok(None);
         }
@@ -59,7 +59,7 @@ impl MorphPass {
         crowd: &SkinnedCrowd,
         pages: &PageBuffers,
         active: &ActiveClusters,
-    ) -> Result<Option<IndirectJob>, Error> {
+    ) -> Result<Option<Job>, Error> {
         if mesh.targets == 0 {
             return Ok(None);
         }
@@ -75,7 +75,7 @@ fn job(
     (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
     active: &ActiveClusters,
     (seen, morphed): (Slice<'_, u32>, &Buffer<Vertex>),
-) -> Result<IndirectJob, Error> {
+) -> Result<Job, Error> {
     crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
     let params = MorphParams {
         vertices: mesh.vertices.len() as u32,
@@ -95,6 +95,6 @@ fn job(
         dispatched: active.dispatched.slice().cast(),
         morphed: morphed.slice().cast(),
     };
-    let groups = vec![(group.bind(gpu, kernel)?, 0)];
-    Ok(IndirectJob::new("skinning/morph", kernel, active.dispatched.raw(), groups))
+    let step = Step::indirect(kernel, group.bind(gpu, kernel)?, active.dispatched.raw(), 0);
+    Ok(Job::new(gpu, "skinning/morph", vec![step])?)
 }

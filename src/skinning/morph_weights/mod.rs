@@ -67,10 +67,7 @@ impl WeightSet {
     /// # Errors
     /// [`InputError`] if there is not one clip of the model for each clip of the set.
     pub fn new(mesh: &Mesh, set: &ClipSet, clips: &[usize]) -> Result<Self, InputError> {
-        if clips.len() != set.clips().len() {
-            let bound = format!("must be {}, one a clip of the set", set.clips().len());
-            return Err(InputError::new("clips.len", clips.len(), bound));
-        }
+        InputError::check_len("clips", clips.len(), set.clips().len(), "a clip of the set")?;
         let targets = mesh.targets.len();
         let mut all = Self { entries: Vec::new(), times: Vec::new(), values: Vec::new(), targets };
         for (of_set, clip) in set.clips().iter().zip(clips) {

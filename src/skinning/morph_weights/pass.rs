@@ -4,7 +4,7 @@ use super::{WeightEntry, WeightSet};
 use crate::Error;
 use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::bindings::skinning::morph_weights as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Step, Uniform, Upload};
 use crate::shared::skinning::morph_weights::MorphWeightsParams;
 use crate::skinning::buffers::SkinnedCrowd;
 
@@ -60,17 +60,12 @@ impl MorphWeightsPass {
             let groups = vec![group.bind(gpu, &self.kernel)?];
             steps.push(Step::spread(gpu, &self.kernel, groups, params.pairs));
         }
-        Ok(MorphWeightsJob { job: Job::new(gpu, "skinning/morph_weights", steps)?, params, uniform })
+        Ok(ParamsJob { params, uniform, job: Job::new(gpu, "skinning/morph_weights", steps)? })
     }
 }
 
 /// Prepared weights: set the time, then record.
-#[derive(Debug, Clone)]
-pub struct MorphWeightsJob {
-    job: Job,
-    params: MorphWeightsParams,
-    uniform: Uniform<MorphWeightsParams>,
-}
+pub type MorphWeightsJob = ParamsJob<MorphWeightsParams>;
 
 impl MorphWeightsJob {
     /// Sets the time of the next submission: seconds since the starts of the instances.
@@ -88,15 +83,5 @@ impl MorphWeightsJob {
     pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(upload.uniform(&self.uniform, &MorphWeightsParams { elapsed, ..self.params })?)
-    }
-
-    /// Adds the weights to a compute pass that is being recorded.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        self.job.dispatch(pass);
-    }
-
-    /// Records the weights.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.job.record(encoder);
     }
 }

@@ -1,7 +1,7 @@
 //! The GPU pass of `kernels/skinning/skin.wgsl`.
 
 use crate::gpu::bindings::skinning::skin as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, IndirectJob, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::skin::SkinParams;
 use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::pages::PageBuffers;
@@ -29,9 +29,6 @@ struct Output<'a> {
     last: u32,
 }
 
-/// The prepared skinning of clusters that a kernel or the host selects.
-pub type SkinActiveJob = IndirectJob;
-
 impl SkinPass {
     /// Compiles the pipelines of a kind of blending.
     ///
@@ -58,7 +55,7 @@ impl SkinPass {
         crowd: &SkinnedCrowd,
         skinned: &Buffer<Vertex>,
         active: &ActiveClusters,
-    ) -> Result<SkinActiveJob, Error> {
+    ) -> Result<Job, Error> {
         let vertices = crowd.instances * mesh.vertices.len();
         skinned.check_holds("skinned", vertices)?;
         crowd.morphed.check_holds("crowd.morphed", if mesh.targets > 0 { vertices } else { 0 })?;
@@ -79,7 +76,7 @@ impl SkinPass {
         crowd: &SkinnedCrowd,
         pages: &PageBuffers,
         active: &ActiveClusters,
-    ) -> Result<SkinActiveJob, Error> {
+    ) -> Result<Job, Error> {
         let keeps = pages.last > 0;
         if keeps != active.keeps_last {
             let bound = format!("must be {keeps}, as the pages have or lack last positions");
@@ -103,7 +100,7 @@ impl SkinPass {
         (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
         active: &ActiveClusters,
         output: Output<'_>,
-    ) -> Result<SkinActiveJob, Error> {
+    ) -> Result<Job, Error> {
         if crowd.blend != self.blend {
             let bound = format!("must be {:?}, as the pass's", self.blend);
             return Err(InputError::new("crowd.blend", format!("{:?}", crowd.blend), bound).into());
@@ -130,7 +127,7 @@ impl SkinPass {
             skinned: output.skinned.slice().cast(),
             page_table: output.table.slice(),
         };
-        let groups = vec![(group.bind(gpu, kernel)?, 0)];
-        Ok(IndirectJob::new("skinning/skin", kernel, active.dispatched.raw(), groups))
+        let step = Step::indirect(kernel, group.bind(gpu, kernel)?, active.dispatched.raw(), 0);
+        Ok(Job::new(gpu, "skinning/skin", vec![step])?)
     }
 }

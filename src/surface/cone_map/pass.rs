@@ -67,10 +67,7 @@ impl ConeMapPass {
             let bound = format!("must be {:?}, as the pyramids'", layout.cells);
             return Err(InputError::new("cones.cells", format!("{:?}", cones.cells), bound).into());
         }
-        if cones.count != maps.count {
-            let bound = format!("must be {}, as the height maps'", maps.count);
-            return Err(InputError::new("cones.count", cones.count, bound).into());
-        }
+        InputError::check_same("cones.count", cones.count, maps.count, "as the height maps'")?;
         let params = ConeParams {
             size: UVec2::from(layout.size),
             cells: UVec2::from(layout.cells),

@@ -41,11 +41,7 @@ impl Pyramids {
             let bound = format!("must be {:?} texels, as the height maps'", maps.size);
             return Err(InputError::new("pyramids.layout.size", format!("{:?}", self.layout.size), bound));
         }
-        if self.count != maps.count {
-            let bound = format!("must be {}, as the height maps'", maps.count);
-            return Err(InputError::new("pyramids.count", self.count, bound));
-        }
-        Ok(())
+        InputError::check_same("pyramids.count", self.count, maps.count, "as the height maps'")
     }
 }
 

@@ -148,18 +148,12 @@ impl March {
     /// [`InputError`].
     pub fn validate(&self) -> Result<(), InputError> {
         let [low, high] = self.steps;
-        if !(1..=MAX_STEPS).contains(&low) {
-            return Err(InputError::new("steps[0]", low, format!("must be in 1..={MAX_STEPS}")));
-        }
+        InputError::check_within("steps[0]", low, 1..=MAX_STEPS)?;
         if !(low..=MAX_STEPS).contains(&high) {
             let bound = format!("must be in {low}..={MAX_STEPS}: at least steps[0]");
             return Err(InputError::new("steps[1]", high, bound));
         }
-        if self.binary_steps > MAX_BINARY {
-            let bound = format!("must be at most {MAX_BINARY}");
-            return Err(InputError::new("binary_steps", self.binary_steps, bound));
-        }
-        Ok(())
+        InputError::check_most("binary_steps", self.binary_steps, MAX_BINARY)
     }
 }
 

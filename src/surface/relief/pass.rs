@@ -2,7 +2,7 @@
 
 use super::{Hit, March, Method, Ray};
 use crate::gpu::bindings::surface::relief as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::surface::ray::SurfaceMarch;
 use crate::surface::relief::textures::SurfaceTextures;
 use crate::{Error, InputError};
@@ -60,11 +60,7 @@ impl ReliefPass {
             rays: rays.slice(),
             hits: hits.slice(),
         };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, rays.len() as u32),
-        };
-        Ok(Job::new(gpu, "surface/relief", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "surface/relief", (&self.kernel, group), rays.len() as u32)?)
     }
 }

@@ -85,32 +85,12 @@ fn accelerated(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> 
 fn texture(
     gpu: &Gpu,
     label: &'static str,
-    size: [u32; 2],
+    [width, height]: [u32; 2],
     levels: u32,
     format: wgpu::TextureFormat,
 ) -> Result<wgpu::Texture, GpuError> {
-    let available = gpu.device().limits().max_texture_dimension_2d;
-    if size.iter().any(|edge| *edge > available) {
-        return Err(GpuError::Limit {
-            pass: label,
-            limit: "maxTextureDimension2D",
-            needed: size[0].max(size[1]).into(),
-            available: available.into(),
-            remedy: "use a smaller height map",
-        });
-    }
-    gpu.scoped(|| {
-        gpu.device().create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-            mip_level_count: levels,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        })
-    })
+    gpu.check_texture(label, [width, height], "use a smaller height map")?;
+    gpu.scoped(|| gpu.sampled_texture(label, [width, height, 1], levels, format))
 }
 
 /// Copies the first map of a buffer, whose rows start at multiples of 256 bytes.

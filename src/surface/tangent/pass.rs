@@ -2,7 +2,7 @@
 
 use super::{Adjacency, Mesh};
 use crate::gpu::bindings::surface::tangent as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::surface::tangent::TangentParams;
 use crate::{Error, InputError};
 
@@ -83,11 +83,7 @@ impl TangentPass {
             corners: mesh.corners.slice(),
             tangents: tangents.slice(),
         };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, vertices),
-        };
-        Ok(Job::new(gpu, "surface/tangent", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "surface/tangent", (&self.kernel, group), vertices)?)
     }
 }

@@ -6,8 +6,8 @@ mod zones;
 #[cfg(feature = "gpu")]
 pub(crate) use json::from_json_value;
 pub(crate) use json::{Object, from_json_object, named, read_text, whole};
-pub(crate) use zones::check_range;
 pub use zones::{BuiltIn, MAX_REPEATS, MAX_ZONES, Slope, Zone, ZoneTexture};
+pub(crate) use zones::{check_range, check_zone_count};
 
 use std::path::Path;
 
@@ -187,9 +187,7 @@ impl Config {
         }
         finite("scale_factor", self.scale_factor, 0.0, f64::MAX)?;
         finite("roughness", self.roughness, 0.0, f64::MAX)?;
-        if self.coarse_levels > 8 {
-            return Err(InputError::new("coarse_levels", self.coarse_levels, "must be in 0..=8"));
-        }
+        InputError::check_within("coarse_levels", self.coarse_levels, 0..=8)?;
         check_terrain_scale(self.terrain_scale)?;
         if let Some(tile) = self.texture_tile {
             finite("texture_tile", tile, self.edge_length() / MAX_TILES, f64::MAX)?;
@@ -201,10 +199,7 @@ impl Config {
         }
         self.validate_border()?;
         self.check_overflow(0, false)?;
-        if self.zones.is_empty() || self.zones.len() > MAX_ZONES {
-            let bound = format!("must hold 1 to {MAX_ZONES} zones");
-            return Err(InputError::new("zones", format!("[{} zones]", self.zones.len()), bound));
-        }
+        check_zone_count(self.zones.len())?;
         for (index, zone) in self.zones.iter().enumerate() {
             zone.validate(&format!("zones[{index}]"))?;
         }

@@ -193,6 +193,14 @@ impl Zone {
     }
 }
 
+/// Checks that there are zones, and not too many.
+pub(crate) fn check_zone_count(count: usize) -> Result<(), InputError> {
+    if (1..=MAX_ZONES).contains(&count) {
+        return Ok(());
+    }
+    Err(InputError::new("zones", format!("[{count} zones]"), format!("must hold 1 to {MAX_ZONES} zones")))
+}
+
 pub(crate) fn check_range(path: &str, min: f64, max: f64) -> Result<(), InputError> {
     finite(&format!("{path}.min"), min, -32768.0, 32768.0)?;
     finite(&format!("{path}.max"), max, -32768.0, 32768.0)?;

@@ -76,10 +76,7 @@ impl Hydraulic {
     /// # Errors
     /// [`InputError`] that names the first field out of bounds, such as `hydraulic.rain`.
     pub fn validate(&self) -> Result<(), InputError> {
-        if self.iterations > MAX_ITERATIONS {
-            let bound = format!("must be at most {MAX_ITERATIONS}");
-            return Err(InputError::new("hydraulic.iterations", self.iterations, bound));
-        }
+        InputError::check_most("hydraulic.iterations", self.iterations, MAX_ITERATIONS)?;
         for (field, value, most) in [
             ("rain", self.rain, 1.0),
             ("evaporation", self.evaporation, 1.0),

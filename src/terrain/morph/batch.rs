@@ -20,17 +20,14 @@ impl MorphedFields {
     /// # Errors
     /// [`InputError`] for other numbers of parts, widths or counts, and for buffers that are too short; [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, from: &[Fields], to: &[Fields]) -> Result<Self, Error> {
-        if to.len() != from.len() {
-            let bound = format!("must be {}, as from.len", from.len());
-            return Err(InputError::new("to.len", to.len(), bound).into());
-        }
+        InputError::check_same("to.len", to.len(), from.len(), "as from.len")?;
         let pass = MorphPass::new(gpu)?;
         let (mut fields, mut jobs) = (Vec::new(), Vec::new());
         for (part, (from, to)) in from.iter().zip(to).enumerate() {
             let sizes = [("width", from.width, to.width), ("count", from.count, to.count)];
-            if let Some((field, from, to)) = sizes.into_iter().find(|(_, from, to)| from != to) {
-                let bound = format!("must be {from}, as from[{part}].{field}");
-                return Err(InputError::new(format!("to[{part}].{field}"), to, bound).into());
+            for (field, from, to) in sizes {
+                let (path, reason) = (format!("to[{part}].{field}"), format!("as from[{part}].{field}"));
+                InputError::check_same(path, to, from, &reason)?;
             }
             // After erosion a buffer has more room than its fields take.
             from.check(&format!("from[{part}]"), 0)?;

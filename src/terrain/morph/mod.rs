@@ -34,15 +34,8 @@ impl Default for Morph {
 /// # Errors
 /// [`InputError`] that names `patch_size` or `terrain_scale`.
 pub fn check_target(config: &Config, target: &Config) -> Result<(), InputError> {
-    if target.patch_size != config.patch_size {
-        let bound = format!("must be {}, as at time 0", config.patch_size);
-        return Err(InputError::new("patch_size", target.patch_size, bound));
-    }
-    if target.terrain_scale != config.terrain_scale {
-        let bound = format!("must be {}, as at time 0", config.terrain_scale);
-        return Err(InputError::new("terrain_scale", target.terrain_scale, bound));
-    }
-    Ok(())
+    InputError::check_same("patch_size", target.patch_size, config.patch_size, "as at time 0")?;
+    InputError::check_same("terrain_scale", target.terrain_scale, config.terrain_scale, "as at time 0")
 }
 
 impl Morph {

@@ -2,7 +2,7 @@
 
 use super::Morph;
 use crate::gpu::bindings::terrain::morph as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Uniform, Upload};
 use crate::shared::terrain::morph::MorphParams;
 use crate::{Error, InputError};
 
@@ -39,10 +39,7 @@ impl MorphPass {
     pub fn prepare(&self, gpu: &Gpu, buffers: MorphBuffers<'_>) -> Result<MorphJob, Error> {
         let MorphBuffers { from, to, heights } = buffers;
         for (field, len) in [("to.len", to.len()), ("heights.len", heights.len())] {
-            if len != from.len() {
-                let bound = format!("must be {}, as from.len", from.len());
-                return Err(InputError::new(field, len, bound).into());
-            }
+            InputError::check_same(field, len, from.len(), "as from.len")?;
         }
         Ok(self.prepare_first(gpu, buffers, from.len() as u32)?)
     }
@@ -56,27 +53,22 @@ impl MorphPass {
     ) -> Result<MorphJob, GpuError> {
         let MorphBuffers { from, to, heights } = buffers;
         let vectors = points.div_ceil(4);
-        let params = Uniform::new(gpu, "morph", &MorphParams { vectors, time: 0 })?;
+        let params = MorphParams { vectors, time: 0 };
+        let uniform = Uniform::new(gpu, "morph", &params)?;
         let group = bindings::Group {
-            params: &params,
+            params: &uniform,
             start_heights: from.slice().cast(),
             target_heights: to.slice().cast(),
             heights: heights.slice().cast(),
         };
-        let groups = vec![group.bind(gpu, &self.kernel)?];
-        let workgroups = self.kernel.spread(gpu, vectors);
-        let step = Step { kernel: self.kernel.clone(), groups, workgroups };
-        Ok(MorphJob { params, vectors, job: Job::new(gpu, "terrain/morph", vec![step])? })
+        let group = group.bind(gpu, &self.kernel)?;
+        let job = Job::spread(gpu, "terrain/morph", (&self.kernel, group), vectors)?;
+        Ok(ParamsJob { params, uniform, job })
     }
 }
 
 /// A prepared blend: set the time, then record.
-#[derive(Debug, Clone)]
-pub struct MorphJob {
-    params: Uniform<MorphParams>,
-    vectors: u32,
-    job: Job,
-}
+pub type MorphJob = ParamsJob<MorphParams>;
 
 impl MorphJob {
     /// Sets the time of the next submission.
@@ -84,19 +76,12 @@ impl MorphJob {
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`GpuError`].
     pub fn set(&self, gpu: &Gpu, morph: Morph) -> Result<(), Error> {
-        let mut gpu = gpu;
-        self.stage(&mut gpu, morph)
+        self.stage(&mut &*gpu, morph)
     }
 
     /// Sets the time where `to` records it.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
-        let params = MorphParams { vectors: self.vectors, time: morph.fixed_time() };
-        Ok(to.uniform(&self.params, &params)?)
-    }
-
-    /// Records the blend.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.job.record(encoder);
+        Ok(to.uniform(&self.uniform, &MorphParams { time: morph.fixed_time(), ..self.params })?)
     }
 }

@@ -42,9 +42,7 @@ impl Thermal {
     /// # Errors
     /// [`InputError`] that names `thermal.iterations` or `thermal.talus`.
     pub fn validate(&self) -> Result<(), InputError> {
-        if self.iterations > 1024 {
-            return Err(InputError::new("thermal.iterations", self.iterations, "must be at most 1024"));
-        }
+        InputError::check_most("thermal.iterations", self.iterations, 1024)?;
         finite("thermal.talus", self.talus, 0.0, 89.0)
     }
 

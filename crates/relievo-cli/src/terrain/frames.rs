@@ -1,10 +1,10 @@
 //! The pictures of `relievo terrain` on the way to other heights.
 
 use relievo::Error;
-use relievo::terrain::fields::Fields;
 use relievo_lab::files::Staged;
 use serde::Serialize;
 
+use super::color_maps::fields_of;
 use super::{Made, Plan, Terrain};
 use crate::progress::bar;
 
@@ -45,7 +45,7 @@ impl Terrain {
                     (maps.on_device(gpu, &parts)?, Some(look.picture(gpu, &parts, way.range)?))
                 }
                 Some(gpu) => {
-                    let parts = Fields::of_windows(gpu, size + 2, &windows)?;
+                    let parts = fields_of(gpu, size + 2, &windows)?;
                     let view = look.picture(gpu, &parts, way.range)?;
                     (maps.on_host(&windows, &|| ())?, Some(view))
                 }

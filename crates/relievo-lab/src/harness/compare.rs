@@ -131,21 +131,6 @@ pub fn relative(actual: &[f32], expected: &[f32], bound: f32) -> Comparison {
     })
 }
 
-/// Compares floats in units in the last place of the expected value.
-pub fn ulps(actual: &[f32], expected: &[f32], bound: u32) -> Comparison {
-    compare(actual, expected, "ulp", bound.into(), |actual, expected| {
-        if actual.is_nan() || expected.is_nan() {
-            return f64::NAN;
-        }
-        // Maps floats to integers in the same order: neighbours differ by one, and both zeros map to 0.
-        let ordered = |value: f32| {
-            let bits = i64::from(value.to_bits() & 0x7fff_ffff);
-            if value.is_sign_negative() { -bits } else { bits }
-        };
-        (ordered(actual) - ordered(expected)).abs() as f64
-    })
-}
-
 /// Compares images by the largest difference in any of four 8-bit channels.
 pub fn levels(actual: &[u32], expected: &[u32], bound: u8) -> Comparison {
     compare(actual, expected, "levels of 255", bound.into(), |actual, expected| {

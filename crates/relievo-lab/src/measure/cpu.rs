@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use relievo::animation::frame::reference::Crowd;
 use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
 use relievo::{Error, InputError};
 
+use crate::crowd::Crowd;
 use crate::measure::gates::{PATH, frame};
 use crate::measure::play::{Play, Played, Timing, of_whole};
 use crate::measure::stage::Stage;

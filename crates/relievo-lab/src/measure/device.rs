@@ -4,7 +4,7 @@ use relievo::Error;
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::animation::frame::GatedFrame;
 use relievo::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
-use relievo::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
+use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::sample::SamplePass;
 use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
@@ -25,7 +25,7 @@ pub(crate) struct Device {
     full: Crowd,
     cursors: KeyframeCursorJob,
     sample: Job,
-    local_to_model: LocalToModelJob,
+    local_to_model: Job,
     stale: Vec<Affine>,
     fresh: Vec<Affine>,
 }

@@ -8,7 +8,7 @@ use relievo::gpu::Gpu;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Depth, Quality, Transition, View};
-use relievo::scene_file::{SunOptions, World};
+use relievo::scene_file::{SunOptions, World, WorldObject};
 use relievo::{Error, InputError};
 use wgpu::TextureFormat;
 
@@ -104,7 +104,11 @@ impl Player {
         let gpu = world.scene.gpu().clone();
         let Rendering { size, samples, depth, layer, is_split, quality, transition } = rendering;
         if let Some(transition) = transition {
-            world.set_transitions(transition)?;
+            for WorldObject { object, .. } in &world.objects {
+                if world.scene.can_morph(*object)? {
+                    world.scene.set_transition(*object, transition)?;
+                }
+            }
         }
         let format = format_of(layer).with_samples(samples);
         let format = if depth == Depth::Reversed { format.reversed() } else { format };

@@ -3,9 +3,13 @@
 #[cfg(not(target_arch = "wasm32"))]
 mod device;
 pub mod picture;
+#[cfg(not(target_arch = "wasm32"))]
+mod pose;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use device::{portrait, portraits};
+#[cfg(not(target_arch = "wasm32"))]
+pub use pose::pose;
 
 use glam::Mat4;
 use image::RgbaImage;
@@ -118,7 +122,7 @@ impl PosedModel<'_> {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn on_device(&self, gpu: &relievo::gpu::Gpu) -> Result<Vec<Vec<Vertex>>, relievo::Error> {
         let model = self.model;
-        let pose = Pose::on_device(gpu, &model.skeleton, &model.clips[self.clip], self.time)?;
+        let pose = pose(gpu, &model.skeleton, &model.clips[self.clip], self.time)?;
         let bones = ModelMatrices::new(&Buffer::from_slice(gpu, "bones", &pose.model_matrices)?);
         let skinned = |mesh: usize| {
             let frame = SkinFrame::new(gpu, model, mesh, &bones, 1, self.blend)?;

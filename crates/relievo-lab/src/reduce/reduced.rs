@@ -25,16 +25,6 @@ pub struct Reduced {
 }
 
 impl Reduced {
-    /// The mesh as a surface, for example to reduce it further.
-    pub fn surface(&self) -> Surface<'_> {
-        Surface {
-            poses: &self.poses,
-            indices: &self.indices,
-            attributes: &self.attributes,
-            stride: self.stride,
-        }
-    }
-
     /// The SHA-256 of the mesh, in hexadecimal digits: the bits of positions, attributes and the error, and all indices. It is
     /// the same on every machine.
     pub fn hash(&self) -> String {

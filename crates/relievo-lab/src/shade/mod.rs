@@ -14,6 +14,7 @@ use relievo::surface::relief::MAX_STEPS;
 
 mod pass;
 pub mod reference;
+pub mod shadow;
 
 /// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
 /// [`Material`]'s default.

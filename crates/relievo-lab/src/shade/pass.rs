@@ -1,7 +1,7 @@
 //! The GPU pass of `kernels/surface/shade.wgsl`.
 
 use relievo::gpu::bindings::surface::shade as bindings;
-use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use relievo::shared::surface::ray::SurfaceMarch;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::relief::{March, Method};
@@ -58,11 +58,7 @@ impl ShadePass {
             points: points.slice(),
             shades: shades.slice(),
         };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, points.len() as u32),
-        };
-        Ok(Job::new(gpu, "surface/shade", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "surface/shade", (&self.kernel, group), points.len() as u32)?)
     }
 }

@@ -3,9 +3,9 @@
 
 use rayon::prelude::*;
 use relievo::surface::relief::reference::Surface;
-use relievo::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
 use relievo::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
 
+use crate::shade::shadow::{light_ray, shaded, soft_shadow};
 use crate::shade::{Shade, ShadePoint, ShadeView};
 
 /// The distance of a hit behind the polygon along the eye's ray, in uv units. `scale` is the relief's depth in

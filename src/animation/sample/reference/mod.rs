@@ -3,16 +3,11 @@
 use crate::animation::clip_set::{ClipSet, SetTrack};
 use crate::animation::instance::Instance;
 use crate::animation::layers::{Layer, all_instances};
-use crate::asset::clip::{Clip, Interpolation, Part, Track};
-use crate::asset::keyframe::KeyframeCursor;
-use crate::asset::keyframe::RotationPath;
-use crate::asset::keyframe::keyframe_cursor;
+use crate::animation::sample::{SLERP_U, SLERP_V};
+use crate::asset::clip::{Clip, Interpolation, Part};
+use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::Transform;
 use crate::shared::animation::sample::VANISHING;
-
-mod arcs;
-
-use arcs::Arcs;
 
 /// Every bone's local transform at a time inside the clip, in seconds.
 pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {
@@ -22,16 +17,24 @@ pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {
 /// One bone's local transform.
 pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> Transform {
     let of = |part| {
-        let track: &Track = clip.track(bone, part);
+        let track = clip.track(bone, part);
         let values = &clip.values()[track.first_value as usize..];
         (values, track.interpolation, keyframe_cursor(clip.times_of(track), time))
     };
+    sample_parts(of, path)
+}
+
+/// A track's values from its first on, their interpolation, and the cursor.
+pub(crate) type Found<'a> = (&'a [[f32; 4]], Interpolation, KeyframeCursor);
+
+/// The transform of three tracks.
+pub(crate) fn sample_parts<'a>(track: impl Fn(Part) -> Found<'a>, path: RotationPath) -> Transform {
     let vector = |part| {
-        let (values, interpolation, cursor) = of(part);
+        let (values, interpolation, cursor) = track(part);
         let [x, y, z, _] = vector_at(values, interpolation, cursor);
         [x, y, z]
     };
-    let (values, interpolation, cursor) = of(Part::Rotation);
+    let (values, interpolation, cursor) = track(Part::Rotation);
     let rotation = rotation_at(values, interpolation, cursor, path);
     Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
 }
@@ -101,10 +104,21 @@ fn normalized(q: [f32; 4]) -> [f32; 4] {
 }
 
 /// The rotation at the fraction `t` of the way from `a` to `b`, both unit, with `dot(a, b) ≥ 0` as clips store
-/// them.
+/// them. The arc is halved: from the nearer end towards the unit quaternion in the middle, `(a + b)·inverse`.
 pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
-    arcs::slerps(&a.map(|component| [component]), &b.map(|component| [component]), &[t])
-        .map(|[component]| component)
+    let cosine = dot(a, b);
+    let inverse = 1.0 / (2.0 + 2.0 * cosine).sqrt();
+    let less_one = (1.0 + cosine) * inverse - 1.0;
+    let (nearer, farther, way) = if t < 0.5 { (a, b, 2.0 * t) } else { (b, a, 2.0 - 2.0 * t) };
+    let of_middle = slerp_weight(way, less_one) * inverse;
+    let of_nearer = slerp_weight(1.0 - way, less_one) + of_middle;
+    std::array::from_fn(|i| nearer[i] * of_nearer + farther[i] * of_middle)
+}
+
+/// `sin(t·θ) / sin(θ)` for `less_one` = cos θ − 1.
+fn slerp_weight(t: f32, less_one: f32) -> f32 {
+    let terms = SLERP_U.iter().zip(SLERP_V).rev();
+    t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * (t * t) - v) * less_one * sum)
 }
 
 /// Every bone's local transform of every instance, at their cursors, as the kernel computes it.
@@ -135,28 +149,10 @@ pub fn sample_set_into(
 ) {
     let (bones, room) = (set.bones(), set.timelines_a_clip());
     for (index, instance) in instances.iter().enumerate() {
-        let tracks = &set.tracks()[3 * bones * instance.clip as usize..][..3 * bones];
         let cursors = &cursors[index * room..][..room];
-        let transforms = &mut transforms[index * bones..][..bones];
-        let mut arcs = Arcs::default();
-        for (bone, tracks) in tracks.chunks_exact(3).enumerate() {
-            let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
-                let (values, interpolation, cursor) = find(set, track, cursors);
-                let [x, y, z, _] = vector_at(values, interpolation, cursor);
-                [x, y, z]
-            });
-            transforms[bone].translation = translation;
-            transforms[bone].scale = scale;
-            let (values, interpolation, cursor) = find(set, tracks[1], cursors);
-            let is_between = interpolation == Interpolation::Linear && cursor.fraction > 0.0;
-            if is_between && path == RotationPath::Slerp {
-                let key = cursor.key as usize;
-                arcs.push(bone, [values[key], values[key + 1]], cursor.fraction, transforms);
-            } else {
-                transforms[bone].rotation = rotation_at(values, interpolation, cursor, path);
-            }
+        for (bone, transform) in transforms[index * bones..][..bones].iter_mut().enumerate() {
+            *transform = sample_pair(set, instance, cursors, bone, path);
         }
-        arcs.finish(transforms);
     }
 }
 
@@ -172,13 +168,7 @@ pub fn sample_pair(
     path: RotationPath,
 ) -> Transform {
     let tracks = &set.tracks()[3 * (set.bones() * instance.clip as usize + bone)..][..3];
-    let [translation, scale] = [tracks[0], tracks[2]].map(|track| {
-        let (values, interpolation, cursor) = find(set, track, cursors);
-        let [x, y, z, _] = vector_at(values, interpolation, cursor);
-        [x, y, z]
-    });
-    let (values, interpolation, cursor) = find(set, tracks[1], cursors);
-    Transform { translation, rotation: rotation_at(values, interpolation, cursor, path), scale }
+    sample_parts(|part| find(set, tracks[part as usize], cursors), path)
 }
 
 /// Every bone's local transform of every instance with its layers, at the cursors of [`all_instances`], as the
@@ -222,12 +212,7 @@ pub fn blend(below: &Transform, over: &Transform, weight: f32) -> Transform {
     }
 }
 
-/// A track's values from its first on, their interpolation, and the cursor.
-fn find<'a>(
-    set: &'a ClipSet,
-    track: SetTrack,
-    cursors: &[KeyframeCursor],
-) -> (&'a [[f32; 4]], Interpolation, KeyframeCursor) {
+fn find<'a>(set: &'a ClipSet, track: SetTrack, cursors: &[KeyframeCursor]) -> Found<'a> {
     let first = track.first_value as usize;
     let start = KeyframeCursor::default();
     match (track.timeline, track.interpolation) {

@@ -115,10 +115,7 @@ impl Document {
     /// Adds the skins that meshes share.
     fn add_skins(&mut self, model: &Model) -> Result<(), InputError> {
         for (at, skin) in model.skins[..self.shared].iter().enumerate() {
-            if skin.bones.len() > MAX_JOINTS {
-                let bound = format!("must be at most {MAX_JOINTS}");
-                return Err(InputError::new(format!("skins[{at}].bones.len"), skin.bones.len(), bound));
-            }
+            InputError::check_most(format!("skins[{at}].bones.len"), skin.bones.len(), MAX_JOINTS)?;
             let binds = self.binary.floats(&skin.inverse_binds, false);
             self.skins.push(json!({ "name": skin.name, "joints": skin.bones, "inverseBindMatrices": binds }));
         }
@@ -162,9 +159,7 @@ fn container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, InputErr
     json.resize(json.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
     let length = 12 + 8 + json.len() + if binary.is_empty() { 0 } else { 8 + binary.len() };
-    if length > MAX_BYTES {
-        return Err(InputError::new("GLB.length", length, format!("must be at most {MAX_BYTES}")));
-    }
+    InputError::check_most("GLB.length", length, MAX_BYTES)?;
     let mut glb = Vec::with_capacity(length);
     glb.extend_from_slice(b"glTF");
     let words = |glb: &mut Vec<u8>, all: [u32; 2]| all.iter().for_each(|word| glb.extend(word.to_le_bytes()));

@@ -6,7 +6,6 @@ pub mod grid;
 pub mod height;
 pub mod linear;
 pub mod quadtree;
-pub mod shadow;
 
 use rayon::prelude::*;
 

@@ -7,7 +7,6 @@ use glam::Vec3;
 use crate::asset::light::lambert;
 use crate::srgb;
 use crate::terrain::blend::{Shading, WeightMode};
-use crate::terrain::cover::MapZone;
 use crate::terrain::cover::{Cover, ShaderZone};
 use crate::terrain::normals::reference::unit_normal;
 pub use texturing::{color_variation, texel_indices, tiles_of, triplanar_weights, varied};
@@ -77,20 +76,6 @@ pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, pla
         }
     }
     pixels
-}
-
-/// The sum of weights at each pixel of a map. Its colour is divided by their products with factors of height maps, which have
-/// small relative errors.
-pub fn totals(window: &[i32], width: usize, cover: &Cover) -> Vec<f32> {
-    let at = |x: usize, y: usize| window[y * width + x];
-    let mut totals = Vec::new();
-    for (y, x) in (1..width - 1).flat_map(|y| (1..width - 1).map(move |x| (y, x))) {
-        let gradient = [at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1)];
-        let steep = steepness(unit_normal(gradient, cover.terrain_scale));
-        let weight = |zone: &MapZone| zone_weight(&zone.zone, at(x, y) as f32 / 65_536.0, steep);
-        totals.push(cover.zones.iter().map(weight).sum());
-    }
-    totals
 }
 
 /// The colour of the ground at a place, given in 2^-22 tiles: east, up, south.

@@ -1,7 +1,7 @@
 //! The GPU pass of `kernels/baseline/copy.wgsl`: copies words.
 
 use relievo::gpu::bindings::baseline::copy as bindings;
-use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use relievo::shared::baseline::copy::CopyParams;
 use relievo::{Error, InputError};
 
@@ -46,11 +46,7 @@ impl CopyPass {
             source: source.slice().cast(),
             destination: destination.slice().cast(),
         };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, vectors),
-        };
-        Ok(Job::new(gpu, "baseline/copy", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "baseline/copy", (&self.kernel, group), vectors)?)
     }
 }

@@ -2,7 +2,7 @@
 
 use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::gpu::bindings::baseline::gather as bindings;
-use relievo::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 use relievo::shared::baseline::gather::GatherParams;
 use relievo::{Error, InputError};
 
@@ -49,11 +49,7 @@ impl GatherPass {
             values: clips.values.slice().cast(),
             gathered: crowd.locals.slice().cast(),
         };
-        let step = Step {
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, params.pairs),
-            kernel: self.kernel.clone(),
-        };
-        Ok(Job::new(gpu, "baseline/gather", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "baseline/gather", (&self.kernel, group), params.pairs)?)
     }
 }

@@ -41,13 +41,8 @@ impl LoadsPass {
         let uniform = Uniform::new(gpu, "loads", &params)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let group = bindings::Group { params: &uniform, texels: &view, sums: sums.slice() };
-        let [width, height, _] = self.kernel.workgroup_size();
-        let [x, y] = [threads[0].div_ceil(width), threads[1].div_ceil(height)];
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: [x, y, 1],
-        };
+        let groups = vec![group.bind(gpu, &self.kernel)?];
+        let step = Step::covering(&self.kernel, groups, [threads[0], threads[1], 1]);
         Ok(Job::new(gpu, "baseline/loads", vec![step])?)
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use relievo::gpu::bindings::baseline::words as bindings;
-use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use relievo::shared::baseline::words::WordsParams;
 use relievo::{Error, InputError};
 
@@ -40,11 +40,7 @@ impl WordsPass {
             WordsParams { key: UVec2::from(key), vectors: width / 4 * rows, vectors_per_row: width / 4 };
         let uniform = Uniform::new(gpu, "words", &params)?;
         let group = bindings::Group { params: &uniform, words: words.slice().cast() };
-        let step = Step {
-            kernel: self.kernel.clone(),
-            groups: vec![group.bind(gpu, &self.kernel)?],
-            workgroups: self.kernel.spread(gpu, params.vectors),
-        };
-        Ok(Job::new(gpu, "baseline/words", vec![step])?)
+        let group = group.bind(gpu, &self.kernel)?;
+        Ok(Job::spread(gpu, "baseline/words", (&self.kernel, group), params.vectors)?)
     }
 }

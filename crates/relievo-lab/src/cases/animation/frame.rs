@@ -5,8 +5,8 @@ use std::hint::black_box;
 use relievo::Error;
 use relievo::animation::keyframe_cursor::reference::cursors_into;
 use relievo::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use relievo::animation::local_to_model::LocalToModelPass;
 use relievo::animation::local_to_model::reference::local_to_model_into;
-use relievo::animation::local_to_model::{LocalToModelJob, LocalToModelPass};
 use relievo::animation::sample::SamplePass;
 use relievo::animation::sample::reference::sample_set_into;
 use relievo::asset::keyframe::{KeyframeCursor, RotationPath};
@@ -21,7 +21,7 @@ use crate::cases::animation::scene::{ELAPSED, Scene};
 pub(crate) struct DeviceFrame {
     cursor: KeyframeCursorJob,
     sample: Job,
-    local_to_model: LocalToModelJob,
+    local_to_model: Job,
     copies: [Job; 2],
 }
 

@@ -3,6 +3,7 @@
 //! The benchmark measures lists of points against the same number of bare texel loads.
 
 use crate::shade::reference::shade_all;
+use crate::shade::shadow::light_ray;
 use crate::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 use glam::{Mat4, Vec3, Vec4, camera};
 use relievo::gpu::Buffer;
@@ -10,7 +11,6 @@ use relievo::surface::Material;
 use relievo::surface::map::{Address, HeightMap};
 use relievo::surface::relief::reference::Surface;
 use relievo::surface::relief::reference::height::BILINEAR;
-use relievo::surface::relief::reference::shadow::light_ray;
 use relievo::surface::relief::textures::SurfaceTextures;
 use relievo::surface::relief::{March, Method, Ray};
 use relievo::{Error, InputError};

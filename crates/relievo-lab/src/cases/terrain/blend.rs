@@ -4,10 +4,11 @@
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::terrain::blend::reference::{blend, totals};
+use relievo::terrain::blend::reference::{blend, steepness, zone_weight};
 use relievo::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
 use relievo::terrain::config::{Config, Slope, Zone};
-use relievo::terrain::cover::Cover;
+use relievo::terrain::cover::{Cover, MapZone};
+use relievo::terrain::normals::reference::normals;
 use relievo::terrain::texture::Texture;
 
 use crate::baseline::texels::TexelsPass;
@@ -85,6 +86,19 @@ async fn compare(
         .await?;
     cases.add(name, compared);
     Ok(())
+}
+
+/// The sum of weights at each pixel of a map. Its colour is divided by their products with factors of height maps, which have
+/// small relative errors.
+fn totals(window: &[i32], width: usize, cover: &Cover) -> Vec<f32> {
+    let rows = window.chunks_exact(width).skip(1).take(width - 2);
+    let heights = rows.flat_map(|row| &row[1..width - 1]).map(|height| *height as f32 / 65_536.0);
+    let (_, normals) = normals(window, width, cover.terrain_scale);
+    let total = |(height, normal): (f32, &[f32; 3])| {
+        let weight = |zone: &MapZone| zone_weight(&zone.zone, height, steepness(*normal));
+        cover.zones.iter().map(weight).sum()
+    };
+    heights.zip(&normals).map(total).collect()
 }
 
 /// Compares within [`MAP_BOUND`]; most pixels must be equal.

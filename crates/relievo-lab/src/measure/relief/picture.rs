@@ -4,13 +4,13 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::view::SquareView;
+use crate::shade::shadow::{light_ray, shaded, soft_shadow};
 use relievo::srgb::linear;
 use relievo::surface::linear_image::LinearImage;
 use relievo::surface::map::Address;
 use relievo::surface::mips::Mips;
 use relievo::surface::relief::reference::Surface;
 use relievo::surface::relief::reference::height::height;
-use relievo::surface::relief::reference::shadow::{light_ray, shaded, soft_shadow};
 use relievo::surface::relief::{Hit, March, Method, Ray};
 use relievo::surface::{Green, Material, Shadow};
 

@@ -1,9 +1,8 @@
 //! Models whose meshes are replaced by coarser levels of themselves.
 
-use super::add_levels;
-use crate::InputError;
-use crate::asset::{Mesh, Model};
-use crate::skinning::pose::poses_of;
+use relievo::InputError;
+use relievo::asset::{Mesh, Model};
+use relievo::skinning::{add_levels, poses_of};
 
 /// What became of a mesh that was coarsened.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +20,7 @@ pub struct Coarsened {
 ///
 /// # Errors
 /// [`InputError`] for a distance that is negative or not finite, and as [`poses_of`] and
-/// [`MeshLevels::new`](super::MeshLevels::new).
+/// [`add_levels`].
 pub fn coarsen(model: &mut Model, clip: usize, within: f32) -> Result<Vec<Coarsened>, InputError> {
     if !(within >= 0.0 && within.is_finite()) {
         return Err(InputError::new("within", within, "must be finite, and not negative"));

@@ -1,21 +1,21 @@
 //! Crowds of one layer without a device: the references of a frame, one after another.
 
-use crate::InputError;
-use crate::animation::active::PAIR_AHEAD;
-use crate::animation::clip_clock::reference::clip_clocks;
-use crate::animation::clip_set::ClipSet;
-use crate::animation::compact::reference::{Work, compact};
-use crate::animation::gate::reference::gate;
-use crate::animation::gate::{Frame, Gate};
-use crate::animation::gate_table::check_path;
-use crate::animation::instance::Instance;
-use crate::animation::keyframe_cursor::reference::cursors;
-use crate::animation::local_to_model::reference::local_to_model_updated;
-use crate::animation::lod::Lod;
-use crate::animation::order::Order;
-use crate::animation::sample::reference::sample_pair;
-use crate::asset::keyframe::RotationPath;
-use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
+use relievo::InputError;
+use relievo::animation::active::PAIR_AHEAD;
+use relievo::animation::clip_clock::reference::clip_clocks;
+use relievo::animation::clip_set::ClipSet;
+use relievo::animation::compact::reference::{Work, compact};
+use relievo::animation::gate::reference::gate;
+use relievo::animation::gate::{Frame, Gate};
+use relievo::animation::gate_table::check_path;
+use relievo::animation::instance::Instance;
+use relievo::animation::keyframe_cursor::reference::cursors;
+use relievo::animation::local_to_model::reference::local_to_model_updated;
+use relievo::animation::lod::Lod;
+use relievo::animation::order::Order;
+use relievo::animation::sample::reference::sample_pair;
+use relievo::asset::keyframe::RotationPath;
+use relievo::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
 /// Instances of one skeleton, with the state kept from frame to frame.
 #[derive(Debug, Clone)]

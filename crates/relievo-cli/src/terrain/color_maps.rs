@@ -2,19 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::blend::Shading;
-use super::blend::reference::blend;
-use super::config::Config;
-use super::cover::Cover;
-use super::texture::Texture;
-use crate::InputError;
-#[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
-use {
-    super::blend::{BlendBuffers, BlendPass},
-    super::fields::Fields,
-    crate::Error,
-    crate::gpu::{Buffer, Gpu},
-};
+use relievo::gpu::{Buffer, Gpu};
+use relievo::terrain::blend::reference::blend;
+use relievo::terrain::blend::{BlendBuffers, BlendPass, Shading};
+use relievo::terrain::config::Config;
+use relievo::terrain::cover::Cover;
+use relievo::terrain::fields::Fields;
+use relievo::terrain::texture::Texture;
+use relievo::{Error, InputError};
 
 /// The zones, textures and light of colour maps. A map has one sRGB pixel per sample, as RGBA with red in the
 /// lowest byte.
@@ -55,7 +50,6 @@ impl ColorMaps<'_> {
     ///
     /// # Errors
     /// The errors of [`Cover::new`] and [`BlendPass::prepare`].
-    #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
     pub fn on_device(&self, gpu: &Gpu, parts: &[Fields]) -> Result<Vec<Vec<u32>>, Error> {
         let pass = BlendPass::new(gpu)?;
         let cover = Cover::new(self.config, self.textures)?;
@@ -76,4 +70,14 @@ impl ColorMaps<'_> {
         }
         Ok(maps)
     }
+}
+
+/// Fields of heights that the host has, `width`² each, in parts of at most [`Fields::most`].
+pub fn fields_of(gpu: &Gpu, width: u32, windows: &[Vec<i32>]) -> Result<Vec<Fields>, Error> {
+    let part = |windows: &[Vec<i32>]| {
+        let fields = Fields::new(gpu, "terrain heights", width, windows.len() as u32)?;
+        fields.heights.write(gpu, &windows.concat())?;
+        Ok(fields)
+    };
+    windows.chunks(Fields::most(gpu, width)).map(part).collect()
 }
