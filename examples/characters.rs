@@ -6,10 +6,9 @@
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::{Gpu, Options};
+use relievo::ops::skinning::{add_levels, poses_of};
 use relievo::render::{Layer, Offscreen, Renderer, TargetFormat};
-use relievo::scene::{Camera, Placement, Play, Quality, Scene};
-use relievo::skinning::bounding_sphere::BoundingSphere;
-use relievo::skinning::{add_levels, poses_of};
+use relievo::scene::{BoundingSphere, Camera, Placement, Play, Quality, Scene};
 use relievo_samples::creature;
 
 /// Number of instances of each character.

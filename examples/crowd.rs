@@ -3,14 +3,14 @@
 //!
 //! `cargo run --release --example crowd`
 
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::frame::GatedFrame;
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::{BoundTable, ClipSet, Frame, Gate, Lod, Projection};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::bone_radii;
 use relievo::gpu::{Gpu, Options};
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::frame::GatedFrame;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::{BoundTable, ClipSet, Frame, Gate, Lod, Projection};
 use relievo_samples::creature;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -5,11 +5,11 @@
 
 use glam::{DVec3, Vec3};
 use relievo::gpu::Gpu;
+use relievo::ops::terrain::config::{Config, Offset};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::height::{HeightBatch, HeightPass};
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Scene, TerrainSource};
-use relievo::terrain::config::{Config, Offset};
-use relievo::terrain::features::Features;
-use relievo::terrain::height::{HeightBatch, HeightPass};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The device of the embedding program.

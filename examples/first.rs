@@ -4,15 +4,13 @@ use glam::{DVec3, Vec3};
 use relievo::asset::Light;
 use relievo::gpu::{Gpu, Options};
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
-use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainSource};
-use relievo::skinning::add_levels;
-use relievo::terrain::config::Config;
+use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainConfig, TerrainSource, add_levels};
 use relievo_samples::creature;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::headless(&Options::default())?;
     let mut scene = Scene::new(&gpu)?;
-    let config = Config::from_json(include_str!("terrain.json"))?;
+    let config = TerrainConfig::from_json(include_str!("terrain.json"))?;
     let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3, at / 3]).collect();
     let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches))?;
     let ground = |scene: &Scene, x: f64, z: f64| {

@@ -1,11 +1,11 @@
 //! The same heights from the CPU and from the GPU: `cargo run --example heights`.
 
 use relievo::gpu::{Gpu, Options};
-use relievo::terrain::config::Config;
-use relievo::terrain::export::sha256;
-use relievo::terrain::field::field;
-use relievo::terrain::generator::Generator;
-use relievo::terrain::recipe::Recipe;
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::export::sha256;
+use relievo::ops::terrain::field::field;
+use relievo::ops::terrain::generator::Generator;
+use relievo::ops::terrain::recipe::Recipe;
 
 fn main() -> Result<(), relievo::Error> {
     let recipe =

@@ -5,8 +5,7 @@
 
 use relievo::gpu::{Gpu, Options, shaders::MODULES};
 use relievo::render::{Offscreen, target::COLOR_FORMAT, target::DEPTH_FORMAT};
-use relievo::surface::relief::textures::SurfaceTextures;
-use relievo::surface::{Address, Method};
+use relievo::scene::{Address, ReliefMethod, SurfaceTextures};
 use relievo_samples::BuiltInMap;
 
 /// The material: a wall seen at an angle. `surface_ray`, `surface_quadtree` and `surface_normal` come from
@@ -42,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::headless(&Options::default())?;
     let map = BuiltInMap::Bricks.height_map(512)?;
     // At load time: uploads the heights, and computes the pyramid on the device.
-    let textures = SurfaceTextures::new(&gpu, &map, Method::Quadtree, Address::Wrap)?;
+    let textures = SurfaceTextures::new(&gpu, &map, ReliefMethod::Quadtree, Address::Wrap)?;
 
     let surface = MODULES.iter().find(|module| module.name == "surface").ok_or("no such module")?;
     let shader = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {

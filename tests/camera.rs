@@ -2,7 +2,7 @@
 
 use glam::camera::rh::{proj::directx, view::look_at_mat4};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
-use relievo::lod::{LodCamera, is_mirrored, planes};
+use relievo::ops::lod::{LodCamera, is_mirrored, planes};
 use relievo_lab::cases::animation::Draw;
 use relievo_lab::cases::lod::{look, parallel, perspective};
 

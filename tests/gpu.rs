@@ -6,22 +6,22 @@ use std::pin::pin;
 use std::task::{Context, Poll, Wake};
 
 use harness::gpu;
-use relievo::animation::ClipSet;
-use relievo::animation::active::ActivePairs;
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::keyframe_cursor::KeyframeCursorPass;
-use relievo::animation::local_to_model::LocalToModelPass;
-use relievo::animation::sample::SamplePass;
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{Buffer, Gpu, GpuError, Options, adapters};
-use relievo::terrain::config::{Config, Offset};
-use relievo::terrain::features::Features;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::height::reference::height;
-use relievo::terrain::height::{HeightBatch, HeightPass};
-use relievo::terrain::window::Window;
+use relievo::ops::animation::ClipSet;
+use relievo::ops::animation::active::ActivePairs;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::ops::animation::local_to_model::LocalToModelPass;
+use relievo::ops::animation::sample::SamplePass;
+use relievo::ops::terrain::config::{Config, Offset};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::height::reference::height;
+use relievo::ops::terrain::height::{HeightBatch, HeightPass};
+use relievo::ops::terrain::window::Window;
 use relievo_lab::harness::{TimedBy, Timer};
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.

@@ -7,16 +7,16 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use harness::gpu_of_bindings;
 use relievo::gpu::Gpu;
-use relievo::terrain::config::{Border, Config};
-use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, FeatureIndex, Features};
-use relievo::terrain::field::field;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::generator::Generator;
-use relievo::terrain::hydraulic::Hydraulic;
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::Thermal;
+use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::despike::Despike;
+use relievo::ops::terrain::features::{FeatureFile, FeatureIndex, Features};
+use relievo::ops::terrain::field::field;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::generator::Generator;
+use relievo::ops::terrain::hydraulic::Hydraulic;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::Thermal;
 
 /// Bytes of uniforms, origins and neighbours: a few hundred per patch.
 const SMALL: u64 = 64 << 10;

@@ -10,19 +10,19 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use harness::gpu;
-use relievo::animation::Wrap;
-use relievo::animation::keyframe_cursor::reference::inside_clip;
 use relievo::gpu::{Buffer, Gpu, shaders::MODULES};
-use relievo::lod::LodCamera;
-use relievo::skinning::palette::reference::dual;
-use relievo::surface::{Address, HeightMap, Method, SurfaceTextures};
-use relievo::terrain::blend::WeightMode;
-use relievo::terrain::blend::reference::{
+use relievo::ops::animation::Wrap;
+use relievo::ops::animation::keyframe_cursor::reference::inside_clip;
+use relievo::ops::lod::LodCamera;
+use relievo::ops::skinning::palette::reference::dual;
+use relievo::ops::surface::{Address, HeightMap, Method, SurfaceTextures};
+use relievo::ops::terrain::blend::WeightMode;
+use relievo::ops::terrain::blend::reference::{
     color_variation, steepness, triplanar_weights, varied, zone_fractions,
 };
-use relievo::terrain::config::Zone;
-use relievo::terrain::cover::{ShaderZone, zone_of};
-use relievo::terrain::fixed::{mean_of_four, multiply_high};
+use relievo::ops::terrain::config::Zone;
+use relievo::ops::terrain::cover::{ShaderZone, zone_of};
+use relievo::ops::terrain::fixed::{mean_of_four, multiply_high};
 
 /// What a shader of `tests/modules/` makes of `floats`: so many words. `constants` and textures are for those that have
 /// them.
@@ -159,7 +159,7 @@ fn terrain_offsets_are_those_of_the_reference_and_light_falls_as_the_cosine() {
     let words = run(&gpu(), "terrain", &[], None, &[0.0; 4], 42);
     let range = 655_360;
     let offsets: [i32; 4] = std::array::from_fn(|x| {
-        let (first, second) = relievo::hash::threefry2x32([17, 4], [x as u32; 8], [5; 8]);
+        let (first, second) = relievo::ops::hash::threefry2x32([17, 4], [x as u32; 8], [5; 8]);
         let sum = (first[0] & 0xffff) + (first[0] >> 16) + (second[0] & 0xffff) + (second[0] >> 16);
         multiply_high((sum << 14) + 0x8000, 2 * range) as i32 - range as i32
     });

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use relievo::asset::Model;
-use relievo::skinning::{add_levels, poses_of};
+use relievo::ops::skinning::{add_levels, poses_of};
 
 /// Processor time of all threads of the program so far, in seconds.
 #[cfg(unix)]
@@ -43,10 +43,10 @@ fn report(name: &str, model: &mut Model) -> Result<(), Box<dyn Error>> {
     let meshes = model.meshes.len();
     let all = triangles(0);
     println!("| {name} | {meshes} | {vertices} | {all} | {poses} | {processor:.2} | {passed:.2} |");
-    let errors = relievo::skinning::level_errors(&model.meshes);
+    let errors = relievo::ops::skinning::level_errors(&model.meshes);
     let left = |at: usize| {
         let own = model.meshes.iter().map(|mesh| {
-            let own = relievo::skinning::own_levels(mesh, &errors);
+            let own = relievo::ops::skinning::own_levels(mesh, &errors);
             mesh.triangles(own[at + 1]).len() / 3
         });
         own.sum::<usize>()

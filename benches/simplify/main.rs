@@ -24,7 +24,7 @@ use std::time::Instant;
 use meshes::Mesh;
 use meshopt::{SimplifyOptions, VertexDataAdapter};
 use peak_alloc::PeakAlloc;
-use relievo::mesh::{Options, Simplified, Surface, simplify, simplify_within};
+use relievo::ops::mesh::{Options, Simplified, Surface, simplify, simplify_within};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;

@@ -7,10 +7,10 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3};
 use relievo::asset::model::Model;
-use relievo::terrain::config::Config;
-use relievo::terrain::features::Features;
-use relievo::terrain::height::reference::height;
-use relievo::terrain::window::Window;
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::height::reference::height;
+use relievo::ops::terrain::window::Window;
 
 #[path = "../levels/helmet.rs"]
 mod helmet;

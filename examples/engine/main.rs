@@ -9,8 +9,7 @@ mod own;
 use glam::{Mat4, Vec3};
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer, TargetFormat};
-use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource};
-use relievo::terrain::config::Config;
+use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainConfig, TerrainSource};
 use relievo_samples::{creature, maps::BuiltInMap};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -23,10 +22,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
     let mut scene = Scene::new(&gpu)?;
     let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3 - 1, at / 3 - 1]).collect();
-    let config = Config::new(129, 9.0, "engine")?;
+    let config = TerrainConfig::new(129, 9.0, "engine")?;
     let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches))?;
     let mut model = creature()?;
-    relievo::skinning::add_levels(&mut model, &[0], 60)?;
+    relievo::scene::add_levels(&mut model, &[0], 60)?;
     let crowd = scene.add_character(&model, 50)?;
     let statues = scene.add_mesh(&model, 4)?;
     let bricks = BuiltInMap::Bricks;

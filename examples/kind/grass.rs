@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 use relievo::gpu::Gpu;
+use relievo::scene::BoundingSphere;
 use relievo::scene::kind::{Kind, KindFrame, KindHit, KindPart, KindProgram, KindRay, KindUploads};
-use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::{Error, wgpu};
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 

@@ -9,20 +9,19 @@ use glam::{DVec3, Vec3};
 use relievo::asset::Light;
 use relievo::gpu::{Gpu, Options};
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
-use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainSource};
-use relievo::terrain::config::Config;
+use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainConfig, TerrainSource};
 use relievo_samples::creature;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::headless(&Options::default())?;
     let mut scene = Scene::new(&gpu)?;
-    let land = scene.add_terrain(&TerrainSource::new(Config::new(129, 7.0, "meadow")?))?;
+    let land = scene.add_terrain(&TerrainSource::new(TerrainConfig::new(129, 7.0, "meadow")?))?;
     let ground = |scene: &Scene, x: f64, z: f64| {
         let point = scene.ground(land, x, z).ok().flatten();
         DVec3::new(x, point.map_or(0.0, |point| point.height), z)
     };
     let mut model = creature()?;
-    relievo::skinning::add_levels(&mut model, &[0], 60)?;
+    relievo::scene::add_levels(&mut model, &[0], 60)?;
     let crowd = scene.add_character(&model, 8)?;
     for at in 0..6 {
         let place = ground(&scene, 54.0 + 3.0 * f64::from(at % 3), 56.0 + 4.0 * f64::from(at / 3));

@@ -3,8 +3,9 @@
 use glam::Vec3;
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
-use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Relief, Scene, TerrainSource, View};
-use relievo::terrain::config::Config;
+use relievo::scene::{
+    Camera, InstanceId, ObjectId, Placement, Play, Relief, Scene, TerrainConfig, TerrainSource, View,
+};
 use relievo_samples::{creature, maps::BuiltInMap};
 
 use crate::Failure;
@@ -48,11 +49,11 @@ impl World {
         let mut scene = Scene::new(&gpu)?;
         let patches: Vec<[i32; 2]> = (0..25).map(|at| [at % 5 - 2, at / 5 - 2]).collect();
         // A sample every two world units, so that a patch is 128 long.
-        let config = Config { terrain_scale: 2.0, ..Config::new(65, 9.0, "window")? };
+        let config = TerrainConfig { terrain_scale: 2.0, ..TerrainConfig::new(65, 9.0, "window")? };
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches))?;
 
         let mut model = creature()?;
-        relievo::skinning::add_levels(&mut model, &[0], 60)?;
+        relievo::scene::add_levels(&mut model, &[0], 60)?;
         let count = CROWD[0] * CROWD[1];
         let crowd = scene.add_character(&model, count as usize)?;
         let mut walkers = Vec::new();

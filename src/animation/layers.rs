@@ -15,7 +15,7 @@
 //! mask of the arm ([`mask_below`]).
 //!
 //! ```
-//! use relievo::animation::{ClipSet, Instance, Layer, Wrap, layers::mask_below};
+//! use relievo::ops::animation::{ClipSet, Instance, Layer, Wrap, layers::mask_below};
 //! use relievo_samples::creature;
 //!
 //! let model = creature()?;

@@ -327,7 +327,7 @@ impl Simplified {
 /// Simplifies a mesh until a limit of `options` is reached, and records every collapse.
 ///
 /// ```
-/// use relievo::mesh::{Options, Stopped, Surface, simplify};
+/// use relievo::ops::mesh::{Options, Stopped, Surface, simplify};
 ///
 /// // A square of four triangles around its middle.
 /// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.0]];

@@ -15,6 +15,8 @@ mod shading;
 mod sun_shadow;
 pub mod target;
 
+#[doc(inline)]
+pub use crate::surface::LinearImage;
 pub use attachments::Attachments;
 pub use format::{DepthFormat, TargetFormat};
 pub use layer::Layer;

@@ -24,12 +24,11 @@ use crate::{Error, InputError};
 /// use glam::DVec3;
 /// use relievo::gpu::{Gpu, Options};
 /// use relievo::render::Offscreen;
-/// use relievo::scene::{Camera, Scene, TerrainSource};
-/// use relievo::terrain::config::Config;
+/// use relievo::scene::{Camera, Scene, TerrainConfig, TerrainSource};
 ///
 /// let gpu = Gpu::headless(&Options::default())?;
 /// let mut scene = Scene::new(&gpu)?;
-/// scene.add_terrain(&TerrainSource::new(Config::new(33, 6.0, "any text")?))?;
+/// scene.add_terrain(&TerrainSource::new(TerrainConfig::new(33, 6.0, "any text")?))?;
 /// let target = Offscreen::new(&gpu, [96, 64])?;
 /// let camera = Camera::framing(DVec3::new(0.0, -6.0, 0.0), DVec3::new(32.0, 6.0, 32.0), target.size());
 /// target.draw(&mut scene, camera, [0.36, 0.55, 0.80])?;

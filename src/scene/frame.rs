@@ -2,7 +2,7 @@
 
 use crate::animation::Frame;
 use crate::gpu::Staged;
-use crate::lod::{LodObject, SceneInstance, SelectView};
+use crate::lod::{SceneInstance, SelectView};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, SortedDraws, SortedPart};
 use crate::scene::drive::Poses;
 use crate::scene::object::{self, Object};
@@ -242,19 +242,14 @@ impl Scene {
         };
         let mut objects = Vec::new();
         let own = recorded.sides.iter().zip(&lists.in_view);
-        for (object, (sides, in_view)) in self.objects.iter().zip(own) {
+        let shown = self.objects.iter().zip(own).filter(|(object, _)| object.is_drawn());
+        for (object, (sides, in_view)) in shown {
+            let (number, sides) = (object.handle, *sides);
             let view_group = in_view.as_ref().map(|in_view| in_view.group());
-            if object.is_drawn() {
-                let drawn = object.chunks.iter().flat_map(|chunk| chunk.drawables.iter().zip(&chunk.lods));
-                let (number, sides) = (object.handle, *sides);
-                let drawn_object = |(drawable, lod): (&'a Box<dyn Drawable>, &'a LodObject)| DrawnObject {
-                    number,
-                    drawable: &**drawable,
-                    lod,
-                    sides,
-                    view_group,
-                };
-                objects.extend(drawn.map(drawn_object));
+            for chunk in &object.chunks {
+                for (drawable, lod) in chunk.drawables.iter().zip(&chunk.lods) {
+                    objects.push(DrawnObject { number, drawable: &**drawable, lod, sides, view_group });
+                }
             }
         }
         Ok(Some((drawn, objects)))

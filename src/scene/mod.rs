@@ -62,7 +62,25 @@ mod view;
 mod watch;
 pub(crate) mod wgsl;
 
+#[doc(inline)]
+pub use crate::animation::Wrap;
+#[doc(inline)]
 pub use crate::lod::transition::Transition;
+#[doc(inline)]
+pub use crate::skinning::bounding_sphere::BoundingSphere;
+#[doc(inline)]
+pub use crate::skinning::{MeshLevels, add_levels, add_levels_with_progress};
+#[doc(inline)]
+pub use crate::surface::{
+    Address, Green, HeightMap, March, Material as ReliefMaterial, Method as ReliefMethod, Mips, ReliefMaps,
+    ReliefOptions, Shadow as ReliefShadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
+};
+#[doc(inline)]
+pub use crate::terrain::{
+    blend::Shading as TerrainShading, config::Config as TerrainConfig, fields::Fields as TerrainFields,
+    mesh::GroundPoint, morph::Morph as TerrainMorph, recipe::Recipe as TerrainRecipe,
+    texture::Texture as TerrainTexture,
+};
 pub use bounds::Bounds;
 pub use camera::{Camera, Depth};
 pub use drive::Poses;
@@ -116,7 +134,7 @@ pub const FRAMES_IN_FLIGHT: usize = 4;
 /// let gpu = relievo::gpu::Gpu::from_wgpu(device, queue);
 /// let mut scene = Scene::new(&gpu)?;
 /// let mut model = Model::from_file("fox.glb".as_ref())?;
-/// relievo::skinning::add_levels(&mut model, &[0], 60)?; // levels of detail, for the first clip's poses
+/// relievo::scene::add_levels(&mut model, &[0], 60)?; // levels of detail, for the first clip's poses
 /// let fox = scene.add_character(&model, 100)?;
 /// let mut foxes = Vec::new();
 /// for at in 0..100 {

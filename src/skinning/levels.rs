@@ -247,7 +247,7 @@ pub(crate) fn add_levels_and_at_rest(
 ///
 /// let mut rock = relievo_samples::rock()?;
 /// let mut drawn = 0;
-/// let found = relievo::skinning::add_levels_with_progress(&mut rock, &[], 1, &mut |fraction| {
+/// let found = relievo::ops::skinning::add_levels_with_progress(&mut rock, &[], 1, &mut |fraction| {
 ///     drawn = (100.0 * fraction) as u32; // the width of a bar
 ///     ControlFlow::Continue(())
 /// })?;

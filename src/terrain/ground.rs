@@ -18,8 +18,8 @@ pub use ray::GroundHit;
 /// that what stands on the ground neither floats nor sinks. A patch takes four bytes per sample.
 ///
 /// ```
-/// use relievo::terrain::field::field;
-/// use relievo::terrain::{config::Config, ground::Ground, recipe::Recipe};
+/// use relievo::ops::terrain::field::field;
+/// use relievo::ops::terrain::{config::Config, ground::Ground, recipe::Recipe};
 ///
 /// let config = Config::new(33, 40.0, "any text")?;
 /// let patches = [[-1, 0], [0, 0]];

@@ -1,8 +1,8 @@
 //! The shaders' integer arithmetic on the adapter, against wider integers.
 
-use relievo::animation::budget::reference::rank_of;
-use relievo::animation::gate_table::sums::{motion_at, motion_between, scale_by_fraction};
 use relievo::gpu::shaders::{ANIMATION_BUDGET, ANIMATION_GATE};
+use relievo::ops::animation::budget::reference::rank_of;
+use relievo::ops::animation::gate_table::sums::{motion_at, motion_between, scale_by_fraction};
 use relievo_lab::cases::animation::Draw;
 
 use crate::harness::gpu;

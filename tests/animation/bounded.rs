@@ -1,12 +1,12 @@
 //! The bound of `bounded`, on clips that are designed to break it.
 
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::order::Order;
-use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Frame, Gate};
 use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Bone, Clip, Skeleton, Transform};
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::{AnimatedBones, BoundTable, ClipSet, Frame, Gate};
 use relievo_lab::cases::animation::Draw;
 use relievo_lab::crowd::Crowd;
 

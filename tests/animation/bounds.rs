@@ -1,13 +1,13 @@
 //! The bounds' reference against the exact box in double precision.
 
-use relievo::animation::Bounds;
-use relievo::animation::bounds::bone_radii;
-use relievo::animation::bounds::reference::bounds;
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::AFFINE_IDENTITY;
 use relievo::asset::{Affine, Bone, Skeleton, Transform};
+use relievo::ops::animation::Bounds;
+use relievo::ops::animation::bounds::bone_radii;
+use relievo::ops::animation::bounds::reference::bounds;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
 use relievo_samples::creature;
 
 use crate::player::unit;

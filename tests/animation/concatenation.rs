@@ -1,8 +1,8 @@
 //! The concatenation reference against 4×4 products in double precision.
 
-use relievo::animation::local_to_model::reference::{affine, local_to_model, local_to_model_into};
 use relievo::asset::transform::{AFFINE_IDENTITY, column_major};
 use relievo::asset::{Bone, Skeleton, Transform};
+use relievo::ops::animation::local_to_model::reference::{affine, local_to_model, local_to_model_into};
 
 use crate::player::{Matrix, matrix, product, unit, wide};
 use crate::sampling::{noise, skeleton};

@@ -1,21 +1,21 @@
 //! Crowds on the device.
 
 use relievo::Error;
-use relievo::animation::bounds::{BoundsPass, bone_radii};
-use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::keyframe_cursor::KeyframeCursorPass;
-use relievo::animation::keyframe_cursor::reference::cursors;
-use relievo::animation::layers::{MAX_LAYERS, all_instances};
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass};
-use relievo::animation::sample::reference::sample_layers;
-use relievo::animation::sample::{SAMPLE_BOUND, SamplePass};
-use relievo::animation::{ClipSet, Layer};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Model, Transform};
 use relievo::gpu::{Buffer, Gpu};
+use relievo::ops::animation::bounds::{BoundsPass, bone_radii};
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd, unpacked};
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::ops::animation::keyframe_cursor::reference::cursors;
+use relievo::ops::animation::layers::{MAX_LAYERS, all_instances};
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass};
+use relievo::ops::animation::sample::reference::sample_layers;
+use relievo::ops::animation::sample::{SAMPLE_BOUND, SamplePass};
+use relievo::ops::animation::{ClipSet, Layer};
 use relievo_lab::harness::compare::absolute;
 use relievo_samples::creature;
 

@@ -2,21 +2,21 @@
 //! by dual quaternions. Whichever is prepared first excludes the other, by every route to the crowd's matrices.
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::frame::GatedFrame;
-use relievo::animation::gate::GatePass;
-use relievo::animation::instance::{Instance, Wrap};
-use relievo::animation::local_to_model::LocalToModelPass;
-use relievo::animation::sample::SamplePass;
-use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Gate, GateState, ModelMatrices, Order};
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{Buffer, Gpu};
-use relievo::skinning::Blend;
-use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::palette::PalettePass;
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::frame::GatedFrame;
+use relievo::ops::animation::gate::GatePass;
+use relievo::ops::animation::instance::{Instance, Wrap};
+use relievo::ops::animation::local_to_model::LocalToModelPass;
+use relievo::ops::animation::sample::SamplePass;
+use relievo::ops::animation::{AnimatedBones, BoundTable, ClipSet, Gate, GateState, ModelMatrices, Order};
+use relievo::ops::skinning::Blend;
+use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::palette::PalettePass;
 use relievo_samples::creature;
 
 use crate::harness::gpu;

@@ -1,22 +1,22 @@
 //! Whole frames under a gate on the device, with layers, compared with frames in full.
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::frame::GatedFrame;
-use relievo::animation::gate::GatePass;
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::keyframe_cursor::KeyframeCursorPass;
-use relievo::animation::local_to_model::LocalToModelPass;
-use relievo::animation::order::Order;
-use relievo::animation::sample::SamplePass;
-use relievo::animation::{
-    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, GateState, Layer, Lod,
-};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Affine, Clip, Model, Skeleton};
 use relievo::gpu::Gpu;
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::frame::GatedFrame;
+use relievo::ops::animation::gate::GatePass;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::ops::animation::local_to_model::LocalToModelPass;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::sample::SamplePass;
+use relievo::ops::animation::{
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, GateState, Layer, Lod,
+};
 use relievo_samples::creature;
 
 use crate::harness::gpu;

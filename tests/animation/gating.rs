@@ -1,19 +1,19 @@
 //! The guarantees of gates, on random clips and on the creature's.
 
-use relievo::animation::budget::reference::rank_of;
-use relievo::animation::compact::reference::Work;
-use relievo::animation::gate::reference::{gate, is_skipped, scramble};
-use relievo::animation::instance::{Instance, Wrap};
-use relievo::animation::lod::OMEGA_ONE;
-use relievo::animation::order::Order;
-use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
-use relievo::animation::{
-    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable, Sampling,
-};
 use relievo::asset::clip::BoneKeys;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Skeleton};
+use relievo::ops::animation::budget::reference::rank_of;
+use relievo::ops::animation::compact::reference::Work;
+use relievo::ops::animation::gate::reference::{gate, is_skipped, scramble};
+use relievo::ops::animation::instance::{Instance, Wrap};
+use relievo::ops::animation::lod::OMEGA_ONE;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::priority::{Priorities, USER_DEFAULT, Weights};
+use relievo::ops::animation::{
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable, Sampling,
+};
 use relievo_lab::cases::animation::{Draw, random_clips, random_skeleton};
 use relievo_lab::crowd::Crowd;
 use relievo_samples::creature;
@@ -182,10 +182,11 @@ fn bones_that_never_move_are_sampled_once() {
     let first = crowd.advance(&frame(0), 0.0);
     let next = crowd.advance(&frame(1), 0.4);
     assert!(first.pairs.len() == 153 && (50..153).contains(&next.pairs.len()), "{}", next.pairs.len());
-    let locals = relievo::animation::sample::reference::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
+    let locals =
+        relievo::ops::animation::sample::reference::sample(&stage.clips[0], 0.4, RotationPath::Slerp);
     assert_eq!(
         crowd.model_matrices,
-        relievo::animation::local_to_model::reference::local_to_model(&stage.skeleton, &locals)
+        relievo::ops::animation::local_to_model::reference::local_to_model(&stage.skeleton, &locals)
     );
 }
 

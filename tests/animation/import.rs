@@ -1,11 +1,11 @@
 //! Valid glTF documents of many kinds.
 
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::clip::{Interpolation, Part};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Model, Transform};
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
 use serde_json::json;
 
 use crate::scene::{FLOAT, Scene};

@@ -1,14 +1,14 @@
 //! Layers against their definition in double precision.
 
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::keyframe_cursor::reference::cursors;
-use relievo::animation::layers::{all_instances, mask_below};
-use relievo::animation::sample::reference::{blend, sample, sample_layers};
-use relievo::animation::{ClipSet, Layer};
 use relievo::asset::Transform;
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::keyframe_cursor::reference::cursors;
+use relievo::ops::animation::layers::{all_instances, mask_below};
+use relievo::ops::animation::sample::reference::{blend, sample, sample_layers};
+use relievo::ops::animation::{ClipSet, Layer};
 use relievo_samples::creature;
 
 use crate::player::{angle, dot, unit, wide};

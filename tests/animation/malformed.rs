@@ -301,7 +301,7 @@ fn play(model: &Model) {
     use relievo::asset::keyframe::RotationPath;
     for clip in &model.clips {
         for time in [0.0, 0.3, clip.duration()] {
-            let pose = relievo::animation::sample::reference::sample(clip, time, RotationPath::Slerp);
+            let pose = relievo::ops::animation::sample::reference::sample(clip, time, RotationPath::Slerp);
             assert!(pose.iter().all(|bone| bone.rotation.iter().all(|x| x.is_finite())));
         }
     }

@@ -151,10 +151,10 @@ fn weights_of_every_type_and_number() {
 /// Exporters write weights of 0 where nobody painted any. Such a vertex follows the joint in its first slot, as in three.js.
 #[test]
 fn vertices_without_weight_follow_their_first_joint() {
-    use relievo::animation::local_to_model::reference::local_to_model;
-    use relievo::skinning::palette::reference::palette_for;
-    use relievo::skinning::skin::reference::skin;
-    use relievo::skinning::{Blend, InstanceLod};
+    use relievo::ops::animation::local_to_model::reference::local_to_model;
+    use relievo::ops::skinning::palette::reference::palette_for;
+    use relievo::ops::skinning::skin::reference::skin;
+    use relievo::ops::skinning::{Blend, InstanceLod};
     let mut skinned = Skinned::new();
     let given = skinned.0.floats("VEC4", &[[0.0; 4], [1.0, 0.0, 0.0, 0.0], [0.0; 4], [-0.0; 4]].concat());
     let joints = skinned.0.integers("VEC4", 1, &[1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1]);
@@ -167,7 +167,7 @@ fn vertices_without_weight_follow_their_first_joint() {
     let model = Model::from_gltf(&skinned.0.gltf(), None).expect("valid");
     let bones = local_to_model(&model.skeleton, &model.skeleton.rest());
     let palette = palette_for(&model.skins[0], &bones, Blend::Linear);
-    let vertices = relievo::skinning::morph::reference::morph(&mesh, &[]);
+    let vertices = relievo::ops::skinning::morph::reference::morph(&mesh, &[]);
     let posed = skin(&vertices, &mesh.influences, &palette, InstanceLod::FULL);
     assert_eq!([0, 1, 2, 3].map(|vertex: usize| posed[vertex].position[1]), [1.0, 0.0, 1.0, 2.0]);
     // They are written as they are read.
@@ -316,14 +316,14 @@ fn full() -> Scene {
 
 /// Everything that is imported can be skinned and stays finite.
 fn skin_all(model: &Model) {
-    use relievo::animation::local_to_model::reference::local_to_model;
     use relievo::asset::bone_radii;
-    use relievo::skinning::clusters::Clusters;
-    use relievo::skinning::instance_lod::InstanceLod;
-    use relievo::skinning::morph::reference::morph;
-    use relievo::skinning::palette::reference::palette_for;
-    use relievo::skinning::skin::reference::skin;
-    use relievo::skinning::vertex::Blend;
+    use relievo::ops::animation::local_to_model::reference::local_to_model;
+    use relievo::ops::skinning::clusters::Clusters;
+    use relievo::ops::skinning::instance_lod::InstanceLod;
+    use relievo::ops::skinning::morph::reference::morph;
+    use relievo::ops::skinning::palette::reference::palette_for;
+    use relievo::ops::skinning::skin::reference::skin;
+    use relievo::ops::skinning::vertex::Blend;
     let models = local_to_model(&model.skeleton, &model.skeleton.rest());
     // Scales may move positions out of range; that is a property of the pose and not of the import.
     let is_sane = models.iter().flatten().flatten().all(|value| value.abs() < 1e6);
@@ -344,7 +344,7 @@ fn skin_all(model: &Model) {
                 .all(|delta| [delta.position, delta.normal].as_flattened().iter().all(|x| x.abs() < 1e6))
             && model.skins[mesh.skin].inverse_binds.as_flattened().iter().all(|x| x.abs() < 1e6);
         if is_sane && small && !large(&weights) {
-            let finite = |vertex: &relievo::skinning::vertex::Vertex| {
+            let finite = |vertex: &relievo::ops::skinning::vertex::Vertex| {
                 vertex.position.iter().chain(&vertex.normal).all(|x| x.is_finite())
             };
             assert!(vertices.iter().all(finite));

@@ -2,14 +2,14 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 use relievo::InputError;
-use relievo::animation::RootMotion;
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::root_motion::{Taken, YAW_BOUND, deltas};
-use relievo::animation::sample::reference::{sample, sample_bone};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Bone, Skeleton, Transform};
+use relievo::ops::animation::RootMotion;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::root_motion::{Taken, YAW_BOUND, deltas};
+use relievo::ops::animation::sample::reference::{sample, sample_bone};
 use relievo_samples::creature;
 
 use crate::sampling::noise;

@@ -1,17 +1,17 @@
 //! The sampling reference against glTF's own formulas in double precision.
 
-use relievo::animation::ClipSet;
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::keyframe_cursor::reference::{cursors, inside_clip};
-use relievo::animation::sample::SLERP_BOUND;
-use relievo::animation::sample::reference::{sample, sample_bone, sample_set_into, slerp};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::KeyframeCursor;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::keyframe::keyframe_cursor;
 use relievo::asset::{Bone, Skeleton, Transform};
-use relievo::hash::{LANES, threefry2x32};
+use relievo::ops::animation::ClipSet;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::keyframe_cursor::reference::{cursors, inside_clip};
+use relievo::ops::animation::sample::SLERP_BOUND;
+use relievo::ops::animation::sample::reference::{sample, sample_bone, sample_set_into, slerp};
+use relievo::ops::hash::{LANES, threefry2x32};
 
 use crate::player::{self, wide};
 

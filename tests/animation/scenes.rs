@@ -1,11 +1,11 @@
 //! Which part of a document is imported: the default scene, with or without skins, and extensions that it requires.
 
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::transform::Affine;
-use relievo::skinning::InstanceLod;
-use relievo::skinning::vertex::Blend;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
+use relievo::ops::skinning::InstanceLod;
+use relievo::ops::skinning::vertex::Blend;
 use serde_json::{Value, json};
 
 use crate::meshes::Skinned;
@@ -43,9 +43,9 @@ fn meshes(model: &Model) -> Vec<&str> {
 
 /// The positions of each mesh's vertices.
 fn places(model: &Model, models: &[Affine]) -> Vec<Vec<[f32; 3]>> {
-    use relievo::skinning::morph::reference::morph;
-    use relievo::skinning::palette::reference::palette_for;
-    use relievo::skinning::skin::reference::skin;
+    use relievo::ops::skinning::morph::reference::morph;
+    use relievo::ops::skinning::palette::reference::palette_for;
+    use relievo::ops::skinning::skin::reference::skin;
     let place = |mesh: &relievo::asset::Mesh| {
         let palette = palette_for(&model.skins[mesh.skin], models, Blend::Linear);
         let vertices = skin(&morph(mesh, &mesh.weights), &mesh.influences, &palette, InstanceLod::FULL);

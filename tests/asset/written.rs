@@ -3,7 +3,7 @@
 use image::{Rgba, RgbaImage};
 use relievo::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
 use relievo::asset::{Material, Mesh, Model};
-use relievo::skinning::at_rest;
+use relievo::ops::skinning::at_rest;
 use relievo_samples::creature;
 
 use crate::{Folder, Words, check};

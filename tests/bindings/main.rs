@@ -14,7 +14,7 @@ use std::process::Command;
 use packed::packed;
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::lod::sorted::{SortedBuffers, SortedPass};
+use relievo::ops::lod::sorted::{SortedBuffers, SortedPass};
 use relievo::shared::lod::object::{
     decision_list, decision_morph, decision_word, list_entry_instance, list_entry_morph, list_entry_word,
     morph_level, morph_steps, morph_word,

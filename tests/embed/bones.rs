@@ -2,10 +2,10 @@
 
 use glam::{DAffine3, DQuat, Quat, Vec3};
 use image::RgbaImage;
-use relievo::animation::Pose;
-use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::asset::{Model, Transform};
 use relievo::gpu::Gpu;
+use relievo::ops::animation::Pose;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
 use relievo::scene::{InstanceId, Placement, Poses, View};
 use relievo::wgpu;
 

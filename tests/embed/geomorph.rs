@@ -8,14 +8,14 @@ use glam::Vec3;
 use image::RgbaImage;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
-use relievo::mesh::ProgressiveMesh;
+use relievo::ops::mesh::ProgressiveMesh;
+use relievo::ops::skinning::add_levels;
+use relievo::ops::skinning::merged::merged;
+use relievo::ops::terrain::config::Config;
 use relievo::render::{Layer, Renderer};
 use relievo::scene::{
     Camera, ErrorBudget, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition, View,
 };
-use relievo::skinning::add_levels;
-use relievo::skinning::merged::merged;
-use relievo::terrain::config::Config;
 use relievo_samples::{creature, rock};
 
 use crate::frame::{Frame, device};

@@ -1,8 +1,8 @@
 //! What stands where, computed by these tests themselves in f64: placements, poses, linear blending, rays.
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
-use relievo::animation::Pose;
 use relievo::asset::{Affine, Model};
+use relievo::ops::animation::Pose;
 use relievo::scene::{InstanceId, Placement, Scene};
 
 /// The transform of a placement into the world.

@@ -9,12 +9,12 @@ use glam::{DVec3, Vec3};
 use relievo::asset::Light;
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
+use relievo::ops::surface::map::HeightMap;
+use relievo::ops::terrain::config::Config;
 use relievo::render::{Layer, OutputProgram, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
     Camera, InstanceId, ObjectId, Placement, Quality, Ray, Relief, Scene, TerrainSource, View,
 };
-use relievo::surface::map::HeightMap;
-use relievo::terrain::config::Config;
 
 use crate::frame::{Frame, device, devices};
 use crate::host;

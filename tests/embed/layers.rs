@@ -1,12 +1,12 @@
 //! Clips over clips, and the motion of roots.
 
 use glam::{DVec3, Quat, Vec3};
-use relievo::animation::Pose;
-use relievo::animation::layers::mask_below;
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::root_motion::Taken;
-use relievo::animation::sample::reference::blend;
 use relievo::asset::{BoneKeys, Clip, Interpolation, Keys};
+use relievo::ops::animation::Pose;
+use relievo::ops::animation::layers::mask_below;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::root_motion::Taken;
+use relievo::ops::animation::sample::reference::blend;
 use relievo::scene::{
     CharacterOptions, InstanceId, LayerMask, Placement, Play, Quality, RootOptions, Scene, View,
 };

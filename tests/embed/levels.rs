@@ -3,21 +3,21 @@
 
 use glam::Vec3;
 use image::RgbaImage;
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Mesh, Model};
 use relievo::gpu::Gpu;
-use relievo::mesh::ProgressiveMesh;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
+use relievo::ops::mesh::ProgressiveMesh;
+use relievo::ops::skinning::at_rest::still;
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::vertex::{Blend, Vertex};
+use relievo::ops::skinning::{MeshLevels, add_levels};
 use relievo::render::Renderer;
 use relievo::scene::{Camera, Placement, Quality, Scene, View};
-use relievo::skinning::at_rest::still;
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::vertex::{Blend, Vertex};
-use relievo::skinning::{MeshLevels, add_levels};
 use relievo_samples::{creature, rock};
 
 use crate::frame::{Frame, device};

@@ -3,9 +3,9 @@
 use relievo::InputError;
 use relievo::asset::{Light, Model, Transform};
 use relievo::gpu::{Gpu, GpuError};
+use relievo::ops::terrain::config::Config;
 use relievo::render::{DepthFormat, Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Quality, Relief, Scene, TerrainSource};
-use relievo::terrain::config::Config;
 use relievo::wgpu::{self, TextureFormat as Format};
 use relievo_samples::maps::BuiltInMap;
 

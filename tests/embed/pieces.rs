@@ -4,9 +4,9 @@ use glam::Vec3;
 use relievo::asset::material::Alpha;
 use relievo::asset::{Influence, Influences, Material, Mesh, MeshLevel, Model};
 use relievo::gpu::Gpu;
+use relievo::ops::terrain::config::Config;
 use relievo::render::{Layer, TargetFormat};
 use relievo::scene::{Camera, Placement, Quality, Ray, Scene, TerrainSource};
-use relievo::terrain::config::Config;
 
 use crate::frame::{Frame, device};
 use crate::harness::{Difference, gpu_of_bindings};
@@ -19,7 +19,7 @@ const EDGE: u32 = 321;
 /// A cloth in waves with 103,041 vertices, which 3 MiB do not hold, and a border of another colour that is seen from one side;
 /// its second level has every other vertex in each direction.
 pub fn cloth() -> Model {
-    let mut model = relievo::skinning::at_rest::at_rest(&model()).expect("at rest");
+    let mut model = relievo::ops::skinning::at_rest::at_rest(&model()).expect("at rest");
     let color = |color| Material {
         name: "cloth".to_owned(),
         color,

@@ -6,9 +6,9 @@ use std::sync::LazyLock;
 use glam::{Quat, Vec3};
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
+use relievo::ops::skinning::bounding_sphere::BoundingSphere;
+use relievo::ops::skinning::{add_levels, poses_of};
 use relievo::scene::{Camera, ObjectId, Placement, Play, Quality, Scene, View};
-use relievo::skinning::bounding_sphere::BoundingSphere;
-use relievo::skinning::{add_levels, poses_of};
 use relievo_lab::measure::{Displacement, DisplacementMeter};
 
 use crate::frame::device;

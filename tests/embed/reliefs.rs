@@ -3,12 +3,12 @@
 use glam::Vec3;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::render::{Offscreen, TargetFormat};
-use relievo::scene::{Camera, Placement, Relief, ReliefSource, Scene};
-use relievo::surface::{
+use relievo::ops::surface::{
     Address, ColorTexture, Green, HeightMap, March, Material, Method, Mips, ReliefMaps, ReliefOptions,
     Shadow, SurfaceMesh, SurfaceTextures,
 };
+use relievo::render::{Offscreen, TargetFormat};
+use relievo::scene::{Camera, Placement, Relief, ReliefSource, Scene};
 use relievo::{Error, InputError};
 use relievo_samples::maps::BuiltInMap;
 

@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec3};
 use relievo::asset::material::Alpha;
+use relievo::ops::surface::HeightMap;
 use relievo::render::{Attachments, Layer, Renderer, TargetFormat};
 use relievo::scene::{Camera, ObjectId, Placement, Quality, Relief, Scene, View};
-use relievo::surface::HeightMap;
 use relievo::wgpu;
 
 use crate::frame::device;

@@ -3,13 +3,13 @@
 use image::RgbaImage;
 use relievo::InputError;
 use relievo::gpu::Gpu;
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::field::field;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::generator::Generator;
+use relievo::ops::terrain::recipe::Recipe;
 use relievo::render::{Layer, Renderer};
 use relievo::scene::{Scene, TerrainSource, TerrainStyle};
-use relievo::terrain::config::Config;
-use relievo::terrain::field::field;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::generator::Generator;
-use relievo::terrain::recipe::Recipe;
 
 use crate::frame::device;
 use crate::stage::Stage;

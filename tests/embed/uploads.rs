@@ -5,12 +5,12 @@ use image::{Rgba, RgbaImage};
 use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::{Material, Model, Transform};
 use relievo::gpu::Gpu;
+use relievo::ops::surface::SurfaceMesh;
+use relievo::ops::terrain::config::Config;
 use relievo::render::Renderer;
 use relievo::scene::{
     Camera, InstanceId, ObjectId, Placement, Play, Quality, Ray, Relief, Scene, TerrainSource, View,
 };
-use relievo::surface::SurfaceMesh;
-use relievo::terrain::config::Config;
 use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::{Frame, device, devices};

@@ -5,9 +5,9 @@ use std::sync::LazyLock;
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
+use relievo::ops::skinning::add_levels;
+use relievo::ops::terrain::config::Config;
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Quality, Scene, TerrainSource, View};
-use relievo::skinning::add_levels;
-use relievo::terrain::config::Config;
 use relievo_samples::creature;
 
 /// Width and height of the pictures.

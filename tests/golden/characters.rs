@@ -3,8 +3,8 @@
 use glam::{Vec3, camera::rh};
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
+use relievo::ops::skinning::{add_levels, poses_of};
 use relievo::scene::{ObjectId, Placement, Play, Quality, Scene, View};
-use relievo::skinning::{add_levels, poses_of};
 use relievo_samples::creature;
 
 use crate::figure::figure;

@@ -1,11 +1,11 @@
 //! No camera sees through a seamless grid.
 
 use glam::{DVec3, Vec3};
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::generator::Generator;
+use relievo::ops::terrain::recipe::Recipe;
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Placement, Scene, TerrainSource};
-use relievo::terrain::config::Config;
-use relievo::terrain::generator::Generator;
-use relievo::terrain::recipe::Recipe;
 
 use crate::harness::gpu;
 

@@ -4,11 +4,11 @@ use glam::{Mat4, Vec3};
 use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
+use relievo::ops::surface::tangent::Mesh;
+use relievo::ops::surface::tangent::reference::tangents;
+use relievo::ops::surface::{Green, Method, ReliefOptions, Shadow, SurfaceMesh, SurfaceVertex};
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
-use relievo::surface::tangent::Mesh;
-use relievo::surface::tangent::reference::tangents;
-use relievo::surface::{Green, Method, ReliefOptions, Shadow, SurfaceMesh, SurfaceVertex};
 use relievo_samples::BuiltInMap;
 
 use crate::harness::{self, Tolerance, check_golden};

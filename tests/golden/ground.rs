@@ -1,13 +1,13 @@
 //! Objects on the ground touch it: the depth of every pixel is that of the triangle which the CPU finds.
 
 use glam::{DMat4, DVec3, Vec3};
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::generator::Generator;
+use relievo::ops::terrain::ground::Ground;
+use relievo::ops::terrain::mesh::HeightField;
+use relievo::ops::terrain::recipe::Recipe;
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, ObjectId, Placement, Scene, TerrainSource};
-use relievo::terrain::config::Config;
-use relievo::terrain::generator::Generator;
-use relievo::terrain::ground::Ground;
-use relievo::terrain::mesh::HeightField;
-use relievo::terrain::recipe::Recipe;
 
 use crate::harness::gpu;
 

@@ -1,16 +1,16 @@
 //! Materials of glTF: textures, colours, holes and translucency, by a scene and in the reference.
 
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::Light;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::vertex::{Blend, Vertex};
 use relievo::scene::{Placement, Play, Quality, Scene};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::vertex::{Blend, Vertex};
 use relievo_lab::portrait::picture::texture::Surface;
 use relievo_lab::portrait::picture::{self, Part, framing_camera};
 

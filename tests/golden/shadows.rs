@@ -3,9 +3,9 @@
 use glam::Vec3;
 use image::RgbaImage;
 use relievo::asset::Light;
+use relievo::ops::terrain::config::Config;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow};
 use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource};
-use relievo::terrain::config::Config;
 use relievo_samples::maps::BuiltInMap;
 use relievo_samples::{creature, rock};
 

@@ -2,15 +2,15 @@
 
 use glam::{Mat4, Vec3, camera};
 use image::RgbaImage;
-use relievo::animation::ModelMatrices;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Bone, Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
 use relievo::gpu::Buffer;
+use relievo::ops::animation::ModelMatrices;
+use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::still;
+use relievo::ops::skinning::vertex::Blend;
 use relievo::scene::{Placement, Quality, Scene};
-use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::still;
-use relievo::skinning::vertex::Blend;
 
 use crate::harness::{Tolerance, check_golden, gpu};
 use crate::stage::{self, checkered};

@@ -4,12 +4,12 @@ use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
+use relievo::ops::terrain::config::BuiltIn;
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::texture::{TEXTURE_SIZE, Texture};
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Placement, Scene, TerrainSource};
-use relievo::terrain::config::BuiltIn;
-use relievo::terrain::config::Config;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::texture::{TEXTURE_SIZE, Texture};
 
 use crate::harness::gpu;
 

@@ -1,7 +1,7 @@
 //! The same sequence of collapses on every machine: hashes of meshes that are made without functions that differ. The
 //! crate of `relievo-web-scene` computes the same hashes in a browser.
 
-use relievo::mesh::{Options, Surface, simplify, simplify_within};
+use relievo::ops::mesh::{Options, Surface, simplify, simplify_within};
 use relievo_lab::reduce::{Limits, Reducer};
 
 /// A whole number below `most` for a place.

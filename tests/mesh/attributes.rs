@@ -1,6 +1,6 @@
 //! Attributes of simplified meshes, and their seams.
 
-use relievo::mesh::{Cost, Options, Surface, simplify};
+use relievo::ops::mesh::{Cost, Options, Surface, simplify};
 
 use crate::measure::topology;
 use crate::shapes::{Shape, cube, ground, sheet, sphere, torus};

@@ -1,6 +1,6 @@
 //! The topology of every level of detail.
 
-use relievo::mesh::{Cost, Options, Simplified, Stopped, simplify};
+use relievo::ops::mesh::{Cost, Options, Simplified, Stopped, simplify};
 
 use crate::measure::{Topology, area, topology};
 use crate::shapes::{Shape, bare, bumps, cube, ground, shuffled, sphere, torus};

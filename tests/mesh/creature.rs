@@ -2,16 +2,16 @@
 
 use std::time::Instant;
 
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
-use relievo::mesh::{Options, Stopped, Surface, simplify};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::vertex::Blend;
-use relievo::terrain::export::sha256;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
+use relievo::ops::mesh::{Options, Stopped, Surface, simplify};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::vertex::Blend;
+use relievo::ops::terrain::export::sha256;
 use relievo_samples::creature;
 
 use crate::measure::{Topology, distances, topology};

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use relievo::mesh::{Cost, Options, simplify};
+use relievo::ops::mesh::{Cost, Options, simplify};
 
 use crate::measure::topology;
 use crate::shapes::{Shape, bumps, ground, sphere, torus};
@@ -76,7 +76,7 @@ fn damaged_meshes_are_refused_or_valid() {
 }
 
 /// Levels have the triangles that they say, of vertices at three places, and no edge has more triangles or becomes open.
-fn check(seed: u64, shape: &Shape, found: &relievo::mesh::Simplified) {
+fn check(seed: u64, shape: &Shape, found: &relievo::ops::mesh::Simplified) {
     let whole = topology(shape, &found.triangles(&shape.indices, 0));
     let points = shape.points();
     let count = found.collapses().len();

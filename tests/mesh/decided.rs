@@ -1,7 +1,7 @@
 //! What is decided where thesis B contradicts itself on simplification (`docs/sources.md`).
 
 use glam::DVec3;
-use relievo::mesh::{Cost, Options, Seams, Simplified};
+use relievo::ops::mesh::{Cost, Options, Seams, Simplified};
 use relievo_lab::reduce::{Limits, Reducer};
 
 use crate::shapes::{Shape, sphere};

@@ -1,7 +1,7 @@
 //! Distances between surfaces, compared with dense samples.
 
 use glam::DVec3;
-use relievo::mesh::{Cost, Options as Limits};
+use relievo::ops::mesh::{Cost, Options as Limits};
 use relievo_lab::distance::{Distance, OneWay, Options, Triangles, distance};
 
 use crate::measure;

@@ -1,6 +1,6 @@
 //! Which input of simplification is refused, and which is accepted.
 
-use relievo::mesh::{Cost, Options, Stopped, Surface, simplify};
+use relievo::ops::mesh::{Cost, Options, Stopped, Surface, simplify};
 
 use crate::shapes::{bare, bumps, ground, shuffled, sphere};
 

@@ -1,6 +1,6 @@
 //! Parts of a mesh vanish where the others are near enough, and only there.
 
-use relievo::mesh::{Cost, Options, Simplified, simplify_within};
+use relievo::ops::mesh::{Cost, Options, Simplified, simplify_within};
 
 use crate::measure::{distances, distances_between};
 use crate::shapes::{Shape, sphere};
@@ -123,7 +123,7 @@ fn attributes_keep_parts_longer() {
         let mut surface = shape.with_uv();
         let uv: Vec<f32> = surface.attributes.iter().map(|value| value * weight).collect();
         surface.attributes = &uv;
-        let simplified = relievo::mesh::simplify(&surface, &Options::default()).expect("valid");
+        let simplified = relievo::ops::mesh::simplify(&surface, &Options::default()).expect("valid");
         let count = simplified.collapses().len();
         let at = (0..=count).find(|at| left(shapes, &simplified, *at)[1] == 0).expect("it vanishes");
         simplified.collapses()[at - 1].error

@@ -1,6 +1,6 @@
 //! How far simplified meshes are from the original.
 
-use relievo::mesh::{Cost, Options, Stopped, Surface, simplify};
+use relievo::ops::mesh::{Cost, Options, Stopped, Surface, simplify};
 
 use crate::measure::{area, distances, normal};
 use crate::shapes::{Shape, bumps, ground, sheet, torus};

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use relievo::mesh::{Options, Simplified, Surface, simplify};
+use relievo::ops::mesh::{Options, Simplified, Surface, simplify};
 
 /// A mesh in one or more poses, with texture coordinates.
 #[derive(Clone)]

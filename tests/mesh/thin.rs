@@ -1,6 +1,6 @@
 //! Thin features: fingers, ears and blades are there at every error that claims it, as the tests' own measure finds.
 
-use relievo::mesh::{Options, simplify, simplify_within};
+use relievo::ops::mesh::{Options, simplify, simplify_within};
 
 use crate::measure::distances;
 use crate::shapes::{Shape, bumps, ground, sheet};

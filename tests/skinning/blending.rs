@@ -1,12 +1,12 @@
 //! Where vertices, normals and tangents go.
 
 use glam::{Mat4, Vec3};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::Palette;
-use relievo::skinning::palette::reference::{dual, palette, palette_for};
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::vertex::{Blend, Vertex};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::Palette;
+use relievo::ops::skinning::palette::reference::{dual, palette, palette_for};
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::vertex::{Blend, Vertex};
 
 use crate::shapes::{influences, matrices, model, models, rows};
 
@@ -22,7 +22,7 @@ fn vertex(position: Vec3, normal: Vec3, tangent: Vec3) -> Vertex {
 fn at_rest_nothing_moves() {
     let model = model();
     let mesh = &model.meshes[0];
-    let rest = relievo::animation::local_to_model::reference::local_to_model(
+    let rest = relievo::ops::animation::local_to_model::reference::local_to_model(
         &model.skeleton,
         &model.skeleton.rest(),
     );

@@ -3,10 +3,10 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use relievo::mesh::ProgressiveMesh;
-use relievo::skinning::clusters::Clusters;
-use relievo::skinning::merged::merged;
-use relievo::skinning::{MeshLevels, add_levels, level_errors, own_levels};
+use relievo::ops::mesh::ProgressiveMesh;
+use relievo::ops::skinning::clusters::Clusters;
+use relievo::ops::skinning::merged::merged;
+use relievo::ops::skinning::{MeshLevels, add_levels, level_errors, own_levels};
 
 use crate::hull::{Hull, halves, hull};
 

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use glam::{DAffine3, DVec3};
 use relievo::asset::clip::{Clip, Interpolation, Part};
 use relievo::asset::{Model, Transform};
-use relievo::skinning::collapse::{CollapseOptions, Collapsed, KeptBones, collapse_bones};
+use relievo::ops::skinning::collapse::{CollapseOptions, Collapsed, KeptBones, collapse_bones};
 
 use crate::rigs::{Rig, at_rest, local, posed, skinned};
 use crate::shapes;
@@ -359,18 +359,18 @@ fn requests_are_checked() {
 /// The passes take a collapsed model as they take any other.
 #[test]
 fn a_crowd_of_it_is_skinned_on_the_device() {
-    use relievo::animation::crowd::{ClipBuffers, Crowd};
-    use relievo::animation::keyframe_cursor::KeyframeCursorPass;
-    use relievo::animation::local_to_model::LocalToModelPass;
-    use relievo::animation::local_to_model::reference::local_to_model;
-    use relievo::animation::sample::SamplePass;
-    use relievo::animation::sample::reference::sample;
-    use relievo::animation::{ClipSet, Instance, RotationPath, Wrap};
-    use relievo::skinning::frame::SkinFrame;
-    use relievo::skinning::morph::reference::morph;
-    use relievo::skinning::palette::reference::palette_for;
-    use relievo::skinning::skin::reference::skin;
-    use relievo::skinning::{Blend, InstanceLod};
+    use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+    use relievo::ops::animation::keyframe_cursor::KeyframeCursorPass;
+    use relievo::ops::animation::local_to_model::LocalToModelPass;
+    use relievo::ops::animation::local_to_model::reference::local_to_model;
+    use relievo::ops::animation::sample::SamplePass;
+    use relievo::ops::animation::sample::reference::sample;
+    use relievo::ops::animation::{ClipSet, Instance, RotationPath, Wrap};
+    use relievo::ops::skinning::frame::SkinFrame;
+    use relievo::ops::skinning::morph::reference::morph;
+    use relievo::ops::skinning::palette::reference::palette_for;
+    use relievo::ops::skinning::skin::reference::skin;
+    use relievo::ops::skinning::{Blend, InstanceLod};
 
     let gpu = crate::harness::gpu();
     let creature = shapes::model();

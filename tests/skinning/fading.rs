@@ -1,15 +1,15 @@
 //! Fewer influences with distance, seen on a walking creature.
 
 use glam::Vec3;
-use relievo::animation::Projection;
 use relievo::asset::{Influence, Influences};
-use relievo::skinning::Extent;
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::Palette;
-use relievo::skinning::palette::reference::palette;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::vertex::Vertex;
+use relievo::ops::animation::Projection;
+use relievo::ops::skinning::Extent;
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::Palette;
+use relievo::ops::skinning::palette::reference::palette;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::vertex::Vertex;
 
 use crate::shapes::{model, models};
 

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use glam::Vec3;
 use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::{Material, Mesh, Model};
-use relievo::mesh::{Cost, Options, Seams, Stopped, Surface, simplify};
-use relievo::skinning::add_levels;
+use relievo::ops::mesh::{Cost, Options, Seams, Stopped, Surface, simplify};
+use relievo::ops::skinning::add_levels;
 use relievo_lab::reduce::{Limits, Reducer};
 use relievo_lab::reduce::{Normals, ReducedModel, reduce_model};
 

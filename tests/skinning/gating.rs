@@ -1,21 +1,21 @@
 //! The guarantee of the `bounded` gate for vertices: a largest error on screen.
 
-use relievo::animation::instance::Instance;
-use relievo::animation::instance::Wrap;
-use relievo::animation::order::Order;
-use relievo::animation::{AnimatedBones, BoundTable, ClipSet, Frame, Gate, Projection};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::mesh::bone_radii;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Clip, Model};
-use relievo::skinning::clusters::Clusters;
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::select::reference::{Now, Skinned, select};
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::vertex::Blend;
-use relievo::skinning::vertex::Vertex;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::{AnimatedBones, BoundTable, ClipSet, Frame, Gate, Projection};
+use relievo::ops::skinning::clusters::Clusters;
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::select::reference::{Now, Skinned, select};
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::vertex::Blend;
+use relievo::ops::skinning::vertex::Vertex;
 use relievo_lab::crowd::Crowd;
 
 use crate::shapes::model;

@@ -4,13 +4,13 @@
 use std::ops::ControlFlow;
 
 use glam::{Vec3, Vec4};
-use relievo::animation::Projection;
 use relievo::asset::{Affine, Influence, Influences, Model};
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::Palette;
-use relievo::skinning::palette::reference::palette;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{
+use relievo::ops::animation::Projection;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::Palette;
+use relievo::ops::skinning::palette::reference::palette;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::{
     Extent, InstanceLod, MeshLevels, add_levels, add_levels_with_progress, level_errors, own_levels, poses_of,
 };
 

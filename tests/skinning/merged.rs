@@ -5,18 +5,18 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::material::{Alpha, Filter, Sampling, Texture};
 use relievo::asset::morph::{MorphDelta, MorphTarget, WeightKeys};
 use relievo::asset::{Interpolation, Material, Mesh, MeshLevel, Model};
-use relievo::skinning::clusters::Clusters;
-use relievo::skinning::merged::{MAX_DRAWS, MAX_PARTS, Merged, PartKey, merged};
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
+use relievo::ops::skinning::clusters::Clusters;
+use relievo::ops::skinning::merged::{MAX_DRAWS, MAX_PARTS, Merged, PartKey, merged};
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::{
     Blend, InstanceLod, Vertex, add_levels, at_rest, level_errors, level_errors_within, own_levels,
 };
 
@@ -257,7 +257,7 @@ proptest! {
         check(&model, &merged, most);
         let morphed = merged.model.meshes.iter().filter(|mesh| !mesh.targets.is_empty()).count();
         prop_assert!(morphed <= 2 && merged.model.meshes.len() <= 3);
-        let sides = |part: &relievo::skinning::merged::Part| (part.mesh, part.key.cut_out, part.key.double_sided);
+        let sides = |part: &relievo::ops::skinning::merged::Part| (part.mesh, part.key.cut_out, part.key.double_sided);
         let needed: std::collections::BTreeSet<_> = merged.parts.iter().map(sides).collect();
         prop_assert!(merged.parts.len() <= MAX_PARTS.max(needed.len()));
         // Each pair of a bone and a bind is there once.
@@ -328,7 +328,7 @@ fn with_keys(keys: &[(usize, bool)], triangles: impl Fn(usize) -> usize) -> Merg
 }
 
 fn keys(merged: &Merged) -> Vec<(bool, bool, Option<Sampling>, usize)> {
-    let key = |part: &relievo::skinning::merged::Part| {
+    let key = |part: &relievo::ops::skinning::merged::Part| {
         let PartKey { cut_out, double_sided, sampling, .. } = part.key;
         (cut_out, double_sided, sampling, part.indices[0].len() / 3)
     };
@@ -375,7 +375,7 @@ fn normal_maps_have_samplings_of_their_own() {
     };
     model.meshes = (0..4).map(copy).collect();
     let found = merged(&model, 8).expect("valid");
-    let key = |part: &relievo::skinning::merged::Part| {
+    let key = |part: &relievo::ops::skinning::merged::Part| {
         (part.key.sampling, part.key.normal_sampling, part.indices[0].len() / 3)
     };
     let [zero, one, two] = [0, 1, 2].map(|number| Some(sampling(number)));

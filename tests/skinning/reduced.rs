@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use relievo::asset::{Mesh, Model};
-use relievo::skinning::at_rest;
+use relievo::ops::skinning::at_rest;
 use relievo_lab::distance::Options;
 use relievo_lab::reduce::{Limits, Reducer};
 use relievo_lab::reduce::{Normals, ReducedModel, reduce_model};

@@ -1,13 +1,13 @@
 //! Levels of detail of a model that is larger or smaller, or was bound in other units.
 
-use relievo::animation::priority::{Priorities, Weights};
-use relievo::animation::{BoundTable, ClipSet, ExpectationTable, Order, PriorityTable};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, Part};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::skeleton::{Bone, Skeleton};
 use relievo::asset::{MeshLevel, bone_radii};
 use relievo::asset::{Model, Transform};
-use relievo::skinning::add_levels;
+use relievo::ops::animation::priority::{Priorities, Weights};
+use relievo::ops::animation::{BoundTable, ClipSet, ExpectationTable, Order, PriorityTable};
+use relievo::ops::skinning::add_levels;
 
 use crate::shapes::model;
 

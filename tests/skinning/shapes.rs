@@ -1,11 +1,11 @@
 //! Meshes and poses that the tests share.
 
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::Model;
 use relievo::asset::influences::{Influence, Influences};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
 use relievo_samples::creature;
 
 pub fn model() -> Model {

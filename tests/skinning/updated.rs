@@ -1,15 +1,15 @@
 //! Updated bones accumulate until skinning has followed them, however many frames go by and however many meshes follow.
 
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::frame::GatedFrame;
-use relievo::animation::{
-    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Instance, Lod, Order, Wrap,
-};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::{Model, bone_radii};
 use relievo::gpu::Gpu;
-use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::{Blend, InstanceLod, Vertex};
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::frame::GatedFrame;
+use relievo::ops::animation::{
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Instance, Lod, Order, Wrap,
+};
+use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::{Blend, InstanceLod, Vertex};
 
 use crate::harness::gpu;
 use crate::shapes::model;

@@ -1,8 +1,8 @@
 //! The bounds that parity cases give each ray hold for other roundings than the reference's, and they are narrow.
 
-use relievo::hash::threefry2x32;
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::{Address, HeightMap, March, Method, Ray};
+use relievo::ops::hash::threefry2x32;
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::{Address, HeightMap, March, Method, Ray};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::{Shape, random_map, random_rays};
 use relievo_lab::measure::relief::exact::exact;

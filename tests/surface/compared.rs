@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use relievo::surface::{Green, HeightMap, March, Material, Method, Mips, Shadow};
+use relievo::ops::surface::{Green, HeightMap, March, Material, Method, Mips, Shadow};
 use relievo_lab::measure::relief::{Comparison, ReliefSquare, SquareView};
 
 /// Ridges along v, one texel wide, between furrows a quarter as high.

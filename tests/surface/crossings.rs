@@ -3,8 +3,8 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::{Address, HeightMap, Hit, March, Method, Outcome, Ray};
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::{Address, HeightMap, Hit, March, Method, Outcome, Ray};
 
 use crate::height;
 

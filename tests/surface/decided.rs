@@ -1,7 +1,7 @@
 //! What is decided where thesis B contradicts itself on surface mapping (`docs/sources.md`).
 
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::{Address, HeightMap, March, Material, Method, Ray};
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::{Address, HeightMap, March, Material, Method, Ray};
 
 /// Towards the eye: 3 across and 4 up.
 const VIEW: [f32; 3] = [0.6, 0.0, 0.8];

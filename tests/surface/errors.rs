@@ -1,8 +1,8 @@
 //! Measures the error and the cost of each method on the built-in maps, against what the method promises. The relief
 //! is 0.1 tiles deep, and addresses wrap.
 
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::{Address, HeightMap, March, Method, Ray};
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::{Address, HeightMap, March, Method, Ray};
 use relievo_lab::measure::relief::{Measured, SquareView};
 use relievo_samples::BuiltInMap;
 

@@ -7,7 +7,7 @@ mod decided;
 mod errors;
 mod tangents;
 
-use relievo::surface::{Address, HeightMap, Ray};
+use relievo::ops::surface::{Address, HeightMap, Ray};
 
 /// The bilinear height of a map at a parameter of a ray, in f64.
 fn height(map: &HeightMap, ray: &Ray, parameter: f64, address: Address) -> f64 {

@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::surface::tangent::reference::tangents;
-use relievo::surface::tangent::{Mesh, split_mirrored};
+use relievo::ops::surface::tangent::reference::tangents;
+use relievo::ops::surface::tangent::{Mesh, split_mirrored};
 
 /// Random cases that are the same in every run.
 fn settings() -> ProptestConfig {

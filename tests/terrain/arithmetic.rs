@@ -1,7 +1,7 @@
 //! Compares the exact arithmetic of the shaders, run on the adapter, with arithmetic that cannot overflow.
 
 use relievo::gpu::shaders::{TERRAIN_HEIGHT, TERRAIN_WRAP};
-use relievo::terrain::config::HEIGHT_LIMIT;
+use relievo::ops::terrain::config::HEIGHT_LIMIT;
 use relievo_lab::cases::terrain::{random_heights, random_words};
 
 use crate::harness::gpu;

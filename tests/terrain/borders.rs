@@ -2,13 +2,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use relievo::terrain::config::Config;
-use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::field::{field, field_with};
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::Thermal;
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::despike::Despike;
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::field::{field, field_with};
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::Thermal;
 
 fn despiked_beside_features(border: &str, patches: &[[i32; 2]]) -> Vec<Vec<i32>> {
     let text = format!(r#"{{"patchSize": 33, "scaleFactor": 40, "seed": "s", "border": {border}}}"#);

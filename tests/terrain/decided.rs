@@ -1,8 +1,8 @@
 //! What is decided where thesis B contradicts itself on terrain (`docs/sources.md`).
 
-use relievo::terrain::config::{Border, Config, HEIGHT_ONE, Offset};
-use relievo::terrain::features::Features;
-use relievo::terrain::wrap::reference::wrap;
+use relievo::ops::terrain::config::{Border, Config, HEIGHT_ONE, Offset};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::wrap::reference::wrap;
 
 const SCALE: f64 = 10.0;
 

@@ -1,8 +1,8 @@
 //! Every field of erosion and of blends over time is refused out of its bounds, with its path, its value and the bound.
 
 use relievo::InputError;
-use relievo::terrain::morph::Morph;
-use relievo::terrain::recipe::Recipe;
+use relievo::ops::terrain::morph::Morph;
+use relievo::ops::terrain::recipe::Recipe;
 
 /// Objects of a configuration, their fields, values out of bounds, and the bound.
 const BOUNDS: &[(&str, &str, &[&str], &str)] = &[

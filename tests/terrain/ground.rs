@@ -1,11 +1,11 @@
 //! Compares the ground at world positions with vertical rays through the triangles of the exported meshes.
 
 use glam::DVec3;
-use relievo::terrain::config::{Border, Config};
-use relievo::terrain::field::field;
-use relievo::terrain::ground::Ground;
-use relievo::terrain::mesh::{GroundPoint, HeightField};
-use relievo::terrain::recipe::Recipe;
+use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::field::field;
+use relievo::ops::terrain::ground::Ground;
+use relievo::ops::terrain::mesh::{GroundPoint, HeightField};
+use relievo::ops::terrain::recipe::Recipe;
 
 const SIZE: u32 = 9;
 const EDGE: i32 = SIZE as i32 - 1;

@@ -1,16 +1,16 @@
 //! Hydraulic erosion on the CPU: an independent program in 64 bits, conservation, bounds, reach, and neighbours that agree.
 
 use proptest::prelude::*;
-use relievo::terrain::config::{Border, Config, HEIGHT_LIMIT};
-use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::field::field;
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::hydraulic::reference::{Flow, hydraulic};
-use relievo::terrain::hydraulic::{Hydraulic, HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::Thermal;
-use relievo::terrain::thermal::reference::thermal;
+use relievo::ops::terrain::config::{Border, Config, HEIGHT_LIMIT};
+use relievo::ops::terrain::despike::Despike;
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::field::field;
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::hydraulic::reference::{Flow, hydraulic};
+use relievo::ops::terrain::hydraulic::{Hydraulic, HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::Thermal;
+use relievo::ops::terrain::thermal::reference::thermal;
 
 /// A square of land whose opposite sides touch, so that nothing leaves it.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,22 +2,22 @@
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Options};
-use relievo::terrain::blend::{BlendBuffers, BlendPass, Shading, WeightMode};
-use relievo::terrain::border::BorderPass;
-use relievo::terrain::config::{Border, Config, Offset};
-use relievo::terrain::cover::{Cover, MapZone};
-use relievo::terrain::despike::{Despike, DespikeBuffers, DespikePass};
-use relievo::terrain::features::{FeatureIndex, Features};
-use relievo::terrain::fields::Fields;
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::height::{HeightJob, HeightPass, HeightScratch};
-use relievo::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
-use relievo::terrain::morph::{MorphBuffers, MorphPass};
-use relievo::terrain::normals::NormalsPass;
-use relievo::terrain::pad::PadPass;
-use relievo::terrain::texture::Texture;
-use relievo::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
-use relievo::terrain::wrap::WrapPass;
+use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, Shading, WeightMode};
+use relievo::ops::terrain::border::BorderPass;
+use relievo::ops::terrain::config::{Border, Config, Offset};
+use relievo::ops::terrain::cover::{Cover, MapZone};
+use relievo::ops::terrain::despike::{Despike, DespikeBuffers, DespikePass};
+use relievo::ops::terrain::features::{FeatureIndex, Features};
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::ops::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
+use relievo::ops::terrain::morph::{MorphBuffers, MorphPass};
+use relievo::ops::terrain::normals::NormalsPass;
+use relievo::ops::terrain::pad::PadPass;
+use relievo::ops::terrain::texture::Texture;
+use relievo::ops::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
+use relievo::ops::terrain::wrap::WrapPass;
 
 fn gpu() -> Gpu {
     Gpu::headless(&Options::default()).expect("the suite needs an adapter")

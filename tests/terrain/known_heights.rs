@@ -1,14 +1,14 @@
 //! Hashes of whole patches, computed by two independent programs (two others for smooth interpolation) in Python (one with numpy, one by recursion for each
 //! point), which agree with each other and share no code with this crate.
 
-use relievo::terrain::config::Config;
-use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::field::{field, generate};
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::reference::thermal;
-use relievo::terrain::window::Window;
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::despike::Despike;
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::field::{field, generate};
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::reference::thermal;
+use relievo::ops::terrain::window::Window;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 

@@ -5,23 +5,23 @@ use std::collections::{BTreeMap, HashMap};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::terrain::blend::WeightMode;
-use relievo::terrain::blend::reference::{steepness, zone_fractions, zone_weight};
-use relievo::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, Offset, Slope, Zone};
-use relievo::terrain::cover::{ShaderZone, zone_of};
-use relievo::terrain::despike::Despike;
-use relievo::terrain::export::cropped;
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::field::{field, generate};
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::fixed::mean_of_four;
-use relievo::terrain::morph::Morph;
-use relievo::terrain::morph::reference::morph;
-use relievo::terrain::normals::NORMAL_BOUND;
-use relievo::terrain::normals::reference::normals;
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::Thermal;
-use relievo::terrain::thermal::reference::thermal;
+use relievo::ops::terrain::blend::WeightMode;
+use relievo::ops::terrain::blend::reference::{steepness, zone_fractions, zone_weight};
+use relievo::ops::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, Offset, Slope, Zone};
+use relievo::ops::terrain::cover::{ShaderZone, zone_of};
+use relievo::ops::terrain::despike::Despike;
+use relievo::ops::terrain::export::cropped;
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::field::{field, generate};
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::fixed::mean_of_four;
+use relievo::ops::terrain::morph::Morph;
+use relievo::ops::terrain::morph::reference::morph;
+use relievo::ops::terrain::normals::NORMAL_BOUND;
+use relievo::ops::terrain::normals::reference::normals;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::Thermal;
+use relievo::ops::terrain::thermal::reference::thermal;
 
 /// Random cases that are the same in every run.
 fn settings() -> ProptestConfig {

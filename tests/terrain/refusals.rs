@@ -2,13 +2,13 @@
 //! cases are accepted.
 
 use relievo::InputError;
-use relievo::terrain::config::{Border, Config, Offset};
-use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::morph::Morph;
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::Thermal;
+use relievo::ops::terrain::config::{Border, Config, Offset};
+use relievo::ops::terrain::despike::Despike;
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::morph::Morph;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::Thermal;
 
 /// B's three parameters as JSON, with fields changed, added or (where the value is empty) left out.
 fn json(changes: &[(&str, &str)]) -> String {

@@ -1,13 +1,13 @@
 //! A batch of `blend` that exceeds one binding is split, and its heights keep the same bits.
 
-use relievo::terrain::config::{Border, Config};
-use relievo::terrain::despike::Despike;
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::field::field;
-use relievo::terrain::fixed::FeatureMode;
-use relievo::terrain::generator::Generator;
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::Thermal;
+use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::despike::Despike;
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::field::field;
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::generator::Generator;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::Thermal;
 
 use crate::harness::gpu_of_bindings;
 

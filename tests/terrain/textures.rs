@@ -1,7 +1,7 @@
 //! The textures that relievo generates repeat without a seam, use their height maps, and differ from each other.
 
-use relievo::terrain::config::BuiltIn;
-use relievo::terrain::texture::{TEXTURE_SIZE, Texture};
+use relievo::ops::terrain::config::BuiltIn;
+use relievo::ops::terrain::texture::{TEXTURE_SIZE, Texture};
 
 const EDGE: usize = TEXTURE_SIZE as usize;
 

@@ -6,18 +6,18 @@ mod obj;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use relievo::animation::instance::Wrap;
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::Light;
 use relievo::asset::Mesh;
 use relievo::asset::Model;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, InstanceLod, Vertex, add_levels};
+use relievo::ops::animation::instance::Wrap;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::{Blend, InstanceLod, Vertex, add_levels};
 use relievo_lab::portrait::picture::texture::Surface;
 use relievo_lab::portrait::picture::{Part, Scene, framing};
 

@@ -2,7 +2,7 @@
 
 use relievo::InputError;
 use relievo::asset::{Mesh, Model};
-use relievo::skinning::{add_levels, poses_of};
+use relievo::ops::skinning::{add_levels, poses_of};
 
 /// What became of a mesh that was coarsened.
 #[derive(Debug, Clone, Copy, PartialEq)]

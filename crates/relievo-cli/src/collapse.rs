@@ -2,7 +2,7 @@
 
 use clap::Args;
 use relievo::asset::Model;
-use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
+use relievo::ops::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
 use relievo::{Error, InputError};
 
 use crate::output::say;

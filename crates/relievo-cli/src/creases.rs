@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use relievo::Error;
-use relievo::terrain::config::{Config, Interpolation};
-use relievo::terrain::features::Features;
-use relievo::terrain::field::generate;
+use relievo::ops::terrain::config::{Config, Interpolation};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::field::generate;
 use relievo_lab::files::Staged;
 use serde::Serialize;
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use relievo::Error;
-use relievo::animation::{self, Wrap};
 use relievo::asset::transform::column_major;
 use relievo::asset::{Clip, Model, Transform};
+use relievo::ops::animation::{self, Wrap};
 use relievo_lab::files::write_json;
 use serde::Serialize;
 

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
-use relievo::animation::priority::{KeyPriority, TERMS, USER_DEFAULT, Weights};
-use relievo::animation::{Wrap, priority};
 use relievo::asset::{Clip, Skeleton};
+use relievo::ops::animation::priority::{KeyPriority, TERMS, USER_DEFAULT, Weights};
+use relievo::ops::animation::{Wrap, priority};
 use relievo::{Error, InputError};
 use relievo_lab::files::write_json;
 use serde::Serialize;

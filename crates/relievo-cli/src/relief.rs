@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::Args;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::surface::{Address, Green, HeightMap, March, Material, Method, Mips, Outcome, Shadow};
+use relievo::ops::surface::{Address, Green, HeightMap, March, Material, Method, Mips, Outcome, Shadow};
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
 use relievo_lab::measure::relief::{
@@ -265,7 +265,7 @@ impl Relief {
 /// Opens an image of colours or normals; refuses one that is larger than a texture may be before it is
 /// decoded.
 fn open(path: &Path) -> Result<RgbaImage, Error> {
-    Ok(relievo::surface::map::open(path)?.into_rgba8())
+    Ok(relievo::ops::surface::map::open(path)?.into_rgba8())
 }
 
 fn built_in(name: &str) -> Result<BuiltInMap, InputError> {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args, ValueEnum};
 use image::RgbaImage;
 use relievo::asset::Model;
-use relievo::mesh::Seams;
+use relievo::ops::mesh::Seams;
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
 use relievo_lab::measure::reduction::{MeasuredLevel, ReducerComparison, Reduction, Target, reduction};

@@ -14,15 +14,15 @@ use std::sync::LazyLock;
 
 use harness::relievo;
 use relievo::InputError;
-use relievo::animation::{bounds, keyframe_cursor, local_to_model, sample};
 use relievo::gpu::shaders;
+use relievo::ops::animation::{bounds, keyframe_cursor, local_to_model, sample};
+use relievo::ops::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
+use relievo::ops::skinning::{morph, morph_weights, palette, skin};
+use relievo::ops::surface::{cone_map, tangent};
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::normals;
 use relievo::scene_file::SceneFile;
-use relievo::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
-use relievo::skinning::{morph, morph_weights, palette, skin};
-use relievo::surface::{cone_map, tangent};
-use relievo::terrain::config::Config;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::normals;
 use relievo_samples::creature;
 
 /// The program that README.md shows whole.

@@ -1,21 +1,21 @@
 //! Crowds of one layer without a device: the references of a frame, one after another.
 
 use relievo::InputError;
-use relievo::animation::active::PAIR_AHEAD;
-use relievo::animation::clip_clock::reference::clip_clocks;
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::compact::reference::{Work, compact};
-use relievo::animation::gate::reference::gate;
-use relievo::animation::gate::{Frame, Gate};
-use relievo::animation::gate_table::check_path;
-use relievo::animation::instance::Instance;
-use relievo::animation::keyframe_cursor::reference::cursors;
-use relievo::animation::local_to_model::reference::local_to_model_updated;
-use relievo::animation::lod::Lod;
-use relievo::animation::order::Order;
-use relievo::animation::sample::reference::sample_pair;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
+use relievo::ops::animation::active::PAIR_AHEAD;
+use relievo::ops::animation::clip_clock::reference::clip_clocks;
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::compact::reference::{Work, compact};
+use relievo::ops::animation::gate::reference::gate;
+use relievo::ops::animation::gate::{Frame, Gate};
+use relievo::ops::animation::gate_table::check_path;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::keyframe_cursor::reference::cursors;
+use relievo::ops::animation::local_to_model::reference::local_to_model_updated;
+use relievo::ops::animation::lod::Lod;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::sample::reference::sample_pair;
 
 /// Instances of one skeleton, with the state kept from frame to frame.
 #[derive(Debug, Clone)]

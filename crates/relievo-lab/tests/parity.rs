@@ -4,10 +4,10 @@ use relievo_testing as harness;
 
 use glam::Vec4;
 use relievo::gpu::Buffer;
-use relievo::surface::relief::ReliefPass;
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::{HeightMap, Hit, March, Method, Ray, SurfaceTextures};
-use relievo::terrain::morph::{Morph, MorphBuffers, MorphPass};
+use relievo::ops::surface::relief::ReliefPass;
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::{HeightMap, Hit, March, Method, Ray, SurfaceTextures};
+use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::relief::hits;
 use relievo_lab::cases::surface::shade;

@@ -47,7 +47,7 @@ impl relievo::scene_file::BuiltIns for Samples {
         Ok(found)
     }
 
-    fn map(&self, name: &str) -> Result<(relievo::surface::HeightMap, image::RgbaImage), InputError> {
+    fn map(&self, name: &str) -> Result<(relievo::ops::surface::HeightMap, image::RgbaImage), InputError> {
         const TEXELS: u32 = 512;
         let map: BuiltInMap = name.parse()?;
         Ok((map.height_map(TEXELS)?, map.albedo(TEXELS)?))

@@ -6,9 +6,9 @@ use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::mesh::solved_tangents;
 use relievo::asset::skeleton::Bone;
 use relievo::asset::{Influences, Material, Mesh, Model, Skeleton, Skin, Transform};
-use relievo::hash::{LANES, threefry2x32};
-use relievo::terrain::config::BuiltIn;
-use relievo::terrain::texture::{TEXTURE_SIZE, Texture as ZoneTexture};
+use relievo::ops::hash::{LANES, threefry2x32};
+use relievo::ops::terrain::config::BuiltIn;
+use relievo::ops::terrain::texture::{TEXTURE_SIZE, Texture as ZoneTexture};
 
 /// Cells along an edge of each of the six sides of the rock.
 const ROCK_CELLS: u32 = 24;

@@ -36,8 +36,8 @@ use stored::Stored;
 /// hashes of all levels included.
 ///
 /// ```
-/// use relievo::mesh::progressive::Chosen;
-/// use relievo::mesh::{Options, ProgressiveMesh, Surface, simplify};
+/// use relievo::ops::mesh::progressive::Chosen;
+/// use relievo::ops::mesh::{Options, ProgressiveMesh, Surface, simplify};
 ///
 /// let rock = relievo_samples::rock()?.meshes.remove(0);
 /// let surface =

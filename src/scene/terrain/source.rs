@@ -54,7 +54,7 @@ impl TerrainSource {
     ///
     /// ```no_run
     /// use relievo::scene::{Scene, TerrainSource};
-    /// use relievo::terrain::{config::Config, generator::Generator, recipe::Recipe};
+    /// use relievo::ops::terrain::{config::Config, generator::Generator, recipe::Recipe};
     ///
     /// # fn load(gpu: &relievo::gpu::Gpu, scene: &mut Scene) -> Result<(), relievo::Error> {
     /// let (config, patches) = (Config::new(129, 40.0, "any text")?, [[0, 0], [1, 0]]);

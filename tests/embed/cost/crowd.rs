@@ -3,14 +3,14 @@
 use std::rc::Rc;
 
 use glam::Vec3;
-use relievo::animation::Projection;
-use relievo::animation::local_to_model::reference::local_to_model;
 use relievo::asset::material::Alpha;
 use relievo::asset::{Light, Model};
 use relievo::gpu::Gpu;
+use relievo::ops::animation::Projection;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::skinning::{add_levels, poses_of};
 use relievo::render::{Layer, Renderer, SunShadow};
 use relievo::scene::{Camera, Placement, Play, Quality, Scene, View};
-use relievo::skinning::{add_levels, poses_of};
 
 use crate::frame::Frame;
 use crate::rays::{cube, model, plain};

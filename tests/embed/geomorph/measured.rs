@@ -5,10 +5,10 @@ use std::fmt::Write;
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
+use relievo::ops::skinning::add_levels;
+use relievo::ops::skinning::bounding_sphere::BoundingSphere;
+use relievo::ops::skinning::merged::merged;
 use relievo::scene::{ErrorBudget, Placement, Play, Quality, Scene, Transition};
-use relievo::skinning::add_levels;
-use relievo::skinning::bounding_sphere::BoundingSphere;
-use relievo::skinning::merged::merged;
 use relievo_lab::measure::{Displacement, DisplacementMeter};
 use relievo_samples::{creature, rock};
 

@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use relievo::gpu::Gpu;
+use relievo::ops::skinning::bounding_sphere::BoundingSphere;
 use relievo::render::{OutputProgram, Renderer, TargetFormat};
 use relievo::scene::kind::{Kind, KindFrame, KindPart, KindProgram, KindUploads};
 use relievo::scene::{Camera, Placement, Quality, Scene};
-use relievo::skinning::bounding_sphere::BoundingSphere;
 use relievo::{Error, wgpu};
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 

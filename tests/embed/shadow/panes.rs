@@ -5,9 +5,9 @@ use image::{Rgba, RgbaImage};
 use relievo::asset::material::{Alpha, Sampling, Texture};
 use relievo::asset::{Light, Material, Model};
 use relievo::gpu::Gpu;
+use relievo::ops::terrain::config::Config;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Quality, Scene, TerrainSource, View};
-use relievo::terrain::config::Config;
 use relievo::wgpu;
 
 use super::stage::{SUN, numbers, values};

@@ -5,9 +5,9 @@ use image::RgbaImage;
 use relievo::asset::Light;
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
+use relievo::ops::terrain::config::Config;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{InstanceId, Placement, Relief, Scene, View};
-use relievo::terrain::config::Config;
 use relievo::wgpu;
 use relievo_samples::maps::BuiltInMap;
 

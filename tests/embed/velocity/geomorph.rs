@@ -4,10 +4,10 @@ use glam::{DMat4, DVec3, Vec3, Vec4Swizzles as _};
 use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 use relievo::asset::{Clip, Mesh, Model};
 use relievo::gpu::Gpu;
-use relievo::mesh::ProgressiveMesh;
+use relievo::ops::mesh::ProgressiveMesh;
+use relievo::ops::skinning::add_levels;
+use relievo::ops::skinning::merged::merged;
 use relievo::scene::{Camera, ErrorBudget, Placement, Quality, Scene, Transition, View};
-use relievo::skinning::add_levels;
-use relievo::skinning::merged::merged;
 use relievo_samples::rock;
 
 use super::{Eye, SIZE, Scenery};

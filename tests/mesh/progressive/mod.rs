@@ -6,8 +6,8 @@ mod stored;
 use relievo::InputError;
 use relievo::asset::morph::MorphDelta;
 use relievo::asset::{Influence, Influences, Interpolation, Mesh, MorphTarget, WeightKeys};
-use relievo::mesh::progressive::Chosen;
-use relievo::mesh::{Options, ProgressiveMesh, Simplified, simplify};
+use relievo::ops::mesh::progressive::Chosen;
+use relievo::ops::mesh::{Options, ProgressiveMesh, Simplified, simplify};
 
 use crate::measure::distances;
 use crate::shapes::{Shape, bumps, cube, ground, sphere, torus};

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::mesh::{Options, ProgressiveMesh, simplify};
+use relievo::ops::mesh::{Options, ProgressiveMesh, simplify};
 use serde_json::Value;
 
 use super::{Case, cases, error_of, halves, mesh};

@@ -1,6 +1,6 @@
 //! Damaged meshes give an error or a valid result.
 
-use relievo::mesh::Surface;
+use relievo::ops::mesh::Surface;
 use relievo_lab::reduce::{Reduced, Reducer};
 
 use super::{KEEPING, shape_of, to};

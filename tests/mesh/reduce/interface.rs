@@ -1,6 +1,6 @@
 //! What holds for every reducer: names, limits, and what is refused.
 
-use relievo::mesh::{Cost, Options, Seams, Stopped, Surface, simplify};
+use relievo::ops::mesh::{Cost, Options, Seams, Stopped, Surface, simplify};
 use relievo_lab::reduce::{Limits, Reducer};
 
 use crate::shapes::{bare, bumps, cube, ground, sphere};

@@ -8,7 +8,7 @@ mod quality;
 mod topology;
 mod turned;
 
-use relievo::mesh::{Cost, Seams, Surface};
+use relievo::ops::mesh::{Cost, Seams, Surface};
 use relievo_lab::reduce::{Limits, Reduced, Reducer};
 
 use crate::shapes::Shape;

@@ -1,6 +1,6 @@
 //! How far reduced meshes are from the original, and that they are the same everywhere.
 
-use relievo::terrain::export::sha256;
+use relievo::ops::terrain::export::sha256;
 use relievo_lab::reduce::{Limits, Reducer};
 
 use super::{shape_of, to};

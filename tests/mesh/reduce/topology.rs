@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use relievo::mesh::Stopped;
+use relievo::ops::mesh::Stopped;
 use relievo_lab::reduce::{Reduced, Reducer};
 
 use super::{CHANGING, KEEPING, levels, shape_of};

@@ -4,9 +4,9 @@
 use image::{GrayImage, Luma};
 
 use relievo::InputError;
-use relievo::terrain::config::{Border, Config, HEIGHT_ONE};
-use relievo::terrain::features::Features;
-use relievo::terrain::field::generate;
+use relievo::ops::terrain::config::{Border, Config, HEIGHT_ONE};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::field::generate;
 
 /// The mean bend along the lines of one lattice.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -94,7 +94,7 @@ pub fn hill_shaded(heights: &[i32], width: usize, spacing: f64) -> Result<GrayIm
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::terrain::config::Interpolation;
+    use relievo::ops::terrain::config::Interpolation;
 
     #[test]
     fn columns_belong_to_the_first_level_that_has_them() {

@@ -1,8 +1,8 @@
 //! Converts and checks the arguments of `relievo crowd` before a model is read.
 
-use relievo::animation::Range;
-use relievo::animation::priority::Weights;
 use relievo::asset::Model;
+use relievo::ops::animation::Range;
+use relievo::ops::animation::priority::Weights;
 use relievo::{Error, InputError};
 use relievo_lab::measure::{
     CrowdOptions, Detail, DrawnOptions, GateMode, GateName, LodOptions, ParetoOptions, Subject,

@@ -2,7 +2,7 @@
 
 use image::RgbaImage;
 use relievo::InputError;
-use relievo::surface::Method;
+use relievo::ops::surface::Method;
 use relievo_lab::measure::relief::Comparison;
 use relievo_lab::measure::relief::Measured;
 use relievo_lab::plot::{Chart, Series, grid};

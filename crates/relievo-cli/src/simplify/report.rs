@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Formatter};
 
-use relievo::mesh::Stopped;
+use relievo::ops::mesh::Stopped;
 use relievo_lab::files::sha256;
 use relievo_lab::measure::reduction::MeasuredLevel;
 use serde::Serialize;

@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 
 use relievo::gpu::{Buffer, Gpu};
-use relievo::terrain::blend::reference::blend;
-use relievo::terrain::blend::{BlendBuffers, BlendPass, Shading};
-use relievo::terrain::config::Config;
-use relievo::terrain::cover::Cover;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::texture::Texture;
+use relievo::ops::terrain::blend::reference::blend;
+use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, Shading};
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::cover::Cover;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::texture::Texture;
 use relievo::{Error, InputError};
 
 /// The zones, textures and light of colour maps. A map has one sRGB pixel per sample, as RGBA with red in the

@@ -2,9 +2,9 @@
 
 use clap::Args;
 use relievo::InputError;
-use relievo::terrain::hydraulic::Hydraulic;
-use relievo::terrain::recipe::Recipe;
-use relievo::terrain::thermal::Thermal;
+use relievo::ops::terrain::hydraulic::Hydraulic;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::ops::terrain::thermal::Thermal;
 
 #[derive(Args)]
 pub struct Erosion {

@@ -4,10 +4,10 @@
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 
-use relievo::terrain::config::{Config, HEIGHT_ONE};
-use relievo::terrain::export::sha256;
-use relievo::terrain::features::FeatureFile;
-use relievo::terrain::mesh::HeightField;
+use relievo::ops::terrain::config::{Config, HEIGHT_ONE};
+use relievo::ops::terrain::export::sha256;
+use relievo::ops::terrain::features::FeatureFile;
+use relievo::ops::terrain::mesh::HeightField;
 use relievo::{Error, InputError};
 
 /// The mapping of a height PNG, in height units: sample 0 is `low`, sample 65535 is `high`, and those between

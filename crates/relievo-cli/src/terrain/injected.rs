@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use relievo::Error;
-use relievo::terrain::config::Config;
-use relievo::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::features::{FeatureFile, Features};
 
 use super::Terrain;
 use super::export::{HeightImage, HeightRange};

@@ -6,13 +6,13 @@ use image::imageops::{FilterType, resize};
 use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
+use relievo::ops::terrain::blend::Shading;
+use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::texture::Texture;
 use relievo::render::Offscreen;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::scene::{Camera, Scene, TerrainSource, TerrainStyle};
-use relievo::terrain::blend::Shading;
-use relievo::terrain::config::Config;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::texture::Texture;
 
 use super::export::HeightRange;
 

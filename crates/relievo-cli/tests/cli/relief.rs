@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use relievo::surface::{Address, HeightMap, Ray};
+use relievo::ops::surface::{Address, HeightMap, Ray};
 use relievo_lab::measure::relief::exact::exact;
 use serde_json::Value;
 

@@ -299,9 +299,9 @@ fn floats(of: &Value, name: &str) -> Vec<f32> {
 /// The bones that are drawn at full detail are where the CPU reference puts them.
 #[test]
 fn dumps_hold_the_bones_that_were_drawn() {
-    use relievo::animation::Pose;
     use relievo::asset::Model;
     use relievo::glam::{Mat4, Quat, Vec3, Vec4};
+    use relievo::ops::animation::Pose;
     let folder = Folder::new();
     let arguments = ["--frames", "2", "--rate", "7", "--size", "64x64", "--full", "--dump"];
     let run = folder.run(&good().to_string(), &arguments);

@@ -3,16 +3,16 @@
 #![allow(dead_code, unused_variables, reason = "they are compiled, not run")]
 
 use relievo::Error;
-use relievo::animation::ModelMatrices;
 use relievo::asset::Model;
 use relievo::gpu::{Gpu, Options};
+use relievo::ops::animation::ModelMatrices;
+use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::{Blend, InstanceLod};
+use relievo::ops::terrain::config::{Config, Offset};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::height::{HeightBatch, HeightPass};
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Scene, TerrainSource, View};
-use relievo::skinning::frame::SkinFrame;
-use relievo::skinning::{Blend, InstanceLod};
-use relievo::terrain::config::{Config, Offset};
-use relievo::terrain::features::Features;
-use relievo::terrain::height::{HeightBatch, HeightPass};
 use relievo_samples::creature;
 
 /// What the program of the README has.

@@ -2,44 +2,44 @@
 //! The comment of a line is the name as it stands there; `tests/readme.rs` compares these with the documents.
 #![allow(dead_code, unused_imports, reason = "it is compiled, not run")]
 
-use relievo::animation::lod::Projection;
 use relievo::asset::Model;
 use relievo::asset::material::Alpha;
-use relievo::lod::LodCamera;
-use relievo::mesh::{Options, Simplified};
+use relievo::ops::animation::lod::Projection;
+use relievo::ops::lod::LodCamera;
+use relievo::ops::mesh::{Options, Simplified};
+use relievo::ops::skinning::Extent;
+use relievo::ops::surface::ReliefOptions;
 use relievo::render::{Layer, OutputProgram, Renderer, TargetFormat};
 use relievo::scene::kind::{Kind, KindProgram};
 use relievo::scene::{Scene, Transition};
-use relievo::skinning::Extent;
-use relievo::surface::ReliefOptions;
 
 #[rustfmt::skip]
 fn items() {
     use relievo::gpu::shaders::MODULES as _; // gpu::shaders::MODULES
-    use relievo::mesh::ProgressiveMesh as _; // mesh::ProgressiveMesh
+    use relievo::ops::mesh::ProgressiveMesh as _; // ops::mesh::ProgressiveMesh
     use relievo_lab::reduce::Reducer as _; // reduce::Reducer
-    use relievo::mesh::Stopped as _; // mesh::Stopped
-    use relievo::mesh::simplify as _; // mesh::simplify
-    use relievo::mesh::simplify_within as _; // mesh::simplify_within
+    use relievo::ops::mesh::Stopped as _; // ops::mesh::Stopped
+    use relievo::ops::mesh::simplify as _; // ops::mesh::simplify
+    use relievo::ops::mesh::simplify_within as _; // ops::mesh::simplify_within
     use relievo::scene::TerrainSource as _; // TerrainSource
     use relievo::render::OutputProgram as _; // render::OutputProgram
     use relievo::scene::kind::Kind as _; // scene::kind::Kind
     use relievo::scene::kind::KindPart as _; // KindPart
-    use relievo::terrain::thermal as _; // terrain::thermal
-    use relievo::skinning::Extent as _; // skinning::Extent
-    use relievo::skinning::FadeRange as _; // skinning::FadeRange
-    use relievo::skinning::add_levels as _; // skinning::add_levels
-    use relievo::skinning::collapse_bones as _; // skinning::collapse_bones
-    use relievo::skinning::frame::SkinFrame as _; // skinning::frame::SkinFrame
-    use relievo::skinning::paged::PagedSkin as _; // skinning::paged::PagedSkin
+    use relievo::ops::terrain::thermal as _; // ops::terrain::thermal
+    use relievo::ops::skinning::Extent as _; // ops::skinning::Extent
+    use relievo::ops::skinning::FadeRange as _; // ops::skinning::FadeRange
+    use relievo::ops::skinning::add_levels as _; // ops::skinning::add_levels
+    use relievo::ops::skinning::collapse_bones as _; // ops::skinning::collapse_bones
+    use relievo::ops::skinning::frame::SkinFrame as _; // ops::skinning::frame::SkinFrame
+    use relievo::ops::skinning::paged::PagedSkin as _; // ops::skinning::paged::PagedSkin
     use relievo_lab::reduce::reduce_model as _; // reduce::reduce_model
-    use relievo::surface::SurfaceTextures as _; // surface::SurfaceTextures
-    use relievo::surface::tangent as _; // surface::tangent
-    use relievo::terrain::ground::Ground as _; // terrain::ground::Ground
+    use relievo::ops::surface::SurfaceTextures as _; // ops::surface::SurfaceTextures
+    use relievo::ops::surface::tangent as _; // ops::surface::tangent
+    use relievo::ops::terrain::ground::Ground as _; // ops::terrain::ground::Ground
     use relievo_lab::measure::DisplacementMeter as _; // measure::DisplacementMeter
     use relievo_lab::measure::reduction::reduction as _; // measure::reduction::reduction
-    use relievo::animation::priority as _; // animation::priority
-    use relievo::animation::frame::GatedFrame as _; // GatedFrame
+    use relievo::ops::animation::priority as _; // ops::animation::priority
+    use relievo::ops::animation::frame::GatedFrame as _; // GatedFrame
     use relievo::render::SunShadow as _; // SunShadow
     use relievo_lab::measure::FrameSummary as _; // FrameSummary
     use relievo_lab::measure::ScenePlay as _; // ScenePlay
@@ -48,7 +48,7 @@ fn items() {
 #[rustfmt::skip]
 fn members() {
     let _ = Alpha::Blended; // Alpha::Blended
-    let _ = |frame: relievo::animation::Frame| frame.ahead; // Frame::ahead
+    let _ = |frame: relievo::ops::animation::Frame| frame.ahead; // Frame::ahead
     let _ = KindProgram::bind; // KindProgram::bind
     let _ = KindProgram::new; // KindProgram::new
     let _ = Layer::Measure; // Layer::Measure
@@ -92,7 +92,7 @@ fn members() {
     let _ = TargetFormat::measure; // TargetFormat::measure
     let _ = TargetFormat::new; // TargetFormat::new
     let _ = TargetFormat::surface; // TargetFormat::surface
-    let _ = relievo::terrain::config::Config::from_json; // Config::from_json
+    let _ = relievo::ops::terrain::config::Config::from_json; // Config::from_json
     let _ = |scene: &mut Scene, encoder: &mut wgpu::CommandEncoder| scene.record_with(encoder, &mut [], |_, _| Ok(())); // Scene::record_with
     let _ = TargetFormat::velocity; // TargetFormat::velocity
     let _ = Extent::fade_range; // Extent::fade_range
@@ -106,15 +106,15 @@ fn members() {
 
 #[rustfmt::skip]
 fn decided() {
-    let _ = relievo::animation::lod::Range::omega; // animation::lod::Range::omega
-    let _ = |gate| matches!(gate, relievo::animation::Gate::SkipPeriod { .. }); // animation::Gate::SkipPeriod
+    let _ = relievo::ops::animation::lod::Range::omega; // ops::animation::lod::Range::omega
+    let _ = |gate| matches!(gate, relievo::ops::animation::Gate::SkipPeriod { .. }); // ops::animation::Gate::SkipPeriod
     let _ = relievo_lab::reduce::Reducer::ALL; // reduce::Reducer::ALL
-    let _ = |cost| matches!(cost, relievo::mesh::Cost::Melax { .. }); // mesh::Cost::Melax
+    let _ = |cost| matches!(cost, relievo::ops::mesh::Cost::Melax { .. }); // ops::mesh::Cost::Melax
     let _ = relievo_lab::reduce::Normals::Recompute; // reduce::Normals::Recompute
-    let _ = relievo::surface::Method::Parallax; // surface::Method::Parallax
-    let _ = |march: relievo::surface::March| march.steps; // surface::March::steps
-    let _ = |material: relievo::surface::Material| material.plane; // surface::Material::plane
-    let _ = |config: relievo::terrain::config::Config| config.scale_factor; // terrain::config::Config::scale_factor
+    let _ = relievo::ops::surface::Method::Parallax; // ops::surface::Method::Parallax
+    let _ = |march: relievo::ops::surface::March| march.steps; // ops::surface::March::steps
+    let _ = |material: relievo::ops::surface::Material| material.plane; // ops::surface::Material::plane
+    let _ = |config: relievo::ops::terrain::config::Config| config.scale_factor; // ops::terrain::config::Config::scale_factor
 }
 
 #[rustfmt::skip]

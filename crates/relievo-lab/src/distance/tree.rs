@@ -1,7 +1,7 @@
 //! A tree of boxes around triangles, for the nearest triangle of points.
 
 use glam::DVec3;
-use relievo::mesh::nearest::precise_nearest_on_triangle;
+use relievo::ops::mesh::nearest::precise_nearest_on_triangle;
 
 /// The most triangles of a leaf.
 const LEAF: usize = 4;

@@ -3,8 +3,8 @@
 
 use image::RgbaImage;
 use relievo::Error;
-use relievo::animation::Gate;
 use relievo::gpu::Gpu;
+use relievo::ops::animation::Gate;
 use serde::Serialize;
 
 use crate::harness::TimedBy;

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
+use relievo::ops::animation::{Gate, Lod};
 use relievo::{Error, InputError};
 
 use crate::crowd::Crowd;

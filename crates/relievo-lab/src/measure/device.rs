@@ -1,14 +1,14 @@
 //! Plays a crowd on the device.
 
 use relievo::Error;
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::frame::GatedFrame;
-use relievo::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
-use relievo::animation::local_to_model::LocalToModelPass;
-use relievo::animation::sample::SamplePass;
-use relievo::animation::{Gate, Lod};
 use relievo::asset::Affine;
 use relievo::gpu::{Gpu, Job, compute_pass};
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::frame::GatedFrame;
+use relievo::ops::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use relievo::ops::animation::local_to_model::LocalToModelPass;
+use relievo::ops::animation::sample::SamplePass;
+use relievo::ops::animation::{Gate, Lod};
 
 use crate::harness::{TimedBy, Timer};
 use crate::measure::gates::{PATH, frame};

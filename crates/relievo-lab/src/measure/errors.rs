@@ -1,8 +1,8 @@
 //! Measures how far the points of a gated crowd lie from those of the same crowd in full.
 
 use rayon::prelude::*;
-use relievo::animation::Projection;
 use relievo::asset::Affine;
+use relievo::ops::animation::Projection;
 use serde::Serialize;
 
 use crate::measure::placement::{Placement, Placements};

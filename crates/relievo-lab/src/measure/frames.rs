@@ -123,7 +123,7 @@ impl ScenePlay {
     pub fn objects(&self) -> Result<Vec<ObjectReport>, Error> {
         let world = self.player.world();
         let report = |object: &WorldObject| {
-            let meshes = object.model.iter().map(|model| relievo::skinning::level_errors(&model.meshes));
+            let meshes = object.model.iter().map(|model| relievo::ops::skinning::level_errors(&model.meshes));
             Ok(ObjectReport {
                 kind: object.kind,
                 name: object.name.clone(),

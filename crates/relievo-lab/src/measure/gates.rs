@@ -1,9 +1,9 @@
 //! The gates that can be measured, by name, with their parameters.
 
 use relievo::InputError;
-use relievo::animation::Frame;
-use relievo::animation::priority::Weights;
 use relievo::asset::keyframe::RotationPath;
+use relievo::ops::animation::Frame;
+use relievo::ops::animation::priority::Weights;
 use serde::Serialize;
 
 use crate::measure::bounds::check;

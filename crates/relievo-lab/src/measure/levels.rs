@@ -1,6 +1,6 @@
 //! The levels of detail of a character.
 
-use relievo::skinning::Merged;
+use relievo::ops::skinning::Merged;
 use serde::Serialize;
 
 /// A level of detail of a character, all meshes together.

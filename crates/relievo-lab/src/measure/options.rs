@@ -3,8 +3,8 @@
 use std::fmt;
 
 use relievo::InputError;
-use relievo::animation::{Range, Weights};
 use relievo::asset::{Clip, Model};
+use relievo::ops::animation::{Range, Weights};
 use serde::{Serialize, Serializer};
 
 use crate::measure::bounds::check;

@@ -2,8 +2,8 @@
 
 use std::f32::consts::TAU;
 
-use relievo::animation::Projection;
-use relievo::animation::gate::reference::scramble;
+use relievo::ops::animation::Projection;
+use relievo::ops::animation::gate::reference::scramble;
 use relievo::scene;
 
 use crate::measure::options::{CrowdOptions, Layout};

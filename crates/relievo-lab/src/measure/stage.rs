@@ -1,15 +1,15 @@
 //! A crowd before a camera, with the tables that all gates need.
 
 use relievo::InputError;
-use relievo::animation::instance::{Instance, Wrap};
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::lod::OMEGA_ONE;
-use relievo::animation::order::Order;
-use relievo::animation::priority::{Priorities, USER_DEFAULT};
-use relievo::animation::{
+use relievo::asset::{Affine, Clip, bone_radii};
+use relievo::ops::animation::instance::{Instance, Wrap};
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::lod::OMEGA_ONE;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::priority::{Priorities, USER_DEFAULT};
+use relievo::ops::animation::{
     AnimatedBones, BoundTable, ClipSet, ExpectationTable, Gate, Lod, PriorityTable, Projection, Sampling,
 };
-use relievo::asset::{Affine, Clip, bone_radii};
 
 use crate::measure::gates::{GateMode, PATH, TICKS};
 use crate::measure::options::{CrowdOptions, NEAR, Subject};

@@ -5,9 +5,9 @@ use image::RgbaImage;
 use relievo::asset::material::{Alpha, Material, Texture};
 use relievo::asset::{Mesh, Model};
 use relievo::gpu::Gpu;
+use relievo::ops::skinning::{Vertex, still};
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Depth, Placement, Scene};
-use relievo::skinning::{Vertex, still};
 use relievo::{Error, InputError};
 
 use super::Portrait;
@@ -30,7 +30,7 @@ pub fn portrait(
     drawn(gpu, &still(model, vertices)?, framing_camera(vertices.iter().flatten()), portrait)
 }
 
-/// Draws models that stand still, such as those of [`still`] and [`at_rest`](relievo::skinning::at_rest()), as [`portrait`] does,
+/// Draws models that stand still, such as those of [`still`] and [`at_rest`](relievo::ops::skinning::at_rest()), as [`portrait`] does,
 /// a picture each. One camera sees all of them, with the first in the middle. Waits for the device.
 ///
 /// # Errors

@@ -16,15 +16,18 @@ use image::RgbaImage;
 use picture::texture::Surface;
 use picture::{Part, Scene, framing, framing_of};
 use relievo::InputError;
-use relievo::animation::Pose;
 use relievo::asset::{Light, Mesh, Model};
-use relievo::skinning::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::vertex::{Blend, Vertex, check_range, vertices_of};
+use relievo::ops::animation::Pose;
+use relievo::ops::skinning::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::vertex::{Blend, Vertex, check_range, vertices_of};
 #[cfg(not(target_arch = "wasm32"))]
-use relievo::{animation::ModelMatrices, gpu::Buffer, skinning::frame::SkinFrame};
+use relievo::{
+    gpu::Buffer,
+    ops::{animation::ModelMatrices, skinning::frame::SkinFrame},
+};
 
 /// A model at one time of a clip, and how it is skinned.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +58,7 @@ pub struct Portrait {
 }
 
 impl Portrait {
-    /// Draws models that stand still, such as those of [`at_rest`](relievo::skinning::at_rest()), a picture each, on the host. One camera sees
+    /// Draws models that stand still, such as those of [`at_rest`](relievo::ops::skinning::at_rest()), a picture each, on the host. One camera sees
     /// all of them, with the first in the middle.
     ///
     /// # Errors

@@ -1,14 +1,14 @@
 //! Computes the pose of a skeleton on the device, as a crowd of one instance.
 
 use relievo::Error;
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::crowd::{ClipBuffers, Crowd, unpacked};
-use relievo::animation::keyframe_cursor::KeyframeCursorPass;
-use relievo::animation::local_to_model::LocalToModelPass;
-use relievo::animation::sample::SamplePass;
-use relievo::animation::{Instance, Pose, RotationPath, Wrap};
 use relievo::asset::{Clip, Skeleton};
 use relievo::gpu::Gpu;
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd, unpacked};
+use relievo::ops::animation::keyframe_cursor::KeyframeCursorPass;
+use relievo::ops::animation::local_to_model::LocalToModelPass;
+use relievo::ops::animation::sample::SamplePass;
+use relievo::ops::animation::{Instance, Pose, RotationPath, Wrap};
 
 /// As [`Pose::on_host`], on the device; the results are equal within rounding. Waits for the device.
 ///

@@ -6,7 +6,7 @@ use std::collections::{BinaryHeap, HashMap};
 
 use glam::DVec3;
 use plan::Plan;
-use relievo::mesh::simplify::{Stopped, Surface};
+use relievo::ops::mesh::simplify::{Stopped, Surface};
 
 use crate::reduce::Reduced;
 use crate::reduce::mesh::{Corner, Mesh, normal, unique};

@@ -1,7 +1,7 @@
 //! The reducers that are [`simplify()`]: stages of its recorded sequence.
 
 use relievo::InputError;
-use relievo::mesh::simplify::{Cost, Options, Seams, Simplified, Stopped, Surface, simplify};
+use relievo::ops::mesh::simplify::{Cost, Options, Seams, Simplified, Stopped, Surface, simplify};
 
 use crate::reduce::{Limits, Reduced};
 

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use glam::DVec3;
-use relievo::mesh::simplify::{Stopped, Surface, weld};
+use relievo::ops::mesh::simplify::{Stopped, Surface, weld};
 use rustc_hash::FxHasher;
 
 use crate::reduce::mesh::Mesh;

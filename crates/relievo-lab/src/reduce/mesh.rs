@@ -2,7 +2,7 @@
 //! is what the vertices at one position have in common, and these are its wedges.
 
 use glam::DVec3;
-use relievo::mesh::simplify::{Surface, weld};
+use relievo::ops::mesh::simplify::{Surface, weld};
 
 /// A corner of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! All reducers behind one interface, for comparison (A sections 4 and 5): the same surface with fewer triangles, whatever the
 //! operator is.
 //!
-//! [`simplify()`](relievo::mesh::simplify()) is what most programs want: it records every level in one run. Other operators
+//! [`simplify()`](relievo::ops::mesh::simplify()) is what most programs want: it records every level in one run. Other operators
 //! place new vertices, join separate parts or remove what is small. Triangle collapse and the merging of polygons, which A
 //! describes too, are sequences of edge collapses and of vertex removals.
 //!
@@ -30,7 +30,7 @@ use crate::reduce::cluster::MAX_CELLS;
 use contract::{Contraction, Pairs};
 use importance::Graded;
 use relievo::InputError;
-use relievo::mesh::simplify::{Cost, Seams, Surface, validate};
+use relievo::ops::mesh::simplify::{Cost, Seams, Surface, validate};
 use removal::Removal;
 
 pub mod cluster;
@@ -48,7 +48,7 @@ mod uniform;
 /// The operator that takes triangles away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reducer {
-    /// Merges points into their neighbours: [`simplify()`](relievo::mesh::simplify()), whose legality holds. Poses count as
+    /// Merges points into their neighbours: [`simplify()`](relievo::ops::mesh::simplify()), whose legality holds. Poses count as
     /// they do there.
     HalfEdge {
         /// The cost function of collapses.
@@ -145,7 +145,7 @@ impl Reducer {
     /// Reduces a mesh until a limit is reached.
     ///
     /// ```
-    /// use relievo::mesh::Surface;
+    /// use relievo::ops::mesh::Surface;
     /// use relievo_lab::reduce::{Limits, Reducer};
     ///
     /// // A square of four triangles around its middle.
@@ -169,7 +169,7 @@ impl Reducer {
     /// are stages of one sequence, it is computed once.
     ///
     /// # Errors
-    /// [`InputError`] as [`simplify()`](relievo::mesh::simplify()) for the surface, for an error that is negative or NaN, for
+    /// [`InputError`] as [`simplify()`](relievo::ops::mesh::simplify()) for the surface, for an error that is negative or NaN, for
     /// parameters outside of their bounds, and for several poses, which [`Reducer::HalfEdge`] alone takes.
     pub fn reduce_each(&self, surface: &Surface<'_>, limits: &[Limits]) -> Result<Vec<Reduced>, InputError> {
         validate(surface)?;

@@ -7,9 +7,9 @@ use glam::{DVec2, DVec3, Vec3};
 use relievo::InputError;
 use relievo::asset::mesh::{smooth_normals, solved_tangents};
 use relievo::asset::{Influences, Mesh, Model};
-use relievo::mesh::simplify::{Seams, Stopped, Surface};
-use relievo::skinning::at_rest;
-use relievo::skinning::attribute_weights::{NORMAL, TextureArea, shown_uv};
+use relievo::ops::mesh::simplify::{Seams, Stopped, Surface};
+use relievo::ops::skinning::at_rest;
+use relievo::ops::skinning::attribute_weights::{NORMAL, TextureArea, shown_uv};
 
 use crate::distance;
 use crate::distance::{Distance, Triangles};

@@ -1,6 +1,6 @@
 //! What a reducer leaves of a mesh.
 
-use relievo::mesh::simplify::{Stopped, Surface};
+use relievo::ops::mesh::simplify::{Stopped, Surface};
 
 /// A reduced mesh, which has only the vertices that its triangles use.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +34,7 @@ impl Reduced {
             words.push(part.len() as u32);
             words.extend(part);
         }
-        relievo::hash::sha256(&words)
+        relievo::ops::hash::sha256(&words)
     }
 
     /// The mesh of triangles whose corners are vertices of the input.

@@ -5,7 +5,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use glam::DVec3;
-use relievo::mesh::simplify::{Stopped, Surface};
+use relievo::ops::mesh::simplify::{Stopped, Surface};
 
 use crate::reduce::Reduced;
 use crate::reduce::mesh::{Corner, Fan, Ring, normal};

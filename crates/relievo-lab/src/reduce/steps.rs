@@ -1,7 +1,7 @@
 //! Reducers that go step by step: one run passes all limits.
 
 use glam::DVec3;
-use relievo::mesh::simplify::{Stopped, Surface};
+use relievo::ops::mesh::simplify::{Stopped, Surface};
 
 use crate::reduce::mesh::{Frame, Mesh};
 use crate::reduce::{Limits, Reduced};

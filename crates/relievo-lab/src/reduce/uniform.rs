@@ -3,7 +3,7 @@
 use crate::reduce::cluster::Grid;
 use crate::reduce::cluster::reference::{Clustered, cluster};
 use relievo::InputError;
-use relievo::mesh::simplify::{Stopped, Surface};
+use relievo::ops::mesh::simplify::{Stopped, Surface};
 
 use crate::reduce::{Limits, Reduced};
 

@@ -9,8 +9,8 @@ pub use relievo::shared::surface::shade::{Shade, ShadePoint, ShadeView};
 
 use glam::{Mat4, Vec3, Vec4};
 use relievo::InputError;
-use relievo::surface::Material;
-use relievo::surface::relief::MAX_STEPS;
+use relievo::ops::surface::Material;
+use relievo::ops::surface::relief::MAX_STEPS;
 
 mod pass;
 pub mod reference;

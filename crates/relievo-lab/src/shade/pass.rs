@@ -2,9 +2,9 @@
 
 use relievo::gpu::bindings::surface::shade as bindings;
 use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
+use relievo::ops::surface::relief::textures::SurfaceTextures;
+use relievo::ops::surface::relief::{March, Method};
 use relievo::shared::surface::ray::SurfaceMarch;
-use relievo::surface::relief::textures::SurfaceTextures;
-use relievo::surface::relief::{March, Method};
 use relievo::{Error, InputError};
 
 use crate::shade::{Shade, ShadePoint, ShadeView};

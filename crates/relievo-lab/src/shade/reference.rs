@@ -2,8 +2,8 @@
 //! `wgsl/surface/shade.wgsl`.
 
 use rayon::prelude::*;
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
 
 use crate::shade::shadow::{light_ray, shaded, soft_shadow};
 use crate::shade::{Shade, ShadePoint, ShadeView};
@@ -71,7 +71,7 @@ pub fn shade_all(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::surface::relief::Outcome;
+    use relievo::ops::surface::relief::Outcome;
 
     /// In a parallel view straight from above, a hit is as deep as the relief is there.
     #[test]

@@ -1,11 +1,11 @@
 //! Self-shadow: the CPU reference of `wgsl/surface/shadow.wgsl`.
 
+use relievo::ops::surface::map::HeightMap;
+use relievo::ops::surface::relief::reference::height::height;
+use relievo::ops::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 use relievo::shared::surface::shadow::{
     SURFACE_LEAST_OCCLUSION as LEAST_OCCLUSION, SURFACE_SHADOW_BIAS as BIAS,
 };
-use relievo::surface::map::HeightMap;
-use relievo::surface::relief::reference::height::height;
-use relievo::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
 
 /// The ray from the light to a point of the surface. `light` is the unit vector towards the light, in tangent
 /// space.

@@ -67,11 +67,11 @@ fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::animation::local_to_model::reference::local_to_model;
-    use relievo::animation::sample::reference::sample;
     use relievo::asset::clip::Part as TrackPart;
     use relievo::asset::keyframe::RotationPath;
     use relievo::asset::transform::Affine;
+    use relievo::ops::animation::local_to_model::reference::local_to_model;
+    use relievo::ops::animation::sample::reference::sample;
 
     fn model() -> Model {
         creature().expect("valid")

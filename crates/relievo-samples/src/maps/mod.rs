@@ -1,8 +1,8 @@
 //! Generated height maps with matching colours, for tests, demonstrations and first steps without a file.
 //!
-//! Each is a square tile that repeats without a seam under [`Address::Wrap`](relievo::surface::Address::Wrap), of
+//! Each is a square tile that repeats without a seam under [`Address::Wrap`](relievo::ops::surface::Address::Wrap), of
 //! any size, and has the same bits on every machine: the code uses only `+ − × ÷`, square roots and
-//! comparisons, which IEEE 754 defines to the last bit, and randomness is counter-based ([`relievo::hash`]).
+//! comparisons, which IEEE 754 defines to the last bit, and randomness is counter-based ([`relievo::ops::hash`]).
 //!
 //! | map | what it shows |
 //! |---|---|
@@ -19,7 +19,7 @@ use std::str::FromStr;
 use image::{Rgba, RgbaImage};
 use rayon::prelude::*;
 use relievo::InputError;
-use relievo::surface::map::{HeightMap, MAP_EDGE};
+use relievo::ops::surface::map::{HeightMap, MAP_EDGE};
 
 mod bricks;
 mod cobbles;
@@ -154,7 +154,7 @@ mod tests {
     use sha2::Sha256;
 
     use super::*;
-    use relievo::surface::Address;
+    use relievo::ops::surface::Address;
 
     const SIZES: [u32; 4] = [1, 37, 100, 256];
 

@@ -1,6 +1,6 @@
 //! Random numbers and tileable value noise.
 
-use relievo::hash::{LANES, threefry2x32};
+use relievo::ops::hash::{LANES, threefry2x32};
 
 /// Two random numbers in 0..1 for a cell; `key` separates the uses.
 pub fn random(key: u32, cell: [usize; 2]) -> [f64; 2] {

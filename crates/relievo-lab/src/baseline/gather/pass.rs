@@ -1,8 +1,8 @@
 //! The GPU pass of `kernels/baseline/gather.wgsl`: moves the bytes that sampling moves.
 
-use relievo::animation::crowd::{ClipBuffers, Crowd};
 use relievo::gpu::bindings::baseline::gather as bindings;
 use relievo::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
 use relievo::shared::baseline::gather::GatherParams;
 use relievo::{Error, InputError};
 

@@ -1,8 +1,8 @@
 //! Moves the bytes that sampling moves: the CPU reference of `kernels/baseline/gather.wgsl`.
 
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::instance::Instance;
 use relievo::asset::keyframe::KeyframeCursor;
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::instance::Instance;
 
 /// For each instance and bone of its clip, writes the exclusive or of the two keys around the instance's cursor
 /// on three tracks, as the bits of a local transform; the other words of the track table and of the cursor are

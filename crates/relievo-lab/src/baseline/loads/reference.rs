@@ -1,6 +1,6 @@
 //! Texel loads: the CPU reference of `kernels/baseline/loads.wgsl`.
 
-use relievo::surface::map::{Address, HeightMap};
+use relievo::ops::surface::map::{Address, HeightMap};
 
 /// For each thread, the sum of `loads` texels along its row, starting at its own.
 pub fn loads(map: &HeightMap, [columns, rows]: [u32; 2], loads: u32) -> Vec<f32> {

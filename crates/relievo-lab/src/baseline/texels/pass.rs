@@ -3,9 +3,9 @@
 use relievo::Error;
 use relievo::gpu::bindings::baseline::texels as bindings;
 use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use relievo::ops::terrain::blend::BlendBuffers;
+use relievo::ops::terrain::cover::{Cover, planes};
 use relievo::shared::baseline::texels::TexelsParams;
-use relievo::terrain::blend::BlendBuffers;
-use relievo::terrain::cover::{Cover, planes};
 
 /// Loads the texels of colour maps.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! The texel loads of colour maps: the CPU reference of `kernels/baseline/texels.wgsl`.
 
-use relievo::terrain::blend::reference::{texel_indices, tiles_of};
-use relievo::terrain::cover::Cover;
+use relievo::ops::terrain::blend::reference::{texel_indices, tiles_of};
+use relievo::ops::terrain::cover::Cover;
 
 /// For each sample of a window but those of the outermost ring, the exclusive or of the words of the texels that its pixel of a
 /// colour map blends. `place` is that of the first sample inside ([`Cover::place`]).

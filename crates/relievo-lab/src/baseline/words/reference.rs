@@ -1,6 +1,6 @@
 //! Random words: the CPU reference of `kernels/baseline/words.wgsl`.
 
-use relievo::hash::{LANES, threefry2x32};
+use relievo::ops::hash::{LANES, threefry2x32};
 
 /// The first word of each counter (x, y), in `rows` rows of `width`.
 pub fn words(key: [u32; 2], width: u32, rows: u32) -> Vec<u32> {

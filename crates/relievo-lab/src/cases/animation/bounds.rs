@@ -1,15 +1,15 @@
 //! Parity and benchmark cases of `kernels/animation/bounds.wgsl`.
 
 use relievo::Error;
-use relievo::animation::bounds::reference::bounds;
-use relievo::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, bone_radii};
-use relievo::animation::crowd::Crowd;
-use relievo::animation::keyframe_cursor::reference::cursors;
-use relievo::animation::local_to_model::reference::local_to_model;
-use relievo::animation::sample::reference::sample_set;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::gpu::Buffer;
+use relievo::ops::animation::bounds::reference::bounds;
+use relievo::ops::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, bone_radii};
+use relievo::ops::animation::crowd::Crowd;
+use relievo::ops::animation::keyframe_cursor::reference::cursors;
+use relievo::ops::animation::local_to_model::reference::local_to_model;
+use relievo::ops::animation::sample::reference::sample_set;
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};

@@ -1,17 +1,17 @@
 //! Parity and benchmark cases of `kernels/animation/budget.wgsl`.
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::budget::BudgetPass;
-use relievo::animation::budget::reference::budget;
-use relievo::animation::clip_clock::{ClipClock, UpdateReason};
-use relievo::animation::crowd::Crowd;
-use relievo::animation::gate_state::GateState;
-use relievo::animation::gate_table::ExpectationTable;
-use relievo::animation::lod::Lod;
-use relievo::animation::order::Order;
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::Buffer;
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::budget::BudgetPass;
+use relievo::ops::animation::budget::reference::budget;
+use relievo::ops::animation::clip_clock::{ClipClock, UpdateReason};
+use relievo::ops::animation::crowd::Crowd;
+use relievo::ops::animation::gate_state::GateState;
+use relievo::ops::animation::gate_table::ExpectationTable;
+use relievo::ops::animation::lod::Lod;
+use relievo::ops::animation::order::Order;
 
 use crate::cases::animation::gate::random_state;
 use crate::cases::animation::scene::{CROWDS, Scene};

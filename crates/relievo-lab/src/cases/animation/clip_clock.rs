@@ -1,14 +1,14 @@
 //! Parity and benchmark cases of `kernels/animation/clip_clock.wgsl`.
 
 use relievo::Error;
-use relievo::animation::clip_clock::reference::clip_clocks;
-use relievo::animation::clip_clock::{ClipClock, ClipClockPass};
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::gate_state::GateState;
-use relievo::animation::instance::Instance;
-use relievo::animation::keyframe_cursor::reference::cursors;
-use relievo::animation::layers::Layer;
-use relievo::animation::lod::{Lod, Sampling};
+use relievo::ops::animation::clip_clock::reference::clip_clocks;
+use relievo::ops::animation::clip_clock::{ClipClock, ClipClockPass};
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::gate_state::GateState;
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::keyframe_cursor::reference::cursors;
+use relievo::ops::animation::layers::Layer;
+use relievo::ops::animation::lod::{Lod, Sampling};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};

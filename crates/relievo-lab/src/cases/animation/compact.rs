@@ -1,13 +1,13 @@
 //! Parity and benchmark cases of `kernels/animation/compact.wgsl`.
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::compact::CompactPass;
-use relievo::animation::compact::reference::{Work, accumulated, compact};
-use relievo::animation::crowd::Crowd;
-use relievo::animation::gate::reference::Chosen;
-use relievo::animation::order::Order;
-use relievo::animation::updated_bones::UpdatedBones;
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::compact::CompactPass;
+use relievo::ops::animation::compact::reference::{Work, accumulated, compact};
+use relievo::ops::animation::crowd::Crowd;
+use relievo::ops::animation::gate::reference::Chosen;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::updated_bones::UpdatedBones;
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};

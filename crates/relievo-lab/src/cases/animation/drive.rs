@@ -1,13 +1,13 @@
 //! Parity and benchmark cases of `kernels/animation/drive.wgsl`.
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::crowd::Crowd;
-use relievo::animation::drive::reference::drive;
-use relievo::animation::drive::{DrivePass, DrivenWord, driven_words};
-use relievo::animation::gate_state::GateState;
-use relievo::animation::order::Order;
-use relievo::animation::{Lod, Sampling};
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::crowd::Crowd;
+use relievo::ops::animation::drive::reference::drive;
+use relievo::ops::animation::drive::{DrivePass, DrivenWord, driven_words};
+use relievo::ops::animation::gate_state::GateState;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::{Lod, Sampling};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};

@@ -5,12 +5,12 @@
 use std::f32::consts::{FRAC_1_SQRT_2, PI};
 
 use relievo::InputError;
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::instance::{Instance, Wrap};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::KeyframeCursor;
 use relievo::asset::skeleton::{Bone, Skeleton};
 use relievo::asset::transform::Transform;
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::instance::{Instance, Wrap};
 
 /// The crowd, with the time of each instance in the first clip, or `None` if it plays the second.
 pub(crate) struct Edges {

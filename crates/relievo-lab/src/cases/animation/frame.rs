@@ -3,15 +3,15 @@
 use std::hint::black_box;
 
 use relievo::Error;
-use relievo::animation::keyframe_cursor::reference::cursors_into;
-use relievo::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
-use relievo::animation::local_to_model::LocalToModelPass;
-use relievo::animation::local_to_model::reference::local_to_model_into;
-use relievo::animation::sample::SamplePass;
-use relievo::animation::sample::reference::sample_set_into;
 use relievo::asset::keyframe::{KeyframeCursor, RotationPath};
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 use relievo::gpu::{Gpu, Job};
+use relievo::ops::animation::keyframe_cursor::reference::cursors_into;
+use relievo::ops::animation::keyframe_cursor::{KeyframeCursorJob, KeyframeCursorPass};
+use relievo::ops::animation::local_to_model::LocalToModelPass;
+use relievo::ops::animation::local_to_model::reference::local_to_model_into;
+use relievo::ops::animation::sample::SamplePass;
+use relievo::ops::animation::sample::reference::sample_set_into;
 
 use crate::baseline::gather::Reads;
 use crate::cases::animation::plain_soa::PlainSoa;

@@ -1,21 +1,21 @@
 //! Parity and benchmark cases of `kernels/animation/gate.wgsl`.
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::clip_clock::{ClipClock, UpdateReason};
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::crowd::Crowd;
-use relievo::animation::gate::reference::gate;
-use relievo::animation::gate::{Frame, Gate, GatePass};
-use relievo::animation::gate_state::GateState;
-use relievo::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
-use relievo::animation::lod::{Lod, OMEGA_ONE};
-use relievo::animation::order::Order;
-use relievo::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::asset::clip::Clip;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::skeleton::Skeleton;
 use relievo::gpu::Buffer;
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::clip_clock::{ClipClock, UpdateReason};
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::crowd::Crowd;
+use relievo::ops::animation::gate::reference::gate;
+use relievo::ops::animation::gate::{Frame, Gate, GatePass};
+use relievo::ops::animation::gate_state::GateState;
+use relievo::ops::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
+use relievo::ops::animation::lod::{Lod, OMEGA_ONE};
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::priority::{Priorities, USER_DEFAULT, Weights};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_clips, random_crowd};

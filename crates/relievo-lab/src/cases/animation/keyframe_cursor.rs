@@ -3,15 +3,15 @@
 use std::hint::black_box;
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::gate_state::GateState;
-use relievo::animation::instance::{Instance, Wrap};
-use relievo::animation::keyframe_cursor::reference::{cursors, cursors_into, inside_clip};
-use relievo::animation::keyframe_cursor::{KEYFRAME_CURSOR_BOUND, KeyframeCursorPass};
-use relievo::animation::layers::{Layer, all_instances};
-use relievo::animation::order::Order;
 use relievo::asset::keyframe::KeyframeCursor;
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::gate_state::GateState;
+use relievo::ops::animation::instance::{Instance, Wrap};
+use relievo::ops::animation::keyframe_cursor::reference::{cursors, cursors_into, inside_clip};
+use relievo::ops::animation::keyframe_cursor::{KEYFRAME_CURSOR_BOUND, KeyframeCursorPass};
+use relievo::ops::animation::layers::{Layer, all_instances};
+use relievo::ops::animation::order::Order;
 
 use crate::cases::animation::edges::{ELAPSED, edges};
 use crate::cases::animation::scene::{CROWDS, ELAPSED as MEASURED, Scene};

@@ -3,21 +3,21 @@
 use std::hint::black_box;
 
 use relievo::Error;
-use relievo::animation::active::Active;
-use relievo::animation::compact::CompactPass;
-use relievo::animation::compact::reference::compact;
-use relievo::animation::crowd::{Crowd, packed};
-use relievo::animation::gate::reference::Chosen;
-use relievo::animation::local_to_model::reference::{
-    local_to_model, local_to_model_into, local_to_model_updated,
-};
-use relievo::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass};
-use relievo::animation::model_matrices::ModelMatrices;
-use relievo::animation::order::Order;
-use relievo::animation::sample::reference::sample_set;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::skeleton::Skeleton;
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
+use relievo::ops::animation::active::Active;
+use relievo::ops::animation::compact::CompactPass;
+use relievo::ops::animation::compact::reference::compact;
+use relievo::ops::animation::crowd::{Crowd, packed};
+use relievo::ops::animation::gate::reference::Chosen;
+use relievo::ops::animation::local_to_model::reference::{
+    local_to_model, local_to_model_into, local_to_model_updated,
+};
+use relievo::ops::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass};
+use relievo::ops::animation::model_matrices::ModelMatrices;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::sample::reference::sample_set;
 
 use crate::cases::animation::frame::{DeviceFrame, PlainFrame, ReferenceFrame};
 #[cfg(not(target_arch = "wasm32"))]

@@ -17,11 +17,11 @@ pub mod sample;
 pub mod scene;
 
 use relievo::InputError;
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::instance::{Instance, Wrap};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::skeleton::{Bone, Skeleton};
 use relievo::asset::transform::Transform;
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::instance::{Instance, Wrap};
 
 use crate::cases::terrain::random_words;
 

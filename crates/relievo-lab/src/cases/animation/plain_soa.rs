@@ -3,13 +3,13 @@
 //! for all tracks, linear keys only, no gates and no threads.
 
 use relievo::InputError;
-use relievo::animation::clip_set::{ClipSet, SetTrack};
-use relievo::animation::local_to_model::reference::{affine, product};
-use relievo::animation::sample::{SLERP_U, SLERP_V};
 use relievo::asset::clip::Interpolation;
 use relievo::asset::keyframe::KeyframeCursor;
 use relievo::asset::skeleton::Skeleton;
 use relievo::asset::transform::{Affine, Transform};
+use relievo::ops::animation::clip_set::{ClipSet, SetTrack};
+use relievo::ops::animation::local_to_model::reference::{affine, product};
+use relievo::ops::animation::sample::{SLERP_U, SLERP_V};
 
 /// Number of bones in a block.
 const LANES: usize = 8;
@@ -137,13 +137,13 @@ mod tests {
     use super::*;
     use crate::cases::animation::scene::crowd;
     use crate::cases::animation::scene::dense_creature;
-    use relievo::animation::keyframe_cursor::reference::cursors;
-    use relievo::animation::local_to_model::LOCAL_TO_MODEL_BOUND;
-    use relievo::animation::local_to_model::reference::local_to_model;
-    use relievo::animation::sample::SAMPLE_BOUND;
-    use relievo::animation::sample::reference::sample_set;
     use relievo::asset::keyframe::RotationPath;
     use relievo::asset::transform::AFFINE_IDENTITY;
+    use relievo::ops::animation::keyframe_cursor::reference::cursors;
+    use relievo::ops::animation::local_to_model::LOCAL_TO_MODEL_BOUND;
+    use relievo::ops::animation::local_to_model::reference::local_to_model;
+    use relievo::ops::animation::sample::SAMPLE_BOUND;
+    use relievo::ops::animation::sample::reference::sample_set;
 
     #[test]
     fn it_computes_what_the_references_compute() {

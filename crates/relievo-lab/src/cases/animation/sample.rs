@@ -3,17 +3,17 @@
 use std::hint::black_box;
 
 use relievo::Error;
-use relievo::animation::active::{ActivePairs, PAIR_AHEAD};
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::crowd::{ClipBuffers, Crowd, Local, packed};
-use relievo::animation::instance::Instance;
-use relievo::animation::keyframe_cursor::reference::cursors;
-use relievo::animation::layers::{Layer, MAX_LAYERS, all_instances};
-use relievo::animation::sample::reference::{blend, sample_layers, sample_set, sample_set_into};
-use relievo::animation::sample::{LAYER_GROWTH, SAMPLE_BOUND, SamplePass};
 use relievo::asset::keyframe::{KeyframeCursor, RotationPath};
 use relievo::asset::transform::Transform;
 use relievo::gpu::Gpu;
+use relievo::ops::animation::active::{ActivePairs, PAIR_AHEAD};
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd, Local, packed};
+use relievo::ops::animation::instance::Instance;
+use relievo::ops::animation::keyframe_cursor::reference::cursors;
+use relievo::ops::animation::layers::{Layer, MAX_LAYERS, all_instances};
+use relievo::ops::animation::sample::reference::{blend, sample_layers, sample_set, sample_set_into};
+use relievo::ops::animation::sample::{LAYER_GROWTH, SAMPLE_BOUND, SamplePass};
 
 use crate::baseline::gather::Reads;
 use crate::cases::animation::edges::{ELAPSED, edges};

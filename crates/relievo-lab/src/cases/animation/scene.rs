@@ -2,16 +2,16 @@
 //! with 60 keys for each part of each bone, every instance at a time of its own.
 
 use relievo::Error;
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::crowd::{ClipBuffers, Crowd};
-use relievo::animation::instance::{Instance, Wrap};
-use relievo::animation::keyframe_cursor::reference::cursors;
-use relievo::animation::order::Order;
-use relievo::animation::sample::reference::sample;
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::{KeyframeCursor, RotationPath};
 use relievo::asset::skeleton::Skeleton;
 use relievo::gpu::{Gpu, Job};
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
+use relievo::ops::animation::instance::{Instance, Wrap};
+use relievo::ops::animation::keyframe_cursor::reference::cursors;
+use relievo::ops::animation::order::Order;
+use relievo::ops::animation::sample::reference::sample;
 use relievo_samples::creature;
 
 use crate::baseline::gather::{GatherPass, Reads};

@@ -6,11 +6,11 @@
 use std::hint::black_box;
 
 use relievo::Error;
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::crowd::{ClipBuffers, Crowd, Local};
-use relievo::animation::instance::{Instance, Wrap};
 use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::KeyframeCursor;
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::crowd::{ClipBuffers, Crowd, Local};
+use relievo::ops::animation::instance::{Instance, Wrap};
 
 use crate::baseline::gather::reference::{gather, gather_keys};
 use crate::baseline::gather::{GatherPass, Reads};

@@ -2,9 +2,9 @@
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::surface::map::Address;
-use relievo::surface::relief::Method;
-use relievo::surface::relief::textures::SurfaceTextures;
+use relievo::ops::surface::map::Address;
+use relievo::ops::surface::relief::Method;
+use relievo::ops::surface::relief::textures::SurfaceTextures;
 
 use crate::baseline::copy::{CopyBuffers, CopyPass};
 use crate::baseline::loads::LoadsPass;

@@ -2,10 +2,10 @@
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::terrain::blend::BlendBuffers;
-use relievo::terrain::config::{Config, Zone};
-use relievo::terrain::cover::Cover;
-use relievo::terrain::texture::Texture;
+use relievo::ops::terrain::blend::BlendBuffers;
+use relievo::ops::terrain::config::{Config, Zone};
+use relievo::ops::terrain::cover::Cover;
+use relievo::ops::terrain::texture::Texture;
 
 use crate::baseline::texels::TexelsPass;
 use crate::baseline::texels::reference::texels;

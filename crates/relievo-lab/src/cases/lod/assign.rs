@@ -2,12 +2,12 @@
 
 use glam::Vec4;
 use relievo::Error;
-use relievo::animation::lod::PackedLod;
 use relievo::gpu::{Buffer, Uniform};
-use relievo::lod::assign::reference::assign;
-use relievo::lod::assign::{AssignBuffers, AssignParams, AssignPass};
-use relievo::lod::{INSTANCE_CARRIES, SceneInstance};
-use relievo::skinning::instance_lod::InstanceLod;
+use relievo::ops::animation::lod::PackedLod;
+use relievo::ops::lod::assign::reference::assign;
+use relievo::ops::lod::assign::{AssignBuffers, AssignParams, AssignPass};
+use relievo::ops::lod::{INSTANCE_CARRIES, SceneInstance};
+use relievo::ops::skinning::instance_lod::InstanceLod;
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::random_instances;

@@ -2,15 +2,15 @@
 
 use glam::IVec3;
 use relievo::Error;
-use relievo::animation::ModelMatrices;
 use relievo::asset::Affine;
 use relievo::asset::transform::AFFINE_IDENTITY;
 use relievo::gpu::{Buffer, Gpu, Job, Uniform};
-use relievo::lod::attach::reference::{attached, last_local, local, product};
-use relievo::lod::attach::{
+use relievo::ops::animation::ModelMatrices;
+use relievo::ops::lod::attach::reference::{attached, last_local, local, product};
+use relievo::ops::lod::attach::{
     ATTACH_BOUND, AttachBuffers, AttachParams, AttachPass, Attachment, KeptBone, NO_MESH,
 };
-use relievo::lod::{SceneInstance, SelectView};
+use relievo::ops::lod::{SceneInstance, SelectView};
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::{CELL, frame, random_instances};

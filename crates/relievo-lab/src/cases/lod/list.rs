@@ -2,10 +2,10 @@
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Job};
-use relievo::lod::list::reference::{before_blocks, lists};
-use relievo::lod::list::{ListBuffers, ListPass};
-use relievo::lod::select::reference::counts;
-use relievo::lod::{BLOCK, OBJECT_LISTS, SceneDraw};
+use relievo::ops::lod::list::reference::{before_blocks, lists};
+use relievo::ops::lod::list::{ListBuffers, ListPass};
+use relievo::ops::lod::select::reference::counts;
+use relievo::ops::lod::{BLOCK, OBJECT_LISTS, SceneDraw};
 use relievo::shared::lod::object::decision_word;
 
 use crate::cases::animation::Draw;

@@ -8,7 +8,7 @@ pub mod sorted;
 
 use glam::{IVec3, Mat4, Quat, Vec3};
 use relievo::InputError;
-use relievo::lod::{
+use relievo::ops::lod::{
     BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS,
     SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
 };

@@ -2,9 +2,9 @@
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Job};
-use relievo::lod::sorted::reference::{draws, entries};
-use relievo::lod::sorted::{SortedBuffers, SortedDraw, SortedPass};
-use relievo::lod::{OBJECT_LISTS, SceneDraw};
+use relievo::ops::lod::sorted::reference::{draws, entries};
+use relievo::ops::lod::sorted::{SortedBuffers, SortedDraw, SortedPass};
+use relievo::ops::lod::{OBJECT_LISTS, SceneDraw};
 use relievo::shared::lod::object::{decision_word, list_entry_instance};
 
 use crate::cases::animation::Draw;

@@ -7,17 +7,17 @@ pub mod palette;
 pub mod select;
 pub mod skin;
 
-use relievo::animation::local_to_model::reference::{affine, product};
 use relievo::asset::mesh::smooth_normals;
 use relievo::asset::morph::MorphDelta;
 use relievo::asset::skeleton::Skin;
 use relievo::asset::transform::{Affine, Transform, column_major, rows};
 use relievo::asset::{Influence, Influences, Mesh, MeshLevel, Model, MorphTarget};
 use relievo::gpu::Gpu;
-use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use relievo::skinning::clusters::Clusters;
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::vertex::{Blend, Vertex};
+use relievo::ops::animation::local_to_model::reference::{affine, product};
+use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::clusters::Clusters;
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::vertex::{Blend, Vertex};
 use relievo::{Error, InputError};
 
 use crate::cases::animation::{Draw, random_skeleton};

@@ -3,13 +3,13 @@
 use relievo::Error;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
-use relievo::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use relievo::skinning::clusters::{CLUSTER, Clusters};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::morph::{MORPH_BOUND, MorphPass};
-use relievo::skinning::pages::{NO_PAGE, PageBuffers};
-use relievo::skinning::vertex::{Blend, Vertex};
+use relievo::ops::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::clusters::{CLUSTER, Clusters};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::morph::{MORPH_BOUND, MorphPass};
+use relievo::ops::skinning::pages::{NO_PAGE, PageBuffers};
+use relievo::ops::skinning::vertex::{Blend, Vertex};
 
 use crate::cases::animation::Draw;
 use crate::cases::measure;

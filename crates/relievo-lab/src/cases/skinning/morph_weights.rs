@@ -1,17 +1,17 @@
 //! Parity and benchmark cases of `kernels/skinning/morph_weights.wgsl`.
 
-use relievo::animation::clip_set::ClipSet;
-use relievo::animation::instance::{Instance, Wrap};
-use relievo::animation::keyframe_cursor::reference::inside_clip;
 use relievo::asset::clip::BoneKeys;
 use relievo::asset::morph::WeightKeys;
 use relievo::asset::{Clip, Interpolation, Model};
 use relievo::gpu::Buffer;
-use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph_weights::reference::morph_weights;
-use relievo::skinning::morph_weights::{MORPH_WEIGHTS_BOUND, MorphWeightsPass, WeightSet};
-use relievo::skinning::vertex::Blend;
+use relievo::ops::animation::clip_set::ClipSet;
+use relievo::ops::animation::instance::{Instance, Wrap};
+use relievo::ops::animation::keyframe_cursor::reference::inside_clip;
+use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph_weights::reference::morph_weights;
+use relievo::ops::skinning::morph_weights::{MORPH_WEIGHTS_BOUND, MorphWeightsPass, WeightSet};
+use relievo::ops::skinning::vertex::Blend;
 use relievo::{Error, InputError};
 
 use crate::cases::animation::Draw;
@@ -178,7 +178,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::skinning::morph_weights::WeightEntry;
+    use relievo::ops::skinning::morph_weights::WeightEntry;
 
     /// One of 400 instances of two targets is at a jump: its own weights are left out, and no others.
     #[test]

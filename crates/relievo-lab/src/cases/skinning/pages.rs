@@ -1,11 +1,11 @@
 //! Parity and benchmark cases of `kernels/skinning/pages.wgsl`.
 
 use relievo::Error;
-use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::pages::reference::Pages;
-use relievo::skinning::pages::{NO_PAGE, PageBuffers, PagesPass};
-use relievo::skinning::vertex::Blend;
+use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::pages::reference::Pages;
+use relievo::ops::skinning::pages::{NO_PAGE, PageBuffers, PagesPass};
+use relievo::ops::skinning::vertex::Blend;
 
 use crate::cases::animation::Draw;
 use crate::cases::measure;

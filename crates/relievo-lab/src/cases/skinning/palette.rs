@@ -1,13 +1,13 @@
 //! Parity and benchmark cases of `kernels/skinning/palette.wgsl`.
 
 use relievo::Error;
-use relievo::animation::ModelMatrices;
 use relievo::gpu::Buffer;
-use relievo::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::palette::reference::{palette, palette_for};
-use relievo::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
-use relievo::skinning::vertex::Blend;
+use relievo::ops::animation::ModelMatrices;
+use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::palette::reference::{palette, palette_for};
+use relievo::ops::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
+use relievo::ops::skinning::vertex::Blend;
 
 use crate::cases::measure;
 use crate::cases::skinning::{BONES, CROWDS, SHAPES, Scene, poisoned, random_matrices, random_model};

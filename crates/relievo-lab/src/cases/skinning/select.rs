@@ -2,12 +2,12 @@
 
 use relievo::asset::morph::MorphDelta;
 use relievo::asset::{Model, MorphTarget};
-use relievo::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use relievo::skinning::clusters::{CLUSTER, Clusters};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::select::reference::{Now, Skinned, remember, select, select_keeping};
-use relievo::skinning::select::{ClusterState, SKINNED_WORDS, SelectBuffers, SelectPass};
-use relievo::skinning::vertex::Blend;
+use relievo::ops::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::clusters::{CLUSTER, Clusters};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::select::reference::{Now, Skinned, remember, select, select_keeping};
+use relievo::ops::skinning::select::{ClusterState, SKINNED_WORDS, SelectBuffers, SelectPass};
+use relievo::ops::skinning::vertex::Blend;
 use relievo::{Error, InputError};
 
 use crate::cases::animation::Draw;

@@ -5,18 +5,18 @@ use relievo::asset::Model;
 use relievo::asset::mesh::MeshLevel;
 use relievo::asset::transform::{Affine, rows};
 use relievo::gpu::{Buffer, Gpu};
-use relievo::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
-use relievo::skinning::clusters::{CLUSTER, Clusters};
-use relievo::skinning::instance_lod::InstanceLod;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::pages::{NO_PAGE, PageBuffers};
-use relievo::skinning::palette::Palette;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::select::ClusterState;
-use relievo::skinning::skin::reference::weights::reduced;
-use relievo::skinning::skin::reference::{blended, skin, skin_seen};
-use relievo::skinning::skin::{SKIN_BOUND, SkinPass, TRUNCATED};
-use relievo::skinning::vertex::{Blend, Vertex};
+use relievo::ops::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
+use relievo::ops::skinning::clusters::{CLUSTER, Clusters};
+use relievo::ops::skinning::instance_lod::InstanceLod;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::pages::{NO_PAGE, PageBuffers};
+use relievo::ops::skinning::palette::Palette;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::select::ClusterState;
+use relievo::ops::skinning::skin::reference::weights::reduced;
+use relievo::ops::skinning::skin::reference::{blended, skin, skin_seen};
+use relievo::ops::skinning::skin::{SKIN_BOUND, SkinPass, TRUNCATED};
+use relievo::ops::skinning::vertex::{Blend, Vertex};
 
 use crate::cases::skinning::{
     CROWDS, RING, SHAPES, Scene, Shape, flat, poisoned, random_instance_lods, random_matrices, random_model,

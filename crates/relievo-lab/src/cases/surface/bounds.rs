@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use relievo::InputError;
-use relievo::surface::cone_map::RADIUS_BOUND;
-use relievo::surface::map::{Address, HeightMap};
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::relief::{Hit, March, Method, Outcome, Ray};
+use relievo::ops::surface::cone_map::RADIUS_BOUND;
+use relievo::ops::surface::map::{Address, HeightMap};
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::{Hit, March, Method, Outcome, Ray};
 
 /// A unit in the last place of 1: sums and products in WGSL are within this relative distance of the exact
 /// result.

@@ -1,12 +1,12 @@
 //! Parity and benchmark cases of `kernels/surface/cone_map.wgsl`.
 
 use relievo::Error;
-use relievo::surface::HeightBatch;
-use relievo::surface::cone_map::reference::cone_map;
-use relievo::surface::cone_map::{ConeMapPass, RADIUS_BOUND};
-use relievo::surface::height_pyramid::reference::height_pyramid;
-use relievo::surface::height_pyramid::{HeightPyramidPass, Pyramids};
-use relievo::surface::map::Address;
+use relievo::ops::surface::HeightBatch;
+use relievo::ops::surface::cone_map::reference::cone_map;
+use relievo::ops::surface::cone_map::{ConeMapPass, RADIUS_BOUND};
+use relievo::ops::surface::height_pyramid::reference::height_pyramid;
+use relievo::ops::surface::height_pyramid::{HeightPyramidPass, Pyramids};
+use relievo::ops::surface::map::Address;
 use relievo_samples::BuiltInMap;
 
 use crate::cases::surface::{Shape, random_map};

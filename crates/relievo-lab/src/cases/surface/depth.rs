@@ -1,7 +1,7 @@
 //! Error bound for the depth of a relief, by the rules of floating point, operation by operation.
 
 use crate::shade::{ShadePoint, ShadeView};
-use relievo::surface::relief::LEAST_COSINE;
+use relievo::ops::surface::relief::LEAST_COSINE;
 
 use crate::cases::surface::bounds::ULP;
 

@@ -1,10 +1,10 @@
 //! Parity and benchmark cases of `kernels/surface/height_pyramid.wgsl`.
 
 use relievo::Error;
-use relievo::surface::HeightBatch;
-use relievo::surface::height_pyramid::reference::height_pyramid;
-use relievo::surface::height_pyramid::{HeightPyramidPass, PyramidLayout, Pyramids};
-use relievo::surface::map::{Address, HeightMap};
+use relievo::ops::surface::HeightBatch;
+use relievo::ops::surface::height_pyramid::reference::height_pyramid;
+use relievo::ops::surface::height_pyramid::{HeightPyramidPass, PyramidLayout, Pyramids};
+use relievo::ops::surface::map::{Address, HeightMap};
 
 use crate::cases::surface::{Shape, random_map};
 use crate::cases::terrain::copy_of;

@@ -10,10 +10,10 @@ pub mod shade;
 pub mod tangent;
 
 use relievo::gpu::{Buffer, Gpu, Job};
-use relievo::surface::Material;
-use relievo::surface::map::HeightMap;
-use relievo::surface::relief::Ray;
-use relievo::surface::relief::textures::SurfaceTextures;
+use relievo::ops::surface::Material;
+use relievo::ops::surface::map::HeightMap;
+use relievo::ops::surface::relief::Ray;
+use relievo::ops::surface::relief::textures::SurfaceTextures;
 use relievo::{Error, InputError};
 
 use crate::baseline::loads::LoadsPass;

@@ -1,9 +1,9 @@
 //! Bounds on soft shadow in f64, whatever a device rounds. `docs/relief-bounds.md` has the derivation.
 
 use crate::shade::{ShadePoint, ShadeView};
+use relievo::ops::surface::map::{Address, HeightMap};
+use relievo::ops::surface::relief::{LEAST_COSINE, MAX_STEPS};
 use relievo::shared::surface::shadow::SURFACE_SHADOW_BIAS;
-use relievo::surface::map::{Address, HeightMap};
-use relievo::surface::relief::{LEAST_COSINE, MAX_STEPS};
 
 use crate::cases::surface::bounds::{ULP, off};
 

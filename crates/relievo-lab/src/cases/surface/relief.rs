@@ -6,16 +6,16 @@
 use glam::{Mat4, Vec3, Vec4};
 use relievo::asset::Light;
 use relievo::gpu::{Buffer, Gpu};
+use relievo::ops::surface::color::ColorTexture;
+use relievo::ops::surface::map::{Address, HeightMap};
+use relievo::ops::surface::mesh::SurfaceMesh;
+use relievo::ops::surface::mips::Mips;
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::textures::SurfaceTextures;
+use relievo::ops::surface::relief::{Hit, March, Method, Ray, ReliefPass};
+use relievo::ops::surface::{Material, ReliefMaps, ReliefOptions};
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{Camera, Depth, Placement, Quality, Relief, Scene, View};
-use relievo::surface::color::ColorTexture;
-use relievo::surface::map::{Address, HeightMap};
-use relievo::surface::mesh::SurfaceMesh;
-use relievo::surface::mips::Mips;
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::relief::textures::SurfaceTextures;
-use relievo::surface::relief::{Hit, March, Method, Ray, ReliefPass};
-use relievo::surface::{Material, ReliefMaps, ReliefOptions};
 use relievo::{Error, InputError};
 use relievo_samples::BuiltInMap;
 

@@ -7,12 +7,12 @@ use crate::shade::shadow::light_ray;
 use crate::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 use glam::{Mat4, Vec3, Vec4, camera};
 use relievo::gpu::Buffer;
-use relievo::surface::Material;
-use relievo::surface::map::{Address, HeightMap};
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::relief::reference::height::BILINEAR;
-use relievo::surface::relief::textures::SurfaceTextures;
-use relievo::surface::relief::{March, Method, Ray};
+use relievo::ops::surface::Material;
+use relievo::ops::surface::map::{Address, HeightMap};
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::height::BILINEAR;
+use relievo::ops::surface::relief::textures::SurfaceTextures;
+use relievo::ops::surface::relief::{March, Method, Ray};
 use relievo::{Error, InputError};
 use relievo_samples::BuiltInMap;
 

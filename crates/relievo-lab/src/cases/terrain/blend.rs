@@ -4,12 +4,12 @@
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::terrain::blend::reference::{blend, steepness, zone_weight};
-use relievo::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
-use relievo::terrain::config::{Config, Slope, Zone};
-use relievo::terrain::cover::{Cover, MapZone};
-use relievo::terrain::normals::reference::normals;
-use relievo::terrain::texture::Texture;
+use relievo::ops::terrain::blend::reference::{blend, steepness, zone_weight};
+use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
+use relievo::ops::terrain::config::{Config, Slope, Zone};
+use relievo::ops::terrain::cover::{Cover, MapZone};
+use relievo::ops::terrain::normals::reference::normals;
+use relievo::ops::terrain::texture::Texture;
 
 use crate::baseline::texels::TexelsPass;
 use crate::cases::terrain::{copy_of, random_cover, random_windows, some_windows};

@@ -1,9 +1,9 @@
 //! Parity and benchmark cases of `kernels/terrain/border.wgsl`.
 
 use relievo::Error;
-use relievo::terrain::border::reference::border;
-use relievo::terrain::border::{BorderPass, Neighbours, neighbours};
-use relievo::terrain::fields::Fields;
+use relievo::ops::terrain::border::reference::border;
+use relievo::ops::terrain::border::{BorderPass, Neighbours, neighbours};
+use relievo::ops::terrain::fields::Fields;
 
 use crate::cases::terrain::{
     LIMIT, check_exact, measure, random_heights, some_heights, some_patches, uploaded,

@@ -3,10 +3,10 @@
 use std::hint::black_box;
 
 use relievo::Error;
-use relievo::terrain::despike::reference::despike;
-use relievo::terrain::despike::{Despike, DespikeBuffers, DespikePass};
-use relievo::terrain::features::FeatureIndex;
-use relievo::terrain::fields::Fields;
+use relievo::ops::terrain::despike::reference::despike;
+use relievo::ops::terrain::despike::{Despike, DespikeBuffers, DespikePass};
+use relievo::ops::terrain::features::FeatureIndex;
+use relievo::ops::terrain::fields::Fields;
 
 use crate::cases::terrain::{LIMIT, check_exact, measure, random_windows, random_words, some_windows};
 use crate::harness::poison::Poisoned;

@@ -2,9 +2,9 @@
 //! batches of 64 (16 of 1025²).
 
 use relievo::Error;
-use relievo::terrain::config::{Config, Offset};
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::config::{Config, Offset};
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::fixed::FeatureMode;
 
 use crate::cases::terrain::levels::{OFFSETS, check, check_dense, measure_levels};
 use crate::cases::terrain::scattered;

@@ -4,12 +4,12 @@
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::terrain::config::{Config, Interpolation};
-use relievo::terrain::features::Features;
-use relievo::terrain::field::generate;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::hydraulic::reference::{Flow, hydraulic};
-use relievo::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
+use relievo::ops::terrain::config::{Config, Interpolation};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::field::generate;
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::hydraulic::reference::{Flow, hydraulic};
+use relievo::ops::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 
 use crate::cases::terrain::{LIMIT, check_exact, copy_of, random_heights, uploaded};
 use crate::harness::poison::{POISON, Poisoned};

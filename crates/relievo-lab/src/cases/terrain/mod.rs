@@ -16,12 +16,12 @@ pub mod wrap;
 use std::fmt::Debug;
 
 use relievo::gpu::{Buffer, Gpu, Job};
-use relievo::hash::threefry2x32;
-use relievo::terrain::config::{Config, HEIGHT_LIMIT, Zone};
-use relievo::terrain::cover::{Cover, MapZone, zone_of};
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::fields::Fields;
-use relievo::terrain::fixed::FeatureMode;
+use relievo::ops::hash::threefry2x32;
+use relievo::ops::terrain::config::{Config, HEIGHT_LIMIT, Zone};
+use relievo::ops::terrain::cover::{Cover, MapZone, zone_of};
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::fixed::FeatureMode;
 use relievo::{Error, InputError};
 
 use crate::baseline::copy::{CopyBuffers, CopyPass};

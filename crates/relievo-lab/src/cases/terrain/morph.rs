@@ -2,8 +2,8 @@
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::terrain::morph::reference::morph;
-use relievo::terrain::morph::{Morph, MorphBuffers, MorphPass};
+use relievo::ops::terrain::morph::reference::morph;
+use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
 
 use crate::cases::terrain::{LIMIT, check_exact, measure, random_heights, some_heights};
 use crate::harness::poison::{POISON, Poisoned};

@@ -4,8 +4,8 @@ use std::hint::black_box;
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::terrain::normals::reference::normals;
-use relievo::terrain::normals::{NORMAL_BOUND, NormalsPass};
+use relievo::ops::terrain::normals::reference::normals;
+use relievo::ops::terrain::normals::{NORMAL_BOUND, NormalsPass};
 
 use crate::cases::terrain::{LIMIT, check_exact, measure, random_windows, some_windows};
 use crate::harness::compare::absolute;

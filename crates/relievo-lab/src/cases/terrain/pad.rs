@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::terrain::config::{Border, Config};
-use relievo::terrain::pad::reference::pad;
-use relievo::terrain::pad::{PadPass, Surround, surrounds};
+use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::pad::reference::pad;
+use relievo::ops::terrain::pad::{PadPass, Surround, surrounds};
 
 use crate::cases::terrain::{
     LIMIT, check_exact, measure, random_heights, some_heights, some_patches, uploaded,

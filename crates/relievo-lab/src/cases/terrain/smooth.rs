@@ -1,9 +1,9 @@
 //! Parity and benchmark cases of `kernels/terrain/smooth.wgsl`.
 
 use relievo::Error;
-use relievo::terrain::config::{Config, Interpolation, Offset};
-use relievo::terrain::features::{FeatureFile, Features};
-use relievo::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::config::{Config, Interpolation, Offset};
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::fixed::FeatureMode;
 
 use crate::cases::terrain::levels::{OFFSETS, check, check_dense, measure_levels};
 use crate::cases::terrain::scattered;

@@ -3,9 +3,9 @@
 use std::hint::black_box;
 
 use relievo::Error;
-use relievo::terrain::fields::Fields;
-use relievo::terrain::thermal::reference::thermal;
-use relievo::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
+use relievo::ops::terrain::fields::Fields;
+use relievo::ops::terrain::thermal::reference::thermal;
+use relievo::ops::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 
 use crate::cases::terrain::{LIMIT, check_exact, measure, random_heights, some_windows};
 use crate::harness::poison::{POISON, Poisoned};

@@ -1,9 +1,9 @@
 //! Parity and benchmark cases of `kernels/terrain/wrap.wgsl`.
 
 use relievo::Error;
-use relievo::terrain::config::{Border, Config, Offset};
-use relievo::terrain::features::Features;
-use relievo::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::config::{Border, Config, Offset};
+use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::fixed::FeatureMode;
 
 use crate::cases::terrain::levels::{OFFSETS, check, measure_levels};
 use crate::cases::terrain::scattered;

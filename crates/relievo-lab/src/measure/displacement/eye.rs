@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use relievo::InputError;
-use relievo::lod::LodCamera;
+use relievo::ops::lod::LodCamera;
 use relievo::scene::{Camera, Depth};
 
 /// A camera that projects points, which are relative to the corner of its cell.

@@ -17,10 +17,10 @@ use eye::{Eye, is_inside};
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 use relievo::asset::{Affine, Model};
-use relievo::lod::OBJECT_LEVELS;
+use relievo::ops::lod::OBJECT_LEVELS;
 use relievo::scene::query::{DrawnAs, DrawnInstance};
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Scene, View};
-use relievo::{Error, InputError, skinning};
+use relievo::{Error, InputError, ops::skinning};
 use serde::Serialize;
 use surface::{Primitive, Sample, Surface, Watched};
 

@@ -4,17 +4,17 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use relievo::asset::{Mesh, Model};
-use relievo::lod::OBJECT_LISTS;
+use relievo::ops::lod::OBJECT_LISTS;
+use relievo::ops::skinning::clusters::Clusters;
+use relievo::ops::skinning::merged::Merged;
+use relievo::ops::skinning::morph::reference::morph;
+use relievo::ops::skinning::palette::reference::palette_for;
+use relievo::ops::skinning::skin::reference::skin;
+use relievo::ops::skinning::{Blend, InstanceLod, Vertex};
 use relievo::scene::mesh::{at_rest_merged, coarsest_levels, moving_merged};
 use relievo::scene::query::{DrawnAs, DrawnInstance};
 use relievo::scene::{ClipTime, ObjectId, Scene, View};
-use relievo::skinning::clusters::Clusters;
-use relievo::skinning::merged::Merged;
-use relievo::skinning::morph::reference::morph;
-use relievo::skinning::palette::reference::palette_for;
-use relievo::skinning::skin::reference::skin;
-use relievo::skinning::{Blend, InstanceLod, Vertex};
-use relievo::{Error, InputError, animation};
+use relievo::{Error, InputError, ops::animation};
 
 use crate::distance::tree::Tree;
 

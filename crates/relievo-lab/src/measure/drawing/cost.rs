@@ -1,6 +1,6 @@
 //! What drawing a crowd costs, and what its level of detail shows.
 
-use relievo::lod::OBJECT_LEVELS;
+use relievo::ops::lod::OBJECT_LEVELS;
 use serde::Serialize;
 
 use crate::measure::displacement::Displacement;

@@ -2,7 +2,7 @@
 
 use relievo::Error;
 use relievo::gpu::{Gpu, GpuError};
-use relievo::lod::OBJECT_LEVELS;
+use relievo::ops::lod::OBJECT_LEVELS;
 use relievo::render::{Layer, Renderer};
 use relievo::scene::{Camera, ObjectId, Play, Scene, View};
 

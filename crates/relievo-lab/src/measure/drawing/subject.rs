@@ -4,10 +4,10 @@ use image::{Rgba, RgbaImage};
 use relievo::InputError;
 use relievo::asset::material::{Material, Sampling, Texture};
 use relievo::asset::{Mesh, Model};
+use relievo::ops::skinning::clusters::Clusters;
+use relievo::ops::skinning::{add_levels, poses_of};
 use relievo::scene::Transition;
 use relievo::scene::mesh::moving_merged;
-use relievo::skinning::clusters::Clusters;
-use relievo::skinning::{add_levels, poses_of};
 
 use crate::measure::levels::LevelReport;
 use crate::measure::options::{Detail, Subject};

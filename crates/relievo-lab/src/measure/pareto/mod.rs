@@ -3,9 +3,9 @@
 pub use comparison::{AtCost, AtError, Comparisons};
 use rayon::prelude::*;
 use relievo::Error;
-use relievo::animation::Gate;
-use relievo::animation::lod::OMEGA_ONE;
-use relievo::animation::priority::Weights;
+use relievo::ops::animation::Gate;
+use relievo::ops::animation::lod::OMEGA_ONE;
+use relievo::ops::animation::priority::Weights;
 use serde::Serialize;
 
 use crate::measure::cpu::Cpu;

@@ -9,7 +9,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use relievo::InputError;
 use relievo::asset::Model;
-use relievo::skinning::at_rest;
+use relievo::ops::skinning::at_rest;
 use serde::Serialize;
 
 use crate::measure::progress::Listener;

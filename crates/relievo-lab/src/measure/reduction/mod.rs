@@ -9,7 +9,7 @@ use crate::reduce::{Limits, Reducer};
 use crate::reduce::{Normals, ReducedModel, reduce_model};
 use relievo::InputError;
 use relievo::asset::Model;
-use relievo::skinning::at_rest;
+use relievo::ops::skinning::at_rest;
 
 use crate::measure::progress::{Listener, Steps, during};
 

@@ -1,7 +1,7 @@
 //! Error and cost of every ray-height method, at several angles.
 
 use relievo::gpu::Gpu;
-use relievo::surface::{March, Method, Ray};
+use relievo::ops::surface::{March, Method, Ray};
 use relievo::{Error, InputError};
 use serde::Serialize;
 

@@ -2,8 +2,8 @@
 //! that it crosses, in order. The error of every method is measured against it, and it shares no code with the
 //! methods.
 
-use relievo::surface::map::{Address, HeightMap};
-use relievo::surface::relief::{Hit, Ray};
+use relievo::ops::surface::map::{Address, HeightMap};
+use relievo::ops::surface::relief::{Hit, Ray};
 
 /// The first intersection of a ray with the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -144,7 +144,7 @@ mod tests {
                 let hit = exact(&map, &ray, address).expect("a hit");
                 let above = |t: f64| {
                     1.0 - t
-                        - f64::from(relievo::surface::relief::reference::height::height(
+                        - f64::from(relievo::ops::surface::relief::reference::height::height(
                             &map,
                             ray.at(t as f32),
                             address,

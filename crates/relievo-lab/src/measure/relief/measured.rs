@@ -4,8 +4,8 @@
 use rayon::prelude::*;
 
 use super::exact::exact;
-use relievo::surface::map::{Address, HeightMap};
-use relievo::surface::relief::{Hit, Outcome, Ray};
+use relievo::ops::surface::map::{Address, HeightMap};
+use relievo::ops::surface::relief::{Hit, Outcome, Ray};
 
 /// Statistics of a list of traced rays.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

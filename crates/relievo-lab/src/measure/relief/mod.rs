@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::surface::{Green, HeightMap, Hit, March, Material, Method, Mips, Ray, Shadow};
+use relievo::ops::surface::{Green, HeightMap, Hit, March, Material, Method, Mips, Ray, Shadow};
 use relievo::{Error, InputError};
 use serde::Serialize;
 use tracer::Tracer;

@@ -5,14 +5,14 @@ use rayon::prelude::*;
 
 use super::view::SquareView;
 use crate::shade::shadow::{light_ray, shaded, soft_shadow};
+use relievo::ops::surface::linear_image::LinearImage;
+use relievo::ops::surface::map::Address;
+use relievo::ops::surface::mips::Mips;
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::height::height;
+use relievo::ops::surface::relief::{Hit, March, Method, Ray};
+use relievo::ops::surface::{Green, Material, Shadow};
 use relievo::srgb::linear;
-use relievo::surface::linear_image::LinearImage;
-use relievo::surface::map::Address;
-use relievo::surface::mips::Mips;
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::relief::reference::height::height;
-use relievo::surface::relief::{Hit, March, Method, Ray};
-use relievo::surface::{Green, Material, Shadow};
 
 /// The scene of a picture.
 #[derive(Debug, Clone, Copy)]

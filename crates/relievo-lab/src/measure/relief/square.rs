@@ -4,10 +4,10 @@ use glam::{DVec3, Mat4, Vec3, Vec4};
 use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
-use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
-use relievo::surface::{
+use relievo::ops::surface::{
     Address, ColorTexture, Material, ReliefMaps, ReliefOptions, SurfaceMesh, SurfaceTextures,
 };
+use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
 
 use crate::measure::relief::{ReliefSquare, SquareView};
 

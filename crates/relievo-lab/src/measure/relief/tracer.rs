@@ -3,11 +3,11 @@
 use image::RgbaImage;
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
+use relievo::ops::surface::relief::ReliefPass;
+use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::{Address, HeightMap, Hit, March, Method, Ray, SurfaceTextures};
 use relievo::render::Offscreen;
 use relievo::render::target::LINEAR_FORMAT;
-use relievo::surface::relief::ReliefPass;
-use relievo::surface::relief::reference::Surface;
-use relievo::surface::{Address, HeightMap, Hit, March, Method, Ray, SurfaceTextures};
 
 use crate::measure::relief::ReliefSquare;
 use crate::measure::relief::picture::Scene;

@@ -2,7 +2,7 @@
 //! costs can be attributed to that angle.
 
 use relievo::InputError;
-use relievo::surface::relief::Ray;
+use relievo::ops::surface::relief::Ray;
 
 /// The view of a textured square. In tangent space u points right, v down the image, and the normal towards the
 /// viewer.

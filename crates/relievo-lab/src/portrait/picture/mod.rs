@@ -7,7 +7,7 @@ pub use scene::{Part, Scene};
 
 use glam::{Mat4, Vec2, Vec3, camera};
 use relievo::asset::Model;
-use relievo::skinning::vertex::{Vertex, vertices_of};
+use relievo::ops::skinning::vertex::{Vertex, vertices_of};
 
 /// A matrix from the model's space to clip space that puts all of these vertices in the middle of a square
 /// picture, seen from +Z, slightly from the left and from above.

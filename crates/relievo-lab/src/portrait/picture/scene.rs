@@ -5,9 +5,9 @@ use glam::{Mat4, Vec3, Vec4};
 use relievo::asset::Mesh;
 use relievo::asset::material::{Alpha, dither_threshold};
 use relievo::asset::{Light, light::lambert};
-use relievo::lod::is_mirrored;
-use relievo::skinning::vertex::Vertex;
-use relievo::surface::linear_image::LinearImage;
+use relievo::ops::lod::is_mirrored;
+use relievo::ops::skinning::vertex::Vertex;
+use relievo::ops::surface::linear_image::LinearImage;
 
 use super::texture::Surface;
 

@@ -4,8 +4,8 @@
 use image::RgbaImage;
 use relievo::asset::Model;
 use relievo::asset::material::{Alpha, Filter, Material, Sampling, Wrapping};
+use relievo::ops::surface::mips::Mips;
 use relievo::srgb::linear;
-use relievo::surface::mips::Mips;
 
 /// The base colour of a surface.
 #[derive(Debug, Clone)]

@@ -11,10 +11,10 @@ use relievo::asset::Light;
 use relievo::glam::{Quat, Vec3};
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
+use relievo::scene::TerrainConfig;
 use relievo::scene::kind::KindProgram;
 use relievo::scene::{Camera, Depth, Placement, Play, Ray, Relief, Scene, TerrainSource, View};
 use relievo::scene_file::SceneFile;
-use relievo::terrain::config::Config;
 use relievo::wgpu::TextureFormat;
 use relievo_samples::{creature, maps::BuiltInMap};
 
@@ -39,7 +39,7 @@ impl World {
     /// Builds the scene, under the light of the day or of the evening.
     pub async fn new(gpu: &Gpu, evening: bool) -> Result<Self, Error> {
         let mut scene = Scene::new_async(gpu).await?;
-        let config = Config::new(33, 6.0, "browser")?;
+        let config = TerrainConfig::new(33, 6.0, "browser")?;
         let land = scene.add_terrain_async(&TerrainSource::new(config)).await?;
         let walkers = scene.add_character_async(&creature()?, 3).await?;
         let bricks = BuiltInMap::Bricks;

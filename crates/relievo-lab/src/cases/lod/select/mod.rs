@@ -3,12 +3,12 @@
 use relievo::Error;
 use relievo::asset::Affine;
 use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
-use relievo::lod::allowed::allowed_by;
-use relievo::lod::object::level_within;
-use relievo::lod::select::reference::{counts, depth_inside, is_shown, placed_sphere, select};
-use relievo::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
-use relievo::lod::transition::morph_within;
-use relievo::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
+use relievo::ops::lod::allowed::allowed_by;
+use relievo::ops::lod::object::level_within;
+use relievo::ops::lod::select::reference::{counts, depth_inside, is_shown, placed_sphere, select};
+use relievo::ops::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
+use relievo::ops::lod::transition::morph_within;
+use relievo::ops::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
 use relievo::shared::lod::object::{
     MORPH_STEPS, decision_list, decision_morph, decision_word, morph_level, morph_steps, morph_word,
 };

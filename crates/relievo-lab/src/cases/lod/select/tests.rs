@@ -1,6 +1,6 @@
 //! Every comparator of these cases fails on planted faults.
 
-use relievo::lod::select::reference::merged;
+use relievo::ops::lod::select::reference::merged;
 
 use crate::cases::lod::select::*;
 

@@ -1,6 +1,6 @@
 //! The meshes of the parity cases: literal ones, ones on either side of a threshold, and large ones.
 
-use relievo::surface::tangent::{DEGENERATE, Mesh, VANISHING};
+use relievo::ops::surface::tangent::{DEGENERATE, Mesh, VANISHING};
 
 use crate::cases::terrain::random_words;
 

@@ -6,8 +6,8 @@ use meshes::{
 };
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::surface::tangent::reference::{Frame, frames, tangents};
-use relievo::surface::tangent::{TANGENT_BOUND, TangentBuffers, TangentPass};
+use relievo::ops::surface::tangent::reference::{Frame, frames, tangents};
+use relievo::ops::surface::tangent::{TANGENT_BOUND, TangentBuffers, TangentPass};
 
 use crate::cases::terrain::copy_of;
 use crate::harness::compare::{Comparison, LeftOut, absolute, exact};
@@ -133,7 +133,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::surface::tangent::Mesh;
+    use relievo::ops::surface::tangent::Mesh;
 
     #[test]
     fn a_turned_tangent_and_an_open_decision_fail() {

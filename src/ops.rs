@@ -1,0 +1,67 @@
+//! Operations: GPU passes over buffers of the caller's, each beside a CPU reference. The scene is built from them.
+//!
+//! **This storey may change in a minor release**; the scene and the modules beside it may not. The types of operations that the
+//! scene's functions take and return are re-exported by [`scene`](crate::scene) and [`render`](crate::render): use them from there.
+//!
+//! | module | operations |
+//! |---|---|
+//! | [`mesh`] | simplification, and stored levels that refine each other |
+//! | [`terrain`] | heights from a seed, the same bits on every device; features, erosion, normals, colour maps |
+//! | [`surface`] | height maps, ray-height methods and the maps that accelerate them, tangent frames |
+//! | [`animation`] | sampling and concatenation of bones of crowds, layers, gates (animation level of detail), bounds, root motion |
+//! | [`skinning`] | skinned and morphed meshes, their levels of detail, and the vertices that need work in a frame |
+//! | [`lod`] | culling, choice of levels, lists of instances and draws |
+//! | [`hash`](mod@hash) | counter-based random words |
+//!
+//! # The shape of an operation
+//!
+//! An operation is a folder: `mod.rs` has its parameters, `reference.rs` the CPU reference, which also serves machines
+//! without a GPU, and `pass.rs` the GPU pass. A *pass* compiles its pipelines once. Its `prepare` binds buffers and
+//! gives a *job*. `record` writes the job into the caller's command encoder, without submission, wait or allocation.
+//!
+//! ```
+//! # #[cfg(feature = "gpu")] {
+//! use relievo::gpu::{Buffer, Gpu, Options};
+//! use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
+//!
+//! let gpu = Gpu::headless(&Options::default())?; // or Gpu::from_wgpu(device, queue)
+//! let from = Buffer::from_slice(&gpu, "from", &[0, 65_536])?; // heights in 1/65536 units
+//! let to = Buffer::from_slice(&gpu, "to", &[65_536, 0])?;
+//! let heights = Buffer::new(&gpu, "heights", 2)?;
+//!
+//! let pass = MorphPass::new(&gpu)?;
+//! let job = pass.prepare(&gpu, MorphBuffers { from: &from, to: &to, heights: &heights })?;
+//! job.set(&gpu, Morph { time: 0.25 })?;
+//! gpu.run("morph", |encoder| job.record(encoder))?; // or record it into your own encoder
+//! assert_eq!(heights.read_blocking(&gpu)?, [16_384, 49_152]);
+//! # }
+//! # Ok::<(), relievo::Error>(())
+//! ```
+//!
+//! # Without a GPU
+//!
+//! ```
+//! use relievo::ops::terrain::field::field;
+//! use relievo::ops::terrain::{config::Config, export::sha256, recipe::Recipe};
+//!
+//! // B's own JSON, on the CPU. `relievo::ops::terrain::generator::Generator` gives the same bits on a GPU.
+//! let config = Config::from_json(r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#)?;
+//! let patch = field(&Recipe::new(config), &[[0, 0]], 0)?.remove(0);
+//! assert!(sha256(&patch).starts_with("d50dfddcc5fb3237"));
+//! # Ok::<(), relievo::InputError>(())
+//! ```
+
+#[path = "animation/mod.rs"]
+pub mod animation;
+#[path = "hash.rs"]
+pub mod hash;
+#[path = "lod/mod.rs"]
+pub mod lod;
+#[path = "mesh/mod.rs"]
+pub mod mesh;
+#[path = "skinning/mod.rs"]
+pub mod skinning;
+#[path = "surface/mod.rs"]
+pub mod surface;
+#[path = "terrain/mod.rs"]
+pub mod terrain;
