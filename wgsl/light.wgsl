@@ -1,7 +1,7 @@
-// What light makes of a surface, the same for everything that is drawn.
+// Lighting of surfaces, shared by everything that is drawn.
 
-// What a matt surface of a linear albedo sends to the eye, linear, after Lambert: `direct`, 0..1, is the cosine at which the
-// light falls on it, less where it lies in shadow; `ambient`, 0..1, is what it gets without.
+// Linear light that a Lambertian (matte) surface of a linear albedo reflects. `direct`, 0..1, is the cosine of the light's
+// incidence, reduced in shadow. `ambient`, 0..1, is the light that the surface receives without it.
 fn lambert(albedo: vec3<f32>, ambient: f32, direct: f32) -> vec3<f32> {
     return albedo * (ambient + (1.0 - ambient) * direct);
 }

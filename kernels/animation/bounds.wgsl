@@ -1,5 +1,5 @@
-// Axis-aligned bounds of instances in the model's space, around spheres at their bones: each has the bone's
-// radius and is transformed by the bone's matrix. A workgroup handles all bones of one instance.
+// Axis-aligned bounds of instances in model space, around one sphere per bone: it has the bone's radius and is transformed by
+// the bone's matrix. A workgroup handles all bones of one instance.
 
 struct BoundsParams {
     instances: u32,
@@ -15,11 +15,11 @@ struct BoundsParams {
 @group(0) @binding(3) var<storage, read_write> bounds: array<vec4<f32>>;
 
 const THREADS = 64u;
-// The factor by which extents are enlarged.
+// Factor by which extents grow, for rounding.
 const GROWTH: f32 = 1.0 + 1.0 / 524288.0;
-// The fraction of the center's distance that is added to extents.
+// Fraction of the center's distance that extents grow by, for rounding.
 const OF_CENTER: f32 = 1.0 / 2097152.0;
-// The length that is added to a row, 2⁻⁶², for squares that are flushed to 0.
+// Length that is added to a row, 2⁻⁶², because squares may be flushed to 0.
 const LEAST: f32 = 2.16840434e-19;
 // The largest f32, with exactly these digits: some compilers refuse larger literals.
 const LARGEST = 3.4028234663852886e38;

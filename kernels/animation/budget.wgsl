@@ -1,6 +1,6 @@
-// Selects the bones that are sampled when their number is limited: those whose stale transforms are expected to
-// be most visible. There are five stages, one dispatch each. Equal ranks are served in the order of instances
-// and slots, so that every device decides alike.
+// Selects the bones that are sampled when their number is limited: those whose stale transforms are expected to be most
+// visible. There are five stages, one dispatch each. Equal ranks are served in the order of instances and slots, so that every
+// device decides identically.
 import package::wgsl::animation::gate_state::{Lod, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, ClipClock, fraction_of, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
@@ -11,7 +11,7 @@ override STAGE: u32 = 0;
 const RANK = 0u;
 // One workgroup finds the lowest rank that is served.
 const CHOOSE = 1u;
-// A thread selects the bones above that rank and counts those that have it.
+// A thread selects the bones above that rank and counts the bones of that rank.
 const DECIDE = 2u;
 // One workgroup computes prefix sums of these counts over the instances.
 const SUM = 3u;
@@ -35,19 +35,20 @@ struct BudgetParams {
 @group(0) @binding(0) var<uniform> params: BudgetParams;
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
-// For each clip, the row of its periods, then one bit for each bone that moves in it.
+// Per clip: the index of its last row in `table`, then one bit per bone that moves in it.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
-// For each bone, the sum of motion and its rise to the next row.
+// Per bone: the accumulated motion (x) and its rise to the next row (y). In a clip's last row, x is the motion over the whole
+// clip.
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
-// For each bone, the sum of motion when it was last sampled.
+// Per bone: the accumulated motion when it was last sampled.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// One bit per bone; then, in the same layout, the bones that are sampled ahead, of which there are none.
+// One bit per bone. Then, in the same layout, the bones that are sampled ahead: none.
 @group(0) @binding(6) var<storage, read_write> bits: array<u32>;
 // Ranks, two per word and 16 words for each word of bits; then one bit for each bone of the lowest rank that is
 // served.
 @group(0) @binding(7) var<storage, read_write> ranks: array<u32>;
-// The number of bones of each rank; then the values that are named below; then, for each instance, the number
-// of bones of the lowest rank.
+// The number of bones of each rank; then the values at the indices below; then, from TIES on, per instance the number of bones
+// of the lowest rank.
 @group(0) @binding(8) var<storage, read_write> tally: array<atomic<u32>>;
 
 const FORCED = 1024u;
@@ -59,7 +60,7 @@ var<workgroup> sums: array<u32, WIDTH>;
 
 struct WordOfBones {
     instance: u32,
-    // The first of the instance's bones.
+    // Index of the first of these bones in the instance.
     slot: u32,
     candidates: u32,
     forced: u32,
@@ -152,7 +153,7 @@ fn choose(lane: u32) {
     sums[lane] = sum;
     workgroupBarrier();
     if lane == 0u {
-        // What is left of the budget after bones that are sampled in any case.
+        // The part of the budget that forced bones leave.
         var room = params.budget - min(atomicExchange(&tally[FORCED], 0u), params.budget);
         var block = WIDTH;
         while block > 0u && sums[block - 1u] <= room {

@@ -1,5 +1,5 @@
-// The integer position of each instance on the common timeline of its clip, and the reason, other than time, to
-// update its pose. Gates decide by these. A thread handles one instance.
+// The clip clock of each instance: its integer position on the common timeline of its clip, and the update reason. Gates decide
+// by it. A thread handles one instance.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::gate_state::{FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, Lod, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, progress_word};
@@ -24,8 +24,8 @@ struct ClipClockParams {
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;
 // Weights of the layers above the base, layer by layer.
 @group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
-// Per instance: the last clip + 1, with BLENDED if layers were above it, or 0 if no pose is stored; a hash of
-// what these layers played; and, as bits, the time inside the clip and the time ahead.
+// Per instance: the last clip + 1, with BLENDED if layers were above it, or 0 if no pose is stored; a hash of the clips of
+// these layers; and, as bits, the time inside the clip and the look-ahead time.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
 // One per instance.
 @group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;
@@ -34,11 +34,12 @@ const BLENDED: u32 = 0x80000000u;
 // The factor of the hash of clips above the base.
 const CLIP_HASH_FACTOR: u32 = 31u;
 
-// No instance plays this clip.
+// Clip index that no instance has.
 const NO_CLIP: u32 = 0xffffffffu;
 
-// A hash of the clips that play above the base, which is clip `base`; 0 if there are none. (No instance has NO_CLIP, but
-// where uniforms alone decide loops and branches, lavapipe compiles the kernel anew in each submission.)
+// A hash of the clips that play above the base layer; 0 if there are none. `base` is the clip of the base layer. Driver
+// workaround: where uniforms alone decide loops and branches, lavapipe compiles the kernel again in each submission. The loop
+// therefore also depends on `base`, which is never NO_CLIP.
 fn clips_above(instance: u32, base: u32) -> u32 {
     var clips = 0u;
     for (var layer = 0u; layer < select(params.layers, 0u, base == NO_CLIP); layer++) {
@@ -49,12 +50,12 @@ fn clips_above(instance: u32, base: u32) -> u32 {
     return clips;
 }
 
-// The fraction of a cursor, in FRACTION_ONE-ths.
+// The fraction of a cursor, in 1/FRACTION_ONE.
 fn whole_fraction(cursor: KeyframeCursor) -> u32 {
     return u32(clamp(cursor.fraction, 0.0, 1.0) * f32(FRACTION_ONE));
 }
 
-// The clip clock of an instance with the flags of its level of detail; updates its history.
+// The clip clock of an instance. `flags` are those of its level of detail. Updates its history.
 fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let instance = instances[index];
     let clip = clips[instance.clip];

@@ -1,7 +1,6 @@
-// Turns bits into lists: the active pairs of instance and bone, the slots that must be updated because a bone
-// at or above them is active, the instances that have any, and the arguments of the indirect dispatches. Lists
-// keep the order of instances and, within an instance, of its slots, on every device. There are three stages,
-// one dispatch each.
+// Turns bits into lists: the active pairs of instance and bone, and the instances that have any. Also marks slots with an
+// active bone at or above them, which must be updated, and writes the arguments of the indirect dispatches. On every device,
+// lists are in the order of instances and, within an instance, of slots. There are three stages, one dispatch each.
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::order::Slot;
 import package::wgsl::dispatch::rows_of_workgroups;
@@ -30,21 +29,21 @@ struct CompactParams {
 }
 
 @group(0) @binding(0) var<uniform> params: CompactParams;
-// One bit per slot of each instance: the bones that are sampled; then, in the same layout, those of them that
-// are sampled ahead; and those whose model matrices this frame updates.
+// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, those of them that are
+// sampled ahead, and bones whose model matrices this frame updates.
 @group(0) @binding(1) var<storage, read_write> bits: array<u32>;
 @group(0) @binding(2) var<storage, read> slots: array<Slot>;
-// The updated bones of this frame and of those before, until readers have followed all of them.
+// Updated bones. They accumulate over frames until all readers have followed them.
 @group(0) @binding(3) var<storage, read_write> updated_bones: array<u32>;
-// The number of active pairs of each instance; after the scan, of all instances before it.
+// Per instance. In: the number of active pairs. After the scan: the number of active pairs of all instances before it.
 @group(0) @binding(4) var<storage, read_write> counts: array<u32>;
 // instance * bones + bone, with PAIR_AHEAD if it is sampled ahead.
 @group(0) @binding(5) var<storage, read_write> pairs: array<u32>;
 // Workgroups along x, y and z for one thread per pair, and the number of pairs.
 @group(0) @binding(6) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
 @group(0) @binding(7) var<storage, read_write> updated_instances: array<u32>;
-// The same for one thread per updated instance; then dispatches with several threads per updated instance, as
-// many as w said before.
+// First the same for one thread per updated instance. Then dispatches with several threads per updated instance; their w holds
+// that number, also on input.
 @group(0) @binding(8) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
 
 var<workgroup> sums: array<vec2<u32>, WIDTH>;
@@ -55,8 +54,8 @@ fn run(start: u32, end: u32) -> u32 {
     return below & (0xffffffffu << start);
 }
 
-// (No subtree ends beyond the last bone. Where uniforms alone decide a loop's end, lavapipe compiles the kernel anew in each
-// submission; hence the second condition of this loop and of that in `scan`.)
+// Driver workaround: where uniforms alone decide a loop's end, lavapipe compiles the kernel again in each submission. Hence the
+// second condition of this loop and of the one in `scan`. It always holds: no subtree ends beyond the last bone.
 fn spread(instance: u32) {
     let first_word = instance * params.words;
     let all_words = params.instances * params.words;

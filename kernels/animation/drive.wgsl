@@ -1,5 +1,6 @@
-// Adds driven bones, whose local transforms the caller writes after sampling, to those that a gate chose: they are sampled in
-// every frame, at the time of the frame. A thread adds those of one word of bits. Instances that no view sees are left alone.
+// Adds driven bones to the bones that a gate chose. They are sampled in every frame, at the time of the frame; the caller
+// writes their local transforms after sampling. A thread handles one word of bits. Instances that no view sees are left
+// unchanged.
 import package::wgsl::animation::gate_state::{LOD_HIDDEN, Lod};
 
 struct DriveParams {
@@ -22,8 +23,8 @@ struct DrivenWord {
 @group(0) @binding(0) var<uniform> params: DriveParams;
 @group(0) @binding(1) var<storage, read> driven: array<DrivenWord>;
 @group(0) @binding(2) var<storage, read> lods: array<Lod>;
-// One bit per slot of each instance: the bones that are sampled; then, in the same layout, those of them that are sampled
-// ahead.
+// One bit per slot of each instance, in two sections of the same layout: bones that are sampled, and those of them that are
+// sampled ahead.
 @group(0) @binding(3) var<storage, read_write> bits: array<u32>;
 
 @compute @workgroup_size(64)

@@ -1,6 +1,6 @@
 // Decides which bones of which instances are sampled this frame, one bit each. All arithmetic is on integers, so that every
-// device decides alike. A thread decides for up to 32 bones of one instance; with BOUNDED, for all of them, because parents
-// pass what they leave of the error budget to their children.
+// device decides identically. A thread decides for up to 32 bones of one instance. With BOUNDED, it decides for all of them,
+// because parents pass their remaining error budget to their children.
 import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
 import package::wgsl::animation::order::NO_PARENT;
@@ -28,7 +28,7 @@ struct GateParams {
     period: u32,
     // Frames since the start.
     frame: u32,
-    // The row of the table that gives, for each slot, the nearest slot above it that the first clip moves; rows
+    // Row of the table with each slot's nearest animated ancestor: the nearest slot above it that the first clip moves. Rows
     // for the other clips follow.
     first_above: u32,
 }
@@ -36,17 +36,17 @@ struct GateParams {
 @group(0) @binding(0) var<uniform> params: GateParams;
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
-// For each clip, the row of its periods, then one bit for each bone that moves in it.
+// Per clip: the index of its last row in `table`, then one bit per bone that moves in it.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
-// Either priorities, four per vector; or for each bone the sum of motion and its rise to the next row. In a
-// clip's last row, the latter are the sum over the whole clip and the bone's error budget.
+// Either priorities, four per vector, or per bone the accumulated motion (x) and its rise to the next row (y). In a clip's last
+// row, x is the motion over the whole clip, and y the bone's encoded error budget.
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
-// For each bone, the sum of motion when it was last sampled.
+// Per bone: the accumulated motion when it was last sampled.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// For each bone that has children other than the next bone, what it leaves of the error budget.
+// Remaining error budget of each bone that has children other than the next bone.
 @group(0) @binding(6) var<storage, read_write> remaining: array<u32>;
-// One bit per slot of each instance: the bones that are sampled; then, in the same layout, those of them that are sampled
-// ahead; and those whose model matrices this frame updates.
+// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, those of them that are
+// sampled ahead, and bones whose model matrices this frame updates.
 @group(0) @binding(7) var<storage, read_write> bits: array<u32>;
 
 // The factors of the hash below.
@@ -60,8 +60,8 @@ fn scramble(word: u32) -> u32 {
     return mixed ^ (mixed >> 15u);
 }
 
-// A's rule skips one update per period: in every frame if a period is no longer than a frame, otherwise in a
-// frame in which the clock passes a multiple of the period.
+// A's rule: one update per period is skipped. If a period is no longer than a frame, that is every frame; otherwise each frame
+// in which the clock passes a multiple of the period.
 fn is_skipped(period: u32, ticks: u32) -> bool {
     return period <= params.frame_ticks || ticks % period < params.frame_ticks;
 }
@@ -78,7 +78,7 @@ fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_cloc
         let four = table[clip_clock.row * params.stride + slot / 4u];
         let two = select(four.x, four.y, (slot & 2u) != 0u);
         let priority = (two >> (16u * (slot & 1u))) & 0xffffu;
-        // The priority times Ω, in 65536ths, and the period that belongs to it.
+        // The priority times Ω, in 1/65536, then the period for it.
         let level = (priority * omega) >> 16u;
         let whole = (params.period >> 16u) * level;
         let period = whole + (((params.period & 0xffffu) * level) >> 16u);
@@ -109,16 +109,16 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
     return chosen;
 }
 
-// More than is ever permitted.
+// Exclusive upper bound of the allowed motion.
 const EVERYTHING: u32 = 1u << 30u;
 
-// The encoding of a bone's error budget. From this bit on lies its fraction of what is left, in FRACTION_ONE-ths.
+// Encoding of a bone's error budget. From this bit on: its fraction of the remaining budget, in 1/FRACTION_ONE.
 const BUDGET_FRACTION_SHIFT: u32 = 8u;
-// The bits of the exponent of the rounding error that must be added: 2^(exponent − 1), or 0.
+// Exponent bits of the quantization slack, which is added to missed motion: 2^(exponent − 1), or 0 for exponent 0.
 const BUDGET_SLACK_MASK: u32 = 31u;
-// Set if the bone above is not the previous one in the order.
+// Flag: the bone above is not the previous one in the order.
 const STARTS: u32 = 32u;
-// Set if what the bone leaves is needed later.
+// Flag: the bone's remaining budget is stored for later bones.
 const REMAINING: u32 = 64u;
 
 fn quantization_slack_of(granted: u32) -> u32 {
@@ -139,11 +139,11 @@ struct AccumulatedMotion {
     last_row: u32,
 }
 
-// Decides for bones in order, parents first. A bone that missed no more than its fraction of the remaining
-// budget is not sampled, and passes the rest on to the bones below it. A bone that missed more is sampled, and
-// passes on all of it; or it is sampled ahead if its motion until then is within its fraction too: it is then
-// off by as much now, and can stay for twice as long. Bones in `asked` are sampled whatever they missed, and so
-// are all bones if nothing may be missed. `left` is what the previous bone left.
+// Decides for bones in order, parents first. A bone that missed no more than its fraction of the remaining budget is not
+// sampled. It uses up what it missed and passes the rest to the bones below it. A bone that missed more is sampled and passes
+// on all of the remaining budget. It is sampled ahead if its motion until the look-ahead time is within its fraction too. It is
+// then off by that motion now, which it uses up, and can stay for twice as long. Bones in `asked` are always sampled; if
+// nothing may be missed, so are all bones. `left` is the budget that the previous bone left.
 fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated: AccumulatedMotion, left: ptr<function, u32>) -> Chosen {
     let forced = asked | select(0u, candidates, accumulated.allowed == 0u);
     let row = accumulated.clip_clock.row * params.stride + first;
@@ -194,8 +194,8 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated
     return chosen;
 }
 
-// Decides for up to 32 bones of one instance. BOUNDED handles the words in order: `left` is what the previous
-// word left.
+// Decides for up to 32 bones of one instance. BOUNDED handles the words in order: `left` is the budget that the previous word
+// left.
 fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: ptr<function, u32>) -> Chosen {
     let first = 32u * word;
     let reason = update_reason_of(clip_clock);

@@ -1,7 +1,6 @@
-// The keyframe cursors of instances: for each instance and timeline of its clip, the key before the current
-// time and the fraction of the way to the next. A thread finds one cursor. With COMPACTED, only listed
-// instances are handled, with all their layers, and also the time of the base layer at which bones are sampled
-// ahead.
+// The keyframe cursors of instances: for each instance and timeline of its clip, the key before the current time and the
+// fraction of the way to the next. A thread finds one cursor. With COMPACTED, only listed instances are handled, with all their
+// layers. Cursors of the base layer at the look-ahead time are added.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
@@ -10,7 +9,7 @@ import package::wgsl::animation::timeline::keyframe_cursor;
 override COMPACTED: bool = false;
 
 struct KeyframeCursorParams {
-    // Number of entries of all layers, and of one.
+    // Number of entries, one per layer and instance; number of instances.
     entries: u32,
     instances: u32,
     // Cursors allocated per instance.
@@ -28,8 +27,8 @@ struct KeyframeCursorParams {
 @group(0) @binding(6) var<storage, read> updated_instances: array<u32>;
 // In the first vector, w is the number of listed instances.
 @group(0) @binding(7) var<storage, read> dispatches: array<vec4<u32>>;
-// For each instance, what the gate saw of the base layer: z is the time inside the clip, as bits; w the time
-// ahead.
+// History of the gate's clip clocks, per instance: z is the time inside the base layer's clip, w the look-ahead time, both as
+// bits.
 @group(0) @binding(8) var<storage, read> history: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
@@ -38,7 +37,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let at = index / params.timelines;
     var entry = at;
     if COMPACTED {
-        // Layer by layer of one instance after another; the base layer ahead comes last.
+        // In the order of instances and, within an instance, of layers. The base layer at the look-ahead time comes last.
         let layers = params.entries / params.instances + 1u;
         let listed = at / layers;
         if listed >= dispatches[0].w {
@@ -60,7 +59,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let timeline = timelines[clip.first_timeline + timeline_index];
     var time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * params.elapsed);
     if COMPACTED && (is_ahead || entry < params.instances) {
-        // The exact time by which the gate decided, so that both count a key as passed or neither does.
+        // The exact time that the gate used: both must agree on the keys that have passed.
         let seen = history[playing];
         if is_ahead && seen.w == seen.z {
             return;

@@ -1,6 +1,6 @@
-// Concatenates local transforms into the model's space. A thread walks one chain of one instance and keeps the
-// parent's matrix in registers; a dispatch handles the chains of one level, whose parents are done. With COMPACTED,
-// only listed instances are walked, and of them only updated slots, which always include all bones below an updated one.
+// Concatenates local transforms into model matrices. A thread walks one chain of one instance and keeps the parent's matrix in
+// registers. A dispatch handles the chains of one level of the hierarchy, after their parents. With COMPACTED, only listed
+// instances are walked, and of them only updated slots. All bones below an updated bone are updated too.
 import package::wgsl::affine::product_row;
 import package::wgsl::animation::order::{CONTINUES, Chain, NO_PARENT, Slot};
 

@@ -1,6 +1,6 @@
-// Samples the local transforms of bones at the keyframe cursors of their instances (glTF 2.0, appendix C). A
-// thread samples one bone of one instance: every one, or with COMPACTED those of a list. With LAYERED, it
-// blends the clips of further layers over the base, by weight and mask.
+// Samples the local transforms of bones at the keyframe cursors of their instances (glTF 2.0, appendix C). A thread samples one
+// bone of one instance: every bone, or with COMPACTED the listed ones. With LAYERED, it blends the clips of further layers over
+// the base, by weight and mask.
 import package::wgsl::animation::clip::{CONSTANT, KeyframeCursor, SetTrack, cursor_of_words, first_value_of, interpolation_of, timeline_of};
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
@@ -30,9 +30,9 @@ struct SampleParams {
 // Three tracks per bone and clip.
 @group(0) @binding(2) var<storage, read> tracks: array<SetTrack>;
 @group(0) @binding(3) var<storage, read> values: array<vec4<f32>>;
-// The words of cursors (cursor_of_words); after those of all layers come those of the base layer ahead.
+// Cursor words (`cursor_of_words`), layer by layer. After all layers: those of the base layer at the look-ahead time.
 @group(0) @binding(4) var<storage, read> cursors: array<vec2<u32>>;
-// instance * bones + bone of each pair to be sampled; with PAIR_AHEAD, it is sampled at the cursor ahead.
+// Pairs to be sampled: instance * bones + bone. Pairs with PAIR_AHEAD are sampled at the look-ahead time.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
@@ -42,8 +42,7 @@ struct SampleParams {
 // per bone.
 @group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
-// A spline of rotations that passes this close to zero, as a squared length, keeps the key before: nothing has a
-// direction there.
+// Squared length below which a spline of rotations has no direction. It then keeps the value of the key before.
 const VANISHING: f32 = 1e-12;
 
 struct Between {
@@ -61,8 +60,7 @@ fn cursor_of(track: SetTrack, first_cursor: u32) -> KeyframeCursor {
     return cursor_of_words(cursors[first_cursor + timeline]);
 }
 
-// Whether a track has another timeline than the one before. Most tracks of a bone share one, whose cursor is
-// loaded once.
+// Whether two tracks have different timelines. Most tracks of a bone share one timeline, so that its cursor is loaded once.
 fn is_elsewhere(track: SetTrack, before: SetTrack) -> bool {
     return timeline_of(track) != timeline_of(before);
 }
@@ -127,8 +125,8 @@ struct Local {
     scaled: vec3<f32>,
 }
 
-// `slot` is layer * instances + instance; `cursor_slot` likewise, and layers * instances + instance for the
-// base ahead.
+// `slot` is layer * instances + instance. `cursor_slot` is the same; for the base layer at the look-ahead time, it is layers *
+// instances + instance.
 fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     let track = 3u * (instances[slot].clip * params.bones + bone);
     let first_cursor = cursor_slot * params.timelines;

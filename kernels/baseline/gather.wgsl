@@ -1,6 +1,6 @@
-// Moves the bytes that sampling moves, without its arithmetic. For each bone a thread reads the two keys around
-// the current cursor on three tracks, which instances share as they share a clip's, and writes the words of a
-// local transform: each is the exclusive or of its two keys.
+// Moves the bytes that sampling moves, without its arithmetic. For each bone, a thread reads the two keys around the current
+// cursor on three tracks. It writes the words of a local transform, each the exclusive or of two keys. Instances share tracks,
+// as they share those of a clip.
 import package::wgsl::animation::clip::{SetTrack, first_value_of};
 import package::wgsl::animation::instance::AnimationInstance;
 

@@ -1,5 +1,5 @@
-// Loads the texels that a colour map blends (`terrain/blend`), and makes nothing of them but one word a pixel: the exclusive or
-// of their words. This is the cost of the loads alone.
+// Loads the texels that a colour map blends (`terrain/blend`), and reduces them to one word per pixel: the exclusive or of
+// their words. It measures the cost of the loads alone.
 import package::wgsl::terrain::tiles::{MapZone, plane_tiles, texel_index, tiles_up};
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 

@@ -1,13 +1,13 @@
-// What gates and skinning use of the displacement that the views of a frame allow: a thread shares out that of one
-// instance of a character among its bones, its influences and its mesh.
+// Shares out the allowed displacement of each instance of a character: among its bones (for gates), its influences (for
+// skinning) and its mesh. A thread handles one instance.
 import package::wgsl::animation::gate_state::{FULL_WEIGHT, LOD_HIDDEN, Lod, OMEGA_ONE};
 import package::wgsl::lod::instance::{INSTANCE_CARRIES, SceneInstance};
 import package::wgsl::lod::object::OBJECT_LEVELS;
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
-// Steps of a fade of influences: an instance that hardly moves keeps its fade.
+// Steps to which the influence fade is rounded: an instance that hardly moves keeps its fade.
 const FADE_STEPS: f32 = 64.0;
-// The largest `Lod::allowed` that an f32 holds exactly and that is less than the motion of a whole clip, 2^30.
+// The largest `Lod::allowed`: exact in an f32, and below the motion of a whole clip, 2^30.
 const MAX_UNITS: f32 = 1073741760.0;
 
 struct AssignParams {
@@ -19,37 +19,37 @@ struct AssignParams {
     levels: u32,
     // The fraction of the allowed displacement that levels of detail of the mesh may use, 0 to 1.
     mesh_fraction: f32,
-    // The fraction that bones may use which are not sampled, 0 to 1.
+    // The fraction that unsampled bones may use, 0 to 1.
     bone_fraction: f32,
-    // The fraction that fades of influences may use, 0 to 1.
+    // The fraction that influence fades may use, 0 to 1.
     influence_fraction: f32,
     // The unit of the gate's table in the model's units, above 0.
     unit: f32,
-    // The displacement of a vertex whose influences have faded altogether, in the model's units, at least 0.
+    // Largest displacement of a vertex whose influences have faded completely, in model units, at least 0.
     stray: f32,
-    // The largest number of influences of instances that are seen, 1 to 8.
+    // Largest number of influences of a visible instance, 1 to 8.
     max_influences: u32,
     // The error of each level in the model's units, ascending from 0.
     errors: array<vec4<f32>, 2>,
 }
 
 @group(0) @binding(0) var<uniform> params: AssignParams;
-// For each instance of the scene the displacement that the frame's views allow, in the model's units; negative if none
-// sees it.
+// Per instance of the scene: the displacement that the frame's views allow, in model units; negative if no view sees it.
 // length: instances
 @group(0) @binding(1) var<storage, read> allowed: array<f32>;
-// Written, one for each instance of the object: what gates use.
+// Out, per instance of the object: the input of gates.
 // length: instances
 @group(0) @binding(2) var<storage, read_write> lods: array<Lod>;
-// Written, one for each instance of the object: what skinning uses.
+// Out, per instance of the object: the input of skinning.
 // length: instances
 @group(0) @binding(3) var<storage, read_write> instance_lods: array<InstanceLod>;
 // All instances of the scene.
 // length: instances
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
 
-// The coarsest level whose error is within its fraction; `within` is at least 0. Where uniforms alone decide loops and branches,
-// lavapipe compiles the kernel anew in each submission.
+// The coarsest level whose error is at most its fraction of `within`. Driver workaround: where uniforms alone decide loops and
+// branches, lavapipe compiles the kernel again in each submission. The loop therefore also depends on `within`, which is at
+// least 0.
 fn level_within(within: f32) -> u32 {
     var level = 0u;
     for (var coarser = 1u; coarser < select(0u, min(params.levels, OBJECT_LEVELS), within >= 0.0); coarser++) {
@@ -60,7 +60,7 @@ fn level_within(within: f32) -> u32 {
     return level;
 }
 
-// How far influences may fade: the whole way if that displaces nothing.
+// Influence fade that the budget permits, 0 to 1; 1 if a complete fade displaces nothing.
 fn fade_within(within: f32) -> f32 {
     let faded = floor(FADE_STEPS * min(params.influence_fraction * within / params.stray, 1.0)) / FADE_STEPS;
     return select(faded, 1.0, params.stray <= 0.0);
@@ -78,7 +78,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         instance_lods[instance] = InstanceLod(0.0, 0u, 0u);
         return;
     }
-    // A mesh may reach further from a bone than the vertices for which the gate's table was made.
+    // An attached mesh may reach further from its bone than the vertices that the gate's table covers. Its character's bones
+    // get no budget.
     let carries = (instances[params.first + instance].flags & INSTANCE_CARRIES) != 0u;
     let units = u32(min(floor(params.bone_fraction * within / params.unit), MAX_UNITS));
     lods[instance] = Lod(OMEGA_ONE, select(units, 0u, carries), FULL_WEIGHT, 0u);

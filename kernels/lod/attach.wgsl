@@ -1,19 +1,19 @@
-// Placements of meshes that are attached to bones: a thread gives one of them, in one view, the transform of its character
-// with that of the bone and its own offset. Where no view of the frame sees the character, its bones are those of an earlier
-// frame, and the mesh becomes a point, which draws nothing. If the scene keeps its last frame, the thread also gives the
-// transform that the mesh had then.
+// Placements of meshes that are attached to bones, in one view. A thread multiplies the transform of a character, the model
+// matrix of the bone and the mesh's own offset. If no view of the frame sees the character, its bones are those of an earlier
+// frame: the mesh then becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the
+// mesh's transform of that frame.
 import package::wgsl::affine::product_row;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
 
 struct AttachParams {
-    // Number of entries of `attachments` that count.
+    // Number of valid entries in `attachments`.
     attached: u32,
     // Number of bones of the character.
     bones: u32,
     // The index in the scene of the character's first instance.
     first: u32,
-    // The index in `placements` of the first one of the last frame: the number of instances; 0 if it is not kept.
+    // Index in `placements` of the last frame's first transform: the number of instances; 0 if the last frame is not kept.
     first_last: u32,
     // The number of the frame, from 1 on.
     frame: u32,
@@ -21,7 +21,7 @@ struct AttachParams {
     last_frame: u32,
 }
 
-// `Attachment.mesh` of an entry that is free.
+// `Attachment.mesh` of a free entry.
 const NO_MESH: u32 = 0xffffffffu;
 
 // A mesh that is attached to a bone.
@@ -32,13 +32,13 @@ struct Attachment {
     character: u32,
     // The index of the bone.
     bone: u32,
-    // A number that no other attachment has, now or later.
+    // Unique key: no other attachment has it, now or later.
     key: u32,
     // The transform from the mesh's space to the bone's, three rows.
     offset: array<vec4<f32>, 3>,
 }
 
-// Where a bone had taken a mesh in a frame.
+// Transform that a bone gave to a mesh in a frame.
 struct KeptBone {
     // The product of the bone's model matrix and the mesh's offset, three rows.
     rows: array<vec4<f32>, 3>,
@@ -46,7 +46,7 @@ struct KeptBone {
     frame: u32,
     // The key of the attachment.
     key: u32,
-    // No meaning: elements have no padding.
+    // Explicit padding, not read.
     unused_a: u32,
     unused_b: u32,
 }
@@ -54,27 +54,27 @@ struct KeptBone {
 @group(0) @binding(0) var<uniform> params: AttachParams;
 // The view.
 @group(0) @binding(1) var<uniform> view: SelectView;
-// The attached meshes, of which only the first `AttachParams::attached` count.
+// The attached meshes. Only the first `AttachParams::attached` entries are valid.
 @group(0) @binding(2) var<storage, read> attachments: array<Attachment>;
 // Three rows per bone of each instance of the character.
 @group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
 // All instances of the scene.
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
-// For each instance of the scene the displacement that the views of the frame allow; negative if none sees it.
+// Per instance of the scene: the displacement that the frame's views allow; negative if no view sees it.
 // length: instances
 @group(0) @binding(5) var<storage, read> allowed: array<f32>;
-// For each instance of the scene the transform from the model's space to the corner of the view's cell, three rows, and from
-// `first_last` on the same for the last frame, relative to the same cell. Those of the attached meshes are written.
+// Three rows per instance of the scene: the transform from model space to positions relative to the corner of the view's cell.
+// From `first_last` on: the same for the last frame, relative to the same cell. Out: the rows of attached meshes.
 // length: placements
 @group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
 // All instances of the scene as they were in the last frame; the same buffer as `instances` if it is not kept.
 // length: instances
 @group(0) @binding(7) var<storage, read> last_instances: array<SceneInstance>;
-// Two for each attachment, zeros at first: the bone in even frames, and in odd ones.
+// Two per attachment, initially zero: the bone's transform in even frames and in odd frames.
 // length: 2 * attachments
 @group(0) @binding(8) var<storage, read_write> kept: array<KeptBone>;
 
-// Writes an instance's placement times a transform in its space.
+// Writes the product of an instance's placement and a transform in its space; a point if the instance is not visible.
 fn write_placed(instance: SceneInstance, local: array<vec4<f32>, 3>, to: u32, is_seen: bool) {
     let axes = instance_axes(instance);
     let at = instance_position(instance, view.cell);
@@ -104,7 +104,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     if params.first_last == 0u {
         return;
     }
-    // The views of a frame write the same, and read what none of them writes.
+    // All views of a frame write the same values, and read only entries that none of them writes.
     let last = kept[2u * index + ((params.frame + 1u) & 1u)];
     var last_local = local;
     if params.last_frame != 0u && last.frame == params.last_frame && last.key == attachment.key {

@@ -1,19 +1,19 @@
-// Lists of the instances that a view sees, for each level of detail and either orientation, in ascending order. First a
-// workgroup for each object turns the counts of its blocks into the places at which their instances begin, and writes the
-// numbers of instances of its draws; then a thread for each instance writes its index into its list.
+// Lists of the instances that a view sees, per level of detail and orientation (mirrored or not), in ascending order. In the
+// first stage, a workgroup per object computes prefix sums of its blocks' counts, and the instance counts of its draws. In the
+// second stage, a thread per instance writes its list entry.
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw, decision_list, decision_morph, list_entry_word};
 
 // One of the constants below.
 override STAGE: u32 = 0u;
 
-// A workgroup for each object sums.
+// Stage: a workgroup per object computes prefix sums.
 const SUM: u32 = 0u;
-// A thread for each instance, with barriers between those of a block.
+// Stage: a thread per instance writes list entries. The threads of a block synchronize at barriers.
 const PLACE: u32 = 1u;
 
-// Runs of an object's blocks that are summed side by side, each by a thread for each list.
+// Runs of an object's blocks that are summed in parallel, with one thread per run and list.
 const RUNS: u32 = 16u;
-// The blocks of a workgroup that places instances.
+// Number of blocks per workgroup in the stage `PLACE`.
 const PLACED_BLOCKS: u32 = 4u;
 
 struct ListParams {
@@ -25,23 +25,23 @@ struct ListParams {
 
 @group(0) @binding(0) var<uniform> params: ListParams;
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
-// The index of the object that each block of instances belongs to, `NO_OBJECT` for none.
+// Object index of each block of instances; `NO_OBJECT` for none.
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
 // The decision word of each instance of the blocks.
 @group(0) @binding(3) var<storage, read> decisions: array<u32>;
-// For each block and list the number of instances, which becomes the number of instances in the blocks before it.
+// Per block and list. In: the number of instances. Out: the number of instances in the blocks before it.
 @group(0) @binding(4) var<storage, read_write> counts: array<u32>;
-// The lists of all objects, of list entries.
+// The lists of all objects: list entries.
 @group(0) @binding(5) var<storage, read_write> lists: array<u32>;
-// For each part of each object `OBJECT_LISTS` draws.
+// `OBJECT_LISTS` draws per part of each object.
 @group(0) @binding(6) var<storage, read_write> arguments: array<SceneDraw>;
 
-// The sum of each run, list by list.
+// The sum per run and list.
 var<workgroup> sums: array<u32, 256>;
-// The instances of each block in each list, one bit each, in two words.
+// Per block and list: one bit per instance of the block, in two words.
 var<workgroup> members: array<atomic<u32>, 128>;
 
-// The sums before each block of an object, and the object's draws.
+// Computes the prefix sums of an object's blocks, and the instance counts of its draws.
 fn sum(object: LodObject, lane: u32) {
     let list = lane % OBJECT_LISTS;
     let run = lane / OBJECT_LISTS;
@@ -73,12 +73,11 @@ fn sum(object: LodObject, lane: u32) {
     }
 }
 
-// What a list has for an instance.
 fn entry_of(index: u32, decision: u32) -> u32 {
     return list_entry_word(index, decision_morph(decision));
 }
 
-// Writes the index of an instance into its list.
+// Writes the list entry of an instance.
 fn place(block: u32, lane: u32) {
     if lane < 2u * OBJECT_LISTS * PLACED_BLOCKS {
         atomicStore(&members[lane], 0u);

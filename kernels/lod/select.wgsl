@@ -1,5 +1,5 @@
-// Decides for each instance of a scene whether a view sees it, and with which level of detail. A workgroup takes a block of
-// instances, a thread one of them.
+// Decides for each instance of a scene whether a view sees it, and at which level of detail. A workgroup handles a block of
+// instances, a thread one instance.
 import package::wgsl::lod::allowed::{MAX_ALLOWED, allowed_in_model, camera_allows};
 import package::wgsl::lod::criterion::criterion_metric;
 import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, Axes, SceneInstance, instance_axes, instance_flags_mask, instance_position};
@@ -7,9 +7,9 @@ import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, d
 import package::wgsl::lod::transition::transition_decision;
 import package::wgsl::lod::view::{POSITION_SLACK, SelectView, VIEW_CAMERAS};
 
-// Of an instance that no view has seen in the frame.
+// Allowed displacement of an instance that no view of the frame has seen.
 const UNSEEN_ALLOWED: f32 = -1.0;
-// What no metric exceeds.
+// Upper bound of all metrics.
 const MAX_METRIC: f32 = 3e38;
 
 // The view. Its `blocks` may be fewer than `block_objects` has.
@@ -17,32 +17,33 @@ const MAX_METRIC: f32 = 3e38;
 // The objects.
 // length: 1
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
-// The index of the object that each block of instances belongs to; `NO_OBJECT` for none, whose instances are left alone.
+// Object index of each block of instances. The instances of a block with `NO_OBJECT` are left unchanged.
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
 // The instances of all blocks.
 // length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> instances: array<SceneInstance>;
-// Written, one for each instance: the smallest displacement that a view of the frame which sees it allows, in the model's
-// units; `UNSEEN_ALLOWED` if none sees it.
+// Out, per instance: the smallest displacement, in model units, that is allowed by the frame's views that see it;
+// `UNSEEN_ALLOWED` if none sees it.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
-// Written, one for each instance: 0 if the view does not see it, else a decision word for list
-// 2 · level + mirrored. Where `SelectView::is_next` is 1, it holds the decisions of the last frame before.
+// Out, per instance: 0 if the view does not see it, else the decision word with list 2 · level + mirrored. In: the decisions of
+// the last frame, if `SelectView::is_next` is 1.
 // length: BLOCK * blocks
 @group(0) @binding(5) var<storage, read_write> decisions: array<u32>;
-// Written for each instance that is seen: the transform from the model's space to the corner of the view's cell, three rows.
+// Out, per visible instance: three rows of the transform from model space to positions relative to the corner of the view's
+// cell.
 // length: BLOCK * blocks
 @group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
-// Written, for each block the number of its instances in each of `OBJECT_LISTS` lists.
+// Out, per block: the number of its instances in each of `OBJECT_LISTS` lists.
 // length: OBJECT_LISTS * blocks
 @group(0) @binding(7) var<storage, read_write> counts: array<u32>;
-// Written, one for each instance: the decision of the last frame; 0 if the view was not in it.
+// Out, per instance: the decision of the last frame; 0 if the view was not in it.
 // length: BLOCK * blocks
 @group(0) @binding(8) var<storage, read_write> last_decisions: array<u32>;
 
 var<workgroup> tally: array<atomic<u32>, 16>;
 
-// Whether the view may see the instance at all, wherever it is.
+// Whether the view may see the instance at all, regardless of its position.
 fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
     let is_alive = object_flags_shown(object.flags) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
     let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
@@ -60,15 +61,16 @@ fn is_inside(center: vec3<f32>, radius: f32) -> bool {
     return least >= 0.0;
 }
 
-// What the view makes of a sphere.
+// A view's result for a visible sphere.
 struct Seen {
-    // The displacement that all of its cameras allow, in the model's units.
+    // Smallest displacement that the view's cameras allow, in model units.
     allowed: f32,
-    // The least metric of its cameras, which decides the level.
+    // Smallest metric of the view's cameras. It decides the level.
     metric: f32,
 }
 
-// (Where uniforms alone decide loops and branches, lavapipe compiles the kernel anew in each submission.)
+// Driver workaround: where uniforms alone decide loops and branches, lavapipe compiles the kernel again in each submission. The
+// loop therefore also depends on `seen`.
 fn seen_by(object: LodObject, center: vec3<f32>, radius: f32, scale: f32) -> Seen {
     let cameras = min(view.camera_count, VIEW_CAMERAS);
     var seen = Seen(MAX_ALLOWED, MAX_METRIC);
@@ -81,7 +83,7 @@ fn seen_by(object: LodObject, center: vec3<f32>, radius: f32, scale: f32) -> See
     return seen;
 }
 
-// The decision for an instance. Writes its placement and its allowed displacement.
+// The decision word of an instance. Writes its placement and its allowed displacement.
 fn decide(index: u32, object: LodObject) -> u32 {
     let instance = instances[index];
     let before = select(allowed[index], UNSEEN_ALLOWED, view.is_first != 0u);
@@ -91,7 +93,7 @@ fn decide(index: u32, object: LodObject) -> u32 {
         let sphere = instance.bounding_sphere;
         let center = axes.x * sphere.x + axes.y * sphere.y + axes.z * sphere.z + at;
         let scale = max(max(abs(instance.scale.x), abs(instance.scale.y)), abs(instance.scale.z));
-        // Rounding of the center must not move the sphere off what it contains.
+        // Grows by the rounding error of the center, so that the sphere still contains the instance.
         let radius = sphere.w * scale + POSITION_SLACK * (length(at) + scale * length(sphere.xyz));
         if is_inside(center, radius) {
             placements[index] = array<vec4<f32>, 3>(

@@ -1,5 +1,5 @@
-// Draws of single instances, for objects that are drawn instance by instance: a thread writes the draw of a part of an
-// instance, of the level of detail at which the view sees it, and the list of that draw.
+// Sorted draws, of objects that are drawn instance by instance. A thread writes the draw of one part of one instance, and the
+// draw's list. The level of detail is the one at which the view sees the instance.
 import package::wgsl::lod::object::{SceneDraw, decision_list, decision_morph, list_entry_word};
 
 // A part of an instance.
@@ -18,17 +18,17 @@ struct SortedParams {
 }
 
 @group(0) @binding(0) var<uniform> params: SortedParams;
-// The parts of instances. Their instances and draws must lie inside `decisions` and `arguments`.
+// The parts to draw. Their instances and draws must lie inside `decisions` and `arguments`.
 // length: sorted
 @group(0) @binding(1) var<storage, read> sorted: array<SortedDraw>;
 // The decision word of each instance of the scene.
 @group(0) @binding(2) var<storage, read> decisions: array<u32>;
-// For each part of each object a draw for each list.
+// Per part of each object: one draw per list.
 @group(0) @binding(3) var<storage, read> arguments: array<SceneDraw>;
-// Written: one for each of `sorted`.
+// Out: one draw per entry of `sorted`.
 // length: sorted
 @group(0) @binding(4) var<storage, read_write> draws: array<SceneDraw>;
-// Written, for each draw the one entry of its list.
+// Out: the single list entry of each draw.
 // length: sorted
 @group(0) @binding(5) var<storage, read_write> entries: array<u32>;
 

@@ -1,5 +1,5 @@
-// Morph targets: adds the weighted deltas of the targets to vertices, before skinning. A workgroup morphs a
-// cluster of a list, of vertices of one instance, if that is seen, at its level of detail.
+// Morph targets: adds the weighted deltas of the targets to vertices, before skinning. A workgroup morphs one listed cluster of
+// one instance, if the instance is visible at a level of detail with this cluster.
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::instance_lod::MAX_LEVELS;
 import package::wgsl::skinning::page::NO_PAGE;
@@ -23,23 +23,23 @@ struct MorphParams {
 @group(0) @binding(0) var<uniform> params: MorphParams;
 // Five pairs per vertex.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Where the deltas of each vertex begin; one more entry than there are vertices.
+// Index of each vertex's first delta; one more entry than there are vertices.
 @group(0) @binding(2) var<storage, read> offsets: array<u32>;
 // Three vectors per delta: position and, as bits, the target; normal; tangent.
 @group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;
 // The weights of each instance's targets.
 @group(0) @binding(4) var<storage, read> weights: array<f32>;
-// Which clusters are morphed: the words of the `InstanceLod` of each instance, or with PAGED the page of each cluster of each
-// instance.
+// Selects the clusters that are morphed: the words of the `InstanceLod` of each instance, or with PAGED the page of each
+// cluster of each instance.
 @group(0) @binding(5) var<storage, read> seen: array<u32>;
-// cluster * instances + instance, for each pair to be skinned.
+// Pairs to be skinned: cluster * instances + instance.
 @group(0) @binding(6) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(7) var<storage, read> dispatched: vec4<u32>;
 // Morphed vertices in the layout of `vertices`, instance by instance or page by page.
 @group(0) @binding(8) var<storage, read_write> morphed: array<vec2<f32>>;
 
-// Whether an instance is seen, at a level of detail with this cluster.
+// Whether an instance is visible, at a level of detail with this cluster.
 fn is_seen(instance: u32, cluster: u32) -> bool {
     let lod = LOD_WORDS * instance;
     let level = min(seen[lod + 2u], MAX_LEVELS - 1u);

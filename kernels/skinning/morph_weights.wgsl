@@ -1,6 +1,6 @@
 // Weights of morph targets at each instance's time in its clip (glTF 2.0, section 3.11). The kernel runs before
-// skinning/select. A thread computes one target's weight of one instance; instances that are not seen keep
-// their weights.
+// skinning/select. A thread computes the weight of one target of one instance. Instances that are not visible keep their
+// weights.
 import package::wgsl::animation::clip::Timeline;
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;

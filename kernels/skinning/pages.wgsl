@@ -1,5 +1,5 @@
-// Pages of skinned vertices: an instance that is seen holds a page for each cluster of its level of detail, and gives back
-// what it no longer needs. One workgroup serves all instances, so that the pages that it deals out are the same on every run.
+// Pages of skinned vertices. A visible instance holds one page per cluster of its level of detail, and gives back pages that it
+// no longer needs. One workgroup serves all instances, so that every run hands out the same pages.
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 import package::wgsl::skinning::page::NO_PAGE;
 
@@ -7,30 +7,30 @@ const LANES = 64u;
 
 struct PageParams {
     instances: u32,
-    // Clusters of the mesh, entries of an instance in the table.
+    // Clusters of the mesh, and table entries per instance.
     clusters: u32,
     // Number of clusters at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
 struct PageState {
-    // Number of pages that nobody holds, at the bottom of the stack.
+    // Number of free pages, at the bottom of the stack.
     free: u32,
-    // Number of instances that went without a page in the last frame. The host provides enough pages, so that there are none.
+    // Number of instances that lacked a page in the last frame. It is 0, because the host provides enough pages.
     short: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: PageParams;
 @group(0) @binding(1) var<storage, read> instance_lods: array<InstanceLod>;
-// For each instance the number of clusters, from the first on, that have a page.
+// Per instance: the number of clusters with a page, counted from the first one.
 @group(0) @binding(2) var<storage, read_write> held: array<u32>;
 // The page of each cluster of each instance, or `NO_PAGE`.
 @group(0) @binding(3) var<storage, read_write> table: array<u32>;
-// The pages that nobody holds; the last is dealt out first.
+// Stack of free pages. The last one is handed out first.
 @group(0) @binding(4) var<storage, read_write> stack: array<u32>;
 @group(0) @binding(5) var<storage, read_write> state: PageState;
 
-// Pages given back and pages taken by the instances of each lane.
+// Pages given back (x) and pages taken (y) by the instances of each lane.
 var<workgroup> sums: array<vec2<u32>, LANES>;
 var<workgroup> short_lanes: array<u32, LANES>;
 
@@ -41,7 +41,7 @@ fn needed(instance: u32) -> u32 {
     return select(params.levels[level >> 2u][level & 3u], 0u, lod.max_influences == 0u);
 }
 
-// The sum of what the lanes before this one give and take, and that of all lanes.
+// Sums of the lanes before this one (xy), and of all lanes (zw).
 fn before(lane: u32) -> vec4<u32> {
     var mine = vec2<u32>(0u);
     var all = vec2<u32>(0u);
@@ -78,7 +78,7 @@ fn main(@builtin(local_invocation_index) lane: u32) {
         }
     }
     storageBarrier();
-    // The stack shrinks from its top: each instance takes what lies below that of those before it.
+    // The stack shrinks from its top: each lane takes the pages below those of the lanes before it.
     top = was_free + scanned.z - min(scanned.y, was_free + scanned.z);
     var short = 0u;
     for (var instance = first; instance < end; instance++) {

@@ -1,6 +1,5 @@
-// Palettes: for each instance and bone of a skin, the matrix that takes vertices from the space of binding into
-// the model's space. With DUAL the matrix is decomposed into a stretch and a rigid motion after it. A thread
-// computes one bone; instances that are not seen are skipped.
+// Palettes: for each instance and bone of a skin, the matrix from bind space to model space. With DUAL, it is decomposed into a
+// stretch followed by a rigid motion. A thread computes one bone; instances that are not visible are skipped.
 import package::wgsl::skinning::instance_lod::InstanceLod;
 import package::wgsl::affine::product_row;
 import package::wgsl::skinning::rows::{LEAST_LENGTH, unit_or};
@@ -27,7 +26,7 @@ struct PaletteParams {
 // Three rows per bone; with DUAL the rotation, the dual part, the diagonal, and the elements above it.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
 
-// A unit vector at a right angle to a unit vector (Duff et al. 2017).
+// A unit vector perpendicular to a unit vector (Duff et al. 2017).
 fn upright(v: vec3<f32>) -> vec3<f32> {
     let side = select(1.0, -1.0, v.z < 0.0);
     let a = -1.0 / (side + v.z);

@@ -1,9 +1,9 @@
-// Selects the clusters that are skinned, among those of instances that are seen, at their level of detail:
-// clusters with an updated bone, clusters of instances whose influences changed, clusters beyond the level of
-// the frame before, and, with morph targets, clusters of instances whose weights changed. With KEEP, the clusters of the
-// frame before are skinned once more, so that their last positions are those that they have. A thread decides for one
-// cluster. With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame and, with
-// CLEAR, clears its updated bones; the first thread writes the arguments of the dispatch.
+// Selects the clusters to be skinned, among clusters of visible instances at their level of detail. A cluster is selected if
+// one of its bones was updated or if the influences of its instance changed. It is also selected if the last frame's level did
+// not have it. With morph targets, changed weights of the instance select it too. With KEEP, the clusters of the last frame are
+// skinned once more, so that their last positions become their current ones. A thread decides for one cluster. With FINISH, a
+// thread stores the InstanceLod and weights of one instance for the next frame. With CLEAR, it also clears the instance's
+// updated bones. The first thread writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
 import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH, CLUSTER_MOVED, CLUSTER_STILL};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
@@ -19,7 +19,7 @@ const SKINNED_WORDS: u32 = 4u;
 struct SelectParams {
     instances: u32,
     clusters: u32,
-    // Words of a set of bones.
+    // Words of a bone set, with one bit per bone.
     words: u32,
     // The largest number of workgroups along x.
     most: u32,
@@ -48,13 +48,13 @@ struct Dispatched {
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
 // The weights of each instance's targets, as bits.
 @group(0) @binding(4) var<storage, read> weights: array<u32>;
-// Where the deltas of each vertex begin; one more entry than there are vertices.
+// Index of each vertex's first delta; one more entry than there are vertices.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
-// The state of each instance after the frame before: its InstanceLod, the number of frames for which it has
-// been seen (2 for more), and its weights.
+// State of each instance after the last frame: its InstanceLod, the number of frames for which it has been visible (at most 2),
+// and its weights.
 @group(0) @binding(6) var<storage, read_write> skinned: array<u32>;
-// cluster * instances + instance, for each pair to be skinned. With KEEP, there follows for each pair what was done to it,
-// one of `CLUSTER_STILL`, `CLUSTER_MOVED` and `CLUSTER_FRESH`.
+// Pairs to be skinned: cluster * instances + instance. With KEEP, the state of every pair follows: `CLUSTER_STILL`,
+// `CLUSTER_MOVED` or `CLUSTER_FRESH`.
 @group(0) @binding(7) var<storage, read_write> pairs: array<u32>;
 @group(0) @binding(8) var<storage, read_write> dispatched: Dispatched;
 

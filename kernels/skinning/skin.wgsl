@@ -1,19 +1,19 @@
-// Skinning (A section 8.4): transforms vertices by their bones, with as many influences as each instance's
-// InstanceLod leaves. Instances that are not seen, and vertices beyond an instance's level of detail, are
-// skipped. A workgroup skins a cluster of a list, of vertices of one instance. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
+// Skinning (A section 8.4): transforms vertices by their bones, with the number of influences in each instance's InstanceLod.
+// Instances that are not visible, and vertices beyond an instance's level of detail, are skipped. A workgroup skins one listed
+// cluster of one instance. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
 import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 import package::wgsl::skinning::page::NO_PAGE;
 import package::wgsl::skinning::rows::{Rows, rows_of_dual, unit_or};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
-// Whether the palette holds dual quaternions and not matrices.
+// Whether the palette holds dual quaternions instead of matrices.
 override DUAL: bool = false;
-// Whether each instance has vertices of its own (morphed), which lie as the output does, and does not use the mesh's.
+// Whether each instance has its own (morphed) vertices, in the layout of the output, instead of the mesh's.
 override MORPHED: bool = false;
 // Whether the output lies in pages. Clusters without a page are skipped.
 override PAGED: bool = false;
-// With PAGED, whether the positions of the frame before are kept.
+// With PAGED, whether the positions of the last frame are kept.
 override KEEP: bool = false;
 
 struct SkinParams {
@@ -32,19 +32,19 @@ struct SkinParams {
 @group(0) @binding(0) var<uniform> params: SkinParams;
 // Five pairs per vertex: position, normal, tangent and handedness.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Two words per cluster: where its influences begin, and the largest number per vertex. The influences lie
-// there in columns of CLUSTER words: first the bones, two per word, then the weights of all but the strongest, in
-// falling order.
+// Two words per cluster: the index of its influences, and the largest number per vertex. Influences are columns of CLUSTER
+// words: first the bones, two per word, then the weights of all but the strongest, in descending order.
 @group(0) @binding(2) var<storage, read> influences: array<u32>;
 // Three rows per bone and instance, or with DUAL four vectors.
 @group(0) @binding(3) var<storage, read> palette: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
-// cluster * instances + instance, for each pair to be skinned. With KEEP, there follows for each pair what is done to it.
+// Pairs to be skinned: cluster * instances + instance. With KEEP, the state of every pair follows, as skinning/select writes
+// it.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
 // Workgroups of the dispatch, and the number of pairs.
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
-// Skinned vertices in the layout of `vertices`, instance by instance or page by page; with KEEP, behind all of them the last
-// positions, of which the last number is unused.
+// Skinned vertices in the layout of `vertices`, instance by instance or page by page. With KEEP, the last positions follow, two
+// pairs per vertex; the fourth number is unused.
 @group(0) @binding(7) var<storage, read_write> skinned: array<vec2<f32>>;
 // With PAGED the page of each cluster of each instance.
 @group(0) @binding(8) var<storage, read> page_table: array<u32>;
@@ -57,8 +57,7 @@ struct Sum {
     d: vec4<f32>,
 }
 
-// Adds a bone. `side` is its weight, negated if its quaternion lies in the other hemisphere than the strongest
-// bone's.
+// Adds a bone. `side` is its weight, negated if its quaternion and the strongest bone's lie in opposite hemispheres.
 fn added(sum: Sum, at: u32, weight: f32, side: f32) -> Sum {
     if DUAL {
         return Sum(
@@ -76,7 +75,7 @@ fn matrix_of(sum: Sum) -> Rows {
     return Rows(sum.a, sum.b, sum.c);
 }
 
-// The blended matrix of a vertex, whose column in the cluster's influences begins at `column`.
+// The blended matrix of a vertex. `column` is the start of its column in the cluster's influences.
 fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) -> Rows {
     let stride = select(3u, 4u, DUAL);
     var bones = influences[column];

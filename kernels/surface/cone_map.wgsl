@@ -11,8 +11,8 @@
 import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index, surface_levels};
 
-// The ratio of distance to size from which a node of the pyramid is treated as a whole. Larger values give wider
-// cones and a slower computation: 4 saves one load in twenty-five in a march, and takes half as long again to compute.
+// Ratio of distance to size from which a node of the pyramid is treated as a whole. Larger values give wider cones and a slower
+// computation: 4 saves one load in 25 in a march, and takes 1.5 times as long to compute.
 const OPENING: f32 = 2.0;
 
 struct ConeParams {
@@ -32,11 +32,11 @@ struct ConeParams {
 // Highest corner, and the radius of the cone in cells at height 1 above it.
 @group(0) @binding(3) var<storage, read_write> cones: array<vec2<f32>>;
 
-// The least rise that radii are divided by.
+// Lower bound of the rises that radii are divided by.
 const LEAST_RISE: f32 = 1e-9;
 // The radius of a cone that nothing narrows.
 const WIDEST: f32 = 1e9;
-// The factor that takes off radii more than the rounding of their quotients can add.
+// Safety factor of radii, below 1: it takes off more than the rounding of their quotients can add.
 const NARROWING: f32 = 0.999999;
 // A limit that no search reaches.
 const MAX_VISITS: u32 = 65536u;

@@ -51,7 +51,7 @@ fn corner(map: u32, at: vec2<i32>) -> f32 {
     return heights[surface_corner_index(params.size, params.address, map, at)];
 }
 
-// A node of the next finer level, or one at the edge: that does not change the maximum.
+// A node of the next finer level, clamped to the edge, which does not change the maximum.
 fn child(map: u32, at: vec2<i32>) -> f32 {
     let level = params.level - 1u;
     return pyramids[place(map, level, min(at, vec2<i32>(nodes(level)) - 1))];

@@ -16,8 +16,8 @@ struct ShadeView {
     eye: vec4<f32>,
     // Number of heights that a soft shadow samples on the way to the light, 1 to `MAX_STEPS`.
     shadow_steps: u32,
-    // The ratio of the surface's height above the way to the light to its distance at which a soft shadow is full;
-    // 0.001 to 1000.
+    // Ratio of excess height, of the surface above the way to the light, to distance at which a soft shadow is full; 0.001 to
+    // 1000.
     softness: f32,
 }
 
@@ -39,7 +39,7 @@ struct ShadePoint {
 
 // The shading of a point.
 struct Shade {
-    // 1 if the light's ray ends in the point, else 0.
+    // 1 if the light's ray reaches the point, else 0.
     hard: f32,
     // Light with penumbras, 0 in full shadow to 1 in full light.
     soft: f32,

@@ -11,14 +11,14 @@ struct TangentParams {
 @group(0) @binding(2) var<storage, read> normals: array<u32>;
 @group(0) @binding(3) var<storage, read> texture_coordinates: array<f32>;
 @group(0) @binding(4) var<storage, read> indices: array<u32>;
-// Where the corners of each vertex begin, and the corners, which are positions in `indices`.
+// Index of each vertex's first corner; then the corners, which are positions in `indices`.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
 @group(0) @binding(6) var<storage, read> corners: array<u32>;
 @group(0) @binding(7) var<storage, read_write> tangents: array<vec4<f32>>;
 
 // 2^-100, below which a vector has no direction.
 const LEAST: f32 = 7.888609052210118e-31;
-// Its bits.
+// The bits of `LEAST`.
 const LEAST_BITS: u32 = 0x0d800000u;
 // The bits of 2^100.
 const LARGEST_BITS: u32 = 0x71800000u;
@@ -53,7 +53,7 @@ fn unit(vector: vec3<f32>) -> vec3<f32> {
     return vector * inverseSqrt(dot(vector, vector));
 }
 
-// The contribution of the triangle that has this corner to the corner's vertex.
+// The contribution of a corner's triangle to the corner's vertex.
 fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     let nothing = Contribution(vec3<f32>(0.0), 0.0, 0.0);
     let first = corner - corner % 3u;

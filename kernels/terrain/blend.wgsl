@@ -16,12 +16,12 @@ struct MapParams {
     run: f32,
     zone_count: u32,
     additive: u32,
-    // 1 where textures lie on the ground from above alone, 3 where they lie on it from the sides too.
+    // Number of planes that textures are projected from: 1 (from above) or 3 (triplanar).
     planes: u32,
     // Texture tiles per sample and per unit of height, in 2^-22 tiles.
     tiles_per_sample: u32,
     tiles_per_unit: u32,
-    // The strength of the variation of colour.
+    // Strength of the colour variation, 0 to 1.
     variation: f32,
 }
 
@@ -60,7 +60,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         blend = zone_blended(blend, map_zone.zone, height, steep, texel);
     }
-    // 14 bits behind the point fit an f32.
+    // An f32 holds 14 fractional bits exactly.
     let variation = color_variation(vec2<f32>(tiles.xz >> vec2<u32>(8u)) / 16384.0);
     let albedo = varied(zone_color(blend, params.additive != 0u), variation, params.variation);
     pixels[inner_index(params.width, id)] = pack4x8unorm(vec4<f32>(srgb(lit(params.light, normal, albedo)), 1.0));
@@ -72,8 +72,8 @@ fn texel_at(index: u32) -> vec4<f32> {
     return vec4<f32>(unpack2x16unorm(texel.x), unpack2x16unorm(texel.y));
 }
 
-// sRGB's curve within 1/100 of a level of 255. 1.055 x^(1/2.4) − 0.055 is a polynomial in the fourth root of x whose largest error
-// from 0.0031308 to 1 is the least, 3.4e-5: software adapters take six times as long for a power.
+// The sRGB transfer function, within 1/100 of a level of 255. A minimax polynomial in the fourth root of x replaces 1.055
+// x^(1/2.4) − 0.055; its largest error from 0.0031308 to 1 is 3.4e-5. Software adapters take six times as long for a power.
 fn srgb(linear: vec3<f32>) -> vec3<f32> {
     let bounded = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
     let root = sqrt(sqrt(bounded));

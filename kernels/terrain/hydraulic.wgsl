@@ -1,7 +1,8 @@
 // A cycle of hydraulic erosion of windows (virtual pipes after Mei, Decaudin and Hu 2007, in integers). Each sample has ground,
 // water, suspended sediment, and the shares of both that leave for its four neighbours. A cycle moves these shares, lets ground
-// creep and banks slide, erodes or deposits, evaporates, rains, and computes the next shares from the surfaces before the cycle.
-// Whatever moves between two samples is computed from the old state alone. Each window loses its outermost ring of samples.
+// creep and banks slide, erodes or deposits, evaporates and rains. It computes the next shares from the surfaces before the
+// cycle. All transport between two samples is computed from the old state alone. Each window loses its outermost ring of
+// samples.
 import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
@@ -25,9 +26,9 @@ struct HydraulicParams {
     deposition: i32,
     // Sediment for each unit of discharge at a slope of 1, in 1/256.
     capacity: i32,
-    // The discharge up to which nothing is carried, and the most that spreads to each neighbour, in 1/65536 height units.
+    // Discharge up to which no sediment is carried, and the most water that spreads to each neighbour, in 1/65536 height units.
     threshold: i32,
-    // The fall to the next sample at a slope of 1; steeper ones count as this.
+    // Fall to the next sample at a slope of 1. Larger falls are clamped to it.
     steepest: i32,
     // With factor and shift, a fall is a slope in 1/4096: ((fall >> shift) * factor) >> 15.
     slope_shift: u32,
@@ -40,8 +41,8 @@ struct HydraulicParams {
 
 @group(0) @binding(0) var<uniform> params: HydraulicParams;
 @group(0) @binding(2) var<storage, read_write> outputs: array<i32>;
-// Water, sediment, and the shares, in 1/32768, that leave to the west, in the low half of a word, and to the east; to the north,
-// and to the south.
+// Water (x) and sediment (y), then the shares that leave, in 1/32768. z: to the west (low half) and east (high half). w: to the
+// north and south, likewise.
 @group(0) @binding(3) var<storage, read> flows: array<vec4<i32>>;
 @group(0) @binding(4) var<storage, read_write> flow_outputs: array<vec4<i32>>;
 
@@ -67,18 +68,18 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 fn cell_at(at: u32) -> Cell {
-    // What the buffer held before the first cycle does not count; it may be shorter then.
+    // In the first cycle, the buffer has no valid content and may be shorter.
     let flow = select(vec4<i32>(0), flows[at], params.wet != 0);
     let shares = vec4<i32>(flow.z & 0xffff, flow.z >> 16u, flow.w & 0xffff, flow.w >> 16u);
     return Cell(windows[at], flow.x, flow.y, shares);
 }
 
-// A sample after a cycle, given its neighbours. Vectors hold what belongs to the west, east, north and south.
+// A sample after a cycle, given its neighbours. Components of vectors are west, east, north and south.
 fn cycle(own: Cell, west: Cell, east: Cell, north: Cell, south: Cell) -> Cell {
     let ground = vec4<i32>(west.ground, east.ground, north.ground, south.ground);
     let water = vec4<i32>(west.water, east.water, north.water, south.water);
     let sediment = vec4<i32>(west.sediment, east.sediment, north.sediment, south.sediment);
-    // The neighbours' shares for this sample, and all of them.
+    // The neighbours' shares for this sample, and the sum of each neighbour's shares.
     let shares = vec4<i32>(west.shares.y, east.shares.x, north.shares.w, south.shares.z);
     let all_shares = vec4<i32>(sum(west.shares), sum(east.shares), sum(north.shares), sum(south.shares));
 
@@ -101,8 +102,8 @@ fn cycle(own: Cell, west: Cell, east: Cell, north: Cell, south: Cell) -> Cell {
     let carried = capacity(discharge(sum(water_gone + water_come) >> 1u, eighths), slope(falls));
     let lifted = lifted(steps, moved, carried - suspended);
     let next_water = min(moved - part_of(moved, params.evaporation) + params.rain, WATER_LIMIT);
-    // A pipe keeps half of its flux, and takes a sixteenth of the fall. A thirty-second of the water, below the threshold, spreads
-    // through each, so that streams do not run along rows and columns.
+    // A pipe keeps half of its flux and adds a sixteenth of the fall. A thirty-second of the water, at most the threshold, also
+    // spreads through each pipe, so that streams do not run along rows and columns.
     let spread = min(next_water >> 5u, params.threshold);
     let flux = leaving - (leaving >> vec4<u32>(1u)) + (falls >> vec4<u32>(4u)) + spread;
     let bounded = clamp(flux, vec4<i32>(0), vec4<i32>(WATER_LIMIT));
@@ -131,14 +132,14 @@ fn ground_room(ground: vec4<i32>, sediment: vec4<i32>) -> vec4<i32> {
     return (HEIGHT_LIMIT - ground - sediment) >> vec4<u32>(3u);
 }
 
-// A quarter of the discharge of a sample, and three quarters of the mean of what leaves its neighbours, given in eighths, so that
-// streams are wider than a sample and run in any direction alike.
+// Discharge around a sample: a quarter of its own, and three quarters of the mean outflow of its neighbours. `eighths` is the
+// sum of an eighth of each outflow. Streams are therefore wider than a sample, and do not favour a direction.
 fn discharge(own: i32, eighths: i32) -> i32 {
     return (own >> 2u) + eighths + (eighths >> 1u);
 }
 
-// The slope, in 1/4096, of a surface that falls so far to its neighbours. It has the length of its two components, by the larger
-// one and three eighths of the smaller one.
+// Slope of a surface, in 1/4096, from its falls to the four neighbours. The length of the gradient is approximated by its
+// larger component plus three eighths of the smaller one.
 fn slope(falls: vec4<i32>) -> i32 {
     let steepest = clamp(max(falls.xz, falls.yw), vec2<i32>(0), vec2<i32>(params.steepest));
     let slopes = ((steepest >> vec2<u32>(params.slope_shift)) * params.slope_factor) >> vec2<u32>(15u);
@@ -151,13 +152,13 @@ fn capacity(discharge: i32, slope: i32) -> i32 {
     let driving = clamp(discharge - params.threshold, 0, WATER_LIMIT);
     let high = driving >> 12u;
     let low = ((driving & 4095) * rate) >> 12u;
-    // Without the one that is subtracted, the largest product would be 2^32.
+    // `high >> 14` is 1 at the largest discharge. Without it, the largest product would be 2^32.
     let product = u32(high) * u32(min(rate, 0x40000 - (high >> 14u)));
     return i32(min(product + u32(low), u32(SEDIMENT_LIMIT)));
 }
 
-// The ground that goes into suspension, or, below 0, the sediment that settles, given how much lower the neighbours are. Ground
-// sinks no deeper than its lowest neighbour, and rises no higher than its highest or the water.
+// The ground that goes into suspension, or if negative the sediment that settles. `steps` is how much lower the neighbours are.
+// Ground sinks no deeper than its lowest neighbour, and rises no higher than its highest neighbour or the water.
 fn lifted(steps: vec4<i32>, water: i32, lacking: i32) -> i32 {
     if lacking > 0 {
         let deepest = max(max(max(steps.x, steps.y), max(steps.z, steps.w)), 0);
@@ -167,7 +168,7 @@ fn lifted(steps: vec4<i32>, water: i32, lacking: i32) -> i32 {
     return -min(part_of(-lacking, params.deposition), max(highest >> 3u, water >> 2u));
 }
 
-// The shares that leave next: all together give three quarters of the water at most, so that neighbouring samples do not
+// The shares that leave next. Together they are at most three quarters of the water, so that neighbouring samples do not
 // exchange all of it from cycle to cycle.
 fn next_shares(flux: vec4<i32>, water: i32) -> vec4<i32> {
     let whole = u32(max(max(sum(flux), water), 1));

@@ -2,7 +2,7 @@
 // four samples.
 
 struct MorphParams {
-    // Of four heights.
+    // Number of vectors of four heights.
     vectors: u32,
     // The time, 0 to 65536.
     time: u32,
@@ -11,7 +11,7 @@ struct MorphParams {
 @group(0) @binding(0) var<uniform> params: MorphParams;
 @group(0) @binding(1) var<storage, read> start_heights: array<vec4<i32>>;
 @group(0) @binding(2) var<storage, read> target_heights: array<vec4<i32>>;
-// The last vector may reach beyond the last height, into the room that buffers have.
+// The last vector may extend past the last height, into room that buffers have.
 @group(0) @binding(3) var<storage, read_write> heights: array<vec4<i32>>;
 
 @compute @workgroup_size(64)

@@ -1,5 +1,6 @@
-// Windows around the patches of a batch, gathered from the patches themselves and their neighbours. There is
-// one dispatch for each buffer of patches; it writes the samples that come from that buffer. A thread copies a sample: `id` has its column, its row and the window.
+// Windows around the patches of a batch, gathered from the patches themselves and their neighbours. There is one dispatch per
+// buffer of patches; it writes the samples that come from that buffer. A thread copies a sample: `id` has its column, its row
+// and the window.
 
 struct PadParams {
     // Samples along an edge of a patch, and around it in its window.
@@ -35,8 +36,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-// The tile (column, row) whose patch provides the samples of a tile: the tile itself, or else its neighbours in x and in y, and
-// last the patch itself.
+// The tile (column, row) whose patch provides the samples of a tile. In order of preference: the tile itself, its neighbour in
+// x, its neighbour in y, the patch in the middle.
 fn provider_of(window: u32, tile: vec2<i32>) -> vec2<i32> {
     if around_at(window, tile) != NONE {
         return tile;

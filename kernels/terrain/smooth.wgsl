@@ -1,11 +1,11 @@
 // One level of smooth subdivision for a batch of windows onto the plane: four-point interpolation (Dyn, Levin and Gregory 1987)
-// in both directions, with random offsets. A thread computes the centers of the cells around its coarse point that the points
-// on edges depend on, so that threads need no barrier and a level is one dispatch.
+// in both directions, with random offsets. A thread computes all centers that its points on edges depend on, in the cells
+// around its coarse point. Threads therefore need no barrier, and a level is one dispatch.
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
-// The features of a level are listed for two points more on every side than those of `terrain/height`: centers up to
-// three points outside of a window belong to its edges.
+// Points on every side for which features are listed in addition to those of `terrain/height`: edges of a window depend on
+// centers up to three points outside of it.
 const FEATURE_SHIFT = 2;
 
 // A row of coarse points, seen from one of them.
@@ -21,7 +21,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let window = id.z;
-    // The coarse window begins three points before the one at its first sample or the one before that.
+    // The coarse window begins three coarse points before the coarse point at the fine window's first sample, or just before
+    // it.
     let cell = vec2<i32>(id.xy) + 3;
     let at = 2 * vec2<i32>(id.xy) - (origins[window] & vec2<i32>(1));
     // The coarse rows from three above the own one to three below it.
@@ -53,7 +54,7 @@ fn row_of(window: u32, cell: vec2<i32>) -> Row {
     return Row(before.w, between(before, coarse_points(window, cell.x + vec4<i32>(1, 2, 3, 3), y)));
 }
 
-// The values between every four of seven; the last lane of `after` does not count.
+// Interpolated values between every four consecutive ones of seven. The last lane of `after` is unused.
 fn between(before: vec4<i32>, after: vec4<i32>) -> vec4<i32> {
     return four_point(
         before, vec4<i32>(before.yzw, after.x), vec4<i32>(before.zw, after.xy), vec4<i32>(before.w, after.xyz));

@@ -1,5 +1,5 @@
 // One level of diamond-square subdivision for a batch of patches that are generated alone and whose neighbours wrap around (B
-// section 3.3.1). A thread computes the centers to the left of its coarse point and above it a second time.
+// section 3.3.1). A thread recomputes the centers to the left of its coarse point and above it.
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
@@ -10,7 +10,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let patch_index = id.z;
     let at = vec2<i32>(id.xy);
-    // The number of cells along an edge is a power of two. Behind the last cell comes the first.
+    // The number of cells along an edge is a power of two. The first cell follows the last.
     let mask = i32(level.coarse_width) - 2;
     let cell = at & vec2<i32>(mask);
     let before = (at + mask) & vec2<i32>(mask);

@@ -1,4 +1,4 @@
-//! The work of a frame for a crowd: lists of what a gate chose.
+//! Work lists of a frame for a crowd: the bones and instances that a gate chose.
 
 #[cfg(feature = "gpu")]
 mod buffers;

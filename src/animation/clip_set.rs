@@ -1,4 +1,4 @@
-//! A set of clips of one skeleton, as crowds play them: the clips' arrays one after another, and the timelines
+//! A set of clips of one skeleton, as crowds play them. It holds the arrays of all clips one after another, and the timelines
 //! that tracks share. The first timeline of a clip has the times of all its tracks.
 
 use std::collections::HashMap;
@@ -9,20 +9,21 @@ use crate::asset::clip::{Clip, Interpolation, Track};
 use crate::shared::animation::clip as packed;
 pub use crate::shared::animation::clip::{ClipEntry, Timeline};
 
-/// A track of a set.
+/// A track in a clip set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SetTrack {
-    /// The timeline with its key times, counted from the clip's first; `None` if its value never changes.
+    /// Index of the timeline with the track's key times, counted from the clip's first timeline; `None` if the value never
+    /// changes.
     pub timeline: Option<u32>,
-    /// How values between keys are interpolated.
+    /// Interpolation of values between keys.
     pub interpolation: Interpolation,
-    /// Index of its first value; for a constant spline, of the middle one of its three.
+    /// Index of the track's first value; for a constant spline, of the middle one of its three values.
     pub first_value: u32,
 }
 
 #[cfg(feature = "gpu")]
 impl SetTrack {
-    /// The track as kernels read it, in 8 bytes.
+    /// The packed track that kernels read, 8 bytes.
     pub fn packed(&self) -> packed::SetTrack {
         let timeline = self.timeline.unwrap_or(packed::CONSTANT);
         let interpolation = self.interpolation as u32;
@@ -42,11 +43,11 @@ pub struct ClipSet {
 }
 
 impl ClipSet {
-    /// A set of clips of one skeleton.
+    /// Builds a set from clips of one skeleton.
     ///
     /// # Errors
-    /// [`InputError`] for an empty list, for clips of different numbers of bones, and for more values or times
-    /// than `u32` byte offsets can address.
+    /// [`InputError`] for an empty list, for clips of different numbers of bones, and for more values or times than `u32` byte
+    /// offsets can address.
     pub fn new(clips: &[&Clip]) -> Result<Self, InputError> {
         let Some(first) = clips.first() else {
             return Err(InputError::new("clips.len", 0, "must be at least 1"));
@@ -103,8 +104,8 @@ impl ClipSet {
         });
     }
 
-    /// The first timeline of a clip, which has each time of any of its tracks once; gate tables use only this
-    /// one. In most clips some track has the same times.
+    /// Adds a clip's first timeline: every time of any of its tracks, once. Gate tables use only this timeline. In most clips
+    /// one of the tracks already has exactly these times.
     fn add_common_timeline(&mut self, clip: &Clip, first_time: usize) -> Timeline {
         let common = all_times(clip);
         let same = moving(clip).find(|track| clip.times_of(track) == common);
@@ -122,20 +123,19 @@ impl ClipSet {
         timeline
     }
 
-    /// The times for which gate tables have rows of a clip.
+    /// Times of a clip's rows in gate tables.
     pub fn common_times(&self, clip: &ClipEntry) -> &[f32] {
         let timeline = self.timelines[clip.first_timeline as usize];
         &self.times[timeline.first_time as usize..][..timeline.keys as usize]
     }
 
-    /// The number of a clip's rows in gate tables: one for each of its [`ClipSet::common_times`], and one for
-    /// the whole clip.
+    /// Number of a clip's rows in gate tables: one per [`ClipSet::common_times`], and one for the whole clip.
     pub fn rows(&self, clip: &ClipEntry) -> u32 {
         self.timelines[clip.first_timeline as usize].keys + 1
     }
 
-    /// Refuses clips other than those of which the set was made, in its order, because data computed from them
-    /// would be attributed to others.
+    /// Refuses a list of clips that differs from the one the set was made from, also in its order. Data computed from them
+    /// would be assigned to the wrong clips.
     pub(crate) fn check_clips(&self, clips: &[&Clip]) -> Result<(), InputError> {
         InputError::check_same("clips.len", clips.len(), self.clips.len(), "those of the set")?;
         let mut values = self.values.as_slice();
@@ -176,7 +176,7 @@ impl ClipSet {
         &self.timelines
     }
 
-    /// The number of cursors that an instance needs: the largest number of timelines of a clip, at least 1.
+    /// Number of cursors per instance: the largest number of timelines of any clip, at least 1.
     pub fn timelines_a_clip(&self) -> usize {
         self.clips.iter().map(|clip| clip.timelines as usize).max().unwrap_or(0).max(1)
     }
@@ -196,12 +196,12 @@ fn moving(clip: &Clip) -> impl Iterator<Item = &Track> {
     clip.tracks().iter().filter(|track| track.keys > 1)
 }
 
-/// The times of all tracks of a clip, each once, and the clip's start.
+/// All times of a clip's tracks, each once, and the clip's start.
 fn all_times(clip: &Clip) -> Vec<f32> {
     let mut common: Vec<f32> = moving(clip).flat_map(|track| clip.times_of(track)).copied().collect();
     common.sort_by(f32::total_cmp);
     common.dedup();
-    // The time before the first key has a row of its own, since there may be a jump at that key.
+    // The time before the first key needs a row of its own, because there may be a jump at that key.
     if common.first().is_none_or(|first| *first > 0.0) {
         common.insert(0, 0.0);
     }

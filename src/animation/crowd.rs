@@ -1,5 +1,4 @@
-//! The data of a crowd on the device: the clips that it plays, and for each instance its cursors, local
-//! transforms and model matrices.
+//! A crowd's data on the device: the clips that it plays and, per instance, cursors, local transforms and model matrices.
 
 use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
 use crate::animation::instance::Instance;
@@ -13,8 +12,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::shared::animation::clip::SetTrack as PackedTrack;
 use crate::{Error, InputError};
 
-/// A local transform in the kernels' layout: translation and scale x; rotation; scale y and z, and two unused
-/// words.
+/// A local transform in the kernels' layout: translation and scale x; rotation; scale y, scale z and two unused words.
 pub type Local = [[f32; 4]; 3];
 
 /// Converts a transform to the kernels' layout.
@@ -32,9 +30,9 @@ pub fn unpacked(local: &Local) -> Transform {
 /// A set of clips on the device.
 #[derive(Debug, Clone)]
 pub struct ClipBuffers {
-    /// One per clip.
+    /// One entry per clip.
     pub clips: Buffer<ClipEntry>,
-    /// Three per bone and clip.
+    /// Three tracks per bone and clip.
     pub tracks: Buffer<PackedTrack>,
     /// Timelines, clip by clip.
     pub timelines: Buffer<Timeline>,
@@ -42,7 +40,7 @@ pub struct ClipBuffers {
     pub times: Buffer<f32>,
     /// Values of all tracks.
     pub values: Buffer<[f32; 4]>,
-    /// Number of cursors that an instance needs.
+    /// Number of cursors per instance.
     pub timelines_a_clip: usize,
     /// Whether any track is a cubic spline.
     pub has_splines: bool,
@@ -70,31 +68,31 @@ impl ClipBuffers {
 /// Instances of one skeleton on the device. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Crowd {
-    /// What each instance plays, layer by layer: `layer · len + instance`. The caller may rewrite it, a layer
-    /// by `write_at` from `layer · len` on; clips must exist in the set.
+    /// Clip that each instance plays, per layer, at `layer · len + instance`. The caller may rewrite it; `write_at` from
+    /// `layer · len` on replaces one layer. Clips must exist in the set.
     pub instances: Buffer<Instance>,
-    /// The cursors that [`crate::animation::keyframe_cursor::KeyframeCursorPass`] writes:
-    /// [`ClipSet::timelines_a_clip`] for each of `instances`.
+    /// Cursors that [`crate::animation::keyframe_cursor::KeyframeCursorPass`] writes: [`ClipSet::timelines_a_clip`] for each
+    /// entry of `instances`.
     pub cursors: Buffer<KeyframeCursor>,
-    /// Weights of the layers above the base, 0..=1: for each layer one weight per instance, at `(layer − 1) ·
-    /// len + instance`, then for each layer a mask with one value per bone. Weights may be rewritten
+    /// Weights of the layers above the base, 0..=1. First, for each layer, one weight per instance at
+    /// `(layer − 1) · len + instance`; then, for each layer, a mask with one value per bone. Weights may be rewritten
     /// ([`Crowd::set_weights`]).
     pub layer_weights: Buffer<f32>,
-    /// The local transforms that [`crate::animation::sample::SamplePass`] writes, at `instance · bones + bone`.
+    /// Local transforms that [`crate::animation::sample::SamplePass`] writes, at `instance · bones + bone`.
     pub locals: Buffer<Local>,
-    /// The matrices that [`crate::animation::local_to_model::LocalToModelPass`] writes.
+    /// Model matrices that [`crate::animation::local_to_model::LocalToModelPass`] writes.
     pub model_matrices: ModelMatrices,
     /// Number of bones of the skeleton.
     pub bones: usize,
-    /// Number of layers, the base included: 1 if each instance plays one clip.
+    /// Number of layers, including the base: 1 if each instance plays one clip.
     pub layers: usize,
-    /// Clips of the set.
+    /// Number of clips of the set.
     pub(crate) clips: usize,
     path: RotationPath,
 }
 
 impl Crowd {
-    /// Allocates a crowd of instances of a set's clips, with one layer.
+    /// Allocates a crowd with one layer, for instances of a set's clips.
     ///
     /// # Errors
     /// [`InputError`] for no instances, and for instances of a clip that the set does not have; [`GpuError`].
@@ -102,11 +100,11 @@ impl Crowd {
         Self::layered(gpu, set, instances, &[])
     }
 
-    /// Allocates a crowd of instances of a set's clips, with layers above them.
+    /// Allocates a crowd with layers above the base, for instances of a set's clips.
     ///
     /// # Errors
-    /// [`InputError`] for no instances, for instances of a clip that the set does not have, for more than
-    /// [`MAX_LAYERS`] layers, and for layers that do not match ([`Layer::validate`]); [`GpuError`].
+    /// [`InputError`] for no instances, for instances of a clip that the set does not have, for more than [`MAX_LAYERS`]
+    /// layers, and for layers that do not match ([`Layer::validate`]); [`GpuError`].
     pub fn layered(gpu: &Gpu, set: &ClipSet, base: &[Instance], layers: &[Layer]) -> Result<Self, Error> {
         let (count, bones) = (base.len(), set.bones());
         let pairs = count.saturating_mul(bones);
@@ -134,20 +132,19 @@ impl Crowd {
         })
     }
 
-    /// The same crowd with another path of rotations between keys. The gate tables and the sampling pass must
-    /// use this path too.
+    /// Returns the crowd with another rotation path between keys. The gate tables and the sampling pass must use the same path.
     #[must_use]
     pub fn with_path(self, path: RotationPath) -> Self {
         Self { path, ..self }
     }
 
-    /// The path of rotations between keys: slerp unless [`Crowd::with_path`] chose another.
+    /// Rotation path between keys: slerp unless [`Crowd::with_path`] chose another.
     pub fn path(&self) -> RotationPath {
         self.path
     }
 
-    /// The model matrices of all bones, at `instance · bones + bone`, which
-    /// [`crate::animation::local_to_model::LocalToModelPass`] writes.
+    /// Model matrices of all bones, at `instance · bones + bone`, written by
+    /// [`crate::animation::local_to_model::LocalToModelPass`].
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
     }
@@ -172,12 +169,12 @@ impl Crowd {
         self.instances.len() / self.layers
     }
 
-    /// Always false, since a crowd has at least one instance.
+    /// Always false: a crowd has at least one instance.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Number of bones of all instances.
+    /// Number of bones over all instances.
     pub fn pairs(&self) -> usize {
         self.len() * self.bones
     }

@@ -5,19 +5,18 @@ use super::lod::{Lod, PackedLod};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::shared::animation::gate_state::ClipClock;
 
-/// What gates know of a crowd, and keep from frame to frame. All buffers may be read and bound by the caller.
+/// State of a crowd that gates keep from frame to frame. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct GateState {
     /// One level of detail per instance, written by the host ([`GateState::write_lods`]) or by a kernel; full detail
     /// at first.
     pub lods: Buffer<PackedLod>,
-    /// The clip clocks that [`crate::animation::clip_clock::ClipClockPass`] writes.
+    /// Clip clocks written by [`crate::animation::clip_clock::ClipClockPass`].
     pub clip_clocks: Buffer<ClipClock>,
-    /// For each instance: the last clip + 1, with the highest bit set if layers were above it; a hash of what
-    /// these layers played; and, as bits, the last time inside the clip and the time ahead. Zeros mean that no
-    /// pose is stored.
+    /// Four words per instance: last clip + 1, with the highest bit set if there were layers above it; a hash of the clips of
+    /// these layers; and, as bits, the last time inside the clip and the time ahead. Zeros mean that no pose is stored.
     pub history: Buffer<[u32; 4]>,
-    /// For each slot of each instance, the sum of motion when it was last sampled.
+    /// Accumulated motion of each slot of each instance when it was last sampled.
     pub sampled: Buffer<u32>,
 }
 
@@ -36,7 +35,7 @@ impl GateState {
         })
     }
 
-    /// Replaces the levels of detail of the first `lods.len()` instances, for submissions that follow.
+    /// Replaces the levels of detail of the first `lods.len()` instances, for later submissions.
     ///
     /// # Errors
     /// [`GpuError::Validation`] for more levels of detail than instances.

@@ -1,27 +1,27 @@
-//! What a character plays: a clip, with a start time and a rate.
+//! Playback of a clip by an instance, with a start time and a rate.
 
 use crate::InputError;
 use crate::shared::animation::clock;
 pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
-/// The largest absolute value of a start, of elapsed seconds, and of a rate: products and sums stay finite. It
-/// is about 30 years.
+/// Largest absolute value of a start, of elapsed seconds, and of a rate: about 30 years. Within it, products and sums stay
+/// finite.
 pub const MAX_SECONDS: f32 = 1e9;
 
-/// How times outside a clip are treated.
+/// Treatment of times outside a clip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Wrap {
     /// The clip repeats; its end coincides with its start.
     #[default]
     Loop = 0,
-    /// The first or the last pose is kept.
+    /// The first or the last pose is held.
     Clamp = clock::WRAP_CLAMP,
 }
 
 impl Wrap {
-    /// The time inside a clip of `duration` seconds that corresponds to `seconds` after its start, negative if
-    /// it plays backwards.
+    /// Time inside a clip of `duration` seconds, for `seconds` after its start. `seconds` is negative if the clip plays
+    /// backwards.
     ///
     /// # Errors
     /// [`InputError`] for seconds that are not finite.
@@ -52,17 +52,17 @@ pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
 }
 
 impl Instance {
-    /// A clip with a start in seconds and a rate in clip seconds per second.
+    /// Plays a clip from a start in seconds, at a rate in clip seconds per second.
     pub fn new(clip: u32, wrap: Wrap, start: f32, rate: f32) -> Self {
         Self { clip, wrap_code: wrap as u32, start, rate }
     }
 
-    /// How times outside the clip are treated.
+    /// Treatment of times outside the clip.
     pub fn wrap(&self) -> Wrap {
         if self.wrap_code == Wrap::Loop as u32 { Wrap::Loop } else { Wrap::Clamp }
     }
 
-    /// Checks that it plays one of `clips` clips, with a start and a rate within ±[`MAX_SECONDS`].
+    /// Checks that the clip is one of `clips`, and that start and rate are within ±[`MAX_SECONDS`].
     ///
     /// # Errors
     /// [`InputError`] that names the field.

@@ -1,18 +1,17 @@
-//! Layers: several clips per instance, blended one over the other.
+//! Animation layers: several clips per instance, blended one over the other.
 //!
-//! Layer 0 is the base, which every instance plays on all its bones. Each layer above it plays a clip with a
-//! start, rate and wrap of its own, and has a *weight* for each instance and a *mask* value for each bone. From
-//! the base upwards, a bone's pose becomes
+//! Layer 0 is the base, which every instance plays on all its bones. Each layer above it plays a clip with its own start, rate
+//! and wrap. It has a *weight* for each instance and a *mask* value for each bone. From the base upwards, each part
+//! (translation, rotation, scale) of a bone's pose becomes
 //!
 //! `below + (layer − below) · weight · mask`
 //!
-//! for each part. Rotations are blended along the chord to the nearer of q and −q and normalized (nlerp): they
-//! are exact at weights of 0 and 1, and on the shortest arc in between, but not at constant speed: up to 0.002
-//! rad off for rotations 45° apart, 0.016 for 90°, 0.14 for 180°. A layer whose weight times mask is 0 on a
-//! bone is not loaded there.
+//! Rotations are blended along the chord to the nearer of q and −q and normalized (nlerp). They are exact at weights of 0 and
+//! 1. In between they are on the shortest arc, but not at constant speed: up to 0.002 rad off for rotations 45° apart, 0.016
+//! for 90°, 0.14 for 180°. A layer is not loaded for a bone on which its weight times mask is 0.
 //!
-//! A cross-fade of two clips is one layer without a mask; an arm that waves during a walk is one layer with the
-//! mask of the arm ([`mask_below`]).
+//! A cross-fade of two clips is one layer without a mask. An arm that waves during a walk is one layer with the mask of the arm
+//! ([`mask_below`]).
 //!
 //! ```
 //! use relievo::ops::animation::{ClipSet, Instance, Layer, Wrap, layers::mask_below};
@@ -33,22 +32,22 @@ use crate::InputError;
 use crate::animation::instance::Instance;
 use crate::asset::skeleton::Skeleton;
 
-/// The largest number of layers of a crowd, the base included.
+/// Largest number of layers of a crowd, including the base.
 pub const MAX_LAYERS: usize = 8;
 
 /// A layer above the base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
-    /// What each instance plays on this layer.
+    /// Clip that each instance plays on this layer.
     pub instances: Vec<Instance>,
-    /// The weight for each instance, 0 to 1.
+    /// Weight for each instance, 0 to 1.
     pub weights: Vec<f32>,
-    /// The mask value for each bone, 0 to 1; `None` stands for 1 on all bones.
+    /// Mask value for each bone, 0 to 1; `None` means 1 on all bones.
     pub mask: Option<Vec<f32>>,
 }
 
 impl Layer {
-    /// A layer on all bones.
+    /// A layer that affects all bones.
     pub fn new(instances: Vec<Instance>, weights: Vec<f32>) -> Self {
         Self { instances, weights, mask: None }
     }
@@ -64,13 +63,12 @@ impl Layer {
         self.weights[instance] * self.mask.as_ref().map_or(1.0, |mask| mask[bone])
     }
 
-    /// Checks that the layer matches a crowd of `count` instances that play `clips` clips on `bones` bones;
-    /// `path` precedes the field's name.
+    /// Checks that the layer matches a crowd of `count` instances that play `clips` clips on `bones` bones. `path` is the
+    /// prefix of the field's name in errors.
     ///
     /// # Errors
-    /// [`InputError`] for numbers of instances or weights that are not one per instance, for a mask that is not
-    /// one value per bone, for weights and mask values outside 0..=1, and for instances of a clip that does not
-    /// exist.
+    /// [`InputError`] for numbers of instances or weights that are not one per instance, for a mask that is not one value per
+    /// bone, for weights and mask values outside 0..=1, and for instances of a clip that does not exist.
     pub fn validate(&self, path: &str, count: usize, clips: usize, bones: usize) -> Result<(), InputError> {
         let each = |field: &str, len: usize, wanted: usize, item: &str| {
             InputError::check_len(&format!("{path}.{field}"), len, wanted, item)
@@ -86,12 +84,12 @@ impl Layer {
     }
 }
 
-/// Refuses values outside 0..=1, and names the first with its index.
+/// Refuses values outside 0..=1; the error names the first of them with its index.
 pub(crate) fn check_weights(path: &str, values: &[f32]) -> Result<(), InputError> {
     InputError::check_each(path, values, |value| (0.0..=1.0).contains(value), "must be in 0..=1")
 }
 
-/// The mask of a bone and all bones below it: 1 for these, 0 for others.
+/// Mask of a bone and all bones below it: 1 for these, 0 for others.
 ///
 /// # Errors
 /// [`InputError`] for a bone that the skeleton does not have.

@@ -1,38 +1,36 @@
-//! The level of detail of instances by their view: how far away an instance is (A section 12.10), and how much
-//! motion may be missed before it is visible. The host quantizes these values, so that every device decides
-//! alike.
+//! Level of detail of an instance in its view: how far away it is (A section 12.10), and how much motion it may miss before
+//! that is visible. The host quantizes these values, so that every device decides alike.
 
 use crate::InputError;
 use crate::shared::animation::gate_state;
-/// A [`Lod`] as kernels read and write it: the struct `Lod` of the WGSL module `animation`, whose `flags` are
-/// `LOD_HIDDEN`, `LOD_FORCED` or 0.
+/// Packed [`Lod`] that kernels read and write: the struct `Lod` of the WGSL module `animation`. Its `flags` are `LOD_HIDDEN`,
+/// `LOD_FORCED` or 0.
 pub use crate::shared::animation::gate_state::Lod as PackedLod;
 pub use crate::shared::animation::gate_state::{FULL_WEIGHT, OMEGA_ONE};
 
 /// An instance's level of detail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Lod {
-    /// Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], at which nothing is skipped. See
-    /// [`Range::omega`].
+    /// Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], where nothing is skipped. See [`Range::omega`].
     pub omega: u32,
-    /// The motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
+    /// Motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
     pub allowed: u32,
-    /// The weight of this instance's motion against that of other instances, 0 to [`FULL_WEIGHT`], proportional to its
-    /// size on screen.
+    /// Weight of this instance's motion against that of other instances, 0 to [`FULL_WEIGHT`], proportional to its size on
+    /// screen.
     pub weight: u32,
-    /// Which bones a frame samples.
+    /// Bones that a frame samples.
     pub sampling: Sampling,
 }
 
-/// Which bones of an instance a frame samples.
+/// Choice of the bones of an instance that a frame samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Sampling {
-    /// Those that the gate chooses.
+    /// The bones that the gate chooses.
     #[default]
     Gated,
-    /// None: the instance is not in view. It costs nothing, and is sampled in full when it comes back.
+    /// No bones: the instance is not in view. It costs nothing, and is sampled in full when it comes back.
     Hidden,
-    /// All of them, whatever the gate says.
+    /// All bones, whatever the gate decides.
     Forced,
 }
 
@@ -41,7 +39,7 @@ impl Lod {
     pub const FULL: Self =
         Self { omega: OMEGA_ONE, allowed: 0, weight: FULL_WEIGHT, sampling: Sampling::Gated };
 
-    /// The level of detail as kernels read it.
+    /// The packed level of detail that kernels read.
     pub fn packed(&self) -> PackedLod {
         let flags = match self.sampling {
             Sampling::Gated => 0,
@@ -61,9 +59,9 @@ impl Default for Lod {
 /// The distances, in metres, between which detail falls from full to none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Up to this distance Ω is 1.
+    /// Distance up to which Ω is 1.
     pub min: f32,
-    /// From this distance on Ω is 0.
+    /// Distance from which on Ω is 0.
     pub max: f32,
 }
 
@@ -96,26 +94,25 @@ impl Range {
     }
 }
 
-/// How a camera converts metres to pixels.
+/// A camera's conversion from metres to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
-    /// The number of pixels that a metre takes at a distance of one metre on the axis: half the picture's
-    /// height in pixels, divided by the tangent of half the field of view; the larger value of both directions.
+    /// Focal length in pixels: the size of a metre at a distance of one metre on the axis. It is half the picture's height in
+    /// pixels, divided by the tangent of half the field of view. Use the larger value of both directions.
     pub focal_pixels: f32,
     /// The distance of the near plane in metres.
     pub near: f32,
 }
 
 impl Projection {
-    /// The projection of a picture of `height` pixels with a vertical field of view in radians.
+    /// Projection of a picture of `height` pixels with a vertical field of view in radians.
     pub fn new(height: u32, field_of_view: f32, near: f32) -> Self {
         Self { focal_pixels: height as f32 / 2.0 / libm::tanf(field_of_view / 2.0), near }
     }
 
-    /// The largest distance, in metres, by which every point inside a sphere may be off while none is drawn
-    /// more than `pixels` from its place. `center` is in the camera's space: x and y across, z along the view.
-    /// The result is 0 if a part of the sphere may reach the near plane. `docs/pixel-bounds.md` has the
-    /// derivation.
+    /// Largest distance, in metres, by which every point inside a sphere may be off while no point is drawn more than `pixels`
+    /// from its place. `center` is in camera space: x and y across, z along the view. The result is 0 if a part of the sphere
+    /// may reach the near plane. `docs/pixel-bounds.md` has the derivation.
     pub fn allowed(&self, center: [f32; 3], radius: f32, pixels: f32) -> f32 {
         let [x, y, z] = center.map(f64::from);
         let (radius, pixels, focal) = (f64::from(radius), f64::from(pixels), f64::from(self.focal_pixels));
@@ -144,7 +141,7 @@ mod tests {
         assert_eq!([refused(2.0, 2.0), refused(2.0, f32::INFINITY)], ["range.max", "range.max"]);
     }
 
-    /// Moves points inside spheres by the permitted distance in every direction, and projects them.
+    /// Moves points inside spheres by the allowed distance in every direction, and projects them.
     #[test]
     fn what_is_allowed_stays_within_the_pixels() {
         let projection = Projection::new(1080, 1.0, 0.1);

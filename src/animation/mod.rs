@@ -1,5 +1,5 @@
-//! Keyframe animation of skeletons (A sections 9 to 14): crowds on the device, with layers, gates and bounds;
-//! root motion for the host.
+//! Keyframe animation of skeletons (A sections 9 to 14). Crowds on the device have layers, gates and bounds; root motion is
+//! computed on the host.
 
 pub mod active;
 pub mod bounds;

@@ -1,5 +1,5 @@
-//! Model matrices of a crowd's bones on the device, with the record of which of them a frame updates and what
-//! uses them.
+//! Model matrices of a crowd's bones on the device, with the record of the matrices that frames update and of the consumers
+//! that were prepared.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,10 +8,11 @@ use crate::animation::updated_bones::UpdatedBones;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// A handle to the model matrices of the bones of instances, at `instance · bones + bone`. Clones share the
-/// buffer and the record of what was prepared over it: a crowd under [`Gate::Bounded`](super::Gate::Bounded)
-/// cannot be skinned by dual quaternions, because its bound holds for linear blending only. Whichever of the
-/// two is prepared first excludes the other, as long as a handle exists.
+/// Handle to the model matrices of instances' bones, at `instance · bones + bone`. Clones share the buffer and the record of
+/// prepared consumers.
+///
+/// A crowd under [`Gate::Bounded`](super::Gate::Bounded) cannot be skinned by dual quaternions, because the gate's bound holds
+/// for linear blending only. Whichever of the two is prepared first excludes the other, as long as a handle exists.
 #[derive(Debug, Clone)]
 pub struct ModelMatrices {
     matrices: Buffer<Affine>,
@@ -20,19 +21,19 @@ pub struct ModelMatrices {
 }
 
 impl ModelMatrices {
-    /// Matrices that the caller writes, all of which may change in every frame. Those of a crowd are
+    /// Wraps matrices that the caller writes; all of them may change in every frame. For a crowd's matrices, use
     /// [`Crowd::model_matrices`](super::crowd::Crowd::model_matrices).
     pub fn new(matrices: &Buffer<Affine>) -> Self {
         Self { matrices: matrices.clone(), updated_bones: None, consumer: ExclusiveConsumer::default() }
     }
 
-    /// The same matrices, of which frames change only those whose bit is set here.
+    /// The same matrices with a record of updates: frames change only matrices whose bit is set in `updated`.
     #[must_use]
     pub fn with_updated_bones(&self, updated: &UpdatedBones) -> Self {
         Self { updated_bones: Some(updated.clone()), ..self.clone() }
     }
 
-    /// The matrices that frames updated since skinning last followed them. If `None`, any matrix may have changed.
+    /// Bones updated since skinning last followed them. `None` means that any matrix may have changed.
     pub fn updated_bones(&self) -> Option<&UpdatedBones> {
         self.updated_bones.as_ref()
     }
@@ -59,23 +60,23 @@ impl ModelMatrices {
         self.matrices.read_blocking(gpu)
     }
 
-    /// The buffer. It is not public: a second handle made from it would not share the record.
+    /// The typed buffer. It is not public, because a second handle made from it would not share the record.
     pub fn buffer(&self) -> &Buffer<Affine> {
         &self.matrices
     }
 
-    /// The record of what was prepared over these matrices, shared by all handles to them.
+    /// The record of prepared consumers, shared by all handles to these matrices.
     pub(crate) fn consumer(&self) -> &ExclusiveConsumer {
         &self.consumer
     }
 }
 
-/// Uses of model matrices that exclude each other.
+/// A use of model matrices that excludes the other use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Consumer {
     /// A gate that bounds the error of linearly blended vertices.
     BoundedGate,
-    /// Skinning by dual quaternions.
+    /// Dual quaternion skinning.
     DualQuaternions,
 }
 
@@ -87,21 +88,20 @@ impl ExclusiveConsumer {
     /// Records a consumer permanently.
     ///
     /// # Errors
-    /// [`InputError`] if the other one came first.
+    /// [`InputError`] if the other consumer came first.
     pub(crate) fn claim(&self, consumer: Consumer) -> Result<(), InputError> {
         refuse_other(*self.0.get_or_init(|| consumer), consumer)
     }
 
-    /// Refuses what [`ExclusiveConsumer::claim`] would refuse, and records nothing.
+    /// Checks like [`ExclusiveConsumer::claim`], but records nothing.
     ///
     /// # Errors
-    /// [`InputError`] if the other one came first.
+    /// [`InputError`] if the other consumer came first.
     pub(crate) fn check(&self, consumer: Consumer) -> Result<(), InputError> {
         self.0.get().map_or(Ok(()), |first| refuse_other(*first, consumer))
     }
 
-    /// Refuses a list of active bones that was made for another crowd, because that crowd would not know of the
-    /// gate's bound.
+    /// Refuses a list of active bones of another crowd, because that crowd would not know of the gate's bound.
     ///
     /// # Errors
     /// [`InputError`] for another crowd.

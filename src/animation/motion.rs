@@ -1,9 +1,8 @@
-//! Bounds on the motion of each bone along a clip: the path of its local transform along the clip's common
-//! timeline, weighted by how far it moves points of the model. They bound the error of a stale pose.
+//! Bounds on the motion of each bone along a clip. They bound the error of a stale pose. The motion is the path of the bone's
+//! local transform along the clip's common timeline, weighted by how far the bone moves points of the model.
 //!
-//! The path of a part is the sum of its changes from key to key, which is never shorter than the direct change
-//! between two times. `docs/pixel-bounds.md` has the bound on a point's error, and the path lengths of each
-//! interpolation.
+//! The path of a part is the sum of its changes from key to key. It is never shorter than the direct change between two times.
+//! `docs/pixel-bounds.md` has the bound on a point's error, and the path lengths of each interpolation.
 
 use super::clip_set::{ClipEntry, ClipSet};
 use crate::asset::Bone;
@@ -14,19 +13,19 @@ use crate::asset::skeleton::Skeleton;
 /// Number of samples of a spline of rotations between two keys.
 const MOMENTS: usize = 64;
 
-/// A spline of rotations that comes closer to zero than this may rotate by any angle at once.
+/// Smallest norm of a rotation spline whose angular speed is bounded. Closer to zero, the rotation may jump by any angle.
 const SHORTEST: f64 = 0.01;
 
-/// The path length of one part of one bone, at the times of the common timeline.
+/// Path length of one part of one bone, at the times of the common timeline.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Path {
-    /// The length from each time to the next, at constant speed; 0 after the last.
+    /// Length from each time to the next, at constant speed; 0 after the last.
     pub rises: Vec<f64>,
-    /// The length of the jump at each time.
+    /// Length of the jump at each time.
     pub jumps: Vec<f64>,
-    /// The length from the end of the clip to its start.
+    /// Length from the end of the clip to its start.
     pub wrap: f64,
-    /// Whether its speed has no bound somewhere.
+    /// Whether the speed is unbounded somewhere.
     pub is_boundless: bool,
 }
 
@@ -35,7 +34,7 @@ impl Path {
         Self { rises: vec![0.0; times], jumps: vec![0.0; times], wrap: 0.0, is_boundless: false }
     }
 
-    /// The length of the whole clip, with the way back to its start.
+    /// Length of the whole clip, including the way back to its start.
     pub fn total(&self) -> f64 {
         self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
     }
@@ -44,11 +43,11 @@ impl Path {
 /// The motion of one bone along a clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoneMotion {
-    /// Paths in metres, radians, and scale factors.
+    /// Paths of translation, rotation and scale, in metres, radians and scale factors.
     pub parts: [Path; 3],
-    /// The largest distance of its origin from its parent's, in metres.
+    /// Largest distance of the bone's origin from its parent's, in metres.
     pub translation: f64,
-    /// Its largest scale along an axis.
+    /// The bone's largest scale along an axis.
     pub scale: f64,
 }
 
@@ -110,7 +109,7 @@ impl<'a> Keys<'a> {
             Part::Translation => length(&minus(a, b)),
             Part::Rotation => {
                 let [a, b] = [a, b].map(normalized);
-                // From the chord to the nearer of q and −q.
+                // Distance along the chord to the nearer of q and −q.
                 let plus: Value = std::array::from_fn(|i| a[i] + b[i]);
                 let (near, far) = (length(&minus(&a, &b)), length(&plus));
                 4.0 * near.min(far).atan2(near.max(far))
@@ -145,8 +144,8 @@ impl<'a> Keys<'a> {
         path
     }
 
-    /// The largest speed, per unit of the fraction between a key and the next, whose values are `way` apart;
-    /// `None` if there is no bound.
+    /// Largest speed between a key and the next, per unit of the fraction; `None` if there is no bound. `way` is the distance
+    /// between the two keys' values.
     fn speed(&self, key: usize, way: f64) -> Option<f64> {
         if self.is_spline() {
             let bezier = self.bezier(key);
@@ -165,7 +164,7 @@ impl<'a> Keys<'a> {
         Some(if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way })
     }
 
-    /// The control points of a spline between two keys; its tangents are already in units of the segment.
+    /// Control points of a spline between two keys; its tangents are already in units of the segment.
     fn bezier(&self, key: usize) -> [Value; 4] {
         let [start, leaving, arriving, end] = [1, 2, 3, 4].map(|at| self.values[3 * key + at]);
         let off = |point: Value, tangent: Value, side: f64| -> Value {
@@ -186,8 +185,7 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// The largest angular speed, per unit of the fraction, of a normalized spline of quaternions whose largest
-/// speed is `speed`.
+/// Largest angular speed of a normalized quaternion spline, per unit of the fraction. `speed` is the spline's largest speed.
 fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> Option<f64> {
     let at = |t: f64| -> Value {
         let u = 1.0 - t;
@@ -213,12 +211,12 @@ fn normalized(value: &Value) -> Value {
     value.map(|x| x / length)
 }
 
-/// How far each bone's parts move points: factors for the [`Path`]s of translation, rotation and scale, in
-/// metres per unit.
+/// Lever arms of each bone: factors for the [`Path`]s of translation, rotation and scale, in metres per unit. They tell how far
+/// each part moves points.
 pub type Levers = Vec<[f64; 3]>;
 
-/// The largest factors: they bound the motion of any point that follows the bone. `bone_radii` gives, for each
-/// bone, the distance from its origin, in metres, of points that follow it alone.
+/// Upper bounds of the lever arms, for any point that follows the bone. `bone_radii` gives, for each bone, the largest distance
+/// in metres from its origin to a point that follows it alone.
 pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Levers {
     let bone_radius = subtree_radii(skeleton, motions, bone_radii);
     let mut above = vec![1.0; motions.len()];
@@ -233,8 +231,8 @@ pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: 
     levers
 }
 
-/// For each bone, the largest distance from its origin of points that follow it or a bone below it, before its
-/// own scale.
+/// Radius of each bone's subtree: the largest distance from the bone's origin to a point that follows it or a bone below it,
+/// before the bone's own scale.
 pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Vec<f64> {
     let mut whole: Vec<f64> = bone_radii.iter().copied().map(f64::from).collect();
     for (bone, node) in skeleton.bones().iter().enumerate().rev() {
@@ -246,14 +244,14 @@ pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[
     whole
 }
 
-/// The root of the sum of squares of how far points move, for points at `bone_radii` from each bone at or
-/// below: at rest, in the model's units, averaged over directions.
+/// Typical lever arms: the root of the sum of squares of how far points move. It counts points at `bone_radii` from each bone
+/// of the subtree, at rest, in the model's units, averaged over directions.
 pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     let model_matrices =
         crate::animation::local_to_model::reference::local_to_model(skeleton, &skeleton.rest());
     let origin = |bone: usize| glam::DVec3::from_array(model_matrices[bone].map(|row| f64::from(row[3])));
     let scales_above = skeleton.scales_above();
-    // For each bone, the number of points and the sums of squares of their distances.
+    // Per bone: the number of points and the sums of squares of their distances.
     let mut sums = vec![[0.0; 3]; model_matrices.len()];
     for (bone, bone_radius) in bone_radii.iter().enumerate() {
         let own = (f64::from(*bone_radius) * scales_above[bone] * skeleton.bones()[bone].scale()).powi(2);
@@ -274,11 +272,11 @@ pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     sums.into_iter().zip(scales_above).zip(skeleton.bones()).map(lever).collect()
 }
 
-/// The fraction that each bone should take of what the bones above it leave of the error budget.
+/// Fraction that each bone should take of the error budget that its ancestors leave.
 ///
-/// A bone that moves at rate r is sampled r/s times for its part s of the whole. The smallest number of samples
-/// of a subtree with budget b is K/b. For a leaf K = r; for a bone above subtrees K = (√r + √ΣK)², and the bone
-/// takes the fraction √r/(√r + √ΣK).
+/// A bone that moves at rate r and has the part s of the whole budget is sampled r/s times. The smallest number of samples of a
+/// subtree with budget b is K/b. For a leaf, K = r. For a bone above subtrees, K = (√r + √ΣK)², and the bone takes the fraction
+/// √r/(√r + √ΣK).
 pub fn budget_fractions(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
     let bones = skeleton.bones();
     let mut below = vec![0.0; rates.len()];

@@ -5,31 +5,31 @@ pub use crate::shared::animation::order::Chain;
 #[cfg(feature = "gpu")]
 use crate::shared::animation::order::{self as packed, CONTINUES, NO_PARENT};
 
-/// The place of a bone in an [`Order`].
+/// One position in an [`Order`], and the bone there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
     /// Index of the bone.
     pub bone: u32,
-    /// Where the bone's parent is found.
+    /// Location of the bone's parent.
     pub parent: SlotParent,
-    /// Number of slots of the bone and all bones below it, starting with this one.
+    /// Number of slots of the bone's subtree, starting with this one.
     pub subtree: u32,
 }
 
-/// Where the parent of a slot's bone is found.
+/// Location of the parent of a slot's bone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SlotParent {
     /// The bone is a root.
     Root,
-    /// The bone of the slot before: the slot continues its chain.
+    /// The parent is the bone of the previous slot: the slot continues its chain.
     PreviousSlot,
-    /// The bone of this index: the slot begins a chain.
+    /// The parent is the bone of this index: the slot begins a chain.
     Bone(u32),
 }
 
 #[cfg(feature = "gpu")]
 impl Slot {
-    /// The slot as kernels read it.
+    /// The packed slot that kernels read.
     pub(crate) fn packed(&self) -> packed::Slot {
         let parent = match self.parent {
             SlotParent::Root => NO_PARENT,
@@ -40,15 +40,14 @@ impl Slot {
     }
 }
 
-/// The order in which a skeleton's bones are walked, split into chains so that as few as possible wait for each
-/// other.
+/// The order in which a skeleton's bones are walked, split into chains so that as few chains as possible wait for each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Order {
     /// Every bone once.
     pub slots: Vec<Slot>,
-    /// The chains: first those that depend on no other, then those that depend on these, and so on.
+    /// The chains, by level: first those that depend on no other, then those that depend on these, and so on.
     pub chains: Vec<Chain>,
-    /// Where each such level begins in `chains`; one entry more than there are levels.
+    /// Start of each level of chains in `chains`; one entry more than there are levels.
     pub levels: Vec<u32>,
 }
 
@@ -62,7 +61,7 @@ impl Order {
         // The chains of each level.
         let mut chains: Vec<Vec<Chain>> = Vec::new();
         let roots = (0..bones.len() as u32).filter(|bone| bones[*bone as usize].parent.is_none());
-        // The first bones of chains that are still to be walked, with their levels; the last entry is next.
+        // Stack of the first bones of chains still to be walked, with their levels; the last entry is next.
         let mut waiting: Vec<(u32, usize)> = roots.rev().map(|root| (root, 0)).collect();
         while let Some((first_bone, level)) = waiting.pop() {
             let first = slots.len() as u32;
@@ -96,13 +95,13 @@ impl Order {
         slot_of
     }
 
-    /// The slots as kernels read them.
+    /// The packed slots that kernels read.
     #[cfg(feature = "gpu")]
     pub(crate) fn packed_slots(&self) -> Vec<packed::Slot> {
         self.slots.iter().map(Slot::packed).collect()
     }
 
-    /// The number of 32-bit words that hold one bit per bone.
+    /// Number of 32-bit words that hold one bit per bone.
     pub fn words(&self) -> usize {
         self.slots.len().div_ceil(32)
     }
@@ -121,17 +120,17 @@ fn other_children(skeleton: &Skeleton, target: &[Option<u32>]) -> Vec<Vec<u32>> 
     others
 }
 
-/// For each bone, the child that continues its chain: the one with the most levels of chains below it or, if
-/// these are equal, the most bones.
+/// For each bone, the child that continues its chain: the one with the most levels of chains below it or, if equal, the most
+/// bones.
 fn remap(skeleton: &Skeleton) -> Vec<Option<u32>> {
     let mut target: Vec<Option<u32>> = vec![None; skeleton.len()];
-    // The levels that a bone's chain and everything below it need, with the chain continued.
+    // Number of levels that a bone's subtree needs if the bone's chain continues into it.
     let mut levels = vec![1_u32; skeleton.len()];
     let mut best: Vec<(u32, u32)> = vec![(0, 0); skeleton.len()];
     for (bone, node) in skeleton.bones().iter().enumerate().rev() {
         let Some(parent) = node.parent.map(|parent| parent as usize) else { continue };
         let rank = (levels[bone], skeleton.descendants()[bone] + 1);
-        // The levels of the child that continues the chain count as they are, those of others one more.
+        // The child that continues the chain needs no extra level; each other child needs one more.
         if rank >= best[parent] {
             levels[parent] = levels[parent].max(rank.0).max(best[parent].0 + u32::from(best[parent].0 > 0));
             best[parent] = rank;
@@ -155,8 +154,8 @@ mod tests {
         Skeleton::of_joints(parents.iter().map(bone).collect()).expect("valid")
     }
 
-    /// Checks that every bone occurs once, parents first, with contiguous subtrees and levels of chains that
-    /// wait for each other.
+    /// Checks that every bone occurs once, parents first, that subtrees are contiguous, and that chains wait only for chains of
+    /// lower levels.
     fn check(skeleton: &Skeleton) -> Order {
         let order = Order::new(skeleton);
         let mut slot_of = vec![usize::MAX; skeleton.len()];

@@ -1,4 +1,4 @@
-//! Computes the pose of a skeleton at one time of a clip, on the host.
+//! Poses on the host: a skeleton at one time of a clip.
 
 use super::local_to_model::reference::local_to_model;
 use super::sample::reference::sample;
@@ -9,20 +9,20 @@ use crate::asset::{Affine, Clip, Skeleton, Transform};
 /// The transforms of all bones at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pose {
-    /// The transform of each bone in its parent's space.
+    /// Transform of each bone in its parent's space.
     pub locals: Vec<Transform>,
-    /// The model matrix of each bone: from the bone's space to the model's.
+    /// Model matrix of each bone: from the bone's space to model space.
     pub model_matrices: Vec<Affine>,
 }
 
 impl Pose {
-    /// Samples a clip at a time in seconds inside it ([`Wrap::inside`](super::Wrap::inside)), on the host.
+    /// Samples a clip on the host. `time` is in seconds inside the clip ([`Wrap::inside`](super::Wrap::inside)).
     pub fn on_host(skeleton: &Skeleton, clip: &Clip, time: f32) -> Self {
         let locals = sample(clip, time, RotationPath::Slerp);
         Self { model_matrices: local_to_model(skeleton, &locals), locals }
     }
 
-    /// Refuses model matrices with values outside the range of `f32`, as chains of large scales produce.
+    /// Refuses model matrices with values outside the range of `f32`; long chains of large scales produce them.
     ///
     /// # Errors
     /// [`InputError`] that names the bone.

@@ -1,8 +1,8 @@
-//! Priorities of bones, key by key: how much a key contributes to the shape of the character (A section 12).
-//! They are computed once per clip, at load time.
+//! Priority of each key of each bone: how much the key contributes to the shape of the character (A section 12). Priorities are
+//! computed once per clip, at load time.
 //!
-//! The keys of a bone are the distinct times of its translation, rotation and scale keys together. Each has six
-//! terms from 0 to 1:
+//! The keys of a bone are the distinct times of its translation, rotation and scale keys together. Each key has six terms from
+//! 0 to 1:
 //!
 //! | term | value | divided by |
 //! |---|---|---|
@@ -15,18 +15,18 @@
 //!
 //! A priority is the weighted mean of the terms.
 //!
-//! If a largest value is below [`NOISE`], for translations relative to the model's size, its term is 0, so that noise
-//! never becomes important. The last key is followed by the bone's first if the clip loops; otherwise nothing follows
-//! it, and its first three terms are 0.
+//! A term is 0 if its largest value is below [`NOISE`] (for translations, relative to the model's size), so that noise never
+//! becomes important. If the clip loops, the last key is followed by the bone's first. Otherwise nothing follows it, and its
+//! first three terms are 0.
 //!
 //! **Decided**: a key is compared with the next one, as in A's equations (12.2 to 12.4). A's prose compares it with the
 //! previous one (10.6, 14). A bone that skips updates after a key misses the motion towards the next.
 //!
-//! **Decided**: the rotation term is the angle, as A's prose means it (11.2). A's equation (12.3) is the dot product of
-//! two quaternions, which is *largest* when nothing rotates, and which distinguishes q from −q.
+//! **Decided**: the rotation term is the angle, as A's prose means it (11.2). A's equation (12.3) is the dot product of two
+//! quaternions, which is *largest* when nothing rotates, and which distinguishes q from −q.
 //!
-//! **Decided**: the depth term is highest at the root, as in A's prose (10.5, 11.5). The equation of 12.7, d/D, grows
-//! away from the root; that of 10.5, D/d, divides by 0 at the root.
+//! **Decided**: the depth term is highest at the root, as in A's prose (10.5, 11.5). The equation of 12.7, d/D, grows away from
+//! the root; that of 10.5, D/d, divides by 0 at the root.
 
 mod analyze;
 mod differences;
@@ -38,17 +38,17 @@ use crate::asset::skeleton::Skeleton;
 use differences::{Difference, Differences};
 pub use differences::{key_times, size};
 
-/// Largest values below this count as 0: in radians, factors of the scale at rest, and fractions of the model's
-/// size.
+/// Threshold below which a term's largest value counts as 0: in radians, factors of the scale at rest, and fractions of the
+/// model's size.
 pub const NOISE: f64 = 1e-6;
 
-/// The user's term of a bone by default.
+/// Default of a bone's user term.
 pub const USER_DEFAULT: f32 = 0.5;
 
-/// The terms' names, in order.
+/// Names of the terms, in order.
 pub const TERMS: [&str; 6] = ["translation", "rotation", "scale", "children", "depth", "user"];
 
-/// The weights of the terms, which sum to 1.
+/// Weights of the six terms; they sum to 1.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Weights(pub [f64; 6]);
 
@@ -91,21 +91,21 @@ pub struct KeyPriority {
     pub priority: f32,
 }
 
-/// The priorities of all keys of a clip: bone by bone, key by key.
+/// Priorities of all keys of a clip: bone by bone, key by key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Priorities {
     /// All keys.
     pub keys: Vec<KeyPriority>,
-    /// Where each bone's keys begin; one entry more than there are bones.
+    /// Start of each bone's keys in `keys`; one entry more than there are bones.
     pub offsets: Vec<u32>,
 }
 
 impl Priorities {
-    /// Computes the priorities of a clip's keys. `user` has one value per bone, from 0 to 1.
+    /// Computes the priorities of a clip's keys. `user` has one value per bone, 0 to 1.
     ///
     /// # Errors
-    /// [`InputError`] for invalid weights ([`Weights::validate`]), for a clip of another skeleton, and for user
-    /// values that are not one per bone or that are outside 0..=1.
+    /// [`InputError`] for invalid weights ([`Weights::validate`]), for a clip of another skeleton, and for user values that are
+    /// not one per bone or that are outside 0..=1.
     pub fn new(
         skeleton: &Skeleton,
         clip: &Clip,
@@ -149,7 +149,7 @@ mod tests {
     use crate::asset::skeleton::Bone;
     use crate::asset::transform::Transform;
 
-    /// root ─ arm ─ hand, and a leg below the root: 3, 1, 0, 0 descendants, 0, 1, 2, 1 steps from the root.
+    /// root ─ arm ─ hand, and a leg below the root. Descendants: 3, 1, 0, 0. Steps from the root: 0, 1, 2, 1.
     fn skeleton() -> Skeleton {
         let rest = Transform::from_translation([0.0, 1.0, 0.0]);
         let bone = |parent| Bone { name: String::new(), parent, rest };
@@ -161,7 +161,7 @@ mod tests {
         Some(Keys { times, values, interpolation: Interpolation::Linear })
     }
 
-    /// The root moves 2 m then 1 m, the arm turns by ¼ then ⅛ of a turn, the hand grows by 0.6 in one key of its own.
+    /// The root moves 2 m, then 1 m; the arm turns by ¼, then ⅛ of a turn; the hand grows by 0.6 in a key of its own.
     fn clip() -> Clip {
         let turn = |turns: f32| {
             let half = turns * std::f32::consts::PI;
@@ -215,7 +215,7 @@ mod tests {
                 (2.0, [0.0, 0.0, 0.0, third, two_thirds, 0.5]),
             ],
         );
-        // The keys at 0, 1 and 2 together: the scale is halfway at 1.
+        // The keys at 0, 1 and 2 together; the scale is halfway at 1.
         close(
             found.of(2),
             &[
@@ -227,7 +227,7 @@ mod tests {
         assert!(found.of(3).is_empty());
     }
 
-    /// The root stands still, jumps, and stands still: the key before the jump counts, and not the one behind it.
+    /// The root stands still, jumps, and stands still: the key before the jump counts, not the key after it.
     #[test]
     fn a_key_is_compared_with_the_next_one() {
         let x = |x: f32| [x, 0.0, 0.0, 0.0];

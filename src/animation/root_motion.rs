@@ -1,26 +1,25 @@
-//! Root motion: the part of a clip that moves a character through its world is taken out of the clip and given
-//! to the caller, who moves the character; the clip then plays in place.
+//! Root motion: the part of a clip that moves a character through its world. It is taken out of the clip and given to the
+//! caller, who moves the character; the clip then plays in place.
 //!
-//! [`RootMotion::extract`] does this once per clip, at load time. [`RootMotion::delta`] then gives the motion
-//! of an instance between two times, across any number of loops, backwards, and up to the ends of a clamped
-//! clip:
+//! [`RootMotion::extract`] does this once per clip, at load time. [`RootMotion::delta`] then returns the motion of an instance
+//! between two times, across any number of loops, backwards, and up to the ends of a clamped clip:
 //!
 //! `world(to) = world(from) · delta(from, to)`
 //!
-//! It takes a few lookups per instance on the host, which keeps the characters' placements and asks physics and
-//! navigation before it moves them. [`deltas`] handles a crowd without allocation.
+//! It takes a few lookups per instance on the host. The host keeps the characters' placements and asks physics and navigation
+//! before it moves them. [`deltas`] handles a crowd without allocation.
 //!
 //! # What is taken
 //!
-//! Let p and q be the root bone's position and rotation in the model's space at some time, and p₀ and q₀ those
-//! at the clip's start. The motion rotates about the vertical (+Y) through p₀ by the *yaw*, and then translates
-//! by those parts of p − p₀ that are [`Taken`]. The yaw is the twist of q · q₀⁻¹ about the vertical: the
-//! rotation that remains after its tilt is undone along the shortest arc. Everything else stays in the pose, so
-//! that motion · pose in place = pose, up to rounding; where a rotation both turns and tilts between two keys,
-//! it holds within [`YAW_BOUND`], because the rotation is split into short linear segments.
+//! Let p and q be the root bone's position and rotation in model space at some time, and p₀ and q₀ those at the clip's start.
+//! The motion rotates about the vertical (+Y) through p₀ by the *yaw*, and then translates by the parts of p − p₀ that are
+//! [`Taken`]. The yaw is the twist of q · q₀⁻¹ about the vertical: the rotation that remains after its tilt is undone along the
+//! shortest arc. Everything else stays in the pose, so that motion · pose in place = pose, up to rounding. Where a rotation
+//! both turns and tilts between two keys, this holds within [`YAW_BOUND`], because the rotation is split into short linear
+//! segments.
 //!
-//! Bones above the root must not move in the clip. They may rotate, mirror and scale it (exporters' axes and
-//! units); but if the yaw is taken, their scale must be uniform and must not mirror.
+//! Bones above the root must not move in the clip. They may rotate, mirror and scale it (exporters' axes and units). If the yaw
+//! is taken, their scale must be uniform and must not mirror.
 
 use crate::InputError;
 use crate::animation::instance::Instance;
@@ -37,21 +36,22 @@ mod rigid;
 
 use rigid::Rigid;
 
-/// The largest angle, in radians, between motion · pose in place and the pose, between keys of a rotation whose
-/// yaw is taken, for roots that tilt by less than 60°. Between linear keys that rotate about the vertical only,
-/// the angle is 0. Otherwise a segment is split into pieces of at most [`PIECE`], or [`SPLINE_PIECES`] for a
-/// spline, in which yaw and tilt advance at constant speed: the error is an eighth of the square of a piece
-/// times the curvature of the yaw, which tan(tilt) bounds. Measured on random keys: 7e-5 between linear keys,
-/// 2.6e-4 on splines with random tangents.
+/// Largest angle, in radians, between motion · pose in place and the pose. It applies between keys of a rotation whose yaw is
+/// taken, for roots that tilt by less than 60°.
+///
+/// Between linear keys that rotate about the vertical only, the angle is 0. Otherwise a segment is split into pieces of at most
+/// [`PIECE`], or [`SPLINE_PIECES`] for a spline, in which yaw and tilt advance at constant speed. The error is then an eighth
+/// of the square of a piece times the curvature of the yaw, which tan(tilt) bounds. Measured on random keys: 7e-5 between
+/// linear keys, 2.6e-4 on splines with random tangents.
 pub const YAW_BOUND: f64 = 5e-4;
 
-/// The largest angle of a piece, in radians: 1°.
+/// Largest angle of a piece, in radians: 1°.
 pub const PIECE: f64 = std::f64::consts::PI / 180.0;
 
 /// Number of pieces of a segment of a cubic spline.
 pub const SPLINE_PIECES: u32 = 128;
 
-/// Which parts of a root bone's motion are taken out.
+/// The parts of a root bone's motion that are taken out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Taken {
     /// Translation along x and z.
@@ -73,12 +73,12 @@ impl Default for Taken {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RootMotion {
     duration: f64,
-    // Translation in metres in the model's space since the clip's start.
+    // Translation since the clip's start, in metres of model space.
     path: Keys,
     // Key times and yaw in radians since the clip's start, with linear interpolation.
     turn_times: Vec<f32>,
     turns: Vec<f64>,
-    // The bone's position at the clip's start, about which it rotates.
+    // Position of the bone at the clip's start: the pivot of the yaw.
     pivot: [f64; 3],
     // The motion from start to end.
     whole: Rigid,
@@ -88,9 +88,9 @@ impl RootMotion {
     /// Takes the motion of `bone` out of a clip. Returns the clip in place, and the motion.
     ///
     /// # Errors
-    /// [`InputError`] for a clip of another skeleton, for a bone that it does not have, if nothing is taken,
-    /// for a yaw without horizontal motion, and for bones above that move, that have no extent, or that mirror
-    /// or scale unevenly while the yaw is taken.
+    /// [`InputError`] for a clip of another skeleton, for a bone that it does not have, if nothing is taken, for a yaw without
+    /// horizontal motion, and for bones above that move, that have no extent, or that mirror or scale unevenly while the yaw is
+    /// taken.
     pub fn extract(
         skeleton: &Skeleton,
         clip: &Clip,
@@ -100,9 +100,8 @@ impl RootMotion {
         extract::extract(skeleton, clip, bone, taken)
     }
 
-    /// The motion of an instance from one time to another, in seconds since its start as
-    /// `KeyframeCursorJob::set` counts them; `to` may be before `from`. The result is a rotation about +Y and a
-    /// translation in metres, in the space of the model at `from`.
+    /// Motion of an instance between two times: a rotation about +Y and a translation in metres, in the model's space at
+    /// `from`. Times are in seconds since the instance's start, as in `KeyframeCursorJob::set`; `to` may be before `from`.
     ///
     /// # Errors
     /// [`InputError`] for times, starts and rates that are not finite.
@@ -129,7 +128,7 @@ impl RootMotion {
         self.since_start(before).inverse().then(loops).then(self.since_start(after)).transform()
     }
 
-    /// The motion from the clip's start to a time inside the clip.
+    /// Motion from the clip's start to a time inside the clip.
     fn since_start(&self, time: f64) -> Rigid {
         let at = keyframe_cursor(&self.path.times, time as f32);
         let [x, y, z, _] = vector_at(&self.path.values, self.path.interpolation, at).map(f64::from);
@@ -150,13 +149,13 @@ fn check_times(from: f64, to: f64) -> Result<(), InputError> {
     InputError::check_finite("to", to)
 }
 
-/// As [`RootMotion::delta`], for one layer of a whole crowd and without allocation. Deltas of blended clips are
-/// blended by the same weights ([`blend`](crate::animation::sample::reference::blend)). `motions` has one entry
-/// per clip of the set; an instance whose clip has `None` does not move.
+/// As [`RootMotion::delta`], for one layer of a whole crowd and without allocation. For blended clips, blend their deltas by
+/// the same weights ([`blend`](crate::animation::sample::reference::blend)). `motions` has one entry per clip of the set; an
+/// instance whose clip has `None` does not move.
 ///
 /// # Errors
-/// As [`RootMotion::delta`], and [`InputError`] for instances of a clip that does not exist and for a number of
-/// deltas that is not one per instance.
+/// As [`RootMotion::delta`], and [`InputError`] for instances of a clip that does not exist and for a number of deltas that is
+/// not one per instance.
 pub fn deltas(
     motions: &[Option<RootMotion>],
     instances: &[Instance],

@@ -1,43 +1,44 @@
-//! The bones that were updated since skinning last followed them, for any number of readers.
+//! Bones updated since skinning last followed them, for any number of readers.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// One bit per slot of each instance, in [`Order::words`](super::order::Order::words) words per instance: the bones
-/// whose model matrices were updated. Bits accumulate: kernels set them, and they stay until everything that follows
-/// the matrices has been brought up to date, so a frame may skip skinning. Every bone below an updated one is set
-/// too.
+/// Bit mask of the bones whose model matrices were updated: one bit per slot of each instance, in
+/// [`Order::words`](super::order::Order::words) words per instance. If a bone's bit is set, so are the bits of all bones below
+/// it.
 ///
-/// What follows the matrices is a reader ([`UpdatedBones::reader`]), as every
-/// [`SkinFrame`](crate::skinning::frame::SkinFrame) and [`PagedSkin`](crate::skinning::paged::PagedSkin) is by
-/// itself. The bits are cleared by whichever reader is the last to be recorded after an update. Until then, a reader
-/// that is recorded again finds all bits once more and does too much, and never too little. So it is for readers that
-/// take turns, each skipping the frames of the others, and for one that is never recorded: drop it.
+/// Kernels set bits, and the bits accumulate until all readers have followed the matrices. A frame may therefore skip skinning.
 ///
-/// The order of recording counts. Submit encoders in the order in which they were recorded. If an encoder with some
-/// of the readers is not submitted, while others clear the bits, prepare the skinning of the former anew. Clones are
-/// of the same bits and readers.
+/// Each consumer of the matrices is a reader ([`UpdatedBones::reader`]). Every [`SkinFrame`](crate::skinning::frame::SkinFrame)
+/// and [`PagedSkin`](crate::skinning::paged::PagedSkin) is a reader by itself. The reader that is the last to be recorded after
+/// an update clears the bits. Until then, a reader that is recorded again sees all bits once more: it does too much work, never
+/// too little. Readers that take turns, each skipping the other's frames, never clear the bits. A reader that is never recorded
+/// blocks clearing, too: drop it.
+///
+/// The order of recording counts. Submit encoders in the order in which they were recorded. If an encoder with some of the
+/// readers is not submitted while other readers clear the bits, prepare the skinning of its readers anew. Clones share
+/// bits and readers.
 #[derive(Debug, Clone)]
 pub struct UpdatedBones {
     bits: Buffer<u32>,
     readers: Arc<Mutex<Readers>>,
 }
 
-/// A reader of updated bones, until it is dropped.
+/// A reader of updated bones. It counts until it is dropped.
 #[derive(Debug)]
 pub struct UpdatedBonesReader {
     number: u64,
     updated: UpdatedBones,
 }
 
-/// The numbers of readers.
+/// The registered readers, by number.
 #[derive(Debug, Default)]
 struct Readers {
     next: u64,
     all: BTreeSet<u64>,
-    /// Those that were not recorded since the last update.
+    /// Readers that were not recorded since the last update.
     behind: BTreeSet<u64>,
 }
 
@@ -53,7 +54,7 @@ impl Readers {
         self.behind.clone_from(&self.all);
     }
 
-    /// Returns whether no reader is behind any more.
+    /// Marks a reader as recorded. Returns whether no reader is behind any more.
     fn read(&mut self, number: u64) -> bool {
         self.behind.remove(&number);
         self.behind.is_empty()
@@ -66,7 +67,7 @@ impl Readers {
 }
 
 impl UpdatedBones {
-    /// Allocates so many words; no bone is updated.
+    /// Allocates `words` words. No bone is updated at first.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -74,23 +75,23 @@ impl UpdatedBones {
         Ok(Self::over(Buffer::new(gpu, "updated bones", words)?))
     }
 
-    /// The bits in a buffer that nothing else reads or clears.
+    /// Uses the bits in a buffer that nothing else reads or clears.
     pub fn over(bits: Buffer<u32>) -> Self {
         Self { bits, readers: Arc::default() }
     }
 
-    /// The bits, to bind. Whoever records work that sets bits calls [`UpdatedBones::update`] then;
-    /// [`CompactJob`](super::compact::CompactJob) does it by itself.
+    /// Buffer with the bits, to bind. Code that records work which sets bits must then call [`UpdatedBones::update`];
+    /// [`CompactJob`](super::compact::CompactJob) does so itself.
     pub fn bits(&self) -> &Buffer<u32> {
         &self.bits
     }
 
-    /// Tells readers that bits are set by what is recorded or written now: all of them are behind.
+    /// Tells readers that work recorded or written now sets bits. All readers are then behind.
     pub fn update(&self) {
         self.lock().update();
     }
 
-    /// Replaces the first words, and tells readers.
+    /// Replaces the first words, and notifies readers.
     ///
     /// # Errors
     /// [`GpuError`], also for more words than there are.
@@ -99,20 +100,20 @@ impl UpdatedBones {
         self.bits.write(gpu, words)
     }
 
-    /// A further reader, which is behind.
+    /// Adds a reader. It is behind at first.
     pub fn reader(&self) -> UpdatedBonesReader {
         UpdatedBonesReader { number: self.lock().add(), updated: self.clone() }
     }
 
-    /// A thread that panicked leaves the numbers as they should be.
+    /// Ignores poisoning: a thread that panics leaves the set of readers consistent.
     fn lock(&self) -> MutexGuard<'_, Readers> {
         self.readers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl UpdatedBonesReader {
-    /// Tells that the work recorded now reads the bits. Returns whether that work must clear them afterwards, because
-    /// no reader is behind any more.
+    /// Reports that the work recorded now reads the bits. Returns whether this work must clear them afterwards, because no
+    /// reader is behind any more.
     #[must_use = "the last reader clears the bits"]
     pub fn read(&self) -> bool {
         self.updated.lock().read(self.number)
@@ -134,11 +135,11 @@ mod tests {
         let mut readers = Readers::default();
         let (a, b) = (readers.add(), readers.add());
         assert!(!readers.read(a) && readers.read(b));
-        // Without an update nothing is lost by clearing again.
+        // Without an update, clearing again loses nothing.
         assert!(readers.read(a));
         readers.update();
         assert!(!readers.read(a));
-        // What a has read before this update is not enough.
+        // Reader a read the bits before this update, so it is behind again.
         readers.update();
         assert!(!readers.read(b) && !readers.read(b) && readers.read(a));
         // Readers that take turns never clear.
@@ -146,7 +147,7 @@ mod tests {
             readers.update();
             assert!(!readers.read(if turn % 2 == 0 { a } else { b }));
         }
-        // A further reader is behind, and one that is gone holds nobody up.
+        // A new reader is behind; a dropped reader blocks nobody.
         let c = readers.add();
         readers.update();
         assert!(!readers.read(a) && !readers.read(c));

@@ -2,8 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// The path of a file that lies in a folder or below it; `None` for one with a scheme or a drive letter, and for one that
-/// leads out of the folder.
+/// Path of a file in a folder or below it; `None` for a name with a scheme or a drive letter, and for a path that leads out of
+/// the folder.
 pub(super) fn path_below(name: &str) -> Option<PathBuf> {
     let is_plain = |part: &Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let parts = || Path::new(name).components();

@@ -1,5 +1,5 @@
-//! Clips: the animation of a skeleton's bones. Each bone has up to three tracks, translation, rotation and
-//! scale, each with key times of its own. Interpolation between keys is that of glTF 2.0, appendix C.
+//! Clips: animations of a skeleton's bones. Each bone has up to three tracks (translation, rotation and scale), each with its
+//! own key times. Interpolation between keys is that of glTF 2.0, appendix C.
 //!
 //! # Layout
 //!
@@ -7,21 +7,18 @@
 //!
 //! - `tracks`: three [`Track`]s per bone, translation, rotation, scale.
 //! - `times`: `f32` seconds, ascending within a track. Tracks with equal times share them.
-//! - `values`: `vec4<f32>`s: a translation or scale followed by 0, or a quaternion x, y, z, w. Cubic splines
-//!   have three per key: in-tangent, value, out-tangent. Tangents are multiplied by the seconds of the segment
-//!   that they bend.
+//! - `values`: `vec4<f32>`s: a translation or scale followed by 0, or a quaternion x, y, z, w. Cubic splines have three per
+//!   key: in-tangent, value, out-tangent. Tangents are multiplied by the duration, in seconds, of the segment that they bend.
 //!
-//! A key thus takes 16 bytes, 48 in a cubic spline, and 4 more where its time is not shared. A bone without
-//! keys has tracks of 0 keys, each with one value: the bone's rest pose.
+//! A key thus takes 16 bytes (48 in a cubic spline), and 4 more if its time is not shared. A bone without keys has tracks of 0
+//! keys, each with one value: the bone's rest pose.
 //!
 //! # Decisions where glTF leaves room
 //!
-//! - Equal successive times are a jump: from that time on, the last key of that time counts. Descending times
-//!   are refused.
-//! - Quaternions are stored with length 1; one shorter than [`SHORTEST`](super::transform::SHORTEST) is
-//!   refused. Keys of linear rotation are stored with the sign that is closer to the previous key, so that the
-//!   path between neighbouring keys is the shortest without a test. Cubic splines keep the signs of both values
-//!   and tangents, since these belong together.
+//! - Equal successive times are a jump: from that time on, the last key of that time counts. Descending times are refused.
+//! - Quaternions are stored with length 1; one shorter than [`SHORTEST`](super::transform::SHORTEST) is refused. Keys of linear
+//!   rotations are stored with the sign that is closer to the previous key, so that sampling needs no test to take the shortest
+//!   path between neighbouring keys. Cubic splines keep the signs of values and tangents, because these belong together.
 //! - Times below 2⁻¹⁰⁰ s count as 0, because devices may flush smaller differences to zero.
 
 mod keys;
@@ -43,7 +40,7 @@ use layout::Layout;
 pub struct BoneKeys {
     /// Translation in metres, in the parent's space.
     pub translation: Option<Keys>,
-    /// Rotation as quaternions (x, y, z, w), of any length but 0.
+    /// Rotations as quaternions (x, y, z, w) of any non-zero length.
     pub rotation: Option<Keys>,
     /// Scale factors along the bone's axes.
     pub scale: Option<Keys>,
@@ -65,16 +62,16 @@ impl Part {
     pub const ALL: [Self; 3] = [Self::Translation, Self::Rotation, Self::Scale];
 }
 
-/// Where the keys of a track lie in the clip's arrays.
+/// Location of a track's keys in the clip's arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Track {
-    /// Index of its first key's time in `times`.
+    /// Index of the first key's time in `times`.
     pub first_time: u32,
-    /// Index of its first value in `values`.
+    /// Index of the first value in `values`.
     pub first_value: u32,
     /// Number of keys. 0 means that the single value is the rest pose.
     pub keys: u32,
-    /// How values between keys are interpolated.
+    /// Interpolation of values between keys.
     pub interpolation: Interpolation,
 }
 
@@ -90,13 +87,13 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// A clip of `skeleton`, with one [`BoneKeys`] per bone. Its duration is the time of its last key, or
-    /// `duration` (seconds) if that is longer.
+    /// Builds a clip of `skeleton`, with one [`BoneKeys`] per bone. Its duration in seconds is the time of its last key, or
+    /// `duration` if that is longer.
     ///
     /// # Errors
-    /// [`InputError`] that names the bone's field, with its index: for a list that is not one entry per bone,
-    /// no keys in a track, times that descend or leave 0..=[`LONGEST`], values that do not match the times or
-    /// are not finite, and rotations without a direction.
+    /// [`InputError`] that names the bone's field, with its index: for a list that is not one entry per bone, no keys in a
+    /// track, times that descend or leave 0..=[`LONGEST`], values that do not match the times or are not finite, and rotations
+    /// without a direction.
     pub fn new(
         name: impl Into<String>,
         skeleton: &Skeleton,
@@ -130,7 +127,7 @@ impl Clip {
         layout.finish(name.into(), duration)
     }
 
-    /// A clip without keys and of 0 seconds: every bone stays at rest. It serves models that have no clip.
+    /// Builds a clip of 0 seconds without keys: every bone stays at rest. Use it for models without clips.
     ///
     /// # Errors
     /// [`InputError`] for a skeleton with so many bones that the values exceed a buffer.

@@ -1,11 +1,11 @@
-//! Images of models as files.
+//! Encodes images of models as files.
 
 use std::io::Cursor;
 
 use super::Model;
 use crate::InputError;
 
-/// An image of a model as PNG.
+/// Encodes an image of a model as PNG.
 pub(crate) fn png(model: &Model, image: usize) -> Result<Vec<u8>, InputError> {
     let mut bytes = Cursor::new(Vec::new());
     let found = model.images.get(image);

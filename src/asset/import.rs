@@ -1,4 +1,4 @@
-//! Import of models from files, by the ending of their names.
+//! Import of models from files. The file extension selects the format.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::model::Model;
 use crate::asset::gltf::Beside;
 use crate::{Error, InputError};
 
-/// The endings of files that can be read, in lower case.
+/// File extensions that can be read, in lower case.
 pub const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
 
 impl Model {
@@ -19,8 +19,8 @@ impl Model {
         Self::read(path, |bytes, beside| Self::from_bytes_beside(path, bytes, beside))
     }
 
-    /// As [`Model::from_file`], without materials and images. Use it when nothing is drawn: missing textures
-    /// and extensions for materials and images then do not matter. No vertex is repeated for its tangents.
+    /// As [`Model::from_file`], without materials and images. Use it when nothing is drawn: missing textures and extensions for
+    /// materials and images then cause no error. No vertex is repeated for its tangents.
     ///
     /// # Errors
     /// As [`Model::from_file`], except those about materials and images.
@@ -31,8 +31,8 @@ impl Model {
         })
     }
 
-    /// Reads a model from memory: Wavefront OBJ if its name ends in `.obj`, and otherwise glTF. `beside` reads the files
-    /// beside it, and gets their paths relative to the model's folder. It works without a file system.
+    /// Reads a model from memory: Wavefront OBJ if its name ends in `.obj`, otherwise glTF. `beside` reads other files, given
+    /// their paths relative to the model's folder. It works without a file system.
     ///
     /// # Errors
     /// [`InputError`] with the path in the file, or its line.

@@ -10,7 +10,7 @@ pub fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(
     check_indices(path, indices, vertices)
 }
 
-/// Checks that indices are of vertices.
+/// Refuses indices of vertices that do not exist.
 pub(super) fn check_indices(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
     let bound = format!("must be below {vertices}, the number of vertices");
     InputError::check_each(path, indices, |index| (*index as usize) < vertices, bound)

@@ -1,16 +1,16 @@
-//! Influences: the bones that each vertex follows, up to eight, the strongest first. Fewer can be used at a
-//! distance (A section 8.4):
+//! Influences: the bones that each vertex follows, up to eight, the strongest first. Distant instances can use fewer (A section
+//! 8.4):
 //!
 //! - `truncate(k)` keeps the k strongest and divides them by their sum. Vertices jump where k changes.
-//! - `fade(λ)` subtracts λ times the second strongest weight from every weight but the strongest, which
-//!   receives the rest. It is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest
-//!   influences vanish first, and shaders do not fetch those that have vanished.
+//! - `fade(λ)` subtracts λ times the second strongest weight from every weight but the strongest, which receives the rest. It
+//!   is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest influences vanish first, and shaders do not
+//!   fetch vanished ones.
 
 use serde::{Deserialize, Serialize};
 
 use crate::InputError;
 
-/// The most bones that a vertex can follow.
+/// Largest number of bones that a vertex can follow.
 pub const MAX_INFLUENCES: usize = 8;
 
 /// A bone, and the weight with which a vertex follows it.
@@ -18,9 +18,9 @@ pub const MAX_INFLUENCES: usize = 8;
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Influence {
-    /// The bone's index in the skin's list.
+    /// Index of the bone in the skin's list.
     pub bone: u32,
-    /// The weight, above 0; the weights of a vertex sum to 1.
+    /// Weight, above 0; the weights of a vertex sum to 1.
     pub weight: f32,
 }
 
@@ -47,21 +47,20 @@ impl TryFrom<Vec<Vec<Influence>>> for Influences {
 }
 
 impl Default for Influences {
-    /// Those of no vertices.
+    /// No vertices.
     fn default() -> Self {
         Self { offsets: vec![0], all: Vec::new() }
     }
 }
 
 impl Influences {
-    /// The influences of vertices, each given as bones and weights in any order. Weights of one bone are added,
-    /// weights of 0 are left out, the rest is sorted, the largest first (equal ones by bone), and divided by
-    /// its sum. A vertex whose weights are all 0 follows its first bone with a weight of 1, as in three.js.
+    /// Builds influences from the bones and weights of each vertex, given in any order. Weights of the same bone are added, and
+    /// weights of 0 are left out. The rest is sorted, the largest first (equal ones by bone), and divided by its sum. A vertex
+    /// whose weights are all 0 follows its first bone with a weight of 1, as in three.js.
     ///
     /// # Errors
-    /// [`InputError`] for weights that are negative or not finite, for a vertex without bones or with more
-    /// than [`MAX_INFLUENCES`], and for weighted bones that are not below `bones`. In errors, `path` precedes
-    /// the vertex's number.
+    /// [`InputError`] for weights that are negative or not finite, for a vertex without bones or with more than
+    /// [`MAX_INFLUENCES`], and for weighted bones that are not below `bones`. In errors, `path` precedes the vertex's number.
     pub fn new(
         path: &str,
         bones: usize,
@@ -82,13 +81,14 @@ impl Influences {
         Ok(influences)
     }
 
-    /// The influences of vertices that all follow bone 0 with a weight of 1.
+    /// Influences for vertices that all follow bone 0 with a weight of 1.
     pub fn rigid(vertices: usize) -> Self {
         let one = Influence { bone: 0, weight: 1.0 };
         Self { offsets: (0..=vertices as u32).collect(), all: vec![one; vertices] }
     }
 
-    /// Influences that keep their order and their weights to the bit: those of [`Influences::of`], stored and read back.
+    /// Restores influences that were read with [`Influences::of`] and stored, in the same order and with weights equal to the
+    /// bit.
     ///
     /// # Errors
     /// [`InputError`] for weights that are not in 0..=1 or that ascend, for those of a vertex whose sum is not 1 but for
@@ -131,8 +131,7 @@ impl Influences {
         self.offsets.push(self.all.len() as u32);
     }
 
-    /// Appends the vertices of another mesh, whose influences keep their order and weights; `bone` gives the new
-    /// number of a bone.
+    /// Appends the vertices of another mesh. Their influences keep order and weights; `bone` maps their bone indices.
     pub(crate) fn append(&mut self, other: &Self, mut bone: impl FnMut(u32) -> u32) {
         let first = self.all.len() as u32;
         self.offsets.extend(other.offsets[1..].iter().map(|offset| first + offset));
@@ -141,7 +140,7 @@ impl Influences {
         self.all.extend(renamed);
     }
 
-    /// The influences of a vertex, the strongest first.
+    /// Influences of a vertex, the strongest first.
     pub fn of(&self, vertex: usize) -> &[Influence] {
         &self.all[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
     }
@@ -220,7 +219,7 @@ mod tests {
         assert_eq!(influences(&[(3, 0.5), (1, 0.25), (3, 0.25)]), Ok(vec![(3, 0.75), (1, 0.25)]));
         assert_eq!(influences(&[(3, f32::MAX), (3, f32::MAX)]), Ok(vec![(3, 1.0)]));
         assert_eq!(influences(&[(3, f32::MIN_POSITIVE)]), Ok(vec![(3, 1.0)]));
-        // The bone of a weight of 0 may have any number.
+        // The bone of a zero weight may have any index.
         assert_eq!(influences(&[(3, 1.0), (99, 0.0)]), Ok(vec![(3, 1.0)]));
         // All weights are 0: the vertex follows the first bone.
         assert_eq!(influences(&[(7, 0.0), (1, 0.0), (1, -0.0), (99, 0.0)]), Ok(vec![(7, 1.0)]));

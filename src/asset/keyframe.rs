@@ -1,4 +1,4 @@
-//! Finds the position of a time among the times of keys.
+//! Position of a time among key times.
 
 pub use crate::shared::animation::clip::KeyframeCursor;
 
@@ -9,7 +9,7 @@ impl Default for KeyframeCursor {
     }
 }
 
-/// The position of a time among key times, both in seconds. Of equal key times the last counts.
+/// Keyframe cursor of a time among key times, both in seconds. Of equal key times the last counts.
 pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     let last = times.len().saturating_sub(1);
     if last == 0 || time < times[0] {
@@ -18,7 +18,7 @@ pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     if time >= times[last] {
         return KeyframeCursor { key: last as u32, fraction: 0.0 };
     }
-    // Most clips have evenly spaced keys, so that a first guess is usually right.
+    // Most clips have evenly spaced keys, so this first guess is usually right.
     let evenly = (time - times[0]) / (times[last] - times[0]) * last as f32;
     let mut key = (evenly as usize).min(last - 1);
     if times[key] > time || times[key + 1] <= time {

@@ -1,18 +1,18 @@
-//! A directional light, and what a matt surface makes of it (`wgsl/light.wgsl`).
+//! A directional light, and Lambertian shading with it (`wgsl/light.wgsl`).
 
 use glam::Vec3;
 
 use crate::InputError;
 
-/// A directional light, in linear light.
+/// A directional light with linear colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// The direction towards the light, in the world, of any length but 0.
+    /// Direction towards the light, in world space, of any non-zero length.
     pub direction: Vec3,
-    /// Its colour: red, green and blue in linear light, each at least 0. It is the factor of all that surfaces send back, of
-    /// the ambient part too. White of 1 shows a surface that faces the light in its own colour.
+    /// Linear red, green and blue of the light, each at least 0. It scales all reflected light, including the ambient part.
+    /// With white of 1, a surface that faces the light has its own colour.
     pub color: Vec3,
-    /// Light that surfaces facing away still receive, 0 to 1.
+    /// Fraction of the light that surfaces facing away still receive, 0 to 1.
     pub ambient: f32,
 }
 
@@ -40,8 +40,8 @@ impl Light {
     }
 }
 
-/// The fraction of its albedo that a matt surface sends to the eye, after Lambert: `direct`, 0 to 1, is the cosine at
-/// which the light falls on it, less where it lies in shadow; `ambient`, 0 to 1, is what it gets without.
+/// Fraction of its albedo that a Lambertian surface reflects to the eye. `direct` is the cosine of the light's angle of
+/// incidence, 0 to 1, reduced in shadow. `ambient`, 0 to 1, is the light without it.
 pub fn lambert(ambient: f32, direct: f32) -> f32 {
     ambient + (1.0 - ambient) * direct
 }

@@ -1,27 +1,26 @@
-//! Materials: the base colours of glTF, their textures, normal maps, and the use of alpha.
+//! Materials: glTF base colours with their textures, normal maps, and the use of alpha.
 
 use serde::{Deserialize, Serialize};
 
-/// The longest edge of an image in texels: WebGPU's default limit.
+/// Longest edge of an image in texels: WebGPU's default limit.
 pub const MAX_TEXELS: u32 = 8192;
 
-/// The base colour and the normal map of a surface.
+/// Base colour and normal map of a surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// The material's name in the file.
     pub name: String,
-    /// Linear red, green and blue, and alpha, each 0 to 1. The texture is multiplied by it.
+    /// Linear red, green and blue, and alpha, each 0 to 1. They are multiplied by the texture.
     pub color: [f32; 4],
-    /// The texture of sRGB colour and linear alpha.
+    /// Texture with sRGB colour and linear alpha.
     pub texture: Option<Texture>,
-    /// The normal map, if there is one: linear red, green and blue from 0 to 1 stand for −1 to 1 along the tangent,
-    /// against the bitangent and along the normal. Green therefore points up in the image, as in glTF, and the
-    /// bitangent of [`Mesh::tangents`](crate::asset::Mesh::tangents) points down. It is read at the same texture
-    /// coordinates as the texture.
+    /// Normal map, if there is one, sampled at the same texture coordinates as the texture. Linear red, green and blue from 0
+    /// to 1 stand for −1 to 1 along the tangent, against the bitangent and along the normal. Green therefore points up in the
+    /// image, as in glTF, and the bitangent of [`Mesh::tangents`](crate::asset::Mesh::tangents) points down.
     pub normal: Option<Texture>,
-    /// The factor of what the normal map says along the tangent and against the bitangent; the result is normalized.
+    /// Factor of the normal map's components along the tangent and against the bitangent; the result is normalized.
     pub normal_scale: f32,
-    /// How alpha is used.
+    /// Use of alpha.
     pub alpha: Alpha,
 }
 
@@ -33,16 +32,16 @@ impl Material {
     }
 }
 
-/// An image, and how it is sampled.
+/// A reference to an image, with its sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Texture {
     /// Index of the image in the model.
     pub image: usize,
-    /// How it is filtered and wrapped.
+    /// Filtering and wrapping.
     pub sampling: Sampling,
 }
 
-/// How a texture is filtered between its texels and wrapped beyond its edges.
+/// Filtering of a texture between its texels, and wrapping beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sampling {
     /// Wrapping along u and v.
@@ -63,18 +62,18 @@ impl Default for Sampling {
     }
 }
 
-/// What lies beyond the edge of an image.
+/// Texture content beyond the edge of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wrapping {
-    /// The image again.
+    /// The image repeats.
     Repeat,
-    /// The image again, every second one mirrored.
+    /// The image repeats, and every second copy is mirrored.
     Mirror,
-    /// The texel at the edge.
+    /// The texel at the edge continues.
     Clamp,
 }
 
-/// How values between texels, or between mip levels, are found.
+/// Method that computes values between texels, or between mip levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Filter {
     /// The nearest value.
@@ -83,25 +82,23 @@ pub enum Filter {
     Linear,
 }
 
-/// How alpha is used.
+/// Use of alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Alpha {
     /// Alpha is ignored: the whole surface is opaque.
     Opaque,
     /// Parts with an alpha below this value are not drawn.
     Mask(f32),
-    /// A screen-door pattern: of each 4 × 4 pixels, alpha decides how many are drawn. Triangles need no
-    /// sorting, and depth is written. Where two such surfaces overlap, the nearer hides all of the other unless
-    /// that one is denser.
+    /// Screen-door transparency: alpha decides how many of each 4 × 4 pixels are drawn. Triangles need no sorting, and depth is
+    /// written. Where two such surfaces overlap, the nearer hides the other completely unless the other is denser.
     Dithered,
-    /// Blended with what is behind it. In scenes this needs a layer of its own,
-    /// `render::Layer::Transparent`, which draws such surfaces from back to front, instance by instance; no other layer shows
-    /// them. Where there is no such layer, it is drawn as [`Alpha::Dithered`].
+    /// Blended with what lies behind it. In scenes, only the layer `render::Layer::Transparent` draws such surfaces, from back
+    /// to front, instance by instance. Without that layer, the surface is drawn as [`Alpha::Dithered`].
     Blended,
 }
 
-/// The threshold for a pixel of [`Alpha::Dithered`], between 0 and 1: pixels with an alpha below it are not
-/// drawn. It is the rank of the pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973).
+/// Threshold for a pixel of [`Alpha::Dithered`], between 0 and 1: pixels with a lower alpha are not drawn. It is the rank of
+/// the pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973).
 pub fn dither_threshold([x, y]: [u32; 2]) -> f32 {
     let rank = |x: u32, y: u32| 2 * (x ^ y) + y;
     ((4 * rank(x & 1, y & 1) + rank(x >> 1 & 1, y >> 1 & 1)) as f32 + 0.5) / 16.0

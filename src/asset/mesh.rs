@@ -1,5 +1,4 @@
-//! Skinned meshes: vertices in the space in which they were bound, their influences, triangles, and morph
-//! targets.
+//! Skinned meshes: vertices in bind space, their influences, triangles, and morph targets.
 
 mod validate;
 
@@ -13,31 +12,30 @@ use crate::asset::skeleton::Skin;
 
 pub(crate) use tangents::in_range;
 
-/// The most vertices of a mesh.
+/// Largest number of vertices of a mesh.
 pub const MAX_VERTICES: usize = 1 << 24;
 
-/// The largest absolute value of a coordinate.
+/// Largest absolute value of a coordinate.
 pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 
-/// The most levels of detail of a mesh, itself and [`Mesh::levels`] together.
+/// Largest number of levels of detail of a mesh: level 0, the mesh itself, and [`Mesh::levels`] together.
 pub const MAX_LEVELS: usize = crate::shared::skinning::instance_lod::MAX_LEVELS as usize;
 
-/// A coarser level of a mesh, which uses a subset of its vertices.
+/// A coarser level of a mesh. It uses a subset of the mesh's vertices.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshLevel {
-    /// Three indices per triangle, of the mesh's vertices; at least one triangle.
+    /// Three vertex indices per triangle, into the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
-    /// The distance between the surfaces of the level and the mesh, in the model's units, at least 0: the
-    /// largest in the poses that were examined. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it
-    /// at samples: no vertex of the mesh is further from the level, and no sample of the level is further from
-    /// the mesh; points between samples may be.
+    /// Largest distance between the surfaces of the level and the mesh over the examined poses, in the model's units, at least
+    /// 0. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at samples: no vertex of the mesh is further from the
+    /// level, and no sample of the level is further from the mesh. Points between samples may be further.
     pub error: f32,
 }
 
-/// Triangles that follow the bones of one skin. By default it is empty.
+/// A triangle mesh that follows the bones of one skin. The default is empty.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Mesh {
-    /// The node's name followed by the primitive's number.
+    /// Name of the node, followed by the number of the primitive.
     pub name: String,
     /// Index of the skin in the model.
     pub skin: usize,
@@ -45,34 +43,35 @@ pub struct Mesh {
     pub positions: Vec<[f32; 3]>,
     /// One normal per vertex, of unit length or 0.
     pub normals: Vec<[f32; 3]>,
-    /// One tangent per vertex: a unit vector along u, and ±1. The bitangent, along v, is this sign times normal
-    /// × tangent. glTF's fourth component has the opposite sign.
+    /// One tangent per vertex: a unit vector along u, and a sign ±1. The bitangent, along v, is the sign times normal ×
+    /// tangent. glTF's fourth component has the opposite sign.
     pub tangents: Vec<[f32; 4]>,
-    /// One pair of texture coordinates per vertex, for the material's texture; v points down the image.
+    /// Texture coordinates per vertex, for the material's texture; v points down the image.
     pub uv: Vec<[f32; 2]>,
-    /// Three indices per triangle, counter-clockwise seen from outside once the skin's bones have transformed
-    /// it. Where the bones mirror it at rest, it is clockwise in the space of binding; the import reverses the
-    /// file's triangles there.
+    /// Three indices per triangle, counter-clockwise seen from outside after skinning at rest. Where bones mirror a triangle at
+    /// rest, it is clockwise in bind space; the import reverses the file's triangles there.
     pub indices: Vec<u32>,
     /// Whether triangles are also visible from inside.
     pub double_sided: bool,
-    /// Index of the material in the model; without one, the drawing code chooses the colour.
+    /// Index of the material in the model. Without one, the drawing code chooses the colour.
     pub material: Option<usize>,
     /// The influences of each vertex.
     pub influences: Influences,
     /// Morph targets, which move vertices before they are skinned.
     pub targets: Vec<MorphTarget>,
-    /// One weight per target, for clips that do not animate them.
+    /// One weight per target. Clips that do not animate weights use them.
     pub weights: Vec<f32>,
-    /// The clips that animate the weights, each with its keys.
+    /// Keys of the weights, with the index of the clip that has them.
     pub weight_keys: Vec<(usize, WeightKeys)>,
-    /// Coarser levels, fewer than [`MAX_LEVELS`], starting with level 1; level 0 is the mesh itself. Each uses
-    /// a subset of the vertices of the level before, and errors do not decrease.
+    /// Coarser levels, starting with level 1, fewer than [`MAX_LEVELS`]; level 0 is the mesh itself. Each uses a subset of the
+    /// vertices of the level before, and errors do not decrease.
     pub levels: Vec<MeshLevel>,
-    /// For each vertex its *partner*: the vertex that takes its place in the first level that lacks it. It is a vertex of that
-    /// level, or one without triangles there at the same place; a vertex of the coarsest level, and one without triangles, is
-    /// its own. With partners in the corners of a level, its triangles are those of the next coarser level in the same
-    /// order, and others without area. Empty where partners are not known.
+    /// Partner of each vertex: the vertex that takes its place in the first level that lacks it. The partner is a vertex of
+    /// that level, or a vertex at the same place that has no triangles there. A vertex of the coarsest level, and a vertex
+    /// without triangles, is its own partner.
+    ///
+    /// If the corners of a level's triangles are replaced by their partners, the triangles of the next coarser level result in
+    /// the same order, mixed with degenerate triangles. Empty if partners are not known.
     pub partners: Vec<u32>,
 }
 
@@ -82,8 +81,7 @@ impl Mesh {
         self.positions.len()
     }
 
-    /// The triangles of a level, three indices each. Level 0 is the mesh itself; a number beyond the last level
-    /// gives the last.
+    /// Triangles of a level, three indices each. Level 0 is the mesh itself; a number beyond the last level gives the last.
     pub fn triangles(&self, level: u32) -> &[u32] {
         match self.levels.len().min(level as usize) {
             0 => &self.indices,
@@ -91,7 +89,7 @@ impl Mesh {
         }
     }
 
-    /// For each vertex the coarsest level whose triangles use it; 0 for a vertex without triangles.
+    /// For each vertex, the coarsest level whose triangles use it; 0 for a vertex without triangles.
     pub fn coarsest_levels(&self) -> Vec<u32> {
         let mut coarsest = vec![0; self.vertices()];
         for level in 1..=self.levels.len() as u32 {
@@ -100,20 +98,20 @@ impl Mesh {
         coarsest
     }
 
-    /// The weights of the morph targets at a time inside a clip, in seconds.
+    /// Morph weights at a time inside a clip, in seconds.
     pub fn weights_at(&self, clip: usize, time: f32) -> Vec<f32> {
         let keys = self.weight_keys.iter().find(|(of, _)| *of == clip);
         keys.map_or_else(|| self.weights.clone(), |(_, keys)| keys.at(time))
     }
 
-    /// The largest absolute value that the weight of a target has in any clip; at least 1.
+    /// Largest absolute value of a target's weight in any clip; at least 1.
     pub(crate) fn largest_weight(&self, target: usize) -> f32 {
         let keyed = self.weight_keys.iter().map(|(_, keys)| keys.largest(target));
         keyed.fold(self.weights[target].abs().max(1.0), f32::max)
     }
 }
 
-/// Normals for vertices that have none: the normals of adjacent triangles, weighted by area. A vertex without
+/// Smooth normals for vertices without any: the area-weighted mean of the normals of adjacent triangles. A vertex without
 /// triangles gets +Z.
 pub fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     let mut sums = vec![glam::DVec3::ZERO; positions.len()];
@@ -127,7 +125,7 @@ pub fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> 
     sums.iter().map(|sum| unit(sum).to_array().map(|component| component as f32)).collect()
 }
 
-/// A normal with length 1; `None` for one without a direction. Normals of about unit length are kept as they are, to avoid a
+/// The normal scaled to length 1; `None` if it has no direction. Normals of about unit length are kept as they are, to avoid a
 /// second rounding.
 pub(super) fn unit_normal(normal: [f32; 3]) -> Option<[f32; 3]> {
     match normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt() {
@@ -137,7 +135,7 @@ pub(super) fn unit_normal(normal: [f32; 3]) -> Option<[f32; 3]> {
     }
 }
 
-/// Tangents for vertices that have none; see [`mod@tangents`].
+/// Tangents for vertices without any; see [`mod@tangents`].
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
@@ -150,16 +148,15 @@ pub fn solved_tangents(
     tangents(&tangents::Mesh { positions, normals, uv, indices })
 }
 
-/// For each bone, the largest distance, in the bone's space, from its origin to a vertex that follows it,
-/// wherever morph targets may move the vertex. 0 for a bone that no vertex follows. Rounded up.
+/// Radius of each bone: the largest distance, in the bone's space, from its origin to a vertex that follows it, wherever morph
+/// targets may move the vertex. 0 for a bone that no vertex follows. Rounded up.
 ///
-/// This radius times the bone's largest scale bounds how far a rotation of the bone by a small angle moves any
-/// vertex, per radian (the ρ of the `bounded` gate). A target counts with the largest weight that it has in any
-/// clip, at least 1; larger weights that are set by hand are not covered.
+/// This radius times the bone's largest scale bounds how far a small rotation of the bone moves any vertex, per radian (the ρ
+/// of the `bounded` gate). A morph target counts with its largest weight in any clip, at least 1. Larger weights that are set
+/// by hand are not covered.
 ///
 /// # Panics
-/// For meshes that do not match the skins, and for skins that do not match `bones` bones; see
-/// [`Mesh::validate`].
+/// For meshes that do not match the skins, and for skins that do not match `bones` bones; see [`Mesh::validate`].
 pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
     let mut bone_radii = vec![0.0_f64; bones];
     for mesh in meshes {
@@ -181,7 +178,7 @@ pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
             }
         }
     }
-    // Rounding to f32 loses at most 2⁻²⁴; the errors of f64 are far smaller.
+    // Compensates the rounding to f32, at most 2⁻²⁴; the errors of f64 are far smaller.
     bone_radii.into_iter().map(|bone_radius| (bone_radius * (1.0 + 1e-6)) as f32).collect()
 }
 
@@ -203,7 +200,7 @@ mod tests {
     use crate::asset::influences::Influence;
     use crate::asset::morph::MorphDelta;
 
-    /// One triangle, whose last vertex follows two bones, one of them bound at x = 10 and at half the size.
+    /// A triangle whose last vertex follows two bones. One of them is bound at x = 10 and at half the size.
     pub(super) fn triangle() -> (Mesh, Vec<Skin>) {
         let bind = glam::Mat4::from_scale(glam::Vec3::splat(0.5))
             * glam::Mat4::from_translation(glam::vec3(-10.0, 0.0, 0.0));

@@ -1,5 +1,4 @@
-//! Plain data, independent of any device: models with their skeletons, skins, clips, meshes and materials, and
-//! their import.
+//! Plain data, independent of any device: models with skeletons, skins, clips, meshes and materials, and their import.
 
 mod beside;
 pub mod clip;

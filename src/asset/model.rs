@@ -1,5 +1,5 @@
-//! A model: one skeleton, the skins that share it, its clips and its meshes. It may be a character, or anything
-//! else, moving or not.
+//! A model: one skeleton, the skins that share it, its clips and its meshes. It may be a character or any other object, moving
+//! or not.
 
 mod stored;
 
@@ -13,45 +13,45 @@ use crate::{InputError, error};
 
 /// A skeleton with its skins, clips and meshes.
 ///
-/// A model is stored with serde, in any format, with all that it has: the levels of detail of its meshes and its images
-/// too. Formats that keep the bits of floats give back an equal model. What is read is checked as a whole. The stored form
-/// belongs to one version of this crate: a program that keeps it stores its own version beside it, and imports the model
-/// again if that differs.
+/// serde stores a model completely, in any format, including images and the levels of detail of its meshes. Formats that keep
+/// the bits of floats give back an equal model. Deserialization checks the model as a whole. The stored form belongs to one
+/// version of this crate. A program that keeps stored models must store its own version beside them, and import the model again
+/// if that version differs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "stored::StoredModel")]
 pub struct Model {
     /// The bones.
     pub skeleton: Skeleton,
-    /// The skins, which meshes follow.
+    /// Skins that meshes follow.
     pub skins: Vec<Skin>,
-    /// The clips, which move the bones.
+    /// Clips that move the bones.
     pub clips: Vec<Clip>,
-    /// The meshes, which are drawn.
+    /// Meshes to draw.
     pub meshes: Vec<Mesh>,
-    /// How many of the meshes, from the first on, have a skin from the file. Each of the others follows one
-    /// bone as a whole: its node or an ancestor of that.
+    /// Number of leading meshes that have a skin from the file. Each of the other meshes follows one bone as a whole: its node
+    /// or an ancestor of its node.
     pub skinned: usize,
     /// The materials of the meshes.
     pub materials: Vec<Material>,
-    /// The images of textures, the top row first: sRGB with linear alpha, and those of normal maps linear.
+    /// Images of textures, the top row first: sRGB with linear alpha. Images of normal maps are linear.
     #[serde(with = "stored::images")]
     pub images: Vec<image::RgbaImage>,
 }
 
 impl Model {
-    /// Lets the materials whose transparency is a pattern of opaque pixels ([`Alpha::Dithered`], as the import makes of
-    /// glTF's `BLEND`) be blended with what is behind them ([`Alpha::Blended`]).
+    /// Switches materials from screen-door transparency to blending: [`Alpha::Dithered`] becomes [`Alpha::Blended`]. The import
+    /// gives glTF's `BLEND` materials [`Alpha::Dithered`].
     pub fn blend(&mut self) {
         for material in self.materials.iter_mut().filter(|material| material.alpha == Alpha::Dithered) {
             material.alpha = Alpha::Blended;
         }
     }
 
-    /// The material of a mesh, if it has one.
+    /// Material of a mesh, if it has one.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, and for a
-    /// scale of the normal map that is not finite.
+    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, and for a scale of
+    /// the normal map that is not finite.
     pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
         let Some(index) = mesh.material else { return Ok(None) };
         InputError::check_below("mesh.material", index, self.materials.len())?;
@@ -68,34 +68,34 @@ impl Model {
         Ok(Some(material))
     }
 
-    /// Checks one of the skins.
+    /// Checks one skin.
     ///
     /// # Errors
-    /// As [`Skin::validate`], with the number of the skin (`skins[0].bones[3]`).
+    /// As [`Skin::validate`], with the index of the skin (`skins[0].bones[3]`).
     pub(crate) fn check_skin(&self, skin: usize) -> Result<(), InputError> {
         self.skins[skin].validate(&self.skeleton).map_err(|error| numbered("skin", "skins", skin, error))
     }
 
-    /// Checks one of the meshes, with its skin.
+    /// Checks one mesh, and its skin.
     ///
     /// # Errors
-    /// As [`Mesh::validate`], with the number of the mesh (`meshes[2].indices[1]`), and as [`Self::check_skin`].
+    /// As [`Mesh::validate`], with the index of the mesh (`meshes[2].indices[1]`), and as [`Self::check_skin`].
     pub(crate) fn check_mesh(&self, mesh: usize) -> Result<(), InputError> {
         let checked = self.meshes[mesh].validate(&self.skins);
         checked.map_err(|error| numbered("mesh", "meshes", mesh, error))?;
         self.check_skin(self.meshes[mesh].skin)
     }
 
-    /// Checks the material of one of the meshes.
+    /// Checks the material of one mesh.
     ///
     /// # Errors
-    /// As [`Self::material`], with the number of the mesh (`meshes[2].material`) or of the material.
+    /// As [`Self::material`], with the index of the mesh (`meshes[2].material`) or of the material.
     pub(crate) fn check_material(&self, mesh: usize) -> Result<(), InputError> {
         let found = self.material(&self.meshes[mesh]);
         found.map(|_| ()).map_err(|error| numbered("mesh", "meshes", mesh, error))
     }
 
-    /// The clip with this name or this index, counted from 0. A name that is a number takes precedence.
+    /// Finds a clip by name or by index, counted from 0. A name that is a number takes precedence.
     ///
     /// # Errors
     /// [`InputError`] that lists up to 20 clips.
@@ -109,7 +109,7 @@ impl Model {
     }
 }
 
-/// An error that names a field of `item`, which is one of `list`, with its number there. Others stay as they are.
+/// Adds an index to an error whose path begins with `item`, an element of `list`. Other errors stay as they are.
 fn numbered(item: &str, list: &str, number: usize, error: InputError) -> InputError {
     let field = error.path.strip_prefix(item).filter(|field| field.starts_with('.'));
     match field {

@@ -1,5 +1,4 @@
-//! Morph targets, which move vertices before they are skinned, and the keys of their weights (glTF 2.0,
-//! sections 3.7.2.2 and 3.11).
+//! Morph targets, which move vertices before skinning, and the keys of their weights (glTF 2.0, sections 3.7.2.2 and 3.11).
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +7,7 @@ use super::keyframe::{KeyframeCursor, keyframe_cursor};
 use super::transform::finite;
 use crate::InputError;
 
-/// The displacement of some vertices at a weight of 1. All other vertices stay.
+/// Displacement of some vertices at a weight of 1. All other vertices stay in place.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MorphTarget {
     /// Indices of the vertices, ascending.
@@ -29,14 +28,14 @@ pub struct MorphDelta {
 }
 
 impl MorphTarget {
-    /// A target from one delta per vertex; vertices with a delta of 0 are left out.
+    /// Builds a target from one delta per vertex; vertices with a delta of 0 are left out.
     pub fn new(deltas: &[MorphDelta]) -> Self {
         let moving = (0..).zip(deltas).filter(|(_, delta)| **delta != MorphDelta::default());
         let (vertices, deltas) = moving.map(|(vertex, delta): (u32, _)| (vertex, *delta)).unzip();
         Self { vertices, deltas }
     }
 
-    /// Gives `copy`, whose index exceeds all others, the delta of `vertex`, if there is one.
+    /// Gives `copy` the delta of `vertex`, if there is one. The index of `copy` must exceed all others.
     pub(crate) fn repeat(&mut self, vertex: u32, copy: u32) {
         if let Ok(at) = self.vertices.binary_search(&vertex) {
             self.vertices.push(copy);
@@ -55,7 +54,7 @@ pub struct WeightKeys {
     targets: usize,
 }
 
-/// Keys that were read and not checked.
+/// Keys as read, before validation.
 #[derive(Deserialize)]
 #[serde(rename = "WeightKeys")]
 struct StoredKeys {
@@ -70,7 +69,7 @@ impl TryFrom<StoredKeys> for WeightKeys {
 
     fn try_from(stored: StoredKeys) -> Result<Self, InputError> {
         let StoredKeys { times, values, interpolation, targets } = stored;
-        // Products with a larger number might not fit.
+        // The product with a larger number could overflow.
         if targets > values.len() {
             let bound = format!("must be at most {}, the number of values", values.len());
             return Err(InputError::new("weight_keys.targets", targets, bound));
@@ -80,13 +79,12 @@ impl TryFrom<StoredKeys> for WeightKeys {
 }
 
 impl WeightKeys {
-    /// Keys of `targets` weights. Each key has one value per target; in splines it has the in-tangents, the
-    /// values and the out-tangents (per second). `at_times` and `at_values` are the paths of these fields in
-    /// errors.
+    /// Builds keys of `targets` weights. Each key has one value per target. In splines each key has the in-tangents, then the
+    /// values, then the out-tangents (per second). `at_times` and `at_values` are the paths of these fields in errors.
     ///
     /// # Errors
-    /// [`InputError`] for no keys or targets; for times that descend, are negative, too large or not finite;
-    /// for a wrong number of values; and for values that are not finite.
+    /// [`InputError`] for no keys or targets; for times that descend, are negative, too large or not finite; for a wrong number
+    /// of values; and for values that are not finite.
     pub fn new(
         [at_times, at_values]: [&str; 2],
         times: Vec<f32>,
@@ -104,7 +102,7 @@ impl WeightKeys {
         Ok(Self { times, values, interpolation, targets })
     }
 
-    /// The weights at a time inside the clip, in seconds.
+    /// Weights at a time inside the clip, in seconds.
     pub fn at(&self, time: f32) -> Vec<f32> {
         let KeyframeCursor { key, fraction } = keyframe_cursor(&self.times, time);
         let key = key as usize;
@@ -143,15 +141,14 @@ impl WeightKeys {
         }
     }
 
-    /// A bound on the absolute value of a target's weight.
+    /// Upper bound on the absolute value of a target's weight.
     pub fn largest(&self, target: usize) -> f32 {
         let all = (0..self.times.len()).map(|key| self.between(key, 0.0, target).abs());
         let values = all.fold(0.0, f32::max);
         if self.interpolation != Interpolation::CubicSpline {
             return values;
         }
-        // The weights of the tangents, t³ − 2t² + t and t³ − t², reach 4/27 in absolute value; the sum of both
-        // never exceeds 1/4.
+        // The weights of the two tangents, t³ − 2t² + t and t³ − t², reach 4/27 in absolute value; their sum never exceeds 1/4.
         let tangent = |key: usize, part: usize| self.values[(3 * key + part) * self.targets + target].abs();
         let bends = (1..self.times.len())
             .map(|key| (self.times[key] - self.times[key - 1]) * tangent(key - 1, 2).max(tangent(key, 0)));
@@ -178,7 +175,7 @@ mod tests {
         assert_eq!((linear.largest(0), linear.largest(1)), (4.0, 1.0));
         let step = keys(&values, Interpolation::Step).expect("valid");
         assert_eq!((step.at(1.9), step.at(2.0)), (vec![0.0, 1.0], vec![4.0, -1.0]));
-        // In-tangents, values, out-tangents; the second target has a curve between its keys.
+        // In-tangents, values, out-tangents; the second target curves between its keys.
         let spline = [0.0, 0.0, 0.0, 1.0, 0.0, 6.0, 0.0, -6.0, 4.0, 1.0, 0.0, 0.0];
         let spline = keys(&spline, Interpolation::CubicSpline).expect("valid");
         assert_eq!(

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::transform::{Transform, finite};
 use crate::InputError;
 
-/// The most bones of a skeleton.
+/// Largest number of bones of a skeleton.
 pub const MAX_BONES: usize = 1 << 20;
 
 /// A node of the skeleton.
@@ -13,21 +13,22 @@ pub const MAX_BONES: usize = 1 << 20;
 pub struct Bone {
     /// The bone's name in the file; names need not be unique.
     pub name: String,
-    /// Index of the parent, which is smaller than the bone's own.
+    /// Index of the parent; it is smaller than the bone's own.
     pub parent: Option<u32>,
-    /// The bone's transform in its parent's space when no clip moves it.
+    /// Transform in the parent's space when no clip moves the bone.
     pub rest: Transform,
 }
 
 impl Bone {
-    /// The largest of its scales at rest; 1 if all are 0.
+    /// Largest scale at rest along an axis; 1 if all are 0.
     pub(crate) fn scale(&self) -> f64 {
         let largest = self.rest.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
         if largest > 0.0 { largest.into() } else { 1.0 }
     }
 }
 
-/// Bones, each after its parent. Nodes that no skin uses are bones too if there are joints below them.
+/// Bones in an order with every parent before its children. Nodes that no skin uses are bones too if there are joints below
+/// them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "StoredSkeleton", into = "StoredSkeleton")]
 pub struct Skeleton {
@@ -37,10 +38,10 @@ pub struct Skeleton {
     descendants: Vec<u32>,
 }
 
-/// How far the length of a stored rotation may be from 1.
+/// Largest deviation of a stored rotation's length from 1.
 const OFF_UNIT: f32 = 1e-5;
 
-/// The bones and joints of a skeleton, from which the rest is computed.
+/// Stored form of a skeleton: bones and joints, from which everything else is computed.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Skeleton")]
 struct StoredSkeleton {
@@ -57,7 +58,7 @@ impl From<Skeleton> for StoredSkeleton {
 impl TryFrom<StoredSkeleton> for Skeleton {
     type Error = InputError;
 
-    /// As [`Skeleton::new`]. Rotations keep their bits, and must be of length 1 but for rounding.
+    /// As [`Skeleton::new`], but rotations keep their bits. Their length must be 1 up to rounding.
     fn try_from(StoredSkeleton { bones, joints }: StoredSkeleton) -> Result<Self, InputError> {
         let checked = Self::new(bones.clone(), joints)?;
         for (at, bone) in bones.iter().enumerate() {
@@ -73,11 +74,11 @@ impl TryFrom<StoredSkeleton> for Skeleton {
 }
 
 impl Skeleton {
-    /// A skeleton of `bones`. `joints` are the bones that skins use, in the order in which tools list them.
+    /// Builds a skeleton of `bones`. `joints` are the bones that skins use, in the order in which tools list them.
     ///
     /// # Errors
-    /// [`InputError`] for no or too many bones, for a parent that does not come before its child, for a rest
-    /// pose that is not finite or has no rotation, and for joints that are not bones or are named twice.
+    /// [`InputError`] for no or too many bones, for a parent that does not come before its child, for a rest pose that is not
+    /// finite or has no rotation, and for joints that are not bones or are named twice.
     pub fn new(mut bones: Vec<Bone>, joints: Vec<u32>) -> Result<Self, InputError> {
         InputError::check_within("bones.len", bones.len(), 1..=MAX_BONES)?;
         for (index, bone) in bones.iter_mut().enumerate() {
@@ -102,7 +103,7 @@ impl Skeleton {
         Ok(Self { bones, joints, depths, descendants })
     }
 
-    /// A skeleton whose bones are all joints.
+    /// Builds a skeleton whose bones are all joints.
     ///
     /// # Errors
     /// As [`Skeleton::new`].
@@ -121,13 +122,13 @@ impl Skeleton {
         self.bones.len()
     }
 
-    /// Always false, since a skeleton has at least one bone.
+    /// Always false: a skeleton has at least one bone.
     pub fn is_empty(&self) -> bool {
         self.bones.is_empty()
     }
 
-    /// The bones that skins use, in the order of the file: the joints of every skin, each once. If the file has
-    /// no skins, all bones.
+    /// Bones that skins use, in the order of the file: the joints of every skin, each once. If the file has no skins, all
+    /// bones.
     pub fn joints(&self) -> &[u32] {
         &self.joints
     }
@@ -147,8 +148,8 @@ impl Skeleton {
         self.bones.iter().map(|bone| bone.rest).collect()
     }
 
-    /// For each bone, a bound on how much larger than in its own units lengths in the parent's space are at
-    /// rest: the product of the largest scales of its ancestors. Scales of 0 count as 1.
+    /// For each bone, an upper bound on the scale from the parent's space to model space at rest: the product of the largest
+    /// scales of its ancestors. Scales of 0 count as 1.
     pub(crate) fn scales_above(&self) -> Vec<f64> {
         let mut above = Vec::with_capacity(self.bones.len());
         for bone in &self.bones {
@@ -158,8 +159,7 @@ impl Skeleton {
         above
     }
 
-    /// The length of each bone at rest, in its own units: the distance to its farthest child, or to its parent
-    /// if it has no child.
+    /// Length of each bone at rest, in its own units: the distance to its farthest child, or to its parent if it has no child.
     pub fn lengths(&self) -> Vec<f64> {
         let reach = |bone: &Bone| glam::DVec3::from(bone.rest.translation.map(f64::from)).length();
         let mut lengths = vec![0.0_f64; self.bones.len()];
@@ -177,7 +177,7 @@ impl Skeleton {
         lengths
     }
 
-    /// For each of [`Skeleton::joints`], the index in that list of the nearest joint above it.
+    /// For each of [`Skeleton::joints`], the index in that list of its nearest ancestor joint.
     pub fn joint_parents(&self) -> Vec<Option<u32>> {
         let mut place = vec![None; self.bones.len()];
         for (joint, at) in self.joints.iter().zip(0..) {
@@ -209,14 +209,14 @@ fn descendants(bones: &[Bone]) -> Vec<u32> {
     descendants
 }
 
-/// A skin: bones that vertices follow, and the inverse bind matrix of each.
+/// A skin: the bones that vertices follow, with an inverse bind matrix for each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Skin {
     /// The skin's name in the file.
     pub name: String,
-    /// Indices of bones; the joint numbers of vertices are indices of this list.
+    /// Indices of bones. The joint indices of vertices refer to this list.
     pub bones: Vec<u32>,
-    /// One matrix per bone, column-major: from the mesh's space into the bone's, at the time of binding.
+    /// One column-major matrix per bone: from the mesh's space to the bone's space in the bind pose.
     pub inverse_binds: Vec<[f32; 16]>,
 }
 

@@ -1,5 +1,5 @@
-//! Tangent frames of meshes, solved in f64: the fallback of the import, and the reference of
-//! `kernels/surface/tangent.wgsl`. [`crate::surface::tangent`] has their definition.
+//! Tangent frames of meshes, solved in f64: the import's fallback, and the reference of `kernels/surface/tangent.wgsl`.
+//! [`crate::surface::tangent`] defines them.
 
 use glam::{DVec2, DVec3};
 
@@ -8,11 +8,11 @@ use crate::InputError;
 use crate::shared::surface::tangent::{self, LARGEST_BITS, LEAST_BITS};
 pub use crate::shared::surface::tangent::{DEGENERATE, VANISHING};
 
-/// The largest absolute value of a coordinate, for positions and uv.
+/// Largest absolute value of a coordinate, for positions and uv.
 pub const COORDINATE_LIMIT: f32 = 1e18;
 
-/// The largest difference allowed between a component of a tangent and the reference, on any device, for a
-/// vertex of sensitivity 1 ([`Frame`]).
+/// Largest allowed difference between a component of a tangent and the reference, on any device, for a vertex of sensitivity 1
+/// ([`Frame`]).
 ///
 /// `docs/rounding-bounds.md` has the derivation.
 pub const TANGENT_BOUND: f32 = 1e-5;
@@ -20,13 +20,13 @@ pub const TANGENT_BOUND: f32 = 1e-5;
 /// A triangle mesh with normals and texture coordinates.
 #[derive(Debug, Clone, Copy)]
 pub struct Mesh<'a> {
-    /// Positions in any unit, finite, no component larger than [`COORDINATE_LIMIT`].
+    /// Positions in any unit, finite, with no component larger than [`COORDINATE_LIMIT`].
     pub positions: &'a [[f32; 3]],
     /// One normal per vertex, of any length.
     pub normals: &'a [[f32; 3]],
-    /// One pair of texture coordinates per vertex, finite, no component larger than [`COORDINATE_LIMIT`].
+    /// Texture coordinates per vertex, finite, with no component larger than [`COORDINATE_LIMIT`].
     pub uv: &'a [[f32; 2]],
-    /// Three indices per triangle, counter-clockwise seen from the side to which normals point.
+    /// Three indices per triangle, counter-clockwise seen from the side that normals point to.
     pub indices: &'a [u32],
 }
 
@@ -40,7 +40,7 @@ impl Mesh<'_> {
         InputError::check_len("normals", self.normals.len(), vertices, "a position")?;
         InputError::check_len("uv", self.uv.len(), vertices, "a position")?;
         for (field, len) in [("positions.len", vertices), ("indices.len", self.indices.len())] {
-            // The last offset of the adjacency is the number of all corners.
+            // The last offset of the adjacency is the number of corners and must fit u32.
             InputError::check_most(field, len, u32::MAX as usize)?;
         }
         in_range("positions", self.positions)?;
@@ -49,7 +49,7 @@ impl Mesh<'_> {
     }
 }
 
-/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`]; `path` is that of the list of vectors.
+/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`]; `path` names the list of vectors.
 pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
     (vectors.iter().enumerate())
         .try_for_each(|(at, vector)| numbers_in_range(|| format!("{path}[{at}]"), vector.as_ref()))
@@ -68,13 +68,12 @@ pub(super) fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Re
     }
 }
 
-/// The corners of triangles that meet at each vertex. The reference and the kernel sum in this order, so that
-/// no two runs differ.
+/// Triangle corners that meet at each vertex. The reference and the kernel sum in this order, so that all runs agree.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adjacency {
-    /// Where each vertex's corners begin; one entry more than there are vertices.
+    /// Start of each vertex's corners; one entry more than there are vertices.
     pub offsets: Vec<u32>,
-    /// Positions in the index list, ascending for each vertex.
+    /// Positions in the index list, in ascending order for each vertex.
     pub corners: Vec<u32>,
 }
 
@@ -104,10 +103,10 @@ impl Adjacency {
     }
 }
 
-/// 2⁻¹⁰⁰.
+/// Threshold 2⁻¹⁰⁰ of degenerate values.
 const LEAST: f64 = tangent::LEAST as f64;
 
-/// A unit of the last place of numbers around 1.
+/// Unit in the last place of numbers around 1.
 const EPSILON: f64 = f32::EPSILON as f64;
 
 /// A tangent frame, and its sensitivity to rounding in f32.
@@ -115,12 +114,12 @@ const EPSILON: f64 = f32::EPSILON as f64;
 pub struct Frame {
     /// Unit tangent x, y, z, orthogonal to the normal, and the handedness ±1.
     pub tangent: [f32; 4],
-    /// The factor for [`TANGENT_BOUND`] at this vertex: 1 or more. Infinite if rounding decides whether
-    /// something counts as degenerate.
+    /// Factor of [`TANGENT_BOUND`] at this vertex, 1 or more. Infinite if rounding decides whether something counts as
+    /// degenerate.
     pub sensitivity: f64,
 }
 
-/// The tangent and handedness of every vertex. See [`crate::surface::tangent`].
+/// Tangent and handedness of every vertex. See [`crate::surface::tangent`].
 ///
 /// # Errors
 /// [`InputError`] as [`Mesh::validate`].
@@ -164,7 +163,7 @@ fn unit(vector: DVec3) -> DVec3 {
     vector / vector.dot(vector).sqrt()
 }
 
-/// The contribution of the triangle that has this corner to the corner's vertex.
+/// Contribution of a triangle to the vertex at one of its corners.
 fn contribution(mesh: &Mesh<'_>, corner: u32, normal: DVec3) -> Contribution {
     let first = corner - corner % 3;
     let [vertex, next, last] = [corner, first + (corner + 1) % 3, first + (corner + 2) % 3]
@@ -211,7 +210,7 @@ fn undecided(value: f64, threshold: f64, error: f64) -> f64 {
     if (value - threshold).abs() <= error { f64::INFINITY } else { 0.0 }
 }
 
-/// The first vector of the basis of Duff et al. 2017 for a unit normal.
+/// First vector of the basis of Duff et al. 2017 for a unit normal.
 fn fallback(normal: DVec3, negative_z: bool) -> DVec3 {
     let side = if negative_z { -1.0 } else { 1.0 };
     let a = -1.0 / (side + normal.z);

@@ -1,12 +1,11 @@
-//! Transforms of bones as keys hold them, translation, rotation and scale, and the affine matrices that result
-//! from chains of bones.
+//! Bone transforms as keys hold them (translation, rotation and scale), and the affine matrices that chains of bones produce.
 
 use crate::InputError;
 
-/// A quaternion shorter than this has no usable direction and is refused.
+/// Shortest quaternion with a usable direction; shorter ones are refused.
 pub const SHORTEST: f32 = 1e-6;
 
-/// The transform `translation · rotation · scale`, which scales first.
+/// The transform `translation · rotation · scale`; scale is applied first.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Transform {
     /// Translation in the parent's space, in metres.
@@ -35,11 +34,11 @@ impl Transform {
         glam::DAffine3::from_scale_rotation_translation(scale, rotation, translation)
     }
 
-    /// The same transform with a rotation of length 1.
+    /// Returns the transform with its rotation normalized.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and for a rotation shorter than [`SHORTEST`]; `path`
-    /// precedes the field's name.
+    /// [`InputError`] for values that are not finite, and for a rotation shorter than [`SHORTEST`]; `path` precedes the field's
+    /// name.
     pub fn checked(self, path: &str) -> Result<Self, InputError> {
         finite(&format!("{path}.translation"), &self.translation)?;
         finite(&format!("{path}.scale"), &self.scale)?;
@@ -53,12 +52,12 @@ impl Default for Transform {
     }
 }
 
-/// Refuses values that are not finite, and names the first with its index.
+/// Refuses values that are not finite; the error names the first with its index.
 pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
     InputError::check_each(path, values, |value| value.is_finite(), "must be finite")
 }
 
-/// The quaternion scaled to length 1.
+/// Returns the quaternion scaled to length 1.
 pub(crate) fn unit(path: &str, quaternion: [f32; 4]) -> Result<[f32; 4], InputError> {
     finite(path, &quaternion)?;
     let wide = quaternion.map(f64::from);
@@ -70,14 +69,14 @@ pub(crate) fn unit(path: &str, quaternion: [f32; 4]) -> Result<[f32; 4], InputEr
     Ok(wide.map(|component| (component / length) as f32))
 }
 
-/// The first three rows of an affine 4×4 matrix: component r of `m · (p, 1)` is the dot product with `m[r]`.
-/// Palettes have this layout, three `vec4` per bone.
+/// First three rows of an affine 4×4 matrix: component r of `m · (p, 1)` is the dot product with `m[r]`. Palettes have this
+/// layout, three `vec4` per bone.
 pub type Affine = [[f32; 4]; 3];
 
 /// The identity.
 pub const AFFINE_IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// All sixteen values of an affine matrix, column by column.
+/// All sixteen values of an affine matrix, in column-major order.
 pub fn column_major(affine: &Affine) -> [f32; 16] {
     let row = |row: usize, column: usize| if row < 3 { affine[row][column] } else { f32::from(column == 3) };
     std::array::from_fn(|index| row(index % 4, index / 4))
@@ -116,10 +115,10 @@ pub(crate) fn decomposed(path: &str, matrix: &[f32; 16]) -> Result<Transform, In
     })
 }
 
-/// The largest difference between a matrix and the product of its parts, as a fraction of its largest scale.
+/// Largest difference between a matrix and the product of its parts, relative to its largest scale.
 const SHEAR: f64 = 1e-3;
 
-/// The unit axes of a matrix; axes whose scale is zero are chosen at right angles.
+/// Unit axes of a matrix; axes with zero scale are chosen at right angles to the others.
 fn completed(columns: [glam::DVec3; 3], scale: [f64; 3], largest: f64) -> [glam::DVec3; 3] {
     let zero = glam::DVec3::ZERO;
     let unit = |axis: usize| if scale[axis] > 1e-12 * largest { columns[axis] / scale[axis] } else { zero };

@@ -1,4 +1,4 @@
-//! Failures of the device, each with advice on what to do.
+//! Failures of the device, each with advice.
 
 /// A failure of the device.
 #[derive(Debug, thiserror::Error)]
@@ -8,7 +8,7 @@ pub enum GpuError {
     NoAdapter {
         /// The request.
         wanted: String,
-        /// The adapters that exist, and what to do.
+        /// The existing adapters, and advice.
         seen: String,
     },
     /// The adapter provides no device with WebGPU's default limits.
@@ -21,7 +21,7 @@ pub enum GpuError {
         /// The driver's message.
         reason: String,
     },
-    /// The device is lost, and with it everything that was created on it.
+    /// The device was lost, with everything that was created on it.
     #[error(
         "the GPU device was lost ({reason}); create a new `Gpu`, and everything on it again (scenes: `Scene::rebuild_all`)"
     )]
@@ -56,11 +56,11 @@ pub enum GpuError {
         pass: &'static str,
         /// WebGPU's name of the limit.
         limit: &'static str,
-        /// What the pass needs.
+        /// The value that the pass needs.
         needed: u64,
-        /// What the device allows.
+        /// The device's limit.
         available: u64,
-        /// What to do.
+        /// Advice for the user.
         remedy: &'static str,
     },
     /// The device did not finish in time.
@@ -74,7 +74,7 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// The same error with what the caller knows to help where a limit is exceeded.
+    /// This error with the caller's advice, if it is [`GpuError::Limit`].
     pub(crate) fn with_remedy(self, remedy: &'static str) -> Self {
         match self {
             Self::Limit { pass, limit, needed, available, .. } => {

@@ -1,14 +1,14 @@
-//! Errors of JSON as path, value and bound.
+//! JSON errors as path, value and bound.
 
 use serde_json::Value;
 use serde_path_to_error::Segment;
 
 use super::InputError;
 
-/// The longest text of a value in a message, in characters.
+/// The largest number of characters of a value in a message.
 const SHOWN: usize = 60;
 
-/// A value as messages show it.
+/// A value, shortened for messages.
 pub(crate) fn shown(value: &Value) -> String {
     let text = match value {
         Value::String(text) => text.clone(),
@@ -20,25 +20,25 @@ pub(crate) fn shown(value: &Value) -> String {
     }
 }
 
-/// The message of serde, without the place in the text.
+/// The message of serde, without the position in the text.
 pub(crate) fn message(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let end = format!(" at {}", place(error));
     message.strip_suffix(&end).unwrap_or(&message).to_owned()
 }
 
-/// The error of a text that cannot be read at all: the place stands for the value.
+/// The error for a text that cannot be parsed. Its position takes the place of the value.
 pub(crate) fn unreadable(path: &str, error: &serde_json::Error) -> InputError {
     InputError::new(path, place(error), message(error))
 }
 
-/// Where in the text an error is.
+/// The position of an error in the text.
 pub(crate) fn place(error: &serde_json::Error) -> String {
     format!("line {} column {}", error.line(), error.column())
 }
 
-/// The error of a value that its field may not have, or of a field that is unknown or given twice. `None` if serde refused
-/// something else.
+/// The error for a value that its field does not accept, or for a field that is unknown or given twice. `None` if serde
+/// refused something else.
 pub(crate) fn refused_value(
     document: &Value,
     error: &serde_path_to_error::Error<serde_json::Error>,

@@ -13,30 +13,30 @@ use std::path::{Path, PathBuf};
 pub use gpu::GpuError;
 pub(crate) use names::name_or_index;
 
-/// A value that is out of its bounds. The fields may be matched: `error.path == "zones[2].max"`.
+/// A value out of its bounds. The fields may be matched: `error.path == "zones[2].max"`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{path} = {value}: {bound}")]
 pub struct InputError {
-    /// Where the value stands: the field, with what it lies in (`zones[2].max`).
+    /// The path of the refused field, such as `zones[2].max`.
     pub path: String,
-    /// The value that was refused.
+    /// The refused value.
     pub value: String,
-    /// What the field may be.
+    /// The bound that the value must keep to.
     pub bound: String,
 }
 
 impl InputError {
-    /// Names path, value and bound.
+    /// An error about the value at `path`.
     pub fn new(path: impl Into<String>, value: impl Display, bound: impl Into<String>) -> Self {
         Self { path: path.into(), value: value.to_string(), bound: bound.into() }
     }
 
-    /// Refuses a list at `path` whose length is not `wanted`, one a thing: `each` says which.
+    /// Refuses a list at `path` whose length is not `wanted`. `each` names the thing that needs one entry.
     pub(crate) fn check_len(path: &str, len: usize, wanted: usize, each: &str) -> Result<(), Self> {
         Self::check_same(format!("{path}.len"), len, wanted, &format!("one {each}"))
     }
 
-    /// Refuses a value that is not `wanted`; `reason` says whose that is.
+    /// Refuses a value that is not `wanted`; `reason` says where `wanted` comes from.
     pub(crate) fn check_same<T: PartialEq + Display>(
         path: impl Into<String>,
         value: T,
@@ -75,7 +75,7 @@ impl InputError {
         Self::check(range.contains(&value), path, value, bound)
     }
 
-    /// Refuses a number that is infinite or none.
+    /// Refuses infinities and NaN.
     pub(crate) fn check_finite(
         path: impl Into<String>,
         value: impl Into<f64> + Copy + Display,
@@ -83,7 +83,7 @@ impl InputError {
         Self::check(value.into().is_finite(), path, value, || "must be finite".to_owned())
     }
 
-    /// Refuses the first value of a list that is not good.
+    /// Refuses the first value of a list that fails the test.
     pub(crate) fn check_each<T: Display>(
         path: &str,
         values: &[T],
@@ -105,12 +105,12 @@ impl InputError {
         if is_good { Ok(()) } else { Err(Self::new(path, value, bound())) }
     }
 
-    /// The same error, of a field of what stands at `parent`.
+    /// This error with its path below `parent`.
     pub(crate) fn below(self, parent: &str) -> Self {
         Self { path: format!("{parent}.{}", self.path), ..self }
     }
 
-    /// The same error with the path as JSON files write it, in camel case: `patchSize` for the field `patch_size`.
+    /// This error with its path in camel case, as JSON files write it: `patchSize` for the field `patch_size`.
     pub fn in_json(self) -> Self {
         let mut path = String::with_capacity(self.path.len());
         let mut letters = self.path.chars().peekable();
@@ -137,7 +137,7 @@ pub enum Error {
     InputFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong in it.
+        /// The mistake in the file.
         source: InputError,
     },
     /// A file cannot be read or understood.
@@ -145,7 +145,7 @@ pub enum Error {
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A file cannot be written.
@@ -153,27 +153,27 @@ pub enum Error {
     Output {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// The device failed, or there is none.
+    /// The device failed, or none exists.
     #[cfg(feature = "gpu")]
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
 impl Error {
-    /// A file that cannot be read or understood.
+    /// [`Error::File`] for a file that cannot be read or understood.
     pub fn file(path: impl AsRef<Path>, reason: impl Display) -> Self {
         Self::File { path: path.as_ref().to_owned(), reason: reason.to_string() }
     }
 
-    /// A file that cannot be written.
+    /// [`Error::Output`] for a file that cannot be written.
     pub fn output(path: impl AsRef<Path>, reason: impl Display) -> Self {
         Self::Output { path: path.as_ref().to_owned(), reason: reason.to_string() }
     }
 
-    /// Whether the user's input is at fault, and not the machine.
+    /// Whether the user's input is at fault, not the machine.
     pub fn is_input(&self) -> bool {
         matches!(self, Self::Input(_) | Self::InputFile { .. } | Self::File { .. })
     }

@@ -1,9 +1,10 @@
 //! Lists of names in messages.
 
-/// The most names that a message lists.
+/// The largest number of names in a message.
 const LISTED: usize = 20;
 
-/// The bound of something that is given by its name or its index, from all names in the order of the indices. `what` is its plural.
+/// The bound of a value that names one of several things or gives its index. `names` are in the order of indices;
+/// `what` is the things' plural.
 pub(crate) fn name_or_index<'a>(what: &str, names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let count = names.len();
     if count == 0 {

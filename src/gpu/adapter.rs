@@ -65,7 +65,7 @@ impl std::fmt::Display for AdapterSummary {
     }
 }
 
-/// Every adapter of this machine, the one that would be selected by default first.
+/// All adapters of this machine; the default one comes first.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn adapters() -> Vec<AdapterSummary> {
     let mut all: Vec<_> = (pollster::block_on(enumerate()).iter())
@@ -76,13 +76,13 @@ pub fn adapters() -> Vec<AdapterSummary> {
 }
 
 async fn enumerate() -> Vec<wgpu::Adapter> {
-    // GL is used only if there is nothing else: its drivers serve compute badly, and look for a window system.
+    // GL is the last resort: its drivers have poor compute support and look for a window system.
     let native = enumerate_on(wgpu::Backends::all() - wgpu::Backends::GL).await;
     if native.is_empty() { enumerate_on(wgpu::Backends::GL).await } else { native }
 }
 
 async fn enumerate_on(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
-    // No validation layers and no GPU-assisted validation: the latter corrupts shaders on lavapipe.
+    // No validation layers and no GPU-assisted validation, which corrupts shaders on lavapipe.
     let descriptor = wgpu::InstanceDescriptor {
         backends,
         flags: wgpu::InstanceFlags::empty(),

@@ -1,4 +1,4 @@
-//! The parts from which generated bindings are built; see `gpu::bindings`.
+//! Building blocks of the generated bindings; see `gpu::bindings`.
 
 use std::marker::PhantomData;
 
@@ -12,7 +12,7 @@ pub(crate) mod prelude {
     };
 }
 
-/// A storage buffer to bind, by the type of its elements.
+/// A storage buffer as a resource to bind, typed by its elements.
 #[derive(Debug)]
 pub struct Slice<'a, T> {
     raw: &'a wgpu::Buffer,
@@ -33,7 +33,7 @@ impl<'a, T> Slice<'a, T> {
         self.raw.as_entire_binding()
     }
 
-    /// The same bytes as elements of the type that a shader sees. The size of one type must be a multiple of the
+    /// The same bytes as elements of another type, as a shader declares them. One type's size must be a multiple of the
     /// other's.
     pub fn cast<U>(self) -> Slice<'a, U>
     where
@@ -47,19 +47,19 @@ impl<'a, T> Slice<'a, T> {
     }
 }
 
-/// What a shader may see as elements of `U`, which have the same bytes: rows of a matrix, say.
+/// A type that a shader may read as elements of `U` with the same bytes, such as a matrix as its rows.
 pub trait SeenAs<U> {}
 
-// Rows.
+// A matrix as its rows.
 impl<const N: usize> SeenAs<[f32; 4]> for [[f32; 4]; N] {}
-// Components.
+// A vector as its components.
 impl<const N: usize> SeenAs<f32> for [f32; N] {}
-// Vectors of what lies one after another.
+// Consecutive scalars as vectors.
 impl SeenAs<[u32; 4]> for u32 {}
 impl SeenAs<[f32; 4]> for f32 {}
 impl SeenAs<[i32; 4]> for i32 {}
 impl SeenAs<[i32; 4]> for [i32; 2] {}
-// Bits.
+// Floats as their bits.
 impl SeenAs<[u32; 4]> for [f32; 4] {}
 impl<const N: usize> SeenAs<[u32; 4]> for [[f32; 4]; N] {}
 impl SeenAs<u32> for f32 {}
@@ -74,7 +74,7 @@ impl<T> Buffer<T> {
 }
 
 impl<T: bytemuck::Pod> Buffer<T> {
-    /// The same buffer with elements of the type that a shader sees, as [`Slice::cast`].
+    /// The same buffer with elements of another type, as [`Slice::cast`].
     pub fn cast<U>(&self) -> Buffer<U>
     where
         T: SeenAs<U>,

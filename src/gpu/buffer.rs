@@ -11,10 +11,10 @@ use super::readback::Readback;
 use super::{Gpu, GpuError};
 use crate::InputError;
 
-/// The bytes of which buffers are multiples.
+/// Granularity of buffer sizes in bytes.
 const ROOM: usize = 16;
 
-/// A storage buffer of `len` elements. Usable as storage, vertices, indices, indirect arguments, and copy source and
+/// A storage buffer of `len` elements. Usable as storage, vertex, index and indirect buffer, and as copy source and
 /// destination.
 #[derive(Debug, Clone)]
 pub struct Buffer<T> {
@@ -25,11 +25,13 @@ pub struct Buffer<T> {
 }
 
 impl<T: bytemuck::Pod> Buffer<T> {
-    /// A buffer of zeros. An empty one gets room for one element, since WebGPU binds no empty ranges, and each has room for
-    /// whole vectors of four words, so that kernels may read and write words four at a time.
+    /// A buffer of zeros.
+    ///
+    /// An empty buffer has room for one element, because WebGPU binds no empty ranges. Every buffer has room for whole
+    /// vectors of four words, so kernels may read and write four words at a time.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] when it is larger than a binding may be, [`GpuError::OutOfMemory`].
+    /// [`GpuError::Limit`] if it exceeds the largest binding, [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, label: &'static str, len: usize) -> Result<Self, GpuError> {
         let size = (len.max(1) * size_of::<T>()).next_multiple_of(ROOM) as u64;
         if size > gpu.max_binding() {
@@ -66,7 +68,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         Ok(buffer)
     }
 
-    /// As [`Buffer::from_slice`], for data that never changes: on a device that defers, its upload waits
+    /// As [`Buffer::from_slice`], for data that never changes. On a deferring device the upload waits
     /// ([`Gpu::deferring`]).
     ///
     /// # Errors
@@ -85,7 +87,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         self.write_at(gpu, 0, data)
     }
 
-    /// Refuses elements beyond the buffer's end, behind which there may be room.
+    /// Refuses elements beyond the buffer's end; the allocation may be larger.
     ///
     /// # Errors
     /// [`GpuError::Validation`].
@@ -107,25 +109,25 @@ impl<T: bytemuck::Pod> Buffer<T> {
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, offset, bytemuck::cast_slice(data)))
     }
 
-    /// Reads the elements as they are once everything submitted before the first poll has run.
+    /// Reads all elements back. The values include all work that was submitted before the first poll.
     ///
-    /// The call never blocks: the future is woken when the device has answered. A browser's event loop notices
-    /// that by itself. Elsewhere the program must poll the device, or the future never wakes: call
+    /// The call never blocks: the future wakes when the device has answered. A browser's event loop drives it.
+    /// Elsewhere the program must poll the device, or the future never wakes: call
     /// `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or `Gpu::wait` on a thread of its own.
     ///
     /// # Errors
     /// Errors of the device.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
         let answer = Readback::start(gpu, &self.raw, self.content_bytes())?.answer().await;
-        // An error of the copy says more than that nothing could be read.
+        // The copy's own error is more precise than the failed map.
         gpu.check_async().await?;
         let bytes = answer?;
         // The mapped bytes may be unaligned, so the elements are copied and not cast in place.
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// As [`Buffer::read`], but blocks until the device has finished. It does not exist in browsers, where the
-    /// answer never arrives while a program waits.
+    /// As [`Buffer::read`], but blocks until the device has finished. Not available in browsers, where the answer never
+    /// arrives while a program waits.
     ///
     /// # Errors
     /// Errors of the device, or [`GpuError::Hung`].
@@ -143,7 +145,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         &self.raw
     }
 
-    /// Elements in the buffer.
+    /// Number of elements.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -171,7 +173,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         Err(InputError::new(field, value, format!("must hold at least {needed}")))
     }
 
-    /// Bytes in the buffer.
+    /// Size of the buffer in bytes.
     pub fn bytes(&self) -> u64 {
         self.raw.size()
     }

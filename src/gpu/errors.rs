@@ -1,7 +1,7 @@
-//! Errors of the device: those of a call, by error scopes, and those that its handlers receive later.
+//! Device errors: those of a call, from error scopes, and those that handlers receive later.
 //!
-//! Natively the error of a scope is known as soon as the scope is popped. A browser tells it only after the calling task
-//! has returned: a call that allocates or compiles then succeeds, and its error is the next call's.
+//! Natively, a scope's error is known once the scope is popped. A browser reports it only after the calling task has
+//! returned. There, a call that allocates or compiles succeeds, and the next call returns its error.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 #[cfg(any(test, target_arch = "wasm32"))]
@@ -9,7 +9,7 @@ use std::task::{Context, Poll, Waker};
 
 use super::{Gpu, GpuError};
 
-/// Errors that the device has reported outside the calls that they are of.
+/// Errors that the device reported outside of the calls that caused them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors(Arc<Mutex<Heard>>);
 
@@ -17,7 +17,7 @@ pub(super) struct Errors(Arc<Mutex<Heard>>);
 struct Heard {
     lost: Option<String>,
     error: Option<GpuError>,
-    /// Numbers of scopes that were popped, and whose errors are known: scopes are answered in their order.
+    /// Numbers of scopes that were popped and of scopes whose error is known. Answers come in the scopes' order.
     #[cfg(any(test, target_arch = "wasm32"))]
     answers: [u64; 2],
     #[cfg(any(test, target_arch = "wasm32"))]
@@ -29,7 +29,7 @@ impl Errors {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Receives what the device reports outside error scopes, in place of handlers that were set before.
+    /// Receives errors outside of error scopes, in place of earlier handlers.
     pub fn listen(&self, device: &wgpu::Device) {
         let errors = self.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| errors.hear(error.into())));
@@ -54,7 +54,7 @@ impl Errors {
         self.lock().error.get_or_insert(error);
     }
 
-    /// Gives the error away, unless the device is lost: then all that follows fails too.
+    /// Returns the error once. A lost device stays lost: all later calls fail too.
     fn check(&self) -> Result<(), GpuError> {
         self.check_loss()?;
         self.lock().error.take().map_or(Ok(()), Err)
@@ -71,7 +71,7 @@ impl Errors {
         self.lock().answers[0] += 1;
     }
 
-    /// Takes the answer to the first scope that has none.
+    /// Receives the answer to the oldest scope without one.
     #[cfg(any(test, target_arch = "wasm32"))]
     fn answer(&self, error: Option<GpuError>) {
         if let Some(error) = error {
@@ -80,7 +80,7 @@ impl Errors {
         let mut heard = self.lock();
         heard.answers[1] += 1;
         let waiting = std::mem::take(&mut heard.waiting);
-        // Wakers may poll at once.
+        // Wakers may poll immediately.
         drop(heard);
         waiting.into_iter().for_each(Waker::wake);
     }
@@ -102,21 +102,21 @@ impl Errors {
 }
 
 impl Gpu {
-    /// Checks for errors that the device has reported outside a call that returned them. In a browser these are also
-    /// errors of calls that allocate or compile: it tells them late ([`Gpu::check_async`]).
+    /// Checks for errors that the device reported outside of the call that caused them.
     ///
-    /// The loss of the device is among them, whoever opened it. Errors of the embedding program's own calls on its own device
-    /// ([`Gpu::from_wgpu`]) go to the program's handlers alone.
+    /// In a browser, these include errors of calls that allocate or compile, which it reports late
+    /// ([`Gpu::check_async`]). The loss of the device is among them, no matter who opened it. Errors of the embedding
+    /// program's own calls on its own device ([`Gpu::from_wgpu`]) go only to the program's handlers.
     ///
     /// # Errors
-    /// The first of these errors. Every call returns [`GpuError::DeviceLost`] once the device is lost; any other error is
-    /// returned once.
+    /// The first of these errors. Every call returns [`GpuError::DeviceLost`] once the device is lost; any other error
+    /// is returned once.
     pub fn check(&self) -> Result<(), GpuError> {
         self.errors.check()?;
         self.check_loss()
     }
 
-    /// Checks whether the device is lost, without a callback of its own: the embedding program's stays in place.
+    /// Checks whether the device is lost. It sets no callback, so the embedding program's stays in place.
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`].
@@ -128,8 +128,8 @@ impl Gpu {
         self.errors.check_loss()
     }
 
-    /// As [`Gpu::check`], once the errors of all calls so far are known: in a browser some tasks of its event loop later,
-    /// elsewhere at once.
+    /// As [`Gpu::check`], but waits until the errors of all earlier calls are known: in a browser a few tasks of its
+    /// event loop, elsewhere no time.
     ///
     /// # Errors
     /// As [`Gpu::check`].
@@ -139,7 +139,7 @@ impl Gpu {
         self.check()
     }
 
-    /// Runs `work` and returns the errors that wgpu reports for it. A browser tells them later, to [`Gpu::check`].
+    /// Runs `work` and returns the errors that wgpu reports for it. A browser reports them later, to [`Gpu::check`].
     ///
     /// # Errors
     /// Out of memory, validation and internal errors caused by `work`, and those of [`Gpu::check`].
@@ -164,15 +164,15 @@ impl Gpu {
             let error = pollster::block_on(scope.pop());
             first = first.or(error);
         }
-        // A lost device ignores calls, and may report what depends on them as invalid.
+        // A lost device ignores calls, and may report dependent objects as invalid.
         self.check_loss()?;
         first.map_or(Ok(()), |error| Err(GpuError::from(error)))
     }
 
-    /// Pops nested scopes, and lets the browser tell their errors when it knows them.
+    /// Pops nested scopes. The browser reports their errors later.
     #[cfg(target_arch = "wasm32")]
     fn pop(&self, scopes: [wgpu::ErrorScopeGuard; 3]) -> Result<(), GpuError> {
-        // Popping takes effect at once, its answer comes later.
+        // Popping takes effect now; its answer comes later.
         let answers: Vec<_> = scopes.into_iter().rev().map(wgpu::ErrorScopeGuard::pop).collect();
         let errors = self.errors.clone();
         errors.ask();
@@ -197,7 +197,7 @@ mod tests {
         GpuError::Internal { reason: reason.to_owned() }
     }
 
-    /// As in a browser: answers come later, in the order of the scopes.
+    /// As in a browser, answers come later, in the order of the scopes.
     #[test]
     fn late_answers_complete_those_who_asked_before() {
         let errors = Errors::default();

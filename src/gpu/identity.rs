@@ -1,15 +1,15 @@
-//! Which device a handle is of, and whether the device is lost.
+//! Identity of devices, and detection of a lost device.
 //!
-//! wgpu compares handles by identifiers that each [`wgpu::Instance`] counts by itself, so that devices of two instances may
-//! compare equal; and it panics where a resource of one instance is used in the other. It has no query for either question.
-//! Natively the answers come from a call that a working device refuses: whose error scope catches the error?
+//! wgpu compares handles by identifiers that each [`wgpu::Instance`] counts on its own, so devices of two instances may
+//! compare equal. It panics if a resource of one instance is used in another. It has no query for either question.
+//! Natively, a call that a working device refuses gives the answer: it shows whose error scope catches the error.
 
 #[cfg(target_arch = "wasm32")]
 pub(super) use browser::{Identity, caught};
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) use native::{Identity, caught, is_lost};
 
-/// In a browser identifiers are unique, and errors are told instead of panics.
+/// In a browser, identifiers are unique, and misuse gives errors instead of panics.
 #[cfg(target_arch = "wasm32")]
 mod browser {
     #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ mod native {
     /// The devices of all [`Gpu`](crate::gpu::Gpu)s.
     static KNOWN: Mutex<Vec<Weak<Device>>> = Mutex::new(Vec::new());
 
-    /// A device, equal among all handles of it.
+    /// A device; equal for all of its handles.
     #[derive(Debug, Clone)]
     pub struct Identity(Arc<Device>);
 
@@ -69,15 +69,15 @@ mod native {
 
         /// Whether an encoder or a pass, to which `record` gives a buffer, can record resources of this device.
         ///
-        /// wgpu panics for an identifier that the encoder's instance does not know. The panic is caught here, before anything
-        /// else is recorded; the program's panic hook sees it.
+        /// wgpu panics for an identifier unknown to the encoder's instance. The panic is caught here, before anything
+        /// else is recorded. The program's panic hook sees it.
         pub fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
             let probe = self.0.probe.get_or_init(|| probe(&self.0.device));
             caught(|| record(probe)).is_some()
         }
     }
 
-    /// What `work` returns; `None` if wgpu panics in it, since it was given something of another instance.
+    /// The result of `work`, or `None` if wgpu panics in it because it used a resource of another instance.
     pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
         catch_unwind(AssertUnwindSafe(work)).ok()
     }
@@ -85,14 +85,14 @@ mod native {
     /// Counts the probes of the process.
     static PROBES: AtomicU32 = AtomicU32::new(0);
 
-    /// Number of identifiers by which successive probes differ.
+    /// Difference between the identifiers of successive probes.
     const STEP: u32 = 16;
 
-    /// Number of probes before the differences begin anew.
+    /// Number of probes after which the identifiers repeat.
     const PROBES_APART: u32 = 64;
 
-    /// A buffer with an identifier that other instances do not have: wgpu numbers each use of a slot, and this slot is used
-    /// more often than others, by another number for each probe.
+    /// A buffer whose identifier exists in no other instance. wgpu counts the uses of each slot; this slot is used more
+    /// often than others, by another count for each probe.
     fn probe(device: &wgpu::Device) -> wgpu::Buffer {
         let number = 1 + PROBES.fetch_add(1, Ordering::Relaxed) % PROBES_APART;
         let descriptor = wgpu::BufferDescriptor {
@@ -105,7 +105,7 @@ mod native {
         device.create_buffer(&descriptor)
     }
 
-    /// Makes a call that a working device refuses, and a lost device ignores.
+    /// Makes a call that a working device refuses and a lost device ignores.
     fn refused(device: &wgpu::Device) {
         let _ = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("no usage: refused on purpose"),
@@ -122,12 +122,12 @@ mod native {
         pollster::block_on(scope.pop()).is_none()
     }
 
-    /// Whether two handles are of one device that works.
+    /// Whether two handles belong to the same working device.
     fn is_same(one: &wgpu::Device, other: &wgpu::Device) -> bool {
         if one != other {
             return false;
         }
-        // Keeps the error from the handlers of the other device, if it is another.
+        // Hides the error from the other device's handlers, in case it is another device.
         let outer = other.push_error_scope(wgpu::ErrorFilter::Validation);
         let inner = one.push_error_scope(wgpu::ErrorFilter::Validation);
         refused(other);
@@ -144,7 +144,7 @@ mod native {
             Gpu::headless(&Options::default()).expect("the suite needs an adapter")
         }
 
-        /// Devices of two instances, made alike, have equal handles.
+        /// Handles of devices from two instances, created alike, compare equal.
         #[test]
         fn devices_of_two_instances_differ() {
             let [one, two] = [gpu(), gpu()];
@@ -161,7 +161,7 @@ mod native {
             for (taker, maker) in [(&one, &one), (&one, &two), (&two, &one), (&two, &two)] {
                 let mut encoder = maker.encoder("probed");
                 assert_eq!(taker.check_encoder(&mut encoder).is_ok(), taker.is_same_device(maker));
-                // The encoder records on as if nothing had happened.
+                // The encoder keeps recording normally.
                 maker.scoped(|| maker.queue().submit([encoder.finish()])).expect("a valid encoder");
             }
         }

@@ -15,7 +15,7 @@ pub struct Step {
 #[derive(Debug, Clone)]
 enum Workgroups {
     Of([u32; 3]),
-    /// Those that a kernel writes into a buffer, from a byte on.
+    /// Workgroup counts that a kernel writes into a buffer, from this byte on.
     Written(wgpu::Buffer, u64),
 }
 
@@ -29,14 +29,14 @@ impl Step {
         Self::new(kernel, groups, Workgroups::Of(kernel.spread(gpu, invocations)))
     }
 
-    /// A dispatch with so many threads along x, y and z, and more up to whole workgroups.
+    /// A dispatch of at least this many threads along x, y and z, rounded up to whole workgroups.
     pub fn covering(kernel: &Kernel, groups: Vec<Group>, threads: [u32; 3]) -> Self {
         let size = kernel.workgroup_size();
         let workgroups = std::array::from_fn(|axis| threads[axis].div_ceil(size[axis]));
         Self::new(kernel, groups, Workgroups::Of(workgroups))
     }
 
-    /// A dispatch whose workgroups along x, y and z a kernel writes into `arguments`, from byte `offset` on.
+    /// A dispatch whose workgroup counts along x, y and z a kernel writes into `arguments`, from byte `offset` on.
     pub(crate) fn indirect(kernel: &Kernel, group: Group, arguments: &wgpu::Buffer, offset: u64) -> Self {
         Self::new(kernel, vec![group], Workgroups::Written(arguments.clone(), offset))
     }
@@ -52,23 +52,23 @@ impl Step {
         }
     }
 
-    /// The workgroups that are known before it runs.
+    /// The workgroup counts; zeros if a kernel writes them.
     fn workgroups(&self) -> [u32; 3] {
         if let Workgroups::Of(workgroups) = self.workgroups { workgroups } else { [0; 3] }
     }
 
-    /// Invocations of the dispatch, as far as they are known.
+    /// Invocations of the dispatch; 0 if a kernel writes its workgroup counts.
     fn invocations(&self) -> u64 {
         let size = self.kernel.workgroup_size();
         self.workgroups().into_iter().chain(size).map(u64::from).fold(1, u64::saturating_mul)
     }
 }
 
-/// The number of invocations after which [`Job::run_async`] submits: some tenths of a second of work on a slow GPU.
-/// Operating systems abort work that takes seconds.
+/// The number of invocations after which [`Job::run_async`] submits: some tenths of a second on a slow GPU. Operating
+/// systems abort work that takes seconds.
 const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
 
-/// Dispatches that belong together: prepared once, recorded as often as wanted without allocation.
+/// A prepared sequence of dispatches: built once, recorded any number of times without allocation.
 #[derive(Debug, Clone)]
 pub struct Job {
     label: &'static str,
@@ -118,8 +118,8 @@ impl Job {
         self.steps.iter().for_each(|step| step.dispatch(pass));
     }
 
-    /// Runs all steps and waits. A long job is split into several submissions, so that none takes seconds of a
-    /// slow GPU: operating systems abort such work.
+    /// Runs all steps and waits. A long job is split into several submissions, so that none takes seconds on a slow
+    /// GPU: operating systems abort such work.
     ///
     /// # Errors
     /// Errors of the device.
@@ -136,7 +136,7 @@ impl Job {
         self.run_split(gpu, INVOCATIONS_A_SUBMISSION).await
     }
 
-    /// As [`Job::run_async`], in submissions of at most `most` invocations or of one step.
+    /// As [`Job::run_async`], in submissions of at most `most` invocations each, or of one step.
     async fn run_split(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
         for steps in self.submissions(most) {
             let record = |encoder: &mut wgpu::CommandEncoder| {
@@ -148,7 +148,7 @@ impl Job {
         Ok(())
     }
 
-    /// The steps of each submission of at most `most` invocations or of one step.
+    /// The steps of each submission: at most `most` invocations, or one step.
     fn submissions(&self, most: u64) -> Vec<&[Step]> {
         let mut submissions = Vec::new();
         let (mut start, mut work) = (0, 0_u64);
@@ -165,7 +165,7 @@ impl Job {
     }
 }
 
-/// A job, and the parameters of its kernel that change between submissions.
+/// A job and the kernel parameters that change between submissions.
 #[derive(Debug, Clone)]
 pub struct ParamsJob<T> {
     pub(crate) params: T,
@@ -185,7 +185,7 @@ impl<T> ParamsJob<T> {
     }
 }
 
-/// Begins a compute pass. One pass for many jobs is cheaper than one for each.
+/// Begins a compute pass. One pass for many jobs is cheaper than one pass per job.
 pub fn compute_pass<'a>(encoder: &'a mut wgpu::CommandEncoder, label: &'static str) -> wgpu::ComputePass<'a> {
     encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None })
 }

@@ -1,4 +1,4 @@
-//! Compute pipelines and bind groups, with the layouts of the manifest that `build.rs` writes.
+//! Compute pipelines and bind groups, with layouts from the manifest that `build.rs` writes.
 
 use super::shaders::{Binding, BindingKind, Shader, Stage};
 use super::{Gpu, GpuError, Program};
@@ -15,8 +15,8 @@ pub struct Kernel {
 pub type Group = wgpu::BindGroup;
 
 impl Kernel {
-    /// Compiles the pipeline, or returns the same one if it was compiled on this device before. `constants` sets
-    /// all override constants, as `gpu::bindings` lists them.
+    /// Compiles the pipeline; if this device compiled it before, returns that one. `constants` sets all override
+    /// constants, as `gpu::bindings` lists them.
     ///
     /// # Errors
     /// What the driver's compiler reports.
@@ -65,17 +65,17 @@ impl Kernel {
         self.layouts.bind_group(gpu, shader, group, resources)
     }
 
-    /// Workgroups for `invocations` in one row, spread over x and y if they exceed the limit of one dimension.
+    /// Workgroup counts for `invocations` along x, spread over x and y if they exceed the limit of one dimension.
     pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
 
-    /// Invocations of a workgroup along x, y and z.
+    /// Workgroup size along x, y and z.
     pub fn workgroup_size(&self) -> [u32; 3] {
         self.shader.entry_points.first().map_or([1; 3], |entry| entry.workgroup_size)
     }
 
-    /// Workgroups for `invocations` along x.
+    /// Number of workgroups for `invocations` along x.
     pub(crate) fn groups_for(&self, invocations: u32) -> u32 {
         invocations.div_ceil(self.workgroup_size()[0].max(1))
     }
@@ -92,7 +92,7 @@ impl Layouts {
     /// As [`layouts`].
     ///
     /// # Errors
-    /// [`GpuError::Limit`] where the device allows less than the shader binds.
+    /// [`GpuError::Limit`] if the shader binds more than the device allows.
     pub(crate) fn new(gpu: &Gpu, shader: &'static Shader) -> Result<Self, GpuError> {
         gpu.check_limits(shader)?;
         Ok(Self { shader, groups: layouts(gpu, shader)? })
@@ -101,7 +101,7 @@ impl Layouts {
     /// Binds the resources of one group by their binding numbers, as `gpu::bindings` lists them.
     ///
     /// # Errors
-    /// [`GpuError::Internal`] when the layouts are of another shader, [`GpuError::Validation`] when the resources do not
+    /// [`GpuError::Internal`] if the layouts belong to another shader, [`GpuError::Validation`] if the resources do not
     /// match it.
     pub(crate) fn bind_group(
         &self,
@@ -128,8 +128,8 @@ impl Layouts {
     }
 }
 
-/// Workgroups along x, y and z for `groups` in all, in rows as long as the device permits. For 0 groups the
-/// count along y is 0.
+/// Workgroup counts along x, y and z for `groups` in total, in rows as long as the device permits. The count along y is
+/// 0 for 0 groups.
 pub(crate) fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
     let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
     [x, groups.div_ceil(x), 1]

@@ -1,13 +1,13 @@
-//! Whether a device allows what a shader binds.
+//! Checks of a shader's resources against the device's limits.
 
 use super::shaders::{BindingKind, Shader, Stage};
 use super::{Gpu, GpuError};
 
-/// What helps where a device was created with smaller limits.
+/// Advice for a device that was created with smaller limits.
 const REMEDY: &str = "create the device with WebGPU's default limits (`wgpu::Limits::default()`)";
 
 impl Gpu {
-    /// Checks that the device allows as many resources in each stage, and workgroups as large, as a shader has.
+    /// Checks the shader's resources per stage and its workgroup size against the device's limits.
     ///
     /// # Errors
     /// [`GpuError::Limit`].

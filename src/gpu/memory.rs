@@ -1,4 +1,4 @@
-//! Accounting of the bytes that a device's storage buffers hold.
+//! Accounting of the bytes in a device's storage buffers.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::GpuError;
 
-/// The bytes of every [`super::Buffer`] of a device and its clones: the current number, and the peak.
+/// Bytes of every [`super::Buffer`] of a device and its clones: current and peak.
 #[derive(Debug)]
 pub struct Memory {
     now: AtomicU64,
@@ -23,7 +23,7 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// Bytes held at present.
+    /// Bytes currently held.
     pub fn now(&self) -> u64 {
         self.now.load(Ordering::SeqCst)
     }
@@ -33,23 +33,23 @@ impl Memory {
         self.most.swap(self.now(), Ordering::SeqCst)
     }
 
-    /// What holds them: for each label of buffers the bytes held at present, in alphabetical order.
+    /// Bytes currently held per buffer label, in alphabetical order.
     pub fn by_label(&self) -> Vec<(&'static str, u64)> {
         self.labels().iter().map(|(label, bytes)| (*label, *bytes)).collect()
     }
 
-    /// The most bytes that may be held.
+    /// The largest number of bytes that may be held.
     pub fn limit(&self) -> u64 {
         self.limit.load(Ordering::SeqCst)
     }
 
-    /// Sets the most bytes that may be held; at first there is no limit. A buffer that would exceed it is refused with
-    /// [`GpuError::OutOfMemory`], as where the device has no memory left. Buffers that exist stay.
+    /// Sets the largest number of bytes that may be held; at first there is no limit. A buffer that would exceed it is
+    /// refused with [`GpuError::OutOfMemory`], as when the device has no memory left. Existing buffers stay.
     pub fn set_limit(&self, bytes: u64) {
         self.limit.store(bytes, Ordering::SeqCst);
     }
 
-    /// Checks that so many bytes more may be held.
+    /// Checks that `bytes` more may be held.
     pub(super) fn check(&self, label: &str, bytes: u64) -> Result<(), GpuError> {
         let (now, limit) = (self.now(), self.limit());
         if now.saturating_add(bytes) <= limit {
@@ -71,7 +71,7 @@ impl Memory {
     }
 }
 
-/// Bytes that are counted until this value is dropped.
+/// An allocation that counts until this value is dropped.
 #[derive(Debug)]
 pub(super) struct Held {
     memory: Arc<Memory>,

@@ -1,13 +1,13 @@
-//! The device: opening one, or using that of an embedding program; typed buffers, readback, kernels and timing.
-//! This is the only module that opens devices; `render` creates its textures and pipelines on them.
+//! GPU access: opening a device or using the embedding program's; typed buffers, readback, kernels and timing. This is
+//! the only module that opens devices; `render` creates its textures and pipelines on them.
 //!
-//! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing in this
-//! module panics or aborts.
+//! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing in this module
+//! panics or aborts.
 //!
-//! What waits for the device has two forms. One blocks, and does not exist on `wasm32`, since a browser forbids to wait.
-//! The other is a future whose name ends in `_async` (of reading, [`Buffer::read`]), which polls nothing: a browser
-//! drives it, and natively the program polls the device meanwhile. Where the forms differ in more, their documentation
-//! says so.
+//! Every function that waits for the device has two forms. One blocks; it does not exist on `wasm32`, because a browser
+//! forbids waiting. The other is a future whose name ends in `_async` (for reading, [`Buffer::read`]). It polls
+//! nothing: a browser drives it, and natively the program polls the device meanwhile. Further differences are
+//! documented at the functions.
 
 mod adapter;
 #[doc(hidden)]
@@ -62,27 +62,27 @@ pub struct Gpu {
     errors: Errors,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
-    /// Where uploads of data that never changes wait, if they do.
+    /// The deferred uploads of data that never changes, on a deferring device.
     pending: Option<PendingUploads>,
 }
 
 impl Gpu {
-    /// Opens a device of its own, without a window, with WebGPU's default limits. Storage bindings may be
-    /// larger and more numerous if the adapter permits it.
+    /// Opens a new device without a window, with WebGPU's default limits. Storage bindings may be larger and more
+    /// numerous if the adapter permits it.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
-    /// refuses WebGPU's default limits.
+    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter refuses WebGPU's
+    /// default limits.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn headless(options: &Options) -> Result<Self, GpuError> {
         pollster::block_on(Self::headless_async(options))
     }
 
-    /// As `Gpu::headless`, for programs that must not block, for example in a browser, where there is no other form.
+    /// As `Gpu::headless`, for programs that must not block. In a browser it is the only form.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter
-    /// refuses WebGPU's default limits.
+    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter refuses WebGPU's
+    /// default limits.
     pub async fn headless_async(options: &Options) -> Result<Self, GpuError> {
         let adapter = adapter::choose(options).await?;
         let info = adapter.get_info();
@@ -100,12 +100,12 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Uses the device of an embedding program. The program's handlers of errors and of the device's loss stay in place;
-    /// relievo wraps its own calls in error scopes, and finds out by itself whether the device is lost.
+    /// Uses the device of an embedding program. The program's handlers of errors and of device loss stay in place: the
+    /// crate wraps its own calls in error scopes, and detects device loss without a handler.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = device.adapter_info();
         let gpu = Self::new(device, queue, &info);
-        // A browser calls all callbacks of a device.
+        // A browser calls all of a device's callbacks.
         #[cfg(target_arch = "wasm32")]
         gpu.errors.listen_for_loss(&gpu.device);
         gpu
@@ -118,19 +118,21 @@ impl Gpu {
         Self { device, queue, identity, summary, errors, memory, kernels, pending: None }
     }
 
-    /// Whether another handle is of the same device.
+    /// Whether another handle belongs to the same device.
     pub(crate) fn is_same_device(&self, other: &Self) -> bool {
         self.identity == other.identity
     }
 
-    /// Whether `record`, which gives a buffer of 4 bytes to an encoder or a pass, can record this device's resources there:
-    /// `false` for those of another [`wgpu::Instance`]. wgpu itself refuses those of another device of the same instance. The
-    /// buffer may be an index buffer, or be cleared.
+    /// Whether an encoder or a pass can record this device's resources. `record` gives it a buffer of 4 bytes, as an
+    /// index buffer or to be cleared.
+    ///
+    /// The result is `false` for encoders and passes of another [`wgpu::Instance`]. wgpu itself refuses another device
+    /// of the same instance.
     pub(crate) fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
         self.identity.is_taken(record)
     }
 
-    /// As [`Gpu::scoped`], for work with something of the caller's; `None` if it is of another [`wgpu::Instance`].
+    /// As [`Gpu::scoped`], for work with the caller's objects; `None` if they belong to another [`wgpu::Instance`].
     ///
     /// # Errors
     /// As [`Gpu::scoped`].
@@ -164,20 +166,20 @@ impl Gpu {
         &self.summary
     }
 
-    /// The bytes that relievo's storage buffers hold on this device.
+    /// Accounting of the bytes that relievo's storage buffers hold on this device.
     pub fn memory(&self) -> &Arc<Memory> {
         &self.memory
     }
 
-    /// The largest storage binding in bytes, a multiple of 16 as the sizes of [`Buffer`]s are: at least WebGPU's default of
-    /// 128 MiB.
+    /// The largest storage binding in bytes: at least WebGPU's default of 128 MiB, and a multiple of 16, as all
+    /// [`Buffer`] sizes are.
     pub fn max_binding(&self) -> u64 {
         let limits = self.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         most - most % 16
     }
 
-    /// A buffer that is not mapped. The caller holds an error scope.
+    /// An unmapped buffer. The caller holds an error scope.
     fn raw_buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let descriptor =
             wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
@@ -196,10 +198,10 @@ pub(crate) fn foreign(path: &str) -> InputError {
     InputError::new(path, "of another wgpu::Instance", bound)
 }
 
-/// WebGPU's default limits, with the adapter's own limit for the size of storage bindings: some buffers cannot be split.
+/// WebGPU's default limits, but the adapter's own limit of storage binding size, because some buffers cannot be split.
 fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
     let default = wgpu::Limits::default();
-    // Shaders count words in u32 with room to spare.
+    // Shaders count words in u32, with a margin.
     let most = u64::from(u32::MAX) / 4 * 4;
     let binding = offered.max_storage_buffer_binding_size.min(offered.max_buffer_size).min(most);
     wgpu::Limits {

@@ -4,7 +4,7 @@ use futures_channel::oneshot::{Receiver, channel};
 
 use super::{Gpu, GpuError};
 
-/// A submitted copy, and the receiver of the device's answer that it has arrived.
+/// A submitted copy and the receiver of its completion.
 pub(super) struct Readback {
     staging: wgpu::Buffer,
     size: u64,
@@ -37,7 +37,7 @@ impl Readback {
         })
     }
 
-    /// The bytes, once the device has answered. The future stays pending if nobody polls the device.
+    /// The bytes, once the device has answered. The future stays pending unless the device is polled.
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`].

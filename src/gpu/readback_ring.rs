@@ -1,4 +1,4 @@
-//! A ring of buffers in which data of the device arrives on the host some frames later, without a wait.
+//! A ring of readback buffers: device data arrives on the host some frames later, without a wait.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -11,9 +11,10 @@ const COMING: u32 = 1;
 const ARRIVED: u32 = 2;
 const FAILED: u32 = 3;
 
-/// A ring of mappable buffers of one size. A frame copies into a free one and says what the copy is about; the data is there
-/// once the device has executed the frame and has been polled, as each submission does. Nothing is waited for, and nothing is
-/// allocated after the ring was made.
+/// A ring of mappable buffers of one size, for readback without waiting.
+///
+/// A frame copies data into a free buffer, with a value that describes the copy. The data arrives once the device has
+/// executed the frame and was polled, as each submission does. Nothing is allocated after creation.
 #[derive(Debug)]
 pub struct ReadbackRing<T> {
     label: &'static str,
@@ -26,7 +27,7 @@ pub struct ReadbackRing<T> {
 struct Slot<T> {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU32>,
-    /// The number of the copy, and what it is about.
+    /// The sequence number and the description of the copy.
     about: Option<(u64, T)>,
 }
 
@@ -41,8 +42,8 @@ impl<T> ReadbackRing<T> {
         Ok(Self { label, bytes, slots, recorded: 0 })
     }
 
-    /// Records a copy into a free buffer, with what it is about. Returns whether a buffer was free: if not, nothing is
-    /// recorded, and `copy` is not called.
+    /// Records a copy into a free buffer, with its description. Returns whether a buffer was free. If not, nothing is
+    /// recorded and `copy` is not called.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -61,7 +62,7 @@ impl<T> ReadbackRing<T> {
         true
     }
 
-    /// Takes the last copy that has arrived, if any has since the last call. Copies before it are given up.
+    /// Takes the latest copy that arrived since the last call, if any. Earlier copies are discarded.
     pub fn take(&mut self) -> Option<(T, Vec<u8>)> {
         let mut last: Option<(u64, T, Vec<u8>)> = None;
         for slot in &mut self.slots {
@@ -85,8 +86,8 @@ impl<T> ReadbackRing<T> {
         last.map(|(_, about, bytes)| (about, bytes))
     }
 
-    /// Gives up all copies that have not arrived: their encoders were dropped, or will be. Buffers that they may still use
-    /// are replaced.
+    /// Discards all copies that have not arrived, because their encoders were or will be dropped. Buffers that they may
+    /// still use are replaced.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -136,7 +137,7 @@ mod tests {
         let (about, bytes) = ring.take().expect("arrived");
         assert_eq!((about, bytemuck::pod_collect_to_vec::<u8, u32>(&bytes)), (2, vec![7, 9]));
         assert!(ring.take().is_none());
-        // An encoder that is dropped never frees its buffer.
+        // A dropped encoder never frees its buffer.
         assert!(record(&mut ring, 3, false) && record(&mut ring, 4, false) && !record(&mut ring, 5, true));
         gpu.wait().expect("done");
         assert!(ring.take().is_none());

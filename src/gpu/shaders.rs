@@ -1,4 +1,4 @@
-//! The flat, validated WGSL of every pass, with a description of its bindings. `build.rs` writes it.
+//! The flat, validated WGSL of every pass with a description of its bindings, written by `build.rs`.
 
 /// A pipeline stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -51,7 +51,7 @@ pub enum BindingKind {
     TextureArray,
     /// A filterable float texture, 2-D.
     Texture,
-    /// A float texture, 2-D, of which the shader only loads texels: any float format.
+    /// A float texture, 2-D, whose texels the shader only loads: any float format.
     LoadedTexture,
     /// A depth texture, 2-D.
     DepthTexture,
@@ -132,8 +132,8 @@ pub struct Shader {
     pub structs: &'static [Struct],
 }
 
-/// WGSL to put before your own shader, for programs that do not compose theirs with WESL: functions, structs and
-/// constants without entry points, bindings or override constants. No two modules declare the same name.
+/// WGSL to put before your own shader, for programs that do not compose theirs with WESL. It has functions, structs and
+/// constants, but no entry points, bindings or override constants. No two modules declare the same name.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Module {
     /// The folder below `wgsl/`: `animation`, `skinning`, `surface` or `terrain`.

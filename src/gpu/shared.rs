@@ -18,7 +18,7 @@ impl<K, T> Default for Shared<K, T> {
 }
 
 impl<K: Eq + Hash, T: Clone> Shared<K, T> {
-    /// The pipeline that was compiled for `key` before, or else the result of `compile`.
+    /// The pipeline that was compiled for `key` before, else the result of `compile`.
     ///
     /// # Errors
     /// Errors of `compile`, which is tried again at the next call.
@@ -27,8 +27,7 @@ impl<K: Eq + Hash, T: Clone> Shared<K, T> {
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());
         }
-        // The map is not locked during compilation: drivers take seconds, and two threads may compile different
-        // objects.
+        // The map is unlocked during compilation: drivers take seconds, and two threads may compile different objects.
         let compiled = compile()?;
         Ok(all().entry(key).or_insert(compiled).clone())
     }
@@ -37,7 +36,7 @@ impl<K: Eq + Hash, T: Clone> Shared<K, T> {
 /// A shader with override constants.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Program {
-    /// Its name, which no other shader has.
+    /// Its unique name.
     shader: &'static str,
     /// Name and bits of each value.
     constants: Vec<(&'static str, u64)>,

@@ -1,9 +1,9 @@
-//! Textures that are filled once ([`Gpu::fill_level`]) and sampled, and their samplers.
+//! Textures that are filled once ([`Gpu::fill_level`]) and sampled, with their samplers.
 
 use super::{Gpu, GpuError};
 
 impl Gpu {
-    /// Refuses a texture that is wider or higher than the device allows. `remedy` is what the caller can do about it.
+    /// Refuses a texture that is wider or higher than the device allows. `remedy` is advice for the caller.
     ///
     /// # Errors
     /// [`GpuError::Limit`].
@@ -21,7 +21,7 @@ impl Gpu {
         Err(GpuError::Limit { pass: label, limit: "maxTextureDimension2D", needed, available, remedy })
     }
 
-    /// A texture of so many layers and mip levels. The caller holds an error scope.
+    /// A texture with layers and mip levels. The caller holds an error scope.
     pub(crate) fn sampled_texture(
         &self,
         label: &'static str,

@@ -1,4 +1,4 @@
-//! Writes from the host: at once, or staged so that an encoder orders them with the work that it records.
+//! Writes from the host: immediate, or staged so that an encoder orders them with the work that it records.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -9,12 +9,12 @@ use encase::internal::WriteInto;
 use super::buffer::uniform_bytes;
 use super::{Buffer, Gpu, GpuError, Uniform};
 
-/// What takes writes to buffers. [`Gpu`] writes before the next submission; [`Staged`] writes where it is recorded.
+/// A destination for buffer writes. [`Gpu`] writes before the next submission; [`Staged`] writes where it is recorded.
 pub trait Upload {
-    /// Writes bytes into a buffer, from `offset` on; both are multiples of 4.
+    /// Writes bytes into a buffer, from `offset` on. Offset and length are multiples of 4.
     ///
     /// # Errors
-    /// [`GpuError`], also where the bytes reach beyond the buffer's end.
+    /// [`GpuError`], also if the bytes reach beyond the buffer's end.
     fn bytes(&mut self, to: &wgpu::Buffer, offset: u64, bytes: &[u8]) -> Result<(), GpuError>;
 
     /// Writes the value of a uniform.
@@ -31,7 +31,7 @@ pub trait Upload {
     /// Writes elements of a buffer, from `first` on.
     ///
     /// # Errors
-    /// [`GpuError`], also where they reach beyond the buffer's end.
+    /// [`GpuError`], also if they reach beyond the buffer's end.
     fn elements<T: bytemuck::Pod>(&mut self, to: &Buffer<T>, first: usize, data: &[T]) -> Result<(), GpuError>
     where
         Self: Sized,
@@ -47,14 +47,14 @@ impl Upload for &Gpu {
     }
 }
 
-/// Writes that wait to be recorded.
+/// Writes that were staged and not recorded yet.
 #[derive(Debug, Default)]
 pub struct Staged {
     bytes: Vec<u8>,
     copies: Vec<Copy>,
 }
 
-/// A range of the staged bytes, and where it goes.
+/// A range of the staged bytes, and its destination.
 #[derive(Debug)]
 struct Copy {
     to: wgpu::Buffer,
@@ -76,12 +76,12 @@ impl Upload for Staged {
 }
 
 impl Staged {
-    /// Number of bytes that wait.
+    /// Number of staged bytes.
     pub fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Whether nothing waits.
+    /// Whether nothing is staged.
     pub fn is_empty(&self) -> bool {
         self.copies.is_empty()
     }
@@ -90,7 +90,7 @@ impl Staged {
 /// The smallest staging buffer, in bytes.
 const LEAST: u64 = 1 << 12;
 
-/// A ring of staging buffers, one for each recording that has not been executed yet.
+/// A ring of staging buffers, one for each recording in flight.
 #[derive(Debug)]
 pub struct StagingRing {
     slots: Vec<Slot>,
@@ -103,12 +103,12 @@ struct Slot {
     state: Arc<AtomicU8>,
 }
 
-/// States of a slot: the last, of a recording whose encoder or command buffer was dropped before it was submitted.
+/// States of a slot. DROPPED: an encoder or command buffer with a recording was dropped before submission.
 const FREE: u8 = 0;
 const BUSY: u8 = 1;
 const DROPPED: u8 = 2;
 
-/// A recording, which its encoder owns until the device has executed it.
+/// A recording. Its encoder owns it until the device has executed it.
 struct Recording(Arc<AtomicU8>);
 
 impl Recording {
@@ -124,16 +124,16 @@ impl Drop for Recording {
 }
 
 impl StagingRing {
-    /// A ring of `slots` buffers, which are allocated when they are first needed.
+    /// A ring of `slots` buffers, each allocated on first use.
     pub fn new(slots: usize) -> Self {
         let slot = || Slot { buffer: None, state: Arc::default() };
         Self { slots: (0..slots).map(|_| slot()).collect(), next: 0 }
     }
 
-    /// Records the staged writes and empties them. Returns whether a buffer was free. Its buffer is free again once
-    /// the device has executed what `encoder` records.
+    /// Records the staged writes and clears them. Returns whether a buffer was free.
     ///
-    /// A buffer that is too small is replaced by one of twice the size.
+    /// The buffer is free again once the device has executed the work of `encoder`. A buffer that is too small is
+    /// replaced by one of twice the size.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -158,7 +158,7 @@ impl StagingRing {
         Ok(true)
     }
 
-    /// Begins writes that are recorded one by one, with room for so many bytes; `None` if no buffer is free.
+    /// Begins writes that are recorded one by one. `room` is their expected size in bytes. `None` if no buffer is free.
     pub(crate) fn stream<'a>(&'a mut self, gpu: &'a Gpu, room: usize) -> Option<StagingStream<'a>> {
         let slot = self.free()?;
         Some(StagingStream { gpu, slot, room, bytes: Vec::new(), is_used: false })
@@ -169,13 +169,13 @@ impl StagingRing {
         self.slots.iter().filter(|slot| !slot.is(FREE)).count()
     }
 
-    /// Whether a recording was dropped before it was submitted, so that its writes never happen.
+    /// Whether a recording was dropped before it was submitted, so that its writes are lost.
     pub fn has_dropped(&self) -> bool {
         self.slots.iter().any(|slot| slot.is(DROPPED))
     }
 
-    /// Gives up all recordings that have not been executed: their encoders were dropped, or will be. Buffers that
-    /// they may still use are not used again.
+    /// Discards all recordings that have not been executed, because their encoders were or will be dropped. Buffers
+    /// that they may still use are not reused.
     pub fn invalidate(&mut self) {
         let slots = self.slots.len();
         *self = Self::new(slots);
@@ -204,7 +204,7 @@ impl Slot {
         Ok(())
     }
 
-    /// It is busy until the device has executed what `encoder` records.
+    /// Marks the buffer as busy until the device has executed the work of `encoder`.
     fn occupy(&self, encoder: &mut wgpu::CommandEncoder) {
         self.state.store(BUSY, Ordering::Release);
         let recording = Recording(self.state.clone());
@@ -212,23 +212,24 @@ impl Slot {
     }
 }
 
-/// Writes that are recorded one by one, among other work of an encoder. Their bytes go to the device in one piece in the end.
+/// Writes that are recorded one by one, among an encoder's other work. Their bytes are uploaded in one piece at the
+/// end.
 #[derive(Debug)]
 pub(crate) struct StagingStream<'a> {
     gpu: &'a Gpu,
     slot: &'a mut Slot,
-    /// Bytes that are expected.
+    /// Expected number of bytes.
     room: usize,
-    /// What is to be in the slot's buffer when the encoder is submitted.
+    /// The contents of the slot's buffer at submission.
     bytes: Vec<u8>,
     is_used: bool,
 }
 
 impl StagingStream<'_> {
-    /// Records a write of bytes into a buffer, from `offset` on; both are multiples of 4.
+    /// Records a write of bytes into a buffer, from `offset` on. Offset and length are multiples of 4.
     ///
     /// # Errors
-    /// [`GpuError`], also where the bytes reach beyond the buffer's end.
+    /// [`GpuError`], also if the bytes reach beyond the buffer's end.
     pub fn write(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -240,7 +241,7 @@ impl StagingStream<'_> {
         let needed = self.bytes.len() + bytes.len();
         let has_room = |buffer: &wgpu::Buffer| needed as u64 <= buffer.size();
         if !self.slot.buffer.as_ref().is_some_and(has_room) {
-            // The copies that were recorded go on reading the old buffer.
+            // Recorded copies keep reading the old buffer.
             self.send()?;
             self.slot.make_room(self.gpu, needed.max(self.room) as u64)?;
             self.bytes.clear();
@@ -252,7 +253,7 @@ impl StagingStream<'_> {
         Ok(())
     }
 
-    /// Ends the writes. The buffer is free again once the device has executed what `encoder` records.
+    /// Ends the writes. The buffer is free again once the device has executed the work of `encoder`.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -297,7 +298,7 @@ mod tests {
         staged
     }
 
-    /// Two recordings in one submission each see their own value; writes of the queue would both come first.
+    /// Two recordings in one submission each see their own value. Queue writes would both come before the submission.
     #[test]
     fn staged_writes_happen_where_they_are_recorded() {
         let gpu = gpu();
@@ -315,7 +316,7 @@ mod tests {
         assert_eq!(ring.busy(), 0);
     }
 
-    /// Writes that are recorded one by one are seen by what is recorded behind them, also where they exceed their room.
+    /// Writes that are recorded one by one are visible to later work of the encoder, even beyond their expected size.
     #[test]
     fn streams_write_where_they_are_recorded() {
         let gpu = gpu();
@@ -358,7 +359,7 @@ mod tests {
         gpu.wait().expect("done");
         assert_eq!(ring.busy(), 0);
         assert!(!ring.has_dropped());
-        // An encoder that is dropped never frees its buffer, and a command buffer neither.
+        // A dropped encoder or command buffer never frees its buffer.
         for is_finished in [false, true] {
             let mut encoder = gpu.encoder("dropped");
             assert!(record(&mut ring, &mut encoder) && !ring.has_dropped());

@@ -35,10 +35,10 @@ impl Gpu {
         self.wait()
     }
 
-    /// As `Gpu::run`, with the error of the recording.
+    /// As `Gpu::run`, but also returns the error of the recording.
     ///
     /// # Errors
-    /// [`Error::Gpu`](crate::Error::Gpu) with what the device reports, and the error of `record`.
+    /// [`Error::Gpu`](crate::Error::Gpu) with errors of the device, and the error of `record`.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn try_run(
         &self,
@@ -93,7 +93,7 @@ impl Gpu {
         answer.map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
     }
 
-    /// Blocks until `work` is done, which awaits the device alone.
+    /// Blocks until `work` is done. `work` may await only the device.
     ///
     /// # Errors
     /// Those of `work`, and of [`Gpu::wait`].
@@ -105,7 +105,7 @@ impl Gpu {
             if let std::task::Poll::Ready(done) = work.as_mut().poll(&mut context) {
                 return done;
             }
-            // Once the device has finished, it has called back, and the work can go on.
+            // A finished device has run its callbacks, so the work can go on.
             self.wait()?;
         }
     }
@@ -120,7 +120,7 @@ mod tests {
         Gpu::headless(&Options::default()).expect("the suite needs an adapter")
     }
 
-    /// Several waits, one after the other, as in generating terrain.
+    /// Several waits in sequence, as when generating terrain.
     #[test]
     fn blocking_drives_work_that_waits_repeatedly() {
         let gpu = gpu();

@@ -1,5 +1,5 @@
-//! What views allow: the displacement by which a surface may be off. This is the one formula from pixels to levels, gates and
-//! influences: the CPU reference of `wgsl/lod/allowed.wgsl`. `docs/pixel-bounds.md` derives it.
+//! The displacement that views allow a surface: the one formula from pixels to levels, gates and influences. CPU
+//! reference of `wgsl/lod/allowed.wgsl`; `docs/pixel-bounds.md` derives it.
 
 use glam::Vec3;
 
@@ -8,8 +8,8 @@ use crate::shared::lod::allowed::{ALLOWED_MARGIN, LEAST_SCALE, MAX_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
 
 impl LodCamera {
-    /// The largest distance, in world units, by which every point inside a sphere may be off while the camera draws none
-    /// more than its `pixels` from its place: the CPU reference of `camera_allows`.
+    /// The allowed displacement of a sphere, in world units: any point in it may move that far, and the camera draws
+    /// none more than its `pixels` from its place. CPU reference of `camera_allows`.
     pub fn allows(&self, center: Vec3, radius: f32) -> f32 {
         if self.perspective == 0.0 {
             return ALLOWED_MARGIN * (self.pixels / self.focal);
@@ -32,7 +32,8 @@ impl LodCamera {
     }
 }
 
-/// The displacement that all of some cameras allow for a sphere, in units of a model with this largest scale.
+/// The smallest displacement that any of the cameras allows a sphere, in units of a model whose largest scale is
+/// `scale`.
 pub fn allowed_by(cameras: &[LodCamera], center: Vec3, radius: f32, scale: f32) -> f32 {
     let least = cameras.iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);
     (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)

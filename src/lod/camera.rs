@@ -1,21 +1,22 @@
-//! Cameras of views: planes, and the displacement that a camera allows, from the caller's own matrices.
-//! `docs/pixel-bounds.md` derives the latter.
+//! Cameras of views: frustum planes and allowed displacement from the caller's own matrices. `docs/pixel-bounds.md`
+//! derives the displacement.
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 
 use super::LodCamera;
 use crate::InputError;
 
-/// A plane of the view volume is the difference of two rows. If its normal is this much shorter than theirs, the rounding
-/// of matrices to `f32` decides its direction.
+/// Relative length of a plane's normal below which f32 rounding of the matrices decides its direction. The normal is
+/// the difference of two rows of the matrix, and the length is relative to those rows.
 const LOST: f64 = 1e-4;
 
 /// A plane that excludes nothing.
 const NOWHERE: Vec4 = Vec4::W;
 
-/// The planes of the view volume of a matrix from a space to clip space, with depth 0 to 1: unit normals that point
-/// inwards, and distances, in the order left, right, bottom, top, depth 0, depth 1. A plane at infinity, or one so far that
-/// rounding decides its direction, is (0, 0, 0, 1), which excludes nothing.
+/// The frustum planes of a matrix from some space to clip space with depth 0 to 1.
+///
+/// Each is a unit normal that points inwards and a distance, in the order left, right, bottom, top, depth 0, depth 1. A
+/// plane at infinity, or so far away that rounding decides its direction, is (0, 0, 0, 1), which excludes nothing.
 pub fn planes(clip_from_cell: Mat4) -> [Vec4; 6] {
     let [x, y, z, w] = rows(&clip_from_cell.as_dmat4());
     let unit = |plane: DVec4, of: DVec4| {
@@ -31,24 +32,27 @@ fn rows(matrix: &DMat4) -> [DVec4; 4] {
     [0, 1, 2, 3].map(|row| matrix.row(row))
 }
 
-/// A camera's position and direction, and the row of its matrix in whose direction nothing moves on screen.
+/// Eye and viewing direction of a perspective camera.
 struct Perspective {
     eye: DVec3,
     ahead: DVec3,
 }
 
 impl LodCamera {
-    /// The camera of a view whose points a view matrix takes from a cell's space into the camera's, and a projection from
-    /// there to clip space with depth 0 to 1. Any perspective will do (also infinite, off-axis, jittered, oblique), and
-    /// any parallel projection; view matrices may mirror and scale.
+    /// The camera of a view with these matrices: `view_from_cell` from a cell's space to the camera's, `clip_from_view`
+    /// from there to clip space with depth 0 to 1.
     ///
-    /// `viewport` is width and height in pixels, `reversed` says that depth is 1 at the near plane, and `pixels` is the
-    /// most by which anything may be off.
+    /// Any perspective works (also infinite, off-axis, jittered, oblique), and any parallel projection. View matrices
+    /// may mirror and scale. `viewport` is width and height in pixels. `reversed`: depth is 1 at the near plane.
+    /// `pixels` is the largest displacement on the screen.
     ///
     /// # Errors
-    /// [`InputError`] for `camera.view_from_cell` that is not finite, affine and invertible, for `camera.clip_from_view`
-    /// that is not finite, collapses the picture, or has no near plane ahead of the eye where `reversed` says, for a
-    /// `camera.viewport` without pixels, and for `quality.pixels` that is negative or not finite.
+    /// [`InputError`] for:
+    /// - `camera.view_from_cell` that is not finite, affine and invertible;
+    /// - `camera.clip_from_view` that is not finite, collapses the picture, or has no near plane ahead of the eye where
+    ///   `reversed` says;
+    /// - `camera.viewport` without pixels;
+    /// - `quality.pixels` that is negative or not finite.
     pub fn new(
         view_from_cell: Mat4,
         clip_from_view: Mat4,
@@ -72,12 +76,12 @@ impl LodCamera {
             .ok_or_else(|| refused(&clip_from_view))
     }
 
-    /// `None` if the matrix is no camera's.
+    /// `None` if the matrix is not a camera's.
     fn of(clip_from_cell: &DMat4, viewport: [u32; 2], reversed: bool, pixels: f32) -> Option<Self> {
         let [x, y, z, w] = rows(clip_from_cell);
         let perspective = perspective([x, y, w])?;
         let ahead = perspective.as_ref().map(|perspective| perspective.ahead);
-        // Pixels for each unit of length across; w grows by `along` with each unit ahead.
+        // Pixels per unit of length across. w grows by `along` for each unit ahead.
         let along = if ahead.is_some() { w.truncate().length() } else { w.w };
         let across = [(x, viewport[0]), (y, viewport[1])].map(|(row, size)| {
             let row = row.truncate() * (0.5 * f64::from(size) / along);
@@ -122,7 +126,7 @@ fn refused(clip_from_view: &Mat4) -> InputError {
     InputError::new("camera.clip_from_view", clip_from_view, bound)
 }
 
-/// Eye and direction; `Some(None)` for a parallel projection, `None` for a matrix that is neither.
+/// Eye and direction. `Some(None)` for a parallel projection, `None` for a matrix that is neither.
 fn perspective([x, y, w]: [DVec4; 3]) -> Option<Option<Perspective>> {
     let ahead = w.truncate();
     let sides = x.truncate().length() * y.truncate().length();
@@ -130,14 +134,14 @@ fn perspective([x, y, w]: [DVec4; 3]) -> Option<Option<Perspective>> {
         return (w.w > 0.0 && sides.is_finite()).then_some(None);
     }
     let matrix = DMat3::from_cols(x.truncate(), y.truncate(), ahead).transpose();
-    // The comparison is false for what is not finite.
+    // The comparison is false for infinities and NaN.
     let is_picture = matrix.determinant().abs() > 1e-12 * sides * ahead.length();
     let eye = matrix.inverse() * -DVec3::new(x.w, y.w, w.w);
     (is_picture && eye.is_finite()).then(|| Some(Perspective { eye, ahead: ahead.normalize() }))
 }
 
-/// The depth of the near plane, 0 for one that is not parallel to the picture. `None` if it is behind the eye or beyond
-/// the far plane.
+/// The distance of the near plane; 0 if it is not parallel to the picture. `None` if it is behind the eye or beyond the
+/// far plane.
 fn near(perspective: &Perspective, front: DVec4, back: DVec4) -> Option<f64> {
     let Perspective { eye, ahead } = perspective;
     let normal = front.truncate();
@@ -145,7 +149,7 @@ fn near(perspective: &Perspective, front: DVec4, back: DVec4) -> Option<f64> {
     if (normal - forward * *ahead).length() > 1e-4 * normal.length() {
         return Some(0.0);
     }
-    // A point at this depth lies in the plane.
+    // The distance at which the view axis meets the plane.
     let depth = |plane: DVec4| -plane.dot(eye.extend(1.0)) / plane.truncate().dot(*ahead);
     let near = depth(front);
     let far = depth(back);
@@ -159,15 +163,15 @@ fn largest_singular_value([a, b]: [DVec3; 2]) -> f64 {
     (0.5 * (aa + bb + (aa - bb).hypot(2.0 * ab))).sqrt()
 }
 
-/// The number as an `f32` that is not less.
+/// The smallest `f32` that is not less than `number`.
 fn up(number: f64) -> f32 {
     let rounded = number as f32;
     if f64::from(rounded) < number { rounded.next_up() } else { rounded }
 }
 
-/// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space,
-/// seen from outside, then run clockwise on the screen. For a parallel view, whose depth must grow with
-/// distance, the sign of the determinant of all three axes decides.
+/// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space, seen
+/// from outside, run clockwise on the screen. For a parallel view, depth must grow with distance; the sign of the
+/// determinant of all three axes decides.
 pub fn is_mirrored(clip: &Mat4) -> bool {
     // In f64, because the product of three small scales may underflow f32.
     let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());

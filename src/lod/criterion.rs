@@ -1,4 +1,4 @@
-//! What chooses the level of an instance: a metric, and a threshold for each level. The CPU reference of
+//! Selection of an instance's level of detail by a metric and a threshold per level. CPU reference of
 //! `wgsl/lod/criterion.wgsl`.
 
 use glam::Vec3;
@@ -7,11 +7,11 @@ use super::{LodCamera, LodObject};
 #[cfg(feature = "gpu")]
 use crate::shared::lod::criterion::CRITERION_ERROR;
 
-/// What chooses the levels of an object.
+/// The metric by which an object's levels are chosen.
 #[cfg(feature = "gpu")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Criterion {
-    /// The projected error: the coarsest level whose error a view allows. It alone keeps the promise of
+    /// The projected error: the coarsest level whose error the view allows. Only this criterion keeps the promise of
     /// [`Quality::pixels`](crate::scene::Quality).
     #[default]
     Error,
@@ -26,7 +26,7 @@ impl Criterion {
         }
     }
 
-    /// The metric from which on each level is drawn, from the errors of the levels, ascending from 0.
+    /// Threshold per level: the smallest metric at which the level is drawn. Input: errors per level, ascending from 0.
     pub fn thresholds(self, errors: &[f32]) -> Vec<f32> {
         match self {
             Self::Error => errors.to_vec(),
@@ -34,7 +34,8 @@ impl Criterion {
     }
 }
 
-/// The metric of an instance in a camera that allows it a displacement in the model's units; `center` is that of its sphere.
+/// The metric of an instance in a camera. `allowed` is the allowed displacement in the model's units, `center` the
+/// center of its sphere.
 pub fn metric(object: &LodObject, _camera: &LodCamera, _center: Vec3, allowed: f32) -> f32 {
     object.mesh_fraction * allowed
 }

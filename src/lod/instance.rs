@@ -1,12 +1,14 @@
-//! The placement of instances: the CPU reference of `wgsl/lod/instance.wgsl`.
+//! Placements of instances. CPU reference of `wgsl/lod/instance.wgsl`.
 
 use glam::{IVec3, Quat, Vec3};
 
 use super::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, SceneInstance, instance_flags_word};
 
 impl SceneInstance {
-    /// An instance at the corner of cell 0, of the model's size, that casts shadows and that every view may see.
-    /// `bounding_sphere` is a sphere around everything that it may draw, in the model's space: center and radius.
+    /// An instance at the corner of cell 0, at the model's scale, that casts shadows and is visible to every view.
+    ///
+    /// `bounding_sphere` is a sphere around everything that the instance may draw, in the model's space: center and
+    /// radius.
     pub fn new(bounding_sphere: [f32; 4]) -> Self {
         Self {
             cell: [0; 3],
@@ -20,12 +22,12 @@ impl SceneInstance {
         }
     }
 
-    /// Its position relative to the corner of another cell, in world units.
+    /// The position relative to the corner of another cell, in world units.
     pub fn position(&self, cell: IVec3) -> Vec3 {
         (IVec3::from_array(self.cell) - cell).as_vec3() * CELL_SIZE + Vec3::from_array(self.offset)
     }
 
-    /// The columns of its linear transform from the model's space into the world: scale followed by rotation.
+    /// The columns of the linear transform from the model's space to the world: scale, then rotation.
     pub fn axes(&self) -> [Vec3; 3] {
         let [qx, qy, qz, qw] = self.rotation;
         let x =
@@ -37,12 +39,12 @@ impl SceneInstance {
         [self.scale[0] * x, self.scale[1] * y, self.scale[2] * z]
     }
 
-    /// Whether its scale mirrors it.
+    /// Whether the scale mirrors.
     pub fn is_mirrored(&self) -> bool {
         self.scale.iter().filter(|factor| **factor < 0.0).count() % 2 == 1
     }
 
-    /// The largest factor by which its scale enlarges a length.
+    /// The largest absolute scale factor of the three axes.
     pub fn largest_scale(&self) -> f32 {
         self.scale.iter().fold(0.0, |largest: f32, factor| largest.max(factor.abs()))
     }

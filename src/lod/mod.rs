@@ -1,18 +1,22 @@
-//! Level of detail in scenes: which instances a view sees and how fine ([`select`]), in which order it draws them
-//! ([`list`]), how it draws instances one by one ([`sorted`]), and what gates and skinning make of the displacement that the views
-//! of a frame allow ([`assign`]). Meshes that are attached to bones are placed once these are posed ([`attach`]).
+//! Level of detail and culling of a scene's instances.
 //!
-//! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep instances and draws of their
-//! own: in a frame, record [`select`] and [`list`] for each view, the first of which says so
-//! ([`SelectView::is_first`](SelectView)), then [`assign`] for each character, then draw from the lists.
+//! - [`select`]: which instances a view sees, and at which level of detail.
+//! - [`list`]: the lists from which the view draws them.
+//! - [`sorted`]: draws of single instances.
+//! - [`assign`]: the detail of gates and skinning, from the displacement that the views of a frame allow.
+//! - [`attach`]: placements of meshes that follow bones, once the bones are posed.
 //!
-//! Instances of all objects lie in one buffer of [`SceneInstance`], those of an object in whole blocks of [`BLOCK`]. A view
-//! ([`SelectView`]) sees them through its planes ([`planes`]), and has up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) that
-//! decide how far anything may be off: usually its own, for a shadow map those of the views that show the shadows.
+//! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep their own instances and
+//! draws. In a frame, record [`select`] and [`list`] for each view; the first view is marked as such
+//! ([`SelectView::is_first`](SelectView)). Then record [`assign`] for each character, and draw from the lists.
 //!
-//! Positions of instances are a cell of [`CELL_SIZE`] world units an edge and an offset in world units. Planes and cameras
-//! are relative to the corner of the view's cell. Errors of levels are in the model's units, allowed displacements
-//! too, once an instance's largest scale has divided them.
+//! Instances of all objects lie in one buffer of [`SceneInstance`]; those of an object take whole blocks of [`BLOCK`].
+//! A view ([`SelectView`]) culls them by its planes ([`planes`]). Up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) limit
+//! the displacement: usually the view's own camera; for a shadow map, those of the views that show the shadows.
+//!
+//! An instance's position is a cell of [`CELL_SIZE`] world units an edge, and an offset in world units. Planes and
+//! cameras are relative to the corner of the view's cell. Errors of levels are in the model's units. So are allowed
+//! displacements, once divided by an instance's largest scale.
 
 #[doc(hidden)]
 pub mod allowed;

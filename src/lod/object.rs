@@ -1,11 +1,11 @@
-//! What objects of a scene may be.
+//! Valid ranges of a scene's objects.
 
 use super::{BLOCK, LodObject, OBJECT_LEVELS};
 use crate::InputError;
 use crate::shared::lod::object::object_flags_transition;
 use crate::shared::lod::transition::TRANSITION_HARD;
 
-/// Checks the errors of an object's levels and the number of levels; that of level 0 is 0 if `begins_at_0`.
+/// Checks the number of an object's levels and their errors. With `begins_at_0`, the error of level 0 must be 0.
 pub(super) fn check_levels(
     path: &str,
     levels: u32,
@@ -53,7 +53,7 @@ impl LodObject {
         errors: [[0.0; 4]; 2],
     };
 
-    /// Checks the ranges. `path` says where the object stands.
+    /// Checks the ranges. `path` is the object's path in error messages.
     ///
     /// # Errors
     /// [`InputError`] for instances that do not take whole blocks, for a number of levels beyond [`OBJECT_LEVELS`], for

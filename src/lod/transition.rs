@@ -1,4 +1,4 @@
-//! How levels of detail change. The CPU reference of `wgsl/lod/transition.wgsl`.
+//! Transitions between levels of detail. CPU reference of `wgsl/lod/transition.wgsl`.
 
 use super::object::level_within;
 use super::{LodObject, OBJECT_LEVELS};
@@ -7,34 +7,38 @@ use crate::shared::lod::transition::TRANSITION_GEOMORPH;
 #[cfg(feature = "gpu")]
 use crate::shared::lod::transition::TRANSITION_HARD;
 
-/// How far the surface between two levels may be off, as a multiple of the coarser one's error: an allowance from
-/// measurements, not a bound (`docs/pixel-bounds.md`).
+/// Error allowance for a surface between two levels, as a multiple of the coarser level's error. It comes from
+/// measurements and is not a bound (`docs/pixel-bounds.md`).
 #[cfg(feature = "gpu")]
 const ON_THE_WAY: f32 = 1.2;
 
-/// How the levels of detail of an object's instances change.
+/// How an object's instances change from one level of detail to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Transition {
-    /// At once, as soon as a coarser level's error is allowed.
+    /// At once, when a coarser level's error is allowed.
     #[default]
     Hard,
-    /// By a geomorph: the vertices of a level move to their partners in the next coarser one
-    /// ([`Mesh::partners`](crate::asset::Mesh::partners)), the further the more is allowed, in each view by itself. Once they
-    /// are there, the picture is the coarser level's, and stays so where levels change.
+    /// By a geomorph: the vertices of a level move towards their partners in the next coarser level
+    /// ([`Mesh::partners`](crate::asset::Mesh::partners)).
     ///
-    /// A level begins to move where 1.2 times the error of the coarser one is allowed, and has arrived where 1.2 times the error
-    /// of the one after it is. The factor is for the surface between two levels, which may be further off than either:
-    /// `docs/pixel-bounds.md` has how far. So the level that is drawn is finer by one to two than with [`Transition::Hard`]: it
-    /// costs about 1.7 times the triangles, and of each vertex two are loaded. The motion of vertices is part of their velocities ([`Layer::Velocity`](crate::render::Layer::Velocity)):
-    /// where the level of the last frame was another one, a vertex was at its own place if that level was finer, and at that of
-    /// the vertex which stood for it if it was coarser. An instance that the view did not show in the last frame counts as if
-    /// its level had been as it is, and so do all in the first frame after objects were added, removed or grew. One that takes the place of another, which was
-    /// removed since the last frame, counts as if it had had that one's level.
+    /// The larger the allowed displacement, the further they move, in each view on its own. At the partners' positions
+    /// the picture equals that of the coarser level, so the level change itself is invisible.
+    ///
+    /// A level begins to move when 1.2 times the next level's error is allowed. It arrives when 1.2 times the error of
+    /// the level after that is allowed. The factor covers the surface between two levels, whose error may exceed that
+    /// of both (figures in `docs/pixel-bounds.md`). The drawn level is therefore one to two levels finer than with
+    /// [`Transition::Hard`]. This costs about 1.7 times the triangles, and two loads per vertex.
+    ///
+    /// Vertex motion is part of velocity ([`Layer::Velocity`](crate::render::Layer::Velocity)). If the level of the
+    /// last frame was finer, a vertex was at its own place; if it was coarser, at the place of the vertex that stood in
+    /// for it. Where the last level is unknown, the current one counts: for an instance that the view did not show in
+    /// the last frame, and for all instances in the first frame after objects were added, removed or grew. An instance
+    /// that took the slot of one removed since the last frame counts with the removed instance's level.
     Geomorph,
 }
 
 impl Transition {
-    /// Both, by the names that scene files and the command line have for them.
+    /// Both transitions, with their names in scene files and on the command line.
     pub const NAMES: [(&'static str, Self); 2] = [("hard", Self::Hard), ("geomorph", Self::Geomorph)];
 
     /// Its code in an object's flags.
@@ -46,9 +50,12 @@ impl Transition {
         }
     }
 
-    /// From the thresholds of an object's levels, ascending from 0: the metric from which on each level is drawn. With a
-    /// geomorph it begins to move there, [`ON_THE_WAY`] times the error of the next one, and level 0, which is drawn before,
-    /// too. The last level then begins at twice as much.
+    /// Threshold per level: the smallest metric at which the level is drawn. Input: thresholds of the levels without a
+    /// transition, ascending from 0.
+    ///
+    /// With a geomorph, the threshold is where the level begins to move: [`ON_THE_WAY`] times the next level's error.
+    /// Level 0 is drawn below its threshold too. For the last level, twice its own error takes the place of the next
+    /// level's.
     #[cfg(feature = "gpu")]
     pub(crate) fn begins(self, errors: &[f32]) -> Vec<f32> {
         match (self, errors.last()) {
@@ -61,7 +68,7 @@ impl Transition {
     }
 }
 
-/// The morph word of a level of an object: the level and how many of [`MORPH_STEPS`]; 0 where it has not moved.
+/// The morph word of a level: its index and the number of steps out of [`MORPH_STEPS`]; 0 if it has not moved.
 pub fn morph_within(object: &LodObject, level: u32, metric: f32) -> u32 {
     let errors = object.errors.as_flattened();
     let begin = errors[level as usize];
@@ -76,7 +83,7 @@ pub fn morph_within(object: &LodObject, level: u32, metric: f32) -> u32 {
     if steps > 0 { morph_word(level, steps) } else { 0 }
 }
 
-/// The decision for an instance that a view sees: 1 + 2 · level + mirrored, and [`morph_within`].
+/// The decision word for a visible instance: 1 + 2 · level + mirrored, and [`morph_within`].
 pub fn decision(object: &LodObject, is_mirrored: bool, metric: f32) -> u32 {
     let level = level_within(object.levels, &object.errors, metric);
     decision_word(1 + 2 * level + u32::from(is_mirrored), morph_within(object, level, metric))

@@ -2,18 +2,18 @@
 
 use glam::{DVec3, Vec3};
 
-/// Defines the search for vectors of one kind.
+/// Defines the search for one vector type.
 macro_rules! nearest_on_triangle {
     ($(#[$documentation:meta])* $name:ident, $vector:ty, $number:ty) => {
         $(#[$documentation])*
         #[inline]
         pub fn $name(point: $vector, [a, b, c]: [$vector; 3]) -> $vector {
-            // `one / all` where that is in 0..=1; 0 otherwise, also for 0 / 0 and NaN.
+            // Returns `one / all` if it is in 0..=1; otherwise 0, also for 0 / 0 and NaN.
             let ratio = |one: $number, all: $number| {
                 let ratio = one / all;
                 if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
             };
-            // `one` as a fraction of the sum of both.
+            // Fraction of the sum.
             let part = |one: $number, other: $number| ratio(one, one + other);
             let (ab, ac, ap) = (b - a, c - a, point - a);
             let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
@@ -50,12 +50,12 @@ macro_rules! nearest_on_triangle {
 }
 
 nearest_on_triangle! {
-    /// The point on a triangle that is nearest to `point` (Ericson, "Real-Time Collision Detection", section
-    /// 5.1.5): it depends on which Voronoi region of the triangle, of a corner, an edge or the inside, the point
-    /// projects onto. A triangle may be degenerate, a line or a point. For sizes and distances of 1e-8 to 1e9,
-    /// whose fourth powers `f32` can represent, the result is accurate to about 1e-6 of the larger of the two.
-    /// Beyond that range the result still lies on the triangle, so that a measured distance may be too large but is
-    /// never too small.
+    /// Point of a triangle that is nearest to `point`, by Voronoi regions of corners, edges and the inside (Ericson, "Real-Time
+    /// Collision Detection", section 5.1.5). The triangle may be degenerate: a line or a point.
+    ///
+    /// For sizes and distances of 1e-8 to 1e9, whose fourth powers `f32` can represent, the result is accurate to about 1e-6 of
+    /// the larger of the two. Beyond that range the result still lies on the triangle. A measured distance may then be too
+    /// large but is never too small.
     nearest_on_triangle, Vec3, f32
 }
 

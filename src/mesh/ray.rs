@@ -1,14 +1,14 @@
-//! The distance along a ray to a triangle.
+//! Distance along a ray to a triangle.
 
 use glam::DVec3;
 
-/// The distance along a direction, in its lengths, from the origin to a triangle; `None` if the ray does not meet it, or lies in
-/// its plane.
+/// Distance along a ray from the origin to a triangle, in lengths of `direction`; `None` if the ray misses the triangle or lies
+/// in its plane.
 ///
-/// The ray meets the triangle if the tetrahedra that it spans with each edge have volumes of one sign. Neighbours compute that
-/// of a common edge alike, up to the sign, so that no ray slips through between two triangles.
+/// The ray meets the triangle if the tetrahedra between the ray and each edge have volumes of one sign. Adjacent triangles
+/// compute the volume of their common edge alike, up to the sign. No ray therefore slips through between two triangles.
 pub fn distance_to([a, b, c]: [DVec3; 3], direction: DVec3) -> Option<f64> {
-    // Six times the volumes.
+    // Six times the signed volume.
     let volume = |from: DVec3, to: DVec3| direction.dot(from.cross(to));
     let all = [volume(b, c), volume(c, a), volume(a, b)];
     let is_inside = all.iter().all(|volume| *volume >= 0.0) || all.iter().all(|volume| *volume <= 0.0);

@@ -1,48 +1,47 @@
-//! Simplification by half-edge collapses: a point of the surface is merged into one of its neighbours, again
-//! and again, the cheapest collapse first. Vertices are neither moved nor created, so that every level uses a
-//! subset of the mesh's own vertices, whatever their attributes are, and one run records every level (B section
-//! 3.2, after Hoppe, "Progressive Meshes", SIGGRAPH 1996).
+//! Mesh simplification by half-edge collapses. A point of the surface is merged into one of its neighbours, again and again,
+//! the cheapest collapse first. Vertices are neither moved nor created, so that every level uses a subset of the mesh's own
+//! vertices, whatever their attributes. One run records every level (B section 3.2, after Hoppe, "Progressive Meshes", SIGGRAPH
+//! 1996).
 //!
-//! Vertices that share one position in every pose are the *wedges* of one *point*: copies that differ in
-//! attributes. An edge whose two triangles use different wedges is part of a *seam*.
+//! Vertices that share one position in every pose are the *wedges* of one *point*: copies that differ in attributes. An edge
+//! whose two triangles use different wedges is part of a *seam*.
 //!
 //! # Legality
 //!
 //! A collapse is legal only if all of the following hold, whatever its cost:
-//! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999): the surface keeps its topology.
-//!   Closed surfaces stay closed and manifold surfaces stay manifold. Points where the input is not manifold
-//!   are kept.
-//! - No triangle's normal turns by more than 75° in any pose (A section 4.1 has 90°, which several collapses in a row may
-//!   add up to), and no triangle loses its area. Triangles that have no area to begin with are not restricted.
+//! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999): the surface keeps its topology. Closed surfaces stay
+//!   closed and manifold surfaces stay manifold. Points where the input is not manifold are kept.
+//! - No triangle's normal turns by more than 75° in any pose, and no triangle loses its area. (A section 4.1 has 90°, which
+//!   several collapses in a row may add up to.) Triangles without area in the input are not restricted.
 //! - A point of a border moves only along that border.
-//! - Every wedge of the point becomes a wedge with which it shares an edge. Seams therefore collapse only along
-//!   themselves: no triangle leaves its chart of the texture, and no holes appear. Where wedges are split at
-//!   one end of an edge only, as at the poles of a sphere, adjacent wedges count as one. If every triangle has
-//!   vertices of its own, nothing can collapse: index such meshes first, or let seams be crossed ([`Seams::Crossed`]).
+//! - Every wedge of the point becomes a wedge with which it shares an edge. Seams therefore collapse only along themselves: no
+//!   triangle leaves its chart of the texture, and no holes appear. Where wedges are split at one end of an edge only, as at
+//!   the poles of a sphere, adjacent wedges count as one. If every triangle has vertices of its own, nothing can collapse:
+//!   index such meshes first, or let seams be crossed ([`Seams::Crossed`]).
 //!
 //! # Parts
 //!
-//! A closed part keeps four triangles, however small it is. Unless [`Options::prune`] is off, parts vanish as a whole: one
-//! does where its points, and those of parts that vanished beside it before, are so near to the other parts that the next
-//! collapse would cost more than half of that distance. (meshoptimizer's option `Prune` compares the radius of a part.)
+//! A closed part keeps four triangles, however small it is. Unless [`Options::prune`] is off, parts vanish as a whole. A part
+//! vanishes when the next collapse would cost more than half of its distance to the other parts. That distance is taken over
+//! its points, and over the points of neighbouring parts that vanished before. (meshoptimizer's option `Prune` compares the
+//! radius of a part.)
 //!
 //! # Several poses
 //!
-//! A skinned mesh is simplified for all given poses: the cost of a collapse is its largest cost in any of them
-//! (after DeCoro and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, who take
-//! the sum).
+//! A skinned mesh is simplified for all given poses: the cost of a collapse is its largest cost in any of them (after DeCoro
+//! and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, who take the sum).
 //!
 //! # Order
 //!
-//! The cheapest collapse comes first, nearly. Costs whose squares lie in one quarter of an octave count as equal, and are
-//! taken in the order in which they were found. A point's cost is found anew when it is its turn, so that what has become
-//! cheaper since then comes late: in seven of eight steps the cost is within a tenth of the smallest of any point. A point
-//! goes to the neighbour that is cheapest by the means of [`Cost::Quadric`], whose other part is found afterwards. An exact
-//! order takes longer, and left no smaller error where it was tried.
+//! Collapses are approximately ordered by cost, the cheapest first. Costs whose squares lie in one quarter of an octave count
+//! as equal, and are taken in the order in which they were found. A point's cost is recomputed only when its turn comes, so a
+//! point that has become cheaper since then comes late. In seven of eight steps the cost is within a tenth of the smallest of
+//! any point. A point goes to the neighbour that is cheapest by the mean term of [`Cost::Quadric`]; the other term is computed
+//! afterwards. An exact order takes longer, and gave no smaller error where it was tried.
 //!
-//! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and
-//! square roots, in a fixed order. Time grows a little faster than the number of triangles, and linearly with poses.
-//! Quadrics take 88 bytes per point and pose.
+//! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and square
+//! roots, in a fixed order. Time grows a little faster than the number of triangles, and linearly with poses. Quadrics take 88
+//! bytes per point and pose.
 
 mod attributes;
 mod bridged;
@@ -73,29 +72,33 @@ pub struct Surface<'a> {
     pub poses: &'a [Vec<[f32; 3]>],
     /// Three indices per triangle.
     pub indices: &'a [u32],
-    /// `stride` numbers per vertex (normals, texture coordinates, …), finite, in the first pose. A difference of 1 over
-    /// a square counts as much as a distance of the square's edge; a tenth of a unit normal is a good start.
+    /// Attributes of each vertex: `stride` numbers (normals, texture coordinates, …), finite, in the first pose. An attribute
+    /// difference of 1 over a square counts as much as a distance equal to the square's edge. A tenth of a unit normal is a
+    /// good start.
     pub attributes: &'a [f32],
-    /// Numbers per vertex in `attributes`; may be 0.
+    /// Number of attribute values per vertex; may be 0.
     pub stride: usize,
 }
 
 /// The cost function of collapses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
-    /// The root mean square distance from the planes of all triangles that were merged into the point, weighted by the
-    /// square root of area so that details count (Garland and Heckbert, "Surface Simplification Using Quadric Error
-    /// Metrics", SIGGRAPH 1997); or 0.35 of the point's own distance from the planes of its triangles after the collapse,
-    /// whichever is larger, since a mean hides a single spot. On a border, the distance from the border's new edge counts
-    /// as well. Planes perpendicular to borders and seams hold these in place (their section 6). Attributes add a cost of
-    /// their own, separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance Attributes",
-    /// Visualization 1999). The larger of two distances is added to it: 0.63 of the point's own distance, and 1.26 of the
-    /// distance between the middle of a new edge and the triangles before.
+    /// Quadric error (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997): the root mean
+    /// square distance from the planes of all triangles that were merged into the point. The weight of a triangle is the square
+    /// root of its area, so that details count.
+    ///
+    /// A mean hides a single spot. The cost is therefore at least 0.35 of the point's own distance from the planes of its
+    /// triangles after the collapse; on a border, also of its distance from the border's new edge. Planes perpendicular to
+    /// borders and seams hold these in place (their section 6).
+    ///
+    /// Attributes add a cost of their own, separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes with
+    /// Appearance Attributes", Visualization 1999). With attributes, the larger of two distances is added to that cost: 0.63 of
+    /// the point's own distance, and 1.26 of the distance between the middle of a new edge and the triangles before.
     #[default]
     Quadric,
-    /// The length of the edge times a measure of how far the normals of the point's triangles turn from those
-    /// at the edge (Melax, "A Simple, Fast, and Effective Polygon Reduction Algorithm", 1998; B equation 3.1).
-    /// It ignores attributes and earlier collapses, and leaves a larger error than quadrics.
+    /// Edge length times curvature (Melax, "A Simple, Fast, and Effective Polygon Reduction Algorithm", 1998; B equation 3.1).
+    /// The curvature is a measure of how far the normals of the point's triangles turn from those at the edge. It ignores
+    /// attributes and earlier collapses, and leaves a larger error than quadrics.
     Melax {
         /// Whether to refuse a collapse where the normals of the two points are more than 90° apart in the
         /// first pose (B section 3.2.3).
@@ -106,46 +109,46 @@ pub enum Cost {
     },
 }
 
-/// Whether collapses may cross seams.
+/// Treatment of seams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Seams {
     /// Seams collapse only along themselves.
     #[default]
     Held,
-    /// Seams between wedges that differ only in the first `attributes` numbers of [`Surface::attributes`] do not hinder
-    /// collapses: each wedge becomes that vertex of the neighbour which costs least, of those that have the neighbour's other
-    /// numbers. So `attributes: 3` lets hard edges of normals collapse where seams of texture coordinates, which come after
-    /// the normals, are held. What is crossed costs the difference of its attributes over its area. (meshoptimizer's option
+    /// Some seams may be crossed: seams between wedges that differ only in the first `attributes` numbers of
+    /// [`Surface::attributes`]. Each wedge becomes the cheapest vertex of the neighbour that agrees with it in the other
+    /// numbers. For example, if texture coordinates follow the normals, `attributes: 3` lets hard edges of normals collapse and
+    /// holds texture seams. Crossing costs the difference of the attributes over the affected area. (meshoptimizer's option
     /// `Permissive`.)
     Crossed {
-        /// From 0 to [`Surface::stride`].
+        /// Number of leading attribute values, 0 to [`Surface::stride`].
         attributes: usize,
     },
     /// All seams may be crossed.
     AllCrossed,
 }
 
-/// The cost function, and when to stop: at the first limit that is reached.
+/// Cost function and limits. Simplification stops at the first limit that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// The cost function of collapses.
     pub cost: Cost,
-    /// Whether collapses may cross seams.
+    /// Treatment of seams.
     pub seams: Seams,
-    /// Stop at this number of triangles, or at one less; or at fewer, where a part vanishes.
+    /// Target number of triangles. The result may have one less, or fewer where a part vanishes.
     pub triangles: usize,
-    /// Stop before a collapse that costs more than this, in units of positions; at least 0, may be infinite.
+    /// Largest cost of a collapse, in units of positions; at least 0, may be infinite.
     pub error: f32,
-    /// Whether parts that no triangle connects to the rest may vanish as a whole. That costs half of the largest distance of
-    /// the part's points from what is left of the other parts, in the worst pose, and what its attributes vary, over its
-    /// area; so a screw goes with its plate's details, a lone rock stays. One part stays always. Where there are tens of
-    /// thousands of parts, this search takes longer than all collapses. With [`Cost::Quadric`] only, and not where distances
-    /// are limited ([`simplify_within`]).
+    /// Whether parts that no triangle connects to the rest may vanish as a whole. The cost of a part is half of the largest
+    /// distance from its points to the remaining other parts, in the worst pose. The variation of its attributes over its area
+    /// is added. A screw thus vanishes with the details of its plate, and a lone rock stays. One part always stays. With tens
+    /// of thousands of parts, this search takes longer than all collapses. It has an effect with [`Cost::Quadric`] only, and
+    /// not where distances are limited ([`simplify_within`]).
     pub prune: bool,
 }
 
 impl Default for Options {
-    /// Quadrics, without a limit; seams are held, parts may vanish.
+    /// Quadrics without limits; seams are held, parts may vanish.
     fn default() -> Self {
         Self { cost: Cost::Quadric, seams: Seams::Held, triangles: 0, error: f32::INFINITY, prune: true }
     }
@@ -156,11 +159,10 @@ impl Default for Options {
 pub struct Collapse {
     /// End of this collapse's range in [`Simplified::moved`].
     end: u32,
-    /// The largest cost of any collapse so far, in units of positions: the error of the mesh as the cost
-    /// function estimates it.
+    /// Largest cost of any collapse so far, in units of positions: the error of the mesh as the cost function estimates it.
     pub error: f32,
-    /// After this collapse, every removed point of the mesh lies within this distance of the remaining surface,
-    /// in every pose. Infinite if distances were not limited.
+    /// Distance within which every removed point of the mesh lies from the remaining surface after this collapse, in every
+    /// pose. Infinite if distances were not limited.
     pub distance: f32,
     /// Number of triangles after this collapse.
     pub triangles: u32,
@@ -169,27 +171,27 @@ pub struct Collapse {
 /// Why simplification stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stopped {
-    /// No more than [`Options::triangles`] are left.
+    /// At most [`Options::triangles`] are left.
     Triangles,
     /// The next collapse costs more than [`Options::error`].
     Error,
-    /// No collapse is legal, and reducers other than half-edge collapses do not tell why.
+    /// No collapse is legal. Reducers other than half-edge collapses give no closer reason.
     Exhausted,
-    /// As all others below, no collapse is legal: most points that are left are on seams that would not go on, or where
-    /// several meet. [`Seams::Crossed`] helps.
+    /// No collapse is legal, as for all variants below. Most remaining points are on seams that would be broken, or where
+    /// several seams meet. [`Seams::Crossed`] helps.
     Seams,
-    /// Most points that are left are on borders that would not go on.
+    /// Most remaining points are on borders that would be broken.
     Borders,
-    /// Most points that are left would turn a triangle by more than 75°, or take its area away.
+    /// Most remaining points would turn a triangle by more than 75°, or take its area away.
     Flips,
-    /// Most points that are left would change the topology, or are where the surface is not manifold.
+    /// Most remaining points would change the topology, or are where the surface is not manifold.
     Topology,
-    /// Most points that are left would bring a point of the mesh further away than [`simplify_within`] allows.
+    /// Most remaining points would bring a point of the mesh further away than [`simplify_within`] allows.
     Distance,
 }
 
 impl Stopped {
-    /// The name in reports.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Triangles => "triangles",
@@ -204,7 +206,7 @@ impl Stopped {
     }
 }
 
-/// The sequence of collapses, which describes every level of a mesh.
+/// A recorded sequence of collapses. It describes every level of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simplified {
     collapses: Vec<Collapse>,
@@ -215,12 +217,12 @@ pub struct Simplified {
 }
 
 impl Simplified {
-    /// The collapses in the order in which they happened; errors never decrease.
+    /// Collapses in the order in which they happened; errors never decrease.
     pub fn collapses(&self) -> &[Collapse] {
         &self.collapses
     }
 
-    /// The vertices that one collapse removed, each with the vertex that replaces it; at least one.
+    /// Pairs of a removed vertex and its replacement, for one collapse; at least one pair.
     ///
     /// # Panics
     /// If there is no collapse with this number.
@@ -234,7 +236,7 @@ impl Simplified {
         self.collapses.last().map_or(self.triangles, |last| last.triangles as usize)
     }
 
-    /// The largest cost of any collapse; 0 if there was none.
+    /// Largest cost of any collapse; 0 if there was none.
     pub fn error(&self) -> f32 {
         self.collapses.last().map_or(0.0, |last| last.error)
     }
@@ -244,8 +246,7 @@ impl Simplified {
         self.stopped
     }
 
-    /// The number of collapses after which at most `triangles` triangles are left, or all of them if that is
-    /// never reached.
+    /// Number of leading collapses after which at most `triangles` triangles are left; all collapses if that is never reached.
     pub fn collapses_to(&self, triangles: usize) -> usize {
         if self.triangles <= triangles {
             return 0;
@@ -254,18 +255,18 @@ impl Simplified {
         (above + 1).min(self.collapses.len())
     }
 
-    /// The number of collapses whose cost is at most `error`.
+    /// Number of leading collapses with a cost of at most `error`.
     pub fn collapses_within(&self, error: f32) -> usize {
         self.collapses.partition_point(|collapse| collapse.error <= error)
     }
 
-    /// The number of collapses after which every removed point is within `distance` of the remaining surface;
-    /// see [`simplify_within`].
+    /// Number of leading collapses after which every removed point is within `distance` of the remaining surface; see
+    /// [`simplify_within`].
     pub fn collapses_near(&self, distance: f32) -> usize {
         self.collapses.partition_point(|collapse| collapse.distance <= distance)
     }
 
-    /// The point to which a vertex belongs: the same number for all wedges at one position.
+    /// Point of a vertex: the same number for all wedges at one position.
     ///
     /// # Panics
     /// If there is no such vertex.
@@ -280,8 +281,8 @@ impl Simplified {
         a != b && b != c && c != a
     }
 
-    /// The SHA-256 of the sequence, in hexadecimal digits: of each collapse its number of triangles, the bits of its error
-    /// and distance, and its vertices with their replacements. It is the same on every machine.
+    /// SHA-256 of the sequence, in hexadecimal digits. For each collapse it covers the number of triangles, the bits of error
+    /// and distance, and the vertices with their replacements. It is the same on every machine.
     pub fn hash(&self) -> String {
         let mut words = vec![self.points.len() as u32, self.triangles as u32];
         for (at, collapse) in self.collapses.iter().enumerate() {
@@ -291,23 +292,22 @@ impl Simplified {
         crate::hash::sha256(&words)
     }
 
-    /// For each vertex, the vertex that stands for it after the first `collapses` collapses: itself, or its
-    /// replacement.
+    /// For each vertex, its replacement after the first `collapses` collapses; itself if it is not removed.
     ///
     /// # Panics
     /// If there are fewer collapses.
     pub fn remap(&self, collapses: usize) -> Vec<u32> {
         let mut remap: Vec<u32> = (0..self.points.len() as u32).collect();
         let end = collapses.checked_sub(1).map_or(0, |last| self.collapses[last].end);
-        // The last collapse comes first, so that the final replacement of `to` is already known.
+        // In reverse order, the final replacement of `to` is already known.
         for &[from, to] in self.moved[..end as usize].iter().rev() {
             remap[from as usize] = remap[to as usize];
         }
         remap
     }
 
-    /// The triangles that are left after the first `collapses` collapses, in the mesh's order: those that still
-    /// have three different points. `indices` are the mesh's own.
+    /// Triangles that are left after the first `collapses` collapses, in the mesh's order: those whose corners are still three
+    /// different points. `indices` are the mesh's own.
     ///
     /// # Panics
     /// If there are fewer collapses, or if the indices belong to another mesh.
@@ -347,13 +347,12 @@ pub fn simplify(surface: &Surface<'_>, options: &Options) -> Result<Simplified, 
     simplify_within(surface, options, &[f32::INFINITY])
 }
 
-/// Simplifies a mesh as far as possible while every removed point stays within the first of `distances` of the
-/// remaining surface, in every pose; then continues with the next distance, and so on. Each removed point is
-/// close to one triangle, the same in all poses. No part vanishes.
+/// Simplifies a mesh as far as possible within each of `distances` in turn. Every removed point stays within the current
+/// distance of the remaining surface, in every pose. Each removed point is close to one triangle, the same in all poses. No
+/// part vanishes.
 ///
-/// These distances are measured, whereas [`Options::error`] is an average. At the same number of triangles,
-/// [`simplify()`] has the smaller average error and this function the smaller largest one. It takes a few times
-/// longer.
+/// These distances are measured, whereas [`Options::error`] is an average. At the same number of triangles, [`simplify()`] has
+/// the smaller average error and this function the smaller largest one. It takes a few times longer.
 ///
 /// # Errors
 /// As [`simplify()`], and [`InputError`] for distances that are negative or that decrease.
@@ -367,9 +366,9 @@ pub fn simplify_within(
     Ok(found)
 }
 
-/// As [`simplify_within`], for a mesh of which parts are rigid, with progress: `bodies` has the rigid body of each vertex or
-/// [`NO_BODY`], and vertices of one body have the same distances from each other in every pose; it may be empty. `watch` gets
-/// the fraction of the triangles that is removed, again and again, and may break.
+/// As [`simplify_within`], with rigid bodies and progress. `bodies` has the rigid body of each vertex or [`NO_BODY`]; it may be
+/// empty. Vertices of one body have the same distances from each other in every pose. `watch` is called repeatedly with the
+/// fraction of the triangles that is removed, and may break.
 ///
 /// # Errors
 /// As [`simplify_within`].
@@ -401,12 +400,12 @@ pub(crate) fn simplify_watched<B>(
     Ok(reducer::reduce(surface, options, distances, bodies, watch))
 }
 
-/// The point of each vertex, a place that vertices share, numbered in the order of the points' first vertices.
+/// Point of each vertex: a number per position, in the order of the points' first vertices.
 pub fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     Points::new(poses).into_of()
 }
 
-/// Checks a surface: every reducer begins with it.
+/// Checks a surface. Every reducer calls it first.
 ///
 /// # Errors
 /// [`InputError`] that names the list and the index.
@@ -432,7 +431,7 @@ pub fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     finite("attributes", surface.attributes, surface.stride)
 }
 
-/// Refuses numbers that are not finite, and names the first one's vertex.
+/// Refuses numbers that are not finite; the error names the first one's vertex.
 fn finite(field: &str, numbers: &[f32], stride: usize) -> Result<(), InputError> {
     match numbers.iter().position(|number| !number.is_finite()) {
         None => Ok(()),

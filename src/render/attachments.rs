@@ -1,36 +1,38 @@
-//! What the colour attachments of a target hold.
+//! Contents of a target's colour attachments.
 
 use wgpu::TextureFormat as Format;
 
 use super::layer::Layer;
 use super::output::OutputProgram;
 
-/// What the first colour attachments of a target hold, and so, which layers can be drawn into it. All but the first
+/// Contents of a target's first colour attachments, which decide the layers that can be drawn into it. All but the first
 /// kind need a depth attachment, and no blending.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Attachments {
-    /// One colour in linear light, of floats: [`Layer::Color`] if it is there, [`Layer::Transparent`] if WebGPU can blend
-    /// it without features, [`Layer::Depth`] if there is depth.
+    /// One colour in linear light, in a float or normalized format: [`Layer::Color`] if the target has a colour
+    /// attachment, [`Layer::Transparent`] if WebGPU can blend the format without features, [`Layer::Depth`] if it has a
+    /// depth attachment.
     #[default]
     Color,
-    /// Normals, of `Rgba16Float` or `Rgba32Float`; colours, of four floats; and numbers, of `Rg16Uint` or `Rg32Uint`:
-    /// [`Layer::Surface`] and [`Layer::Depth`].
+    /// Three attachments: normals (`Rgba16Float` or `Rgba32Float`), colours (four floats), and object and instance
+    /// numbers (`Rg16Uint` or `Rg32Uint`). For [`Layer::Surface`] and [`Layer::Depth`].
     Surface,
-    /// Velocities, of two or four floats with a sign: `Rg16Float`, `Rg32Float`, `Rgba16Float` or `Rgba32Float`:
+    /// Velocities in two or four signed floats (`Rg16Float`, `Rg32Float`, `Rgba16Float` or `Rgba32Float`). For
     /// [`Layer::Velocity`] and [`Layer::Depth`].
     Velocity,
-    /// Positions, of `Rgba32Float`, and numbers, of `Rg32Uint`, one sample each: [`Layer::Measure`] and [`Layer::Depth`].
+    /// Positions (`Rgba32Float`) and object and instance numbers (`Rg32Uint`), with one sample per pixel. For
+    /// [`Layer::Measure`] and [`Layer::Depth`].
     Measure,
-    /// What an output of the caller's writes: [`Layer::Own`] and [`Layer::Depth`].
+    /// The colours that the caller's output writes. For [`Layer::Own`] and [`Layer::Depth`].
     Own(OutputProgram),
 }
 
-/// What a colour must be, and in words.
+/// A test for a colour attachment's format, and its message if it fails.
 type Wanted = (fn(Format) -> bool, &'static str);
 
 impl Attachments {
-    /// The layers that such a target shows besides depth.
+    /// The layers that can be drawn besides depth.
     pub(super) fn layers(&self) -> &'static [Layer] {
         match self {
             Self::Color => &[Layer::Color, Layer::Transparent],
@@ -41,7 +43,7 @@ impl Attachments {
         }
     }
 
-    /// The number of colours that a layer writes, from the first on.
+    /// The number of colour attachments that a layer writes, counted from the first.
     pub(super) fn colors(&self, layer: Layer) -> usize {
         match (layer, self) {
             (Layer::Depth, _) => 0,
@@ -51,7 +53,7 @@ impl Attachments {
         }
     }
 
-    /// What each of the first colours must be.
+    /// The required format of each of the first colour attachments.
     pub(super) fn wanted(&self) -> &'static [Wanted] {
         match self {
             Self::Color => &[(is_float, "must be a colour of floats")],
@@ -77,7 +79,7 @@ impl Attachments {
                 (|format| format == Format::Rgba32Float, "must be Rgba32Float"),
                 (|format| format == Format::Rg32Uint, "must be Rg32Uint"),
             ],
-            // A pipeline that is compiled tells whether they fit what the text writes.
+            // Pipeline compilation checks these formats against the caller's WGSL.
             Self::Own(_) => &[],
         }
     }

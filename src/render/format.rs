@@ -1,4 +1,4 @@
-//! The targets into which a scene is drawn: what they are, and nothing of what is drawn.
+//! Formats of render targets.
 
 use wgpu::TextureFormat as Format;
 
@@ -7,10 +7,10 @@ use super::layer::Layer;
 use super::output::OutputProgram;
 use crate::InputError;
 
-/// The attachments of the render passes, or of the render bundles, into which a [`Renderer`](super::Renderer) draws.
+/// The attachments of the render passes or render bundles into which a [`Renderer`](super::Renderer) draws.
 ///
-/// The first colour attachments are written; [`Attachments`] says how many, and with what. Others may belong to the caller's
-/// own draws: what a renderer draws leaves them as they are.
+/// The renderer writes the first colour attachments; [`Attachments`] says how many and with what. Further ones may
+/// belong to the caller's own draws. The renderer leaves them unchanged.
 ///
 /// # Examples
 ///
@@ -35,25 +35,25 @@ use crate::InputError;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with `None` where the pass has none. Those that hold [`TargetFormat::attachments`] are
-    /// written, with their blending and write masks. Shading writes values in linear light, which a format with `Srgb` in
-    /// its name encodes; the format must hold floats or normalized integers.
+    /// Colour attachments, at most 8, with `None` where the pass has none. The renderer writes those that hold
+    /// [`TargetFormat::attachments`], with their blending and write masks. Shading writes values in linear light; a
+    /// format with `Srgb` in its name encodes them. The format must hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
-    /// What the first colours hold.
+    /// Contents of the first colour attachments.
     pub attachments: Attachments,
-    /// The depth attachment. Without one, what is drawn last covers the rest.
+    /// The depth attachment. Without one, later draws cover earlier ones.
     pub depth: Option<DepthFormat>,
     /// Samples per pixel: 1 or 4.
     pub samples: u32,
 }
 
-/// A depth attachment, and the direction of its values.
+/// A depth attachment and the direction of its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DepthFormat {
-    /// A format with depth. Its stencil, if it has one, stays as it is.
+    /// A format with depth. A stencil aspect is left unchanged.
     pub format: wgpu::TextureFormat,
-    /// Whether depth falls with distance, from 1 at the near plane, as it does for cameras with reversed depth. Clear the
-    /// attachment to 0 then, else to 1.
+    /// Whether depth is reversed: 1 at the near plane, falling with distance. Clear the attachment to 0 then, else to
+    /// 1. It must agree with the camera.
     pub reversed: bool,
 }
 
@@ -63,19 +63,20 @@ impl TargetFormat {
         Self { color: vec![Some(color.into())], ..Self::depth_only(wgpu::TextureFormat::Depth32Float) }
     }
 
-    /// `Rgba8UnormSrgb` without blending, `Depth32Float` that grows with distance, and one sample: pictures as PNG files have them.
+    /// `Rgba8UnormSrgb` without blending, `Depth32Float` that grows with distance, and one sample: the encoding of PNG
+    /// files.
     pub fn srgb() -> Self {
         Self::new(wgpu::TextureFormat::Rgba8UnormSrgb)
     }
 
-    /// No colour, for shadow maps and prepasses of their own: depth that grows with distance, and one sample.
+    /// No colour, depth that grows with distance, and one sample: for shadow maps and separate depth prepasses.
     pub fn depth_only(format: wgpu::TextureFormat) -> Self {
         let depth = Some(DepthFormat { format, reversed: false });
         Self { color: Vec::new(), attachments: Attachments::Color, depth, samples: 1 }
     }
 
-    /// For [`Layer::Surface`]: `Rgba16Float`, `Rgba8Unorm` and `Rg16Uint`, 20 of the 32 bytes that WebGPU allows a sample,
-    /// `Depth32Float` that grows with distance, and one sample.
+    /// For [`Layer::Surface`]: `Rgba16Float`, `Rgba8Unorm` and `Rg16Uint`, `Depth32Float` that grows with distance, and
+    /// one sample. The colours take 20 of the 32 bytes per sample that WebGPU allows.
     pub fn surface() -> Self {
         Self::holding(Attachments::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
     }
@@ -85,19 +86,19 @@ impl TargetFormat {
         Self::holding(Attachments::Velocity, &[Format::Rg16Float])
     }
 
-    /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, 24 of the 32 bytes that WebGPU allows a sample,
-    /// `Depth32Float` that grows with distance, and one sample.
+    /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, `Depth32Float` that grows with distance, and one sample.
+    /// The colours take 24 of the 32 bytes per sample that WebGPU allows.
     pub fn measure() -> Self {
         Self::holding(Attachments::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
     }
 
-    /// For [`Layer::Own`]: colours of these formats, as many as the output writes, `Depth32Float` that grows with distance, and
-    /// one sample.
+    /// For [`Layer::Own`]: colours of these formats, one for each that the output writes, `Depth32Float` that grows
+    /// with distance, and one sample.
     pub fn of_output(output: &OutputProgram, formats: &[Format]) -> Self {
         Self::holding(Attachments::Own(output.clone()), formats)
     }
 
-    /// The caller's output, if it holds one.
+    /// The caller's output, if the target holds one.
     pub(super) fn output(&self) -> Option<&OutputProgram> {
         if let Attachments::Own(output) = &self.attachments { Some(output) } else { None }
     }
@@ -107,38 +108,38 @@ impl TargetFormat {
         Self { color, attachments, ..Self::depth_only(Format::Depth32Float) }
     }
 
-    /// The same with one more colour attachment.
+    /// This format with one more colour attachment.
     #[must_use]
     pub fn with_color(mut self, color: Option<wgpu::ColorTargetState>) -> Self {
         self.color.push(color);
         self
     }
 
-    /// The same with another depth attachment, or with none.
+    /// This format with another depth attachment, or with none.
     #[must_use]
     pub fn with_depth(self, depth: Option<DepthFormat>) -> Self {
         Self { depth, ..self }
     }
 
-    /// The same with depth that falls with distance.
+    /// This format with reversed depth, which falls with distance.
     #[must_use]
     pub fn reversed(self) -> Self {
         let depth = self.depth.map(|depth| DepthFormat { reversed: true, ..depth });
         Self { depth, ..self }
     }
 
-    /// The same with so many samples per pixel.
+    /// This format with `samples` samples per pixel.
     #[must_use]
     pub fn with_samples(self, samples: u32) -> Self {
         Self { samples, ..self }
     }
 
-    /// Checks what the library needs of the attachments. [`Renderer::new`](super::Renderer::new) checks what the device
-    /// allows.
+    /// Checks the format against the library's requirements. [`Renderer::new`](super::Renderer::new) checks it against
+    /// the device.
     ///
     /// # Errors
     /// [`InputError`] that names the field: no attachment, more than 8 colours, a first colour of integers, a colour or
-    /// a depth of a format that is none, and other numbers of samples than 1 and 4.
+    /// depth attachment whose format is not a colour or depth format, and sample counts other than 1 and 4.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.color.len() > MAX_COLORS {
             let bound = format!("must be at most {MAX_COLORS}");
@@ -198,17 +199,18 @@ impl TargetFormat {
         Ok(())
     }
 
-    /// Checks what a device allows of the attachments.
+    /// Checks the format against the device.
     ///
     /// # Errors
-    /// [`InputError`] that names the field: a format that needs a feature, one that cannot be rendered to, blended or have
-    /// so many samples, and colours with more bytes a sample than the device's limit.
+    /// [`InputError`] that names the field: a format that needs a feature the device lacks, a format that cannot be
+    /// rendered to, blended or multisampled at this count, and colours that exceed the device's limit of bytes per
+    /// sample.
     pub(super) fn check_on(&self, device: &wgpu::Device) -> Result<(), InputError> {
         let mut bytes = 0_u32;
         for (at, color) in self.color.iter().enumerate() {
             let Some(color) = color else { continue };
             let has = self.check_attachment(&format!("format.color[{at}].format"), color.format, device)?;
-            // What is drawn blends into the first colour alone.
+            // Only the first colour is blended.
             let blends = at == 0 && color.blend.is_some();
             let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
             if blends && !has.contains(blendable) {
@@ -231,7 +233,7 @@ impl TargetFormat {
         Ok(())
     }
 
-    /// What a device can do with the format of an attachment.
+    /// The capabilities of an attachment's format on the device.
     fn check_attachment(
         &self,
         path: &str,
@@ -247,7 +249,7 @@ impl TargetFormat {
             return Err(InputError::new(path, format!("{format:?}"), bound));
         }
         if features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
-            // What such a device allows is known when pipelines are compiled.
+            // Only compiling a pipeline tells what such a device allows.
             return Ok(wgpu::TextureFormatFeatureFlags::all());
         }
         let has = format.guaranteed_format_features(features);
@@ -275,12 +277,12 @@ impl TargetFormat {
         own.chain(self.depth.map(|_| Layer::Depth))
     }
 
-    /// Whether depth falls with distance.
+    /// Whether depth is reversed (falls with distance).
     pub(super) fn is_reversed(&self) -> bool {
         self.depth.is_some_and(|depth| depth.reversed)
     }
 
-    /// The colour attachments as a pipeline of a layer sees them.
+    /// Colour attachments for a pipeline of this layer; those that the layer does not write are masked.
     pub(super) fn targets(&self, layer: Layer) -> Vec<Option<wgpu::ColorTargetState>> {
         let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
             color.clone().map(|color| match at < self.attachments.colors(layer) {
@@ -299,7 +301,7 @@ impl TargetFormat {
         self.color.iter().enumerate().map(masked).collect()
     }
 
-    /// The depth test of a layer: nearer, or as near.
+    /// The depth test of a layer: passes if nearer or equal.
     pub(super) fn depth_state(&self, layer: Layer) -> Option<wgpu::DepthStencilState> {
         let DepthFormat { format, reversed } = self.depth?;
         let compare = match reversed {
@@ -316,7 +318,7 @@ impl TargetFormat {
     }
 }
 
-/// The feature with which a device may allow of a format what it does not guarantee.
+/// The device feature that extends a format's guaranteed capabilities.
 fn enabling(
     format: wgpu::TextureFormat,
     device: &wgpu::Device,
@@ -329,7 +331,7 @@ fn enabling(
     format!("wgpu::Features::{name}")
 }
 
-/// The most colour attachments: WebGPU's default limit.
+/// The largest number of colour attachments: WebGPU's default limit.
 const MAX_COLORS: usize = 8;
 
 #[cfg(test)]

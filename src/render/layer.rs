@@ -1,50 +1,64 @@
-//! What of a scene is drawn, and into which attachments.
+//! Layers: the data that a draw writes, and its attachments.
 
 use crate::scene::specialization::Shown;
 
-/// What of a scene is drawn. [`Attachments`](crate::render::Attachments) says which layers a target holds.
+/// The data of a scene that a draw writes. [`Attachments`](crate::render::Attachments) says which layers a target
+/// holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Layer {
     /// The colour of opaque and cut-out surfaces, with their depth.
     Color,
-    /// The colour of surfaces whose materials are blended ([`Alpha::Blended`](crate::asset::material::Alpha::Blended)),
-    /// which no other layer shows: tested against depth, which they do not write, and blended as the target says, or where
-    /// it says nothing by their alpha (`wgpu::BlendState::ALPHA_BLENDING`). Draw it last. Instances are drawn from back to
-    /// front, by the middles of their bounding spheres; those as far away in the order of objects and instances, and
+    /// The colour of surfaces with blended materials ([`Alpha::Blended`](crate::asset::material::Alpha::Blended)),
+    /// which no other layer shows. Draw it last.
+    ///
+    /// They are tested against depth but do not write it. They are blended as the target says; without blending in the
+    /// target, by their alpha (`wgpu::BlendState::ALPHA_BLENDING`). Instances are drawn from back to front, by the
+    /// centers of their bounding spheres. Equally distant ones are drawn in the order of objects and instances, and the
     /// triangles of an instance in the order of the mesh. Each instance in view takes a draw for each of its parts.
     Transparent,
-    /// Depth alone: for a prepass, in front of other layers on the same target, and for shadow maps. Reliefs write
-    /// their own depth.
+    /// Depth alone: for shadow maps, and for a prepass before other layers on the same target. Reliefs write their own
+    /// depth.
     Depth,
-    /// What surfaces are before they are lit, with their depth, into three colours: the unit normal (w: 1), with normal
-    /// maps and reliefs, in world axes, on the side that is seen; the linear colour (w: 1) of material, texture and tint;
-    /// and the numbers of [`ObjectId::number`](crate::scene::ObjectId::number) and
-    /// [`InstanceId::number`](crate::scene::InstanceId::number), of which `Rg16Uint` keeps the lower 16 bits. Where
-    /// nothing is drawn, what the caller cleared stays; no object has the number 0.
-    Surface,
-    /// The motion of surfaces on the screen since the last frame, with their depth, into one colour: to the right as a
-    /// fraction of the picture's width, and downwards as one of its height, so that a pixel was at its place minus this. It
-    /// is the motion of what is drawn: of skinned vertices, placements and the camera, and on reliefs of the point which the
-    /// ray meets. It needs [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history).
+    /// Surface attributes before lighting, with depth, in three colours (a G-buffer).
     ///
-    /// Vertices keep their identity while a character's levels of detail, and the pages of its vertices, change. What was
-    /// not there in the last frame counts as if it had stood still: an instance that was spawned, and the vertices in the
-    /// model's space of a character that no view saw or whose level of detail lacked them, or of all of its instances where
-    /// more is seen than ever before and its memory grows; a placement that moved counts all the same. A view that was not recorded in the scene's last frame has a camera that stood still. A camera's jitter
-    /// counts as motion: the difference of the last two is to be subtracted. What lay behind the last frame's eye has the
-    /// velocity 0.
+    /// - The unit normal (w: 1) in world axes, on the visible side, with normal maps and reliefs applied.
+    /// - The linear colour (w: 1) of material, texture and tint.
+    /// - The numbers of [`ObjectId::number`](crate::scene::ObjectId::number) and
+    ///   [`InstanceId::number`](crate::scene::InstanceId::number). `Rg16Uint` keeps their lower 16 bits.
+    ///
+    /// Pixels without a surface keep the caller's clear value. No object has the number 0.
+    Surface,
+    /// Screen-space motion since the last frame, with depth, in one colour.
+    ///
+    /// The unit is the picture's width for x (to the right) and its height for y (downwards). A pixel's last position
+    /// is its position minus this value. It is the motion of what is drawn: of skinned vertices, placements and the
+    /// camera, and on reliefs of the point that the ray meets. It needs
+    /// [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history).
+    ///
+    /// Vertices keep their identity while a character's level of detail and vertex pages change. Anything absent from
+    /// the last frame gets the velocity of a static thing:
+    ///
+    /// - an instance that was just spawned;
+    /// - in model space, the vertices of a character that no view saw, or whose level of detail lacked them;
+    /// - in model space, all instances of an object whose memory grows because more of it is visible than ever before;
+    /// - the camera of a view that was not recorded in the scene's last frame.
+    ///
+    /// Placement motion still counts. Camera jitter counts as motion: subtract the difference of the last two jitters.
+    /// Points behind the last frame's eye have velocity 0.
     Velocity,
-    /// Where surfaces are, with their depth, into two colours: the position in world units, relative to the corner of the
-    /// view's cell ([`Camera::cell`](crate::scene::Camera::cell); w: 1), on reliefs that of the point which the ray meets;
-    /// and the same two numbers.
+    /// Surface positions, with depth, in two colours: the position in world units (w: 1), and the object and instance
+    /// numbers as in [`Layer::Surface`].
+    ///
+    /// Positions are relative to the corner of the view's cell ([`Camera::cell`](crate::scene::Camera::cell)). On
+    /// reliefs, the position is that of the point that the ray meets.
     Measure,
-    /// What the caller's output writes ([`OutputProgram`](super::OutputProgram)), with depth.
+    /// The colours that the caller's output writes ([`OutputProgram`](super::OutputProgram)), with depth.
     Own,
 }
 
 impl Layer {
-    /// What the names of its entry points in shaders begin with; those of the caller's output begin with its name.
+    /// The prefix of the layer's shader entry points. Those of a caller's output begin with the output's name.
     pub(crate) fn entry(self) -> &'static str {
         match self {
             Self::Color => "color",
@@ -57,12 +71,12 @@ impl Layer {
         }
     }
 
-    /// Whether surfaces are shaded, or may be.
+    /// Whether surfaces are shaded, or may be (a caller's output may call the shading).
     pub(crate) fn is_shaded(self) -> bool {
         matches!(self, Self::Color | Self::Transparent | Self::Own)
     }
 
-    /// What of surfaces it needs.
+    /// The surface attributes that the layer needs.
     pub(crate) fn shown(self) -> Shown {
         match self {
             Self::Color | Self::Transparent | Self::Own => Shown::Lit,

@@ -1,4 +1,4 @@
-//! An off-screen target of any [`TargetFormat`], and what was drawn into it, for programs without a window.
+//! Off-screen targets of any [`TargetFormat`], and their readback, for programs without a window.
 
 use image::RgbaImage;
 
@@ -14,7 +14,7 @@ use crate::scene::{Camera, Quality, Scene};
 use crate::surface::LinearImage;
 use crate::{Error, InputError};
 
-/// Colour and depth of a picture, with 1 or 4 samples a pixel.
+/// An off-screen target: colour and depth of a picture, with 1 or 4 samples per pixel.
 ///
 /// # Examples
 ///
@@ -47,22 +47,22 @@ pub struct Offscreen {
 #[derive(Debug, Clone)]
 struct Attachment {
     drawn: wgpu::Texture,
-    /// Where samples are resolved to.
+    /// The resolve target, if the picture has more than one sample per pixel.
     resolved: Option<wgpu::Texture>,
 }
 
 impl Offscreen {
-    /// A target of `size` pixels of [`TargetFormat::srgb`]: width and height. [`Offscreen::with_format`] makes others, as with 4
-    /// samples a pixel.
+    /// A target of `size` (width and height in pixels) with [`TargetFormat::srgb`]. [`Offscreen::with_format`] makes
+    /// targets of other formats, such as one with 4 samples per pixel.
     ///
     /// # Errors
-    /// [`InputError`] for a size of 0 or beyond what the device allows; [`GpuError`].
+    /// [`InputError`] for a size of 0 or beyond the device's limit; [`GpuError`].
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
         Self::with_format(gpu, size, TargetFormat::srgb())
     }
 
-    /// A target of `size` pixels in linear light, `Rgba32Float`, whose values depend on no driver's rounding or encoding; with
-    /// `Depth32Float` that grows with distance, and one sample a pixel.
+    /// A target of `size` pixels in linear light: `Rgba32Float`, `Depth32Float` that grows with distance, and one
+    /// sample per pixel. Its values depend on no driver's rounding or encoding.
     ///
     /// # Errors
     /// As [`Offscreen::new`].
@@ -70,8 +70,7 @@ impl Offscreen {
         Self::with_format(gpu, size, TargetFormat::new(LINEAR_FORMAT))
     }
 
-    /// Whether the device has targets of so many pixels, whose colours in this format fit a binding, through which they are
-    /// read.
+    /// Whether the device can hold a target of this size, and read its colours back through one buffer binding.
     pub fn fits(gpu: &Gpu, size: [u32; 2], color: wgpu::TextureFormat) -> bool {
         let most = gpu.device().limits().max_texture_dimension_2d;
         let [width, height] = size.map(u64::from);
@@ -80,11 +79,11 @@ impl Offscreen {
             && texel.saturating_mul(width * height) <= gpu.max_binding()
     }
 
-    /// A target of `size` pixels of any format whose attachments are all there, with depth as `Depth32Float`.
+    /// A target of `size` pixels in a format without missing attachments, with depth as `Depth32Float`.
     ///
     /// # Errors
-    /// [`InputError`] as [`TargetFormat::validate`], for colours that are missing, for other formats of depth, for more than
-    /// one sample of what cannot be resolved, and for a size of 0 or beyond what the device allows; [`GpuError`].
+    /// [`InputError`] as [`TargetFormat::validate`], for missing colours, for other depth formats, for more than one
+    /// sample of a format that cannot be resolved, and for a size of 0 or beyond the device's limit; [`GpuError`].
     pub fn with_format(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, Error> {
         format.validate()?;
         let depth = format.depth.map(|depth| depth.format);
@@ -117,7 +116,7 @@ impl Offscreen {
         Ok(Self { format, size, colors, depth })
     }
 
-    /// The format, for a [`Renderer`].
+    /// The target's format, for a [`Renderer`].
     pub fn format(&self) -> &TargetFormat {
         &self.format
     }
@@ -127,8 +126,8 @@ impl Offscreen {
         self.size
     }
 
-    /// Records a pass that clears colour to `background` (linear), other attachments to 0 and depth to the farthest, and then
-    /// draws.
+    /// Records a render pass that calls `draw`. It clears colour to `background` (linear), other attachments to 0, and
+    /// depth to the far value.
     ///
     /// # Errors
     /// Those of `draw`.
@@ -170,9 +169,10 @@ impl Offscreen {
         draw(&mut pass)
     }
 
-    /// Draws one frame of a scene through a camera, in full detail, over a linear `background`: compiles what the scene needs,
-    /// records a view and its colours, and waits. A program that draws more than one frame keeps a
-    /// [`View`](crate::scene::View) and a [`Renderer`].
+    /// Draws one frame of a scene through a camera, in full detail, over a linear `background`.
+    ///
+    /// It compiles the pipelines, records a view and its colours, and waits for the device. A program that draws more
+    /// than one frame keeps a [`View`](crate::scene::View) and a [`Renderer`] instead.
     ///
     /// # Errors
     /// [`InputError`] for a target without colour, and as [`View::set`](crate::scene::View::set), [`Scene::record`] and
@@ -191,10 +191,10 @@ impl Offscreen {
         })
     }
 
-    /// Reads the colours: sRGB, row by row. Waits for the device.
+    /// Reads the colours back: sRGB, row by row. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, or of another one than sRGB; [`GpuError`].
+    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         gpu.block_on(self.read_async(gpu))
@@ -203,7 +203,7 @@ impl Offscreen {
     /// As `Offscreen::read`, but completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, or of another one than sRGB; [`GpuError`].
+    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`].
     pub async fn read_async(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         let pixels = self.read_color(gpu, 0, COLOR_FORMAT).await?;
         let reason = "the image that was read back has the wrong size".to_owned();
@@ -211,10 +211,11 @@ impl Offscreen {
         image.ok_or_else(|| GpuError::Internal { reason }.into())
     }
 
-    /// Reads the colours of a target in linear light ([`Offscreen::linear`]), without their alpha. Waits for the device.
+    /// Reads the colours of a target in linear light ([`Offscreen::linear`]), without their alpha. Waits for the
+    /// device.
     ///
     /// # Errors
-    /// [`InputError`] for another target; [`GpuError`].
+    /// [`InputError`] for a target of another format; [`GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_linear(&self, gpu: &Gpu) -> Result<LinearImage, Error> {
         let bytes = gpu.block_on(self.read_color(gpu, 0, LINEAR_FORMAT))?;
@@ -225,7 +226,7 @@ impl Offscreen {
         })
     }
 
-    /// Reads the bytes of a colour attachment, which must have this format: texel by texel, row by row.
+    /// Reads the bytes of a colour attachment, texel by texel, row by row. `format` must be its format.
     ///
     /// # Errors
     /// [`InputError`] for an attachment that does not exist or has another format; [`GpuError`].
@@ -252,10 +253,10 @@ impl Offscreen {
         Ok(read_texture(gpu, color, wgpu::TextureAspect::All, texel).await?)
     }
 
-    /// Reads the depths, 0 to 1, row by row. Waits for the device.
+    /// Reads the depths back, 0 to 1, row by row. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for more than one sample a pixel; [`GpuError`].
+    /// [`InputError`] for more than one sample per pixel; [`GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
         gpu.block_on(self.read_depth_async(gpu))
@@ -264,7 +265,7 @@ impl Offscreen {
     /// As `Offscreen::read_depth`, but completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// [`InputError`] for more than one sample a pixel; [`GpuError`].
+    /// [`InputError`] for more than one sample per pixel; [`GpuError`].
     pub async fn read_depth_async(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
         if self.format.samples > 1 {
             let bound = "must be 1 where depth is read";

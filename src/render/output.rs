@@ -1,4 +1,4 @@
-//! Outputs of the caller's: what is written of surfaces, beside the layers that the library has.
+//! Caller-defined outputs: colours that the caller's WGSL writes, besides the crate's own layers.
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -10,8 +10,10 @@ use crate::scene::specialization::Program;
 use crate::scene::wgsl::entries::{OutputText, targets_of};
 use crate::scene::wgsl::prefix::declared_names;
 
-/// Colours that a target stores for each surface, computed by the caller's WGSL: for [`TargetFormat::of_output`](super::TargetFormat::of_output)
-/// and [`Layer::Own`](super::Layer::Own). It works with every kind of object.
+/// A caller-defined output: colours that the caller's WGSL computes for each surface.
+///
+/// For [`TargetFormat::of_output`](super::TargetFormat::of_output) and [`Layer::Own`](super::Layer::Own). It works with
+/// every kind of object.
 ///
 /// # Examples
 ///
@@ -42,9 +44,9 @@ pub struct OutputProgram(Arc<Inner>);
 #[derive(Debug)]
 struct Inner {
     output: OutputText,
-    /// Without comments.
+    /// The WGSL without comments.
     code: String,
-    /// The names that the text declares.
+    /// The names that the WGSL declares.
     declared: Vec<String>,
 }
 
@@ -63,18 +65,21 @@ impl Hash for OutputProgram {
 }
 
 impl OutputProgram {
-    /// Checks a text. It needs no device, and compiles nothing.
+    /// Checks the WGSL of an output. It needs no device and compiles nothing.
     ///
-    /// `name` is the prefix of every name that the text declares. For `uv` the text has a struct `UvTargets`, whose members are the
-    /// colours at `@location(0)` and so on, and a function `fn uv_write(surface: Surface) -> UvTargets`, which must not discard.
-    /// `Surface` is that of [`Renderer::with_shading`](super::Renderer::with_shading). `surface.last_position` is filled only if the
-    /// text names it, which needs [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history). `relievo_view` is the view
-    /// (`clip_from_world`, `last_clip_from_world`, `eye`), and `relievo_lit(surface) -> vec4<f32>` the shaded colour. The text
-    /// binds nothing.
+    /// `name` is the prefix of every name that the text declares. For the name `uv`, the text has a struct `UvTargets`
+    /// and a function `fn uv_write(surface: Surface) -> UvTargets`, which must not discard. The members of the struct
+    /// are the colours at `@location(0)` and so on. `Surface` is that of
+    /// [`Renderer::with_shading`](super::Renderer::with_shading).
+    ///
+    /// `surface.last_position` is filled only if the text names it; it then needs
+    /// [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history). `relievo_view` is the view
+    /// (`clip_from_world`, `last_clip_from_world`, `eye`). `relievo_lit(surface) -> vec4<f32>` returns the shaded
+    /// colour. The text must not bind resources.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake, with the path `output:LINE:COLUMN`, both counted from 1, and for a name that is not
-    /// one of lower-case letters and digits (`output.name`).
+    /// [`InputError`] for the first mistake, with the path `output:LINE:COLUMN`, both counted from 1; and for a name
+    /// that does not consist of lower-case letters and digits, beginning with a letter (`output.name`).
     pub fn new(name: &str, source: &str) -> Result<Self, InputError> {
         let is_letter = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit();
         if !name.starts_with(|letter: char| letter.is_ascii_lowercase()) || !name.chars().all(is_letter) {
@@ -94,7 +99,7 @@ impl OutputProgram {
             }
         }
         let least = Program::Own(KindProgram::least()?);
-        // The least kind's parts write no depth of their own, so that members are not needed yet.
+        // The parts of the smallest kind write no depth of their own, so members are not needed yet.
         let mut generated = least.generated();
         generated.kind.deep = false;
         let moves = ["last_position", "velocity_write"].iter().any(|name| code.contains(name));
@@ -114,38 +119,38 @@ impl OutputProgram {
         Ok(Self(Arc::new(Inner { output, code, declared })))
     }
 
-    /// The name.
+    /// The name, which is the prefix of all its declarations.
     pub fn name(&self) -> &str {
         &self.0.output.name
     }
 
-    /// The number of colours that it writes, from the first on.
+    /// The number of colour attachments that the output writes, counted from the first.
     pub fn colors(&self) -> usize {
         self.0.output.members.len()
     }
 
-    /// Whether it needs the last frame.
+    /// Whether the output reads motion, and so needs the motion history.
     pub(crate) fn moves(&self) -> bool {
         self.0.output.moves
     }
 
-    /// What the names of its entry points begin with.
+    /// The prefix of its shader entry points.
     pub(super) fn entry(&self) -> &str {
         &self.0.output.entry
     }
 
-    /// The names that the text declares.
+    /// The names that the WGSL declares.
     pub(super) fn declared(&self) -> &[String] {
         &self.0.declared
     }
 
-    /// The shader of a kind with entry points for this output.
+    /// The shader of a kind of object, with entry points for this output.
     pub(super) fn beside(&self, program: &Program) -> String {
         with_output(&program.generated(), &self.0.code, &self.0.output)
     }
 }
 
-/// The declarations of the members of the targets.
+/// The declarations of the colours: the members of the output's struct.
 fn members(own: &CallerText<'_>, module: &naga::Module, targets: &str) -> Result<Vec<String>, InputError> {
     let mut found = module.types.iter().filter(|(_, ty)| ty.name.as_deref() == Some(targets));
     let (handle, members) = match found.next() {
@@ -184,7 +189,7 @@ fn members(own: &CallerText<'_>, module: &naga::Module, targets: &str) -> Result
     }
 }
 
-/// The WGSL type of a colour with so many components.
+/// The WGSL type of a colour with `size` components.
 fn color_type(kind: naga::ScalarKind, size: usize) -> Option<String> {
     let scalar = match kind {
         naga::ScalarKind::Float => "f32",

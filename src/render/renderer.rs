@@ -22,11 +22,11 @@ use crate::{Error, InputError};
 use pipelines::{PipelineKey, PipelineSource};
 pub use scene_pass::ScenePass;
 
-/// Draws scenes on targets of one format. A shadow map, or a target of another format, has a renderer of its own.
+/// Draws scenes on targets of one format. Each shadow map and each further format needs its own renderer.
 ///
 /// # Examples
 ///
-/// A prepass of depth, and colour behind it, in one pass with the program's own draws. The whole frame is in
+/// A depth prepass and colour in one pass with the program's own draws. The whole frame is in
 /// [`scene`](crate::scene#examples).
 ///
 /// ```no_run
@@ -59,11 +59,11 @@ pub struct Renderer {
     gpu: Gpu,
     format: TargetFormat,
     layouts: SceneLayouts,
-    /// The caller's shading, if it is not the crate's.
+    /// The caller's shading; `None`: the crate's.
     shading: Option<Shading>,
-    /// Whether it draws what casts shadows: both sides of all triangles.
+    /// Whether it draws shadow casters: both sides of all triangles.
     casts: bool,
-    /// The pipelines of parts, several of which may be one that was compiled.
+    /// The pipelines of parts. Several keys may share one compiled pipeline.
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
     compiled: HashMap<PipelineSource, wgpu::RenderPipeline>,
 }
@@ -72,8 +72,8 @@ impl Renderer {
     /// A renderer for targets of this format. It compiles nothing yet.
     ///
     /// # Errors
-    /// [`InputError`] for a format that the library cannot draw into or the device does not have, which names the field;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] that names the field, for a format that the library cannot draw into or the device does not
+    /// support; [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, format: &TargetFormat) -> Result<Self, Error> {
         format.validate()?;
         format.check_on(gpu.device())?;
@@ -83,19 +83,21 @@ impl Renderer {
         Ok(Self { gpu, format, layouts, shading: None, casts: false, pipelines, compiled })
     }
 
-    /// The same renderer for maps of shadows, where triangles stop light from both sides, and nothing compiled.
+    /// The same renderer for shadow maps, where triangles stop light from both sides. Nothing is compiled yet.
     pub(super) fn casting(self) -> Self {
         Self { casts: true, pipelines: HashMap::new(), compiled: HashMap::new(), ..self }
     }
 
-    /// The same renderer with the caller's shading in every pipeline of colour, and nothing compiled.
+    /// The same renderer with the caller's shading in every colour pipeline. Nothing is compiled yet.
     ///
-    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the crate's
-    /// own. It returns linear colour, and an alpha that the format's blending may use. The text may have further functions,
-    /// structs, constants and private variables, and resources in bind group 3, whose layout is `layout`, visible to the
-    /// fragment stage; before [`Renderer::draw`] the caller sets that group. Calls come from uniform control flow. The
-    /// text must not discard, and none of its names may begin with `relievo_`. Of WebGPU's default limits for the fragment
-    /// stage, the crate's pipelines use up to 4 storage buffers, 4 uniform buffers, 5 textures and 3 samplers.
+    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the
+    /// crate's own. It returns a linear colour, and an alpha that the format's blending may use. It is called in
+    /// uniform control flow and must not discard.
+    ///
+    /// The text may have further functions, structs, constants and private variables; none of its names may begin with
+    /// `relievo_`. It may bind resources in bind group 3, visible to the fragment stage, with the layout `layout`. The
+    /// caller sets that group before [`Renderer::draw`]. Of WebGPU's default limits for the fragment stage, the crate's
+    /// pipelines use up to 4 storage buffers, 4 uniform buffers, 5 textures and 3 samplers.
     ///
     /// These are the two structs and the crate's own function:
     ///
@@ -104,9 +106,10 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1, and with the
-    /// path `shading.layout` for a layout that does not fit what the text binds, or that exceeds the device's limits together
-    /// with the crate's own groups (a browser tells this later: [`Scene::health`]); [`crate::gpu::GpuError`].
+    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1.
+    /// [`InputError`] with the path `shading.layout` for a layout that does not match the text's bindings, or that exceeds
+    /// the device's limits together with the crate's own groups. A browser reports exceeded limits later
+    /// ([`Scene::health`]). [`crate::gpu::GpuError`].
     pub fn with_shading(self, source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, Error> {
         let shading = Shading::new(source, layout)?;
         shading.check_layout(&self.gpu, &self.format, &self.layouts)?;
@@ -114,12 +117,12 @@ impl Renderer {
         Ok(Self { shading: Some(shading), pipelines, compiled, ..self })
     }
 
-    /// The format of its targets.
+    /// The format of the renderer's targets.
     pub fn format(&self) -> &TargetFormat {
         &self.format
     }
 
-    /// Compiles the pipelines that these objects need, in the shadow of a sun or without, and that are not there yet.
+    /// Compiles the missing pipelines of these objects, with or without a sun's shadow.
     pub(crate) fn prepare_objects<'a>(
         &mut self,
         objects: impl Iterator<Item = &'a dyn Drawable>,
@@ -139,18 +142,19 @@ impl Renderer {
         Ok(())
     }
 
-    /// Compiles every pipeline that the objects of a scene need and that is not there yet: drawing never compiles. Call it
-    /// again after objects were added, or a [`SunShadow`](super::SunShadow). Instances that are spawned, objects that grow, and cameras that change need no new
-    /// pipelines; and objects that resemble others share theirs, so that a second call is usually quick.
+    /// Compiles every missing pipeline that the objects of a scene need. Drawing never compiles.
+    ///
+    /// Call it again after adding objects or a [`SunShadow`](super::SunShadow). Spawned instances, growing objects and
+    /// changed cameras need no new pipelines. Similar objects share pipelines, so a second call is usually quick.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; what the driver's compiler reports.
+    /// [`InputError`] for a scene on another device; errors of the driver's compiler.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         self.check_device(scene)?;
         self.prepare_objects(scene.drawables(), scene.is_shadowed())
     }
 
-    /// As [`Renderer::prepare`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    /// As [`Renderer::prepare`], but completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
     /// As [`Renderer::prepare`].
@@ -159,22 +163,29 @@ impl Renderer {
         Ok(self.gpu.check_async().await?)
     }
 
-    /// Draws a layer of a scene as a view saw it in the last [`Scene::record`], which must have recorded this view. It sets
-    /// pipelines, the bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else: bind group 3,
-    /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and the samples of the
-    /// renderer's format, and be of its device: wgpu checks it.
+    /// Draws a layer of a scene as the view saw it in the last [`Scene::record`], which must have recorded this view.
     ///
-    /// Each object takes an indirect draw for each of its parts and levels, and as many again if some of its instances are
-    /// mirrored and others are not. A render bundle shows later recordings of the view too, and nothing checks whether the last
-    /// frame recorded the view. Make it anew after objects were
-    /// added or grew, after materials were changed, and when an object has its first mirrored instance, or its first that is
-    /// not.
+    /// It sets pipelines, bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else. Bind
+    /// group 3, viewport, scissor and stencil reference are the caller's. The pass must have the attachments and
+    /// samples of the renderer's format and belong to its device; wgpu checks this.
+    ///
+    /// Each object takes an indirect draw for each part and level, and twice that if only some of its instances are
+    /// mirrored.
+    ///
+    /// A render bundle shows later recordings of the view too, but nothing checks whether the last frame recorded the
+    /// view. Record the bundle anew after objects were added or grew, after materials changed, and when an object gets
+    /// its first mirrored or its first unmirrored instance.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; a pass of another [`wgpu::Instance`]; a view of another scene; one that the last [`Scene::record`] left out; one
-    /// that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or [`Scene::set_error_budget`]; one whose camera has the other direction
-    /// of depth; a layer that the format has no attachment for; objects that were added since [`Renderer::prepare`]; and for
-    /// [`Layer::Velocity`] a scene that does not keep its last frame.
+    /// [`InputError`] for:
+    /// - a scene on another device, or a pass of another [`wgpu::Instance`];
+    /// - a view of another scene, or one that the last [`Scene::record`] left out;
+    /// - a view that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or
+    ///   [`Scene::set_error_budget`];
+    /// - a view whose camera has the other depth direction;
+    /// - a layer for which the format has no attachment;
+    /// - objects that were added since [`Renderer::prepare`];
+    /// - [`Layer::Velocity`] in a scene without motion history.
     pub fn draw<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -211,11 +222,11 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws objects; where something is missing, nothing.
+    /// Draws objects. If any check fails, it draws nothing.
     ///
     /// # Errors
-    /// [`InputError`] for a layer that the format does not have, a view with the other direction of depth, and objects for
-    /// which no pipelines were compiled.
+    /// [`InputError`] for a layer that the format does not have, a view with the other depth direction, and objects
+    /// without compiled pipelines.
     pub(crate) fn draw_objects<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -236,7 +247,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws parts of instances one by one.
+    /// Draws parts of single instances in the host's order.
     fn draw_sorted<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -273,7 +284,7 @@ impl Renderer {
         self.pipelines.get(&self.key(layer, part, is_flipped, view.is_shadowed))
     }
 
-    /// Draws a part of an object, by its number, in a layer that shows it.
+    /// Draws one part of an object, given by its index, in a layer that shows it.
     fn draw_part<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -302,7 +313,7 @@ fn is_in(part: &Specialization, layer: Layer) -> bool {
     part.state().blended == (layer == Layer::Transparent)
 }
 
-/// Draws a part of all instances that are mirrored, or of all others: list 2 · level + mirrored has a draw for each part.
+/// Draws a part of all mirrored instances, or of all others. List 2 · level + mirrored has a draw for each part.
 fn draw_lists<'a>(
     pass: &mut impl ScenePass<'a>,
     view: &DrawnView<'a>,

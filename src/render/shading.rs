@@ -1,6 +1,6 @@
-//! The caller's shading: a WGSL text with a function `shade` that replaces the crate's own.
+//! The caller's shading: WGSL with a function `shade` that replaces the crate's own.
 //!
-//! It stands in front of the crate's text ([`CallerText`]).
+//! It is placed before the crate's text ([`CallerText`]).
 
 use naga::{Function, GlobalVariable, Handle, Module, Span, Type, TypeInner};
 
@@ -14,24 +14,24 @@ use crate::scene::specialization::Program;
 use crate::scene::wgsl::prefix::declared_names;
 use crate::{Error, InputError};
 
-/// Where the function begins that the caller's text replaces. It is the last one of each shader.
+/// The start of the function that the caller's text replaces. It is the last function of each shader.
 const REPLACED: &str = "fn shade(";
 
-/// The bind group that belongs to the caller.
+/// The caller's bind group.
 const OWN_GROUP: u32 = 3;
 
-/// A checked text.
+/// Checked WGSL of the caller's shading.
 #[derive(Debug, Clone)]
 pub(super) struct Shading {
     source: String,
-    /// The names that it declares.
+    /// The names that the text declares.
     declared: Vec<String>,
     /// The layout of bind group 3.
     pub layout: Option<wgpu::BindGroupLayout>,
 }
 
 impl Shading {
-    /// Checks a text. Without a layout it must not bind anything.
+    /// Checks a text. Without a layout it must not bind resources.
     ///
     /// # Errors
     /// [`InputError`] whose path is `shading:LINE:COLUMN`, both counted from 1.
@@ -56,11 +56,11 @@ impl Shading {
         Self { layout: Some(layout.clone()), ..self }
     }
 
-    /// Checks the layout of bind group 3 against what the text binds, and that the device's limits allow it beside the crate's
-    /// own groups: compiles the text alone. In a browser the device tells the errors later.
+    /// Checks the layout of bind group 3 against the text's bindings, and against the device's limits beside the
+    /// crate's own groups. To do so it compiles the text alone. In a browser the device reports errors later.
     ///
     /// # Errors
-    /// [`InputError`] for `shading.layout`, with what wgpu says; [`GpuError`] for other failures of the device.
+    /// [`InputError`] for `shading.layout`, with wgpu's message; [`GpuError`] for other failures of the device.
     pub fn check_layout(
         &self,
         gpu: &Gpu,
@@ -90,7 +90,7 @@ impl Shading {
         Ok(())
     }
 
-    /// Compiles the text with entry points that draw nothing.
+    /// Compiles the text with entry points that do no work.
     fn compile(&self, gpu: &Gpu, format: &TargetFormat, groups: &[Option<&wgpu::BindGroupLayout>]) {
         let (device, label) = (gpu.device(), Some("shading"));
         let source = wgpu::ShaderSource::Wgsl(format!("{}{ENTRIES}", with_structures(&self.source)).into());
@@ -119,25 +119,25 @@ impl Shading {
         });
     }
 
-    /// The text of a shader that shades as the caller does.
+    /// The source of a shader, with the caller's shading in place of the crate's.
     pub fn text(&self, shader: &str) -> String {
         let ours = shader.rfind(REPLACED).map_or(shader, |end| &shader[..end]);
         format!("{}\n{ours}", self.source)
     }
 }
 
-/// A vertex and a fragment stage for a text alone.
+/// Vertex and fragment entry points, so that the caller's text compiles alone.
 const ENTRIES: &str = "
 @vertex fn relievo_vertex() -> @builtin(position) vec4<f32> { return vec4<f32>(); }
 @fragment fn relievo_fragment() -> @location(0) vec4<f32> { return shade(Surface(), View()); }
 ";
 
-/// A text of the caller's with the structs that it uses.
+/// The caller's text followed by the structs that it uses.
 fn with_structures(source: &str) -> String {
     format!("{source}\n{}\n{}\n", structure("Surface"), structure("View"))
 }
 
-/// The declaration of one of the structs that the caller's text uses.
+/// The declaration of a struct that the caller's text uses.
 fn structure(name: &str) -> &'static str {
     let text = RENDER_SCENE_MESH.source;
     let start = text.find(&format!("struct {name} {{")).unwrap_or(text.len());
@@ -149,7 +149,7 @@ fn structure(name: &str) -> &'static str {
 struct Own<'a>(CallerText<'a>);
 
 impl Own<'_> {
-    /// What a valid text must not do here.
+    /// Checks restrictions beyond valid WGSL.
     fn check(&self, module: &Module, has_layout: bool) -> Result<(), InputError> {
         let at = |span: Span, bound: &str| Err(self.0.refused([span].into_iter(), bound.to_owned()));
         if let Some((handle, _)) = module.overrides.iter().next() {
@@ -173,7 +173,7 @@ impl Own<'_> {
         self.check_function(module)
     }
 
-    /// `shade` must be there, and have the right arguments and result.
+    /// Checks that `shade` exists and has the right parameters and result.
     fn check_function(&self, module: &Module) -> Result<(), InputError> {
         let named = |(_, function): &(_, &Function)| function.name.as_deref() == Some("shade");
         let Some((handle, shade)) = module.functions.iter().find(named) else {
@@ -196,7 +196,7 @@ impl Own<'_> {
 
 const SIGNATURE: &str = "must be `fn shade(surface: Surface, view: View) -> vec4<f32>`";
 
-/// Why a variable of module scope is refused.
+/// The reason to refuse a variable of module scope, if there is one.
 fn refused_variable(variable: &GlobalVariable, has_layout: bool) -> Option<&'static str> {
     if variable.space == naga::AddressSpace::WorkGroup {
         return Some("must not lie in workgroup memory, which fragment stages do not have");

@@ -11,7 +11,7 @@ pub const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Depth.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Reads an aspect of a texture of `texel` bytes a texel, row by row; see [`Gpu::wait_async`].
+/// Reads an aspect of a texture, row by row; `texel` is its bytes per texel. See [`Gpu::wait_async`].
 pub(super) async fn read_texture(
     gpu: &Gpu,
     texture: &wgpu::Texture,

@@ -1,4 +1,4 @@
-//! Boxes around instances, computed on the host.
+//! Bounding boxes of instances, computed on the host.
 
 use glam::{DAffine3, DVec3};
 
@@ -10,14 +10,14 @@ use crate::scene::object_kind::Placed;
 use crate::scene::pick::MARGIN;
 use crate::scene::placement::Placement;
 
-/// By how much a box of vertices is enlarged, relative to its size or to its distance from the cell's corner: the host rounds a
-/// vertex to `f32` in a few products, each by 6e-8.
+/// Enlargement of a box of vertices, relative to its size or its distance from the cell's corner. The host rounds a vertex
+/// to `f32` in a few products, each with an error of 6e-8.
 const TIGHT: f64 = 1e-6;
 
-/// A box along the axes of the world.
+/// An axis-aligned box in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The cell to whose corner the box's corners are relative.
+    /// The cell whose corner the box's corners are relative to.
     pub cell: [i32; 3],
     /// The smallest x, y and z in world units, relative to the cell's corner.
     pub low_offset: DVec3,
@@ -33,14 +33,16 @@ impl Bounds {
 }
 
 impl Scene {
-    /// A box that encloses an instance as it stands now, in the pose of the time of the scene, and may be larger than
-    /// necessary; [`Scene::tight_bounds`] is the smallest.
+    /// A box that encloses an instance, in the pose at the scene's time. It may be larger than necessary;
+    /// [`Scene::tight_bounds`] returns the smallest.
     ///
-    /// The box of a mesh is the smallest, and costs a transform of each of its vertices. That of a character holds a ball around
-    /// each bone in which the vertices stay that follow it, so that it begins below the feet. It takes sampling
-    /// the bones on the host (some microseconds for a hundred bones). That of a patch of terrain holds a sphere around
-    /// it. Bones that were written in the last frame count as in [`Scene::pick`]. What is drawn may be off by what
-    /// [`Quality::pixels`](crate::scene::Quality) allows, and may thus reach beyond the box.
+    /// - Mesh: the smallest box, at the cost of one transform per vertex.
+    /// - Character: a box around one ball per bone that holds the vertices following it, so it extends below the feet. The
+    ///   host samples the bones, which takes a few microseconds for a hundred bones.
+    /// - Patch of terrain: a box around its bounding sphere.
+    ///
+    /// Bones written in the last frame count as in [`Scene::pick`]. The drawn instance may differ by as much as
+    /// [`Quality::pixels`](crate::scene::Quality) allows, and so may reach beyond the box.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -52,13 +54,13 @@ impl Scene {
         }
     }
 
-    /// The smallest box around an instance as it stands now, in the pose of the time of the scene and in full detail. A character
-    /// touches the ground where this box ends.
+    /// The smallest box around an instance, in full detail and in the pose at the scene's time. A character's feet are at
+    /// the bottom of this box.
     ///
-    /// It costs a transform of each vertex of a mesh, and posing and skinning each vertex of a character, about a
-    /// quarter of a microsecond a vertex. For a patch of terrain it goes through the heights that
-    /// [`Scene::ground`] answers by, and where these are unknown, the box is that of [`Scene::bounds`]. Bones that were written in the
-    /// last frame count as in [`Scene::pick`]. What is drawn may be off as [`Scene::bounds`] says.
+    /// The cost is one transform per vertex of a mesh. For a character it is posing and skinning each vertex, about a
+    /// quarter of a microsecond per vertex. For a patch of terrain, the host scans the heights behind [`Scene::ground`]; if
+    /// these are unknown, it returns the box of [`Scene::bounds`]. Bones written in the last frame count as in
+    /// [`Scene::pick`]. The drawn instance may differ from the box as in [`Scene::bounds`].
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -68,7 +70,7 @@ impl Scene {
         Ok(placed.enlarged(corners, TIGHT))
     }
 
-    /// An instance in its place, relative to the corner of its cell.
+    /// An instance at its place, relative to the corner of its cell.
     fn placed_instance(&self, instance: InstanceId) -> Result<Placed, InputError> {
         let object = self.object_of(instance)?;
         let cell = object.instances.all()[instance.index as usize].cell;
@@ -77,7 +79,7 @@ impl Scene {
 }
 
 impl Placed {
-    /// A box of these corners, enlarged by what rounding moves.
+    /// The box of these corners, enlarged by a margin for rounding.
     fn enlarged(&self, [low, high]: [DVec3; 2], margin: f64) -> Bounds {
         let slack = margin * (high - low).length().max(self.place.translation.length());
         Bounds { cell: self.cell, low_offset: low - slack, high_offset: high + slack }
@@ -85,7 +87,7 @@ impl Placed {
 }
 
 impl Object {
-    /// An instance in a place.
+    /// An instance at a given place.
     pub(super) fn placed(&self, index: u32, now: f64, place: DAffine3, cell: [i32; 3]) -> Placed {
         let instance = &self.instances.all()[index as usize];
         let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);

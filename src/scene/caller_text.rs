@@ -1,6 +1,6 @@
-//! WGSL of the caller's, which stands in front of the crate's, so that every message about it has the caller's own lines.
+//! Checks of the caller's WGSL. It precedes the crate's text, so that messages about it have the caller's own line numbers.
 //!
-//! The crate's names begin with [`PREFIX`] there; only `Surface` and `View` do not.
+//! The crate's names start with [`PREFIX`] there, except for `Surface` and `View`.
 
 use naga::front::wgsl::{ParseError, parse_str};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -11,9 +11,9 @@ use crate::scene::wgsl::prefix::declarations;
 
 pub(crate) use crate::scene::wgsl::prefix::PREFIX;
 
-/// The caller's text, and the one that is parsed, which begins with it.
+/// The caller's WGSL, and the complete text to parse, which starts with it.
 pub(crate) struct CallerText<'a> {
-    /// What the paths of errors begin with.
+    /// Start of the path in errors.
     pub path: &'a str,
     pub source: &'a str,
     pub text: &'a str,
@@ -23,7 +23,7 @@ impl CallerText<'_> {
     /// Parses the text.
     ///
     /// # Errors
-    /// [`InputError`] whose path is `PATH:LINE:COLUMN`, both counted from 1.
+    /// [`InputError`] with the path `PATH:LINE:COLUMN`, line and column counted from 1.
     pub fn parsed(&self) -> Result<Module, InputError> {
         let place = |error: &ParseError| -> Vec<Span> { error.labels().map(|(span, _)| span).collect() };
         parse_str(self.text)
@@ -33,23 +33,23 @@ impl CallerText<'_> {
     /// Validates the module of the text.
     ///
     /// # Errors
-    /// As [`CallerText::parsed`].
+    /// As for [`CallerText::parsed`].
     pub fn validated(&self, module: &Module) -> Result<ModuleInfo, InputError> {
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
         validator.validate(module).map_err(|error| {
-            // A function, and in it the place: the shortest is the most exact.
+            // naga names a function and a place inside it; the shortest span is the most exact.
             let mut spans: Vec<Span> = error.spans().map(|(span, _)| *span).collect();
             spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
             self.refused(spans.into_iter(), chain(error.as_inner()))
         })
     }
 
-    /// Whether a place lies in the caller's text.
+    /// Whether a span starts in the caller's text.
     pub fn is_in(&self, at: &Span) -> bool {
         at.to_range().is_some_and(|range| range.start < self.source.len())
     }
 
-    /// The error at the first of these places that lies in the caller's text, else at its end.
+    /// The error at the first of these spans in the caller's text, or at the text's end if there is none.
     pub fn refused(&self, spans: impl Iterator<Item = Span>, bound: String) -> InputError {
         let mut ranges = spans.filter_map(Span::to_range);
         let range = ranges.find(|range| range.start < self.source.len());
@@ -62,8 +62,7 @@ impl CallerText<'_> {
         InputError::new(format!("{}:{line}:{column}", self.path), value, bound)
     }
 
-    /// Checks a text of a kind or an output that was parsed: it has no entry points, override constants, discards or memory of
-    /// workgroups.
+    /// Checks a parsed text of a kind or an output: no entry points, override constants, discards or workgroup memory.
     ///
     /// # Errors
     /// [`InputError`] for the first mistake.
@@ -101,8 +100,8 @@ impl CallerText<'_> {
         Ok(())
     }
 
-    /// Checks that every name that the text declares begins with `name`, and has more letters: `grass_bend`, `GRASS_HEIGHT`,
-    /// `GrassBlade`. A text for several shaders has no directives.
+    /// Checks that every declared name starts with `name` and has more letters, such as `grass_bend`, `GRASS_HEIGHT` and
+    /// `GrassBlade`. A text for several shaders must not have directives.
     ///
     /// # Errors
     /// [`InputError`] for the first mistake.
@@ -129,7 +128,7 @@ impl CallerText<'_> {
         Ok(())
     }
 
-    /// Names with the crate's prefix are the crate's. naga drops constants and aliases that nothing uses, so this reads the text.
+    /// Checks that no name has the crate's prefix. It reads the text, because naga drops unused constants and aliases.
     pub fn check_names(&self) -> Result<(), InputError> {
         let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
         let code = without_comments(self.source);
@@ -142,7 +141,7 @@ impl CallerText<'_> {
 
 const OURS: &str = "must not begin with `relievo_`, as the crate's own names do";
 
-/// An error with its causes.
+/// The message of an error, followed by its causes.
 fn chain(error: &dyn std::error::Error) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
@@ -152,7 +151,7 @@ fn span(range: std::ops::Range<usize>) -> Span {
     Span::new(range.start as u32, range.end as u32)
 }
 
-/// A valid text with spaces in the place of its comments: each byte stays where it is, and each line.
+/// A valid text with its comments replaced by spaces, so that every byte and line stays in place.
 pub(crate) fn without_comments(source: &str) -> String {
     let (mut code, mut rest) = (String::with_capacity(source.len()), source);
     while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
@@ -168,10 +167,10 @@ pub(crate) fn without_comments(source: &str) -> String {
     code + rest
 }
 
-/// What ends a line comment.
+/// Characters that end a line comment.
 const LINE_ENDS: &[char] = &['\n', '\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
 
-/// The length of the block comment with which a text begins. Such comments nest.
+/// Bytes of the block comment at the start of a text. Block comments nest.
 fn block_comment(text: &str) -> usize {
     let (mut depth, mut at) = (0, 0);
     while let Some(mark) = text[at..].find("/*").into_iter().chain(text[at..].find("*/")).min() {
@@ -184,7 +183,7 @@ fn block_comment(text: &str) -> usize {
     text.len()
 }
 
-/// Where a block discards.
+/// The first discard statement of a block.
 pub(crate) fn discard_in(block: &Block) -> Option<Span> {
     block.span_iter().find_map(|(statement, span)| match statement {
         Statement::Kill => Some(*span),

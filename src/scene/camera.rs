@@ -1,4 +1,4 @@
-//! The camera of a view: the caller's own matrices.
+//! The camera of a view, from the caller's own matrices.
 
 use std::f32::consts::PI;
 
@@ -46,34 +46,37 @@ pub enum Depth {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// The cell from whose corner `view_from_cell` leads ([`Placement::corner`](crate::scene::Placement::corner)). Near the
-    /// origin of the world, (0, 0, 0) will do; kilometres away, the eye's own cell keeps the picture from trembling.
+    /// The cell whose corner is the origin of `view_from_cell` ([`Placement::corner`](crate::scene::Placement::corner)).
+    /// Near the origin of the world, use (0, 0, 0). Kilometres away, use the eye's own cell, or the picture trembles.
     pub cell: [i32; 3],
-    /// The matrix from the cell's space, which is the world's moved to the cell's corner, to the camera's space: a rotation and
-    /// a translation. With cell (0, 0, 0) it is the engine's own matrix from the world. It may mirror, as for a reflection in
-    /// water.
+    /// The matrix from cell space to view space: a rotation and a translation. Cell space is world space moved to the
+    /// cell's corner, so with cell (0, 0, 0) this is the engine's own view matrix. It may mirror, for example for a
+    /// reflection in water.
     pub view_from_cell: Mat4,
-    /// The projection, to clip space: +X to the right, +Y up, depth 0 to 1. It says which way the camera looks: along −Z if it
-    /// is made for right-handed spaces, as those of glam's `camera::rh::proj::directx` are, among them
-    /// `perspective_infinite_reverse` for [`Depth::Reversed`].
+    /// The projection to clip space: +X to the right, +Y up, depth 0 to 1. It also decides the viewing direction.
+    /// Right-handed projections, such as those of glam's `camera::rh::proj::directx`, look along −Z. For
+    /// [`Depth::Reversed`], use its `perspective_infinite_reverse`.
     pub clip_from_view: Mat4,
-    /// Width and height of the picture in physical pixels: those that [`Quality::pixels`](crate::scene::Quality::pixels)
-    /// counts, and those of the viewport that the caller sets in its pass, which may be a part of the target.
+    /// Width and height of the picture in physical pixels. [`Quality::pixels`](crate::scene::Quality::pixels) counts these
+    /// pixels. The size must be that of the viewport set in the caller's pass, which may be a part of the target.
     pub viewport: [u32; 2],
-    /// The direction of depth, which must be that of the projection, and of the renderer's
+    /// The direction of depth. It must match the projection and the renderer's
     /// [`TargetFormat`](crate::render::TargetFormat).
     pub depth: Depth,
 }
 
 impl Camera {
-    /// A perspective camera at `eye` that looks at `target`, both in world coordinates, with +Y up. Its cell is (0, 0, 0);
-    /// kilometres from the origin, [`Camera::looking_at_world`] keeps the picture from trembling.
-    /// `field_of_view` is the vertical one, in radians, between 0 and π; `near_far` are the distances of the near and the far
-    /// plane in world units, where depth is 0 and 1, and the far one may be infinite; `viewport` is width and height in pixels.
-    /// Straight up and down, the top of the picture is north.
+    /// A perspective camera at `eye` that looks at `target`, both in world coordinates, with +Y up. Its cell is (0, 0, 0).
+    /// Kilometres from the origin, use [`Camera::looking_at_world`], or the picture trembles.
     ///
-    /// For arguments out of these ranges, and an `eye` at its `target`, the matrices hold NaN: [`View::set`](crate::scene::View::set)
-    /// refuses the camera, and names the argument.
+    /// - `field_of_view` is the vertical angle in radians, between 0 and π.
+    /// - `near_far` are the distances of the near and far planes in world units, where depth is 0 and 1. The far one may be
+    ///   infinite.
+    /// - `viewport` is width and height in pixels.
+    ///
+    /// When the camera looks straight up or down, the top of the picture is north. If an argument is out of range, or `eye`
+    /// equals `target`, the matrices hold NaN. [`View::set`](crate::scene::View::set) then refuses the camera and names the
+    /// argument.
     pub fn looking_at(
         eye: Vec3,
         target: Vec3,
@@ -81,7 +84,7 @@ impl Camera {
         near_far: [f32; 2],
         viewport: [u32; 2],
     ) -> Self {
-        // Straight up and down, north replaces the undefined up vector.
+        // Straight up and down the up vector is undefined, so north replaces it.
         let up = |forward: Vec3| if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
         let look = |forward| glam::camera::rh::view::look_at_mat4(eye, eye + forward, up(forward));
         let view_from_cell = (target - eye).try_normalize().map(look);
@@ -105,7 +108,7 @@ impl Camera {
         }
     }
 
-    /// As [`Camera::looking_at`], anywhere in the world: the cell is that of the eye.
+    /// Like [`Camera::looking_at`], but precise anywhere in the world: its cell is the eye's.
     pub fn looking_at_world(
         eye: impl Into<DVec3>,
         target: impl Into<DVec3>,
@@ -118,15 +121,14 @@ impl Camera {
         Self { cell, ..Self::looking_at(eye, target, field_of_view, near_far, viewport) }
     }
 
-    /// A perspective camera that sees a box along the axes of the world from the south at a low angle, as large as the picture
-    /// allows. `low` and `high` are opposite corners in world coordinates
-    /// ([`Bounds::world`](crate::scene::Bounds::world)); `viewport` is width and height in pixels. As for [`Camera::looking_at`],
-    /// [`View::set`](crate::scene::View::set) refuses corners that are not finite.
+    /// A perspective camera that frames an axis-aligned box, from the south at a low angle, as large as the picture allows.
+    /// `low` and `high` are opposite corners in world coordinates ([`Bounds::world`](crate::scene::Bounds::world)).
+    /// `viewport` is width and height in pixels. [`View::set`](crate::scene::View::set) refuses a camera whose corners are
+    /// not finite, as for [`Camera::looking_at`].
     pub fn framing(low: DVec3, high: DVec3, viewport: [u32; 2]) -> Self {
         let (center, extent) = ((low + high) / 2.0, (high - low).max(DVec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;
-        // The circle around the box's footprint fills the height of the picture, since the view from above
-        // foreshortens it.
+        // The circle around the box's footprint fills the height of the picture, because the low angle foreshortens it.
         let radius = extent.length() / 2.0;
         let distance = 0.72 * radius / f64::from(field_of_view / 2.0).sin();
         let eye = center + distance * DVec3::new(-0.30, 0.52, 0.80).normalize();
@@ -152,7 +154,7 @@ impl Camera {
         }
     }
 
-    /// The same camera with depth in the other direction.
+    /// The same camera with the opposite depth direction.
     #[must_use]
     pub fn reversed(self) -> Self {
         let Self { clip_from_view, depth, .. } = self;
@@ -168,8 +170,8 @@ impl Camera {
     /// Checks the matrices and the viewport.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, a matrix without inverse, a `view_from_cell` that is no affine one, an eye
-    /// beyond the last cell ([`Placement::checked`]), and an empty viewport.
+    /// [`InputError`] for values that are not finite, a matrix without inverse, a `view_from_cell` that is not affine, an
+    /// eye beyond the last cell ([`Placement::checked`]), and an empty viewport.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.viewport.contains(&0) {
             let value = format!("{:?}", self.viewport);
@@ -191,7 +193,7 @@ impl Camera {
         check_world("camera.eye", self.cell, self.eye_offset())
     }
 
-    /// Refuses arguments of which no matrix could be made.
+    /// Refuses arguments from which no matrix could be made.
     fn check_arguments(&self) -> Result<(), InputError> {
         if let Some((kind, [first, second])) = arguments(&self.view_from_cell) {
             let paths =
@@ -216,12 +218,12 @@ impl Camera {
         Ok(())
     }
 
-    /// The matrix from the cell's space to clip space.
+    /// The matrix from cell space to clip space.
     pub fn clip_from_cell(&self) -> Mat4 {
         self.clip_from_view * self.view_from_cell
     }
 
-    /// For a parallel camera, the unit vector along which distance grows and nothing moves in the picture.
+    /// For a parallel camera: the unit viewing direction. Motion along it does not change the picture.
     pub(crate) fn ahead(&self) -> Vec3 {
         let [right, up, depth] =
             [0, 1, 2].map(|row| self.clip_with_distance().row(row).truncate().as_dvec3());
@@ -230,12 +232,13 @@ impl Camera {
         ahead.normalize_or(DVec3::NEG_Z).as_vec3()
     }
 
-    /// Whether the picture is a mirror image: triangles that are counter-clockwise seen from outside run clockwise in it.
+    /// Whether the picture is a mirror image, so that triangles which are counter-clockwise seen from outside appear
+    /// clockwise.
     pub(crate) fn is_mirrored(&self) -> bool {
         is_mirrored(&self.clip_with_distance())
     }
 
-    /// The matrix to clip space with depth that grows with distance, whatever its range.
+    /// The matrix to a clip space whose depth grows with distance, of any range.
     fn clip_with_distance(&self) -> Mat4 {
         let direction = if self.depth == Depth::Reversed { -1.0 } else { 1.0 };
         Mat4::from_scale(Vec3::new(1.0, 1.0, direction)) * self.clip_from_cell()
@@ -252,18 +255,18 @@ impl Camera {
     }
 }
 
-/// The arguments of [`Camera::looking_at`], and those of [`Camera::framing`].
+/// Tags of [`unusable`] matrices: arguments of [`Camera::looking_at`] or of [`Camera::framing`].
 const LOOKING: f32 = 0.0;
 const FRAMING: f32 = 1.0;
 
-/// In the place of a matrix that cannot be made: its arguments, and NaN elsewhere. They survive [`Camera::reversed`], which changes
-/// the third row.
+/// Placeholder for a matrix that cannot be made: the tag and the arguments, and NaN elsewhere. They survive
+/// [`Camera::reversed`], which changes only the third row.
 fn unusable(kind: f32, [first, second]: [Vec3; 2]) -> Mat4 {
     let column = |Vec3 { x, y, z }| Vec4::new(x, y, f32::NAN, z);
     Mat4::from_cols(Vec4::NAN.with_x(kind), column(first), column(second), Vec4::NAN)
 }
 
-/// What [`unusable`] was made of.
+/// The tag and arguments stored by [`unusable`].
 fn arguments(matrix: &Mat4) -> Option<(f32, [Vec3; 2])> {
     let kind = matrix.x_axis.x;
     let rest = [matrix.x_axis.with_x(f32::NAN), matrix.w_axis];
@@ -329,7 +332,7 @@ mod tests {
         assert_eq!(camera([3, 2]).validate(), Ok(()));
     }
 
-    /// What makes no camera is refused by the name that the caller gave it, with its value.
+    /// Arguments that make no camera are refused by the caller's name for them, with their value.
     #[test]
     fn arguments_that_make_no_camera_are_named() {
         let refused = |target, field_of_view, near_far| {

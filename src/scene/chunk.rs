@@ -1,5 +1,5 @@
-//! Chunks of an object: consecutive instances that lie in buffers of their own and are listed and drawn together. An object
-//! has one chunk, unless what its instances need exceeds a binding of the device.
+//! Chunks of an object: consecutive instances with their own buffers, lists and draws. An object has one chunk, unless its
+//! instances need more than a binding of the device.
 
 use std::ops::Range;
 
@@ -10,32 +10,31 @@ use crate::shared::lod::object::{BLOCK, LodObject};
 /// A chunk of an object.
 #[derive(Debug)]
 pub(crate) struct Chunk {
-    /// The indices in the object of its instances.
+    /// Indices of its instances within the object.
     pub slots: Range<usize>,
-    /// Its number among the chunks of the layout.
+    /// Its index among the chunks of the layout.
     pub number: usize,
     pub range: ObjectRange,
-    /// What is drawn, part by part.
+    /// The drawables, part by part.
     pub drawables: Vec<Box<dyn Drawable>>,
-    /// For each drawable, the chunk as kernels see it, with the draws of the drawable's parts, in the layout for which it
-    /// was prepared.
+    /// Per drawable: the chunk in kernel format with the draws of the drawable's parts, in the layout it was prepared for.
     pub lods: Vec<LodObject>,
-    /// Its parts that are drawn instance by instance.
+    /// Its parts with sorted draws.
     pub sorted: Vec<SortedParts>,
 }
 
-/// A part of an object that is drawn instance by instance.
+/// A part of an object with sorted draws.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SortedParts {
-    /// The drawable, and the part of it.
+    /// Index of the drawable, and of the part in it.
     pub drawable: usize,
     pub part: usize,
-    /// The index of the draw of the first instance.
+    /// Index of the first instance's draw.
     pub first: u32,
 }
 
 impl Chunk {
-    /// A chunk that no layout has yet.
+    /// A chunk that is not in a layout yet.
     pub fn new(slots: Range<usize>, drawables: Vec<Box<dyn Drawable>>) -> Self {
         Self {
             slots,
@@ -47,24 +46,24 @@ impl Chunk {
         }
     }
 
-    /// Number of instances for which it has room in the buffers of all instances: whole blocks.
+    /// Number of instances reserved in the scene's instance buffers: whole blocks.
     pub fn room(&self) -> u32 {
         (self.slots.len() as u32).next_multiple_of(BLOCK)
     }
 
-    /// The index in the buffers of all instances of one of its instances.
+    /// Index of one of its instances in the scene's instance buffers.
     pub fn place(&self, slot: usize) -> usize {
         self.range.first as usize + slot - self.slots.start
     }
 }
 
-/// What two ranges have in common, if that is anything.
+/// The intersection of two ranges; `None` if it is empty.
 pub(crate) fn common(a: &Range<usize>, b: &Range<usize>) -> Option<Range<usize>> {
     let both = a.start.max(b.start)..a.end.min(b.end);
     (!both.is_empty()).then_some(both)
 }
 
-/// A range in halves until each part fits; a part of one element fits always.
+/// Halves a range until every part fits. A part of one element always counts as fitting.
 pub(super) fn halved(all: Range<usize>, fits: impl Fn(&Range<usize>) -> bool) -> Vec<Range<usize>> {
     let (mut open, mut done) = (vec![all], Vec::new());
     while let Some(range) = open.pop() {

@@ -1,4 +1,4 @@
-//! Poses of the caller: bones that it drives itself, between sampling and model matrices.
+//! Driven bones: poses that the caller changes between sampling and model matrices.
 
 use crate::animation::crowd::{Local, packed};
 use crate::asset::Transform;
@@ -11,12 +11,12 @@ use crate::scene::view::View;
 use crate::scene::{FRAMES_IN_FLIGHT, Scene};
 use crate::{Error, InputError};
 
-/// The poses of all characters in a frame whose bones have been sampled, for [`Scene::record_with`].
+/// The poses of all characters in a frame, after sampling, for [`Scene::record_with`].
 #[derive(Debug)]
 pub struct Poses<'a> {
     gpu: &'a Gpu,
     objects: &'a mut Slots<Object>,
-    /// `None` if all buffers are taken.
+    /// `None` if all buffers are in use.
     stream: Option<StagingStream<'a>>,
     failure: Option<GpuError>,
 }
@@ -28,10 +28,10 @@ impl<'a> Poses<'a> {
         Self { gpu, objects, stream: staging.stream(gpu, room), failure: None }
     }
 
-    /// The buffers in which the pose of an instance lies, for kernels of the caller.
+    /// The buffers that hold an instance's pose, for the caller's kernels.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, or is no character.
+    /// [`InputError`] for an instance that does not exist any more or is no character.
     pub fn of(&self, instance: InstanceId) -> Result<PoseBuffers<'_>, InputError> {
         let scene = self.objects.scene();
         let object = self.objects.existing(instance).ok_or_else(|| missing(scene, instance))?;
@@ -39,14 +39,14 @@ impl<'a> Poses<'a> {
         found.ok_or_else(no_character)
     }
 
-    /// Writes the transform of a driven bone ([`Scene::drive`]) from the host: `local` leads from the bone's space to its
-    /// parent's, as [`InstancePose::local`](crate::scene::InstancePose::local) gives it, and `bone` is an index
+    /// Writes the local transform of a driven bone ([`Scene::drive`]) from the host. `local` is the transform from bone
+    /// space to the parent's space, as in [`InstancePose::local`](crate::scene::InstancePose::local). `bone` is an index
     /// ([`Scene::bone`]).
     ///
-    /// It is recorded as a copy of 48 bytes into `encoder`, which must be the one that `pose` was given: work that is recorded
-    /// behind it there sees what was written. It counts for this frame. In the next one the bone is sampled again, so
-    /// write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] follow what the last frame wrote.
-    /// Nothing is submitted, and nothing allocated unless a frame writes more than any frame before.
+    /// The write is recorded as a copy of 48 bytes into `encoder`, which must be the one passed to `pose`. Work recorded
+    /// after it there sees the new value. The write holds for this frame only: the next frame samples the bone again, so
+    /// write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] use the values that the last
+    /// frame wrote. Nothing is submitted, and memory is allocated only if a frame writes more than any frame before.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, as
@@ -79,7 +79,7 @@ impl<'a> Poses<'a> {
         Ok(())
     }
 
-    /// Sends what was written.
+    /// Records the copies of all writes.
     pub(super) fn finish(self, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
         match (self.failure, self.stream) {
             (Some(failure), _) => Err(failure),
@@ -90,22 +90,22 @@ impl<'a> Poses<'a> {
 }
 
 impl Scene {
-    /// Forgets what the host wrote to bones in the last frame.
+    /// Drops the host's writes to bones in the last frame.
     pub(super) fn forget_written(&mut self) {
         let characters = self.objects.iter_mut().filter_map(|object| object.character_mut());
         characters.for_each(Character::forget_written);
     }
 
-    /// Says which bones of an instance the caller drives, each by its name or its index in digits, from the next frame on; none of them
-    /// ends that. In every frame in which a view sees the instance, they are sampled at the time of the frame, whatever the
-    /// gate says; then the caller may change them ([`Scene::record_with`]), and they and all bones below them count as updated.
-    /// What it makes of them is its own: [`Quality::pixels`](crate::scene::Quality) is promised as if they were sampled. The
-    /// sphere by which an instance is culled is that of its clip, so bones should stay near. Changing the driven
-    /// bones of an object allocates in the next frame.
+    /// Sets the driven bones of an instance, from the next frame on, each by its name or its index in digits. An empty list
+    /// ends driving. In every frame in which a view sees the instance, driven bones are sampled at the frame's time,
+    /// regardless of the gate. Then the caller may change them ([`Scene::record_with`]), and they and all bones below count
+    /// as updated. [`Quality::pixels`](crate::scene::Quality) bounds the sampled pose, not the caller's changes. Culling
+    /// uses the clip's sphere, so bones should stay near. Changing the driven bones of an object allocates memory in the
+    /// next frame.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does not
-    /// have; nothing changes then.
+    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
+    /// not have. Nothing changes then.
     pub fn drive(&mut self, instance: InstanceId, bones: &[&str]) -> Result<(), InputError> {
         let bones = bones.iter().map(|bone| Ok(self.bone(instance, bone)? as u32));
         let bones = bones.collect::<Result<Vec<_>, InputError>>()?;
@@ -113,9 +113,9 @@ impl Scene {
         Ok(())
     }
 
-    /// As [`Scene::record`], with passes of the caller between the sampling of bones and their model matrices: for inverse
-    /// kinematics and ragdolls. `pose` gets the encoder and the poses, and may change the local transforms of bones that are
-    /// driven ([`Scene::drive`]): from the host ([`Poses::write`]), or by kernels and copies ([`Poses::of`]).
+    /// Like [`Scene::record`], with the caller's passes between the sampling of bones and their model matrices, for inverse
+    /// kinematics and ragdolls. `pose` receives the encoder and the poses. It may change the local transforms of driven
+    /// bones ([`Scene::drive`]) from the host ([`Poses::write`]), or by kernels and copies ([`Poses::of`]).
     ///
     /// # Examples
     ///
@@ -144,8 +144,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// As [`Scene::record`], and the error of `pose`. Then the frame is not whole: it cannot be drawn, and the next one starts
-    /// afresh.
+    /// As for [`Scene::record`], and the error of `pose`. The frame is then incomplete: it cannot be drawn, and the next
+    /// one starts afresh.
     pub fn record_with(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

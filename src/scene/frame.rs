@@ -1,4 +1,4 @@
-//! A frame of a scene: what is recorded for it, and what is drawn of it.
+//! Recording a frame of a scene, and listing its draws.
 
 use crate::animation::Frame;
 use crate::gpu::Staged;
@@ -14,14 +14,14 @@ use crate::scene::view::lists::SortedLists;
 use crate::scene::{FRAMES_IN_FLIGHT, Scene};
 use crate::{Error, InputError};
 
-/// What the caller records between sampling and model matrices.
+/// The caller's passes between sampling and model matrices.
 pub(super) type Between<'a> =
     &'a mut dyn FnMut(&mut wgpu::CommandEncoder, &mut Poses<'_>) -> Result<(), InputError>;
 
 impl Scene {
-    /// Gives up all recordings that the device has not executed, and lets everything start afresh, as [`Scene::refresh`] does.
-    /// [`Scene::record`] does so by itself after an encoder was dropped before it was submitted, because the device misses the
-    /// changes in it. Call it to free the places of encoders that you keep, and will not submit.
+    /// Discards all recordings that the device has not executed, and starts everything afresh, as [`Scene::refresh`] does.
+    /// [`Scene::record`] calls it by itself after an encoder was dropped without submission, because the device then misses
+    /// the changes recorded in it. Call it to free the places of encoders that you keep but will not submit.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -42,8 +42,8 @@ impl Scene {
         self.refresh()
     }
 
-    /// Lets the next frame sample and skin everything that is seen in full, and upload every instance again. The result
-    /// is the picture of a scene that was made anew.
+    /// Makes the next frame sample and skin everything visible in full, and upload every instance again. The picture is
+    /// then the same as that of a newly created scene.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -56,10 +56,10 @@ impl Scene {
         Ok(())
     }
 
-    /// Keeps where everything was in the last frame from the next frame on, or does no longer; at first it is not kept.
-    /// [`Layer::Velocity`](crate::render::Layer::Velocity) needs it. Skinned vertices then take 1.4 times the memory,
-    /// what moved is skinned once more after it stops, and what the host changes is uploaded twice. Characters start
-    /// afresh.
+    /// Sets whether the scene keeps placements, vertices and levels of the last frame, from the next frame on. The default
+    /// is false. [`Layer::Velocity`](crate::render::Layer::Velocity) needs this history. It costs 1.4 times the memory for
+    /// skinned vertices. A moving instance is skinned once more after it stops, and host changes are uploaded twice. After
+    /// a switch, all characters are sampled and skinned afresh.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -71,24 +71,24 @@ impl Scene {
         self.refresh()
     }
 
-    /// Records a frame: what changed, what each view sees and how fine, and the poses and vertices of the characters that
-    /// any of them sees. Draw afterwards, in passes of the same encoder or of later ones.
+    /// Records a frame: pending changes, then visibility and levels of detail per view, then poses and vertices of all
+    /// visible characters. Draw afterwards, in passes of the same encoder or of later ones.
     ///
-    /// Pass every view that the frame draws, in one call: characters are posed and skinned once, as fine as the finest of
-    /// these views needs, and for what these views see. A frame may have other views than the one before.
-    /// [`Renderer::draw`](crate::render::Renderer::draw) refuses a view that the last frame left out: its lists may refer to
-    /// vertices whose memory others have taken.
+    /// In one call, pass every view that the frame draws. Characters are posed and skinned once, for the instances that
+    /// these views see, at the finest level that any of the views needs. Each frame may have other views than the one
+    /// before. [`Renderer::draw`](crate::render::Renderer::draw) refuses a view that the last frame left out: its lists may
+    /// refer to vertices whose memory was reused. vertices whose memory others have taken.
     ///
-    /// Each call is a frame, also if two are recorded for one submission: each draws what was recorded before it. A recording
-    /// takes one of [`FRAMES_IN_FLIGHT`] places, which is free again when the device has executed it, and wgpu has noticed
-    /// that: in a submission, or in [`wgpu::Device::poll`]. An encoder may be dropped instead: the next recording starts afresh
-    /// ([`Scene::invalidate`]). Submit recordings in the order in which they were made: each counts on the changes in those before
-    /// it. Of an empty scene nothing is recorded, and nothing drawn.
+    /// Each call is a frame, even if one submission holds two of them: every draw uses the frame recorded before it. A
+    /// recording takes one of [`FRAMES_IN_FLIGHT`] places. The place becomes free when the device has executed the
+    /// recording and wgpu has noticed, in a submission or in [`wgpu::Device::poll`]. You may drop an encoder instead: the
+    /// next recording then starts afresh ([`Scene::invalidate`]). Submit recordings in order, because each relies on the
+    /// changes in the ones before it. For an empty scene, nothing is recorded or drawn.
     ///
     /// # Errors
-    /// [`InputError`] for no view, a view of another scene or without a camera, an encoder of another [`wgpu::Instance`] (wgpu
-    /// panics there, which is caught, but the program's panic hook sees it), and if [`FRAMES_IN_FLIGHT`] frames have been recorded that the device has not executed; [`crate::gpu::GpuError`], also for the loss of
-    /// the device.
+    /// [`InputError`] for no view, for a view of another scene or without a camera, and for an encoder of another
+    /// [`wgpu::Instance`]. (wgpu panics there. The panic is caught, but the program's panic hook sees it.) Also if
+    /// [`FRAMES_IN_FLIGHT`] recorded frames await execution. [`crate::gpu::GpuError`], also for the loss of the device.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -97,7 +97,7 @@ impl Scene {
         self.record_frame(encoder, views, None)
     }
 
-    /// Records a frame, with passes of the caller between sampling and model matrices.
+    /// Records a frame, with the caller's passes between sampling and model matrices.
     pub(super) fn record_frame(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -119,7 +119,7 @@ impl Scene {
         self.provide(views)?;
         self.fit(views)?;
         if let Err(error) = self.stage(views) {
-            // Some changes were taken, which the next frame would miss.
+            // Some changes left their queues without being staged, so the next frame would miss them.
             self.is_broken = true;
             return Err(error);
         }
@@ -137,15 +137,15 @@ impl Scene {
             views.iter_mut().for_each(|view| view.recorded(self.frames));
         }
         self.frames += 1;
-        // What was staged counts on all stages.
+        // The staged changes are complete only if all stages were recorded.
         self.is_broken = staged.is_err();
         staged?;
-        // Unless the time advances again, the next frame is as this one.
+        // Unless the time advances again, no time passes between this frame and the next.
         self.step = 0.0;
         Ok(())
     }
 
-    /// Records all stages: in one compute pass, or in one each if their time is taken, or in two with the caller's between.
+    /// Records all stages: in one compute pass, in one pass each if they are timed, or in two passes around the caller's.
     fn record_stages(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -189,7 +189,7 @@ impl Scene {
         }
     }
 
-    /// Records the copies of counts and of watched bones.
+    /// Records the copies of statistics and of watched bones.
     fn count(&mut self, encoder: &mut wgpu::CommandEncoder, views: &mut [&mut View]) {
         if let Some(counts) = &mut self.counts {
             counts.record(encoder, self.frames, &self.objects);
@@ -202,7 +202,7 @@ impl Scene {
         }
     }
 
-    /// What is drawn, object by object.
+    /// The drawables of all objects.
     pub(crate) fn drawables(&self) -> impl Iterator<Item = &dyn Drawable> {
         self.objects.iter().flat_map(Object::drawables)
     }
@@ -211,7 +211,7 @@ impl Scene {
         self.objects.iter().next().is_none()
     }
 
-    /// What a renderer needs of a view and of all objects that are shown; `None` for a scene without objects.
+    /// The renderer's inputs for a view and all shown objects; `None` for a scene without objects.
     pub(crate) fn drawn<'a>(
         &'a self,
         view: &'a View,
@@ -255,7 +255,7 @@ impl Scene {
         Ok(Some((drawn, objects)))
     }
 
-    /// What is drawn instance by instance in a view, from back to front.
+    /// The instances that a view draws one by one, from back to front.
     pub(crate) fn sorted_draws<'a>(&'a self, view: &'a View) -> Option<SortedDraws<'a>> {
         let lists = view.lists.as_ref()?;
         let SortedLists { draws, entries, .. } = lists.sorted.as_ref()?;
@@ -288,7 +288,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Provides pages for what the views see.
+    /// Allocates pages for the instances that the views see.
     fn provide(&mut self, views: &[&mut View]) -> Result<(), Error> {
         let blocks = self.layout.as_ref().map_or(0, |layout| layout.blocks);
         let seen = views.iter().map(|view| Ok(view.select_view(blocks, true)?.1));
@@ -301,7 +301,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Allocates what objects and views need since something was added or grew.
+    /// Allocates buffers for objects and views after an object was added or grew.
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;

@@ -1,4 +1,4 @@
-//! The ground of terrain on the host, and heights that the caller's passes change.
+//! The ground of terrain on the host, and terrain whose heights the caller's passes change.
 
 use crate::gpu::{Staged, Upload as _};
 use crate::scene::Scene;
@@ -11,13 +11,15 @@ use crate::terrain::morph::Morph;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// The ground of a terrain at a position of the world, `x` units east and `z` units south of its origin: height in
-    /// world units, and normal, of the triangle that is drawn there. `None` where the terrain has no patch. It is computed
-    /// on the CPU, from heights that the scene keeps there: those of a terrain made from fields are as they were last read
-    /// ([`Scene::read_ground`]), and unknown where [`Scene::set_patches`] has brought a patch since.
+    /// The ground of a terrain at a world position, `x` units east and `z` units south of the origin. Returns the height in
+    /// world units and the normal, both of the triangle that is drawn there; `None` where the terrain has no patch.
+    ///
+    /// It is computed on the CPU from heights that the scene keeps on the host. For terrain made from fields, these are the
+    /// heights last read ([`Scene::read_ground`]). They are unknown for patches that [`Scene::set_patches`] has brought
+    /// since.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, or no terrain, and for a position that is not finite.
+    /// [`InputError`] for an object that is not of this scene or no terrain, and for a position that is not finite.
     pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
         for (path, value) in [("x", x), ("z", z)] {
             if !value.is_finite() {
@@ -27,19 +29,20 @@ impl Scene {
         Ok(terrain_of(&*self.object_at(terrain)?.kind)?.point_at(x, z))
     }
 
-    /// Lets the fields of a terrain ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields)) show these
-    /// patches, from the next recording on: the first field the first patch, and so on; fields without a patch are not drawn.
-    /// A world that streams keeps its fields, lets passes compute the heights of new patches into them, and says so here. That
-    /// allocates nothing on the device, and waits for nothing.
+    /// Sets the patches that the fields of a terrain
+    /// ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields)) show, from the next recording on. The
+    /// first field shows the first patch, and so on; fields without a patch are not drawn. A streaming world keeps its
+    /// fields, computes the heights of new patches into them, and then calls this function. The call allocates nothing on
+    /// the device, and does not wait.
     ///
-    /// `heights` are two heights in world units between which those of all patches lie: a view that does not see the box
-    /// between them does not draw the patch. [`Scene::read_ground`] finds out the exact ones. Handles of patches that stay where
-    /// they are stay valid; those of others are stale.
+    /// `heights` are two heights in world units that bound those of all patches. Views cull each patch by the box between
+    /// them. [`Scene::read_ground`] reads the exact bounds. Handles of patches that stay in place remain valid; the others
+    /// become stale.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, no terrain, or one that the scene generated; for more patches
-    /// than fields, a patch that is given twice or whose samples `i32` does not count; and for heights that are not finite or
-    /// out of order. Nothing has changed then. [`crate::gpu::GpuError`].
+    /// [`InputError`] for an object that is not of this scene, no terrain, or one that the scene generated; for more
+    /// patches than fields, a patch that is given twice or whose samples exceed the range of `i32`; and for heights that
+    /// are not finite or out of order. Nothing has changed then. [`crate::gpu::GpuError`].
     pub fn set_patches(
         &mut self,
         terrain: ObjectId,
@@ -53,23 +56,23 @@ impl Scene {
         set
     }
 
-    /// Lets the heights of a terrain with a target ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) be
-    /// the blend of its two recipes at another time: from + ⌊(to − from) · time⌋ in integers, so that the picture is that of
-    /// terrain made from these heights. The next frame blends on the device, normals with them; [`Scene::ground`] and
-    /// [`Scene::pick`] answer by the new heights at once. Without a change of the time nothing is blended. The host takes a
-    /// few nanoseconds per sample.
+    /// Sets the time at which a terrain with a target
+    /// ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) blends its two recipes. Heights are from
+    /// + ⌊(to − from) · time⌋ in integers, so the picture equals that of terrain made from these heights. The next frame
+    /// blends heights and normals on the device. [`Scene::ground`] and [`Scene::pick`] use the new heights at once. An
+    /// unchanged time costs nothing. The host takes a few nanoseconds per sample.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, no terrain, or one without a target; for a time outside 0..=1.
-    /// Nothing has changed then.
+    /// [`InputError`] for an object that is not of this scene, no terrain, or one without a target, and for a time outside
+    /// 0..=1. Nothing has changed then.
     pub fn morph_terrain(&mut self, terrain: ObjectId, morph: Morph) -> Result<(), InputError> {
         let entry = self.object_mut(terrain)?;
         terrain_of_mut(&mut *entry.kind)?.morph(&mut entry.instances, morph)
     }
 
-    /// Reads the heights of a terrain made from fields, as the work that was submitted leaves them: [`Scene::ground`] and
-    /// [`Scene::pick`] answer by them from now on, and views cull patches by their lowest and highest points. Pictures show
-    /// new heights without it. Waits for the device.
+    /// Reads back the heights of a terrain made from fields, after all submitted work. From then on, [`Scene::ground`] and
+    /// [`Scene::pick`] use them, and views cull patches by their lowest and highest points. Drawing does not need this
+    /// call: pictures show new heights without it. Waits for the device.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, no terrain, or one that the scene generated;
@@ -79,11 +82,11 @@ impl Scene {
         self.gpu.clone().block_on(self.read_ground_async(terrain))
     }
 
-    /// As `Scene::read_ground`, but completes once the device has finished; see
+    /// Like `Scene::read_ground`, but completes once the device has finished; see
     /// [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
     ///
     /// # Errors
-    /// As `Scene::read_ground`.
+    /// As for `Scene::read_ground`.
     pub async fn read_ground_async(&mut self, terrain: ObjectId) -> Result<(), Error> {
         let fields = terrain_of(&*self.object_at(terrain)?.kind)?.fields()?;
         let heights = fields.read(&self.gpu).await?;

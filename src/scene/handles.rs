@@ -1,22 +1,22 @@
-//! Handles of objects and instances, which never name anything but what they were made for.
+//! Handles of objects and instances. A handle never refers to anything but what it was made for.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::InputError;
 
-/// Tells one scene of the program from all others.
+/// Unique number of a scene within the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct SceneNumber(u64);
 
 impl SceneNumber {
-    /// A number that no other scene has.
+    /// The next unused number.
     fn next() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
     }
 }
 
-/// An object of a scene: terrain, a mesh or a character. Instances of it can be spawned.
+/// Handle of an object in a scene: terrain, a mesh, a relief, a character, or an object of a caller-defined kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ObjectId {
     pub(super) scene: SceneNumber,
@@ -25,13 +25,13 @@ pub struct ObjectId {
 }
 
 impl ObjectId {
-    /// The number of the object in pictures and shaders, from 1 on. A later object may have it after a removal.
+    /// The object's number in pictures and shaders, counted from 1. After a removal, a later object may reuse it.
     pub fn number(&self) -> u32 {
         self.index + 1
     }
 }
 
-/// An instance of an object of a scene.
+/// Handle of an instance in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct InstanceId {
     pub(super) object: ObjectId,
@@ -40,19 +40,19 @@ pub struct InstanceId {
 }
 
 impl InstanceId {
-    /// The object.
+    /// The handle of its object.
     pub fn object(&self) -> ObjectId {
         self.object
     }
 
-    /// The number of the instance in its object in pictures and shaders, from 0 on. A later instance may have it after a
-    /// removal.
+    /// The instance's number within its object in pictures and shaders, counted from 0. After a removal, a later instance
+    /// may reuse it.
     pub fn number(&self) -> u32 {
         self.index
     }
 }
 
-/// Values of one scene in slots that are used again, each time with another generation.
+/// Values of one scene in reusable slots. Each reuse has a new generation.
 #[derive(Debug)]
 pub(super) struct Slots<T> {
     scene: SceneNumber,
@@ -66,12 +66,12 @@ impl<T> Default for Slots<T> {
 }
 
 impl<T> Slots<T> {
-    /// The scene whose values these are.
+    /// The scene that the values belong to.
     pub fn scene(&self) -> SceneNumber {
         self.scene
     }
 
-    /// Adds a value to the first free slot; returns the slot and its generation.
+    /// Stores a value in the first free slot. Returns the slot and its generation.
     pub fn insert(&mut self, value: T) -> [u32; 2] {
         let free = self.slots.iter().position(|(_, value)| value.is_none());
         let at = free.unwrap_or_else(|| {
@@ -82,19 +82,19 @@ impl<T> Slots<T> {
         [at as u32, self.slots[at].0]
     }
 
-    /// The value in a slot, if it is of this generation.
+    /// The value in a slot, if it has this generation.
     pub fn get(&self, [index, generation]: [u32; 2]) -> Option<&T> {
         let (now, value) = self.slots.get(index as usize)?;
         value.as_ref().filter(|_| *now == generation)
     }
 
-    /// As [`Slots::get`], to be changed.
+    /// Mutable form of [`Slots::get`].
     pub fn get_mut(&mut self, [index, generation]: [u32; 2]) -> Option<&mut T> {
         let (now, value) = self.slots.get_mut(index as usize)?;
         value.as_mut().filter(|_| *now == generation)
     }
 
-    /// Removes a value; its handles are stale from then on.
+    /// Removes a value. Its handles become stale.
     pub fn remove(&mut self, [index, generation]: [u32; 2]) -> Option<T> {
         let (now, value) = self.slots.get_mut(index as usize)?;
         if *now != generation {
@@ -116,19 +116,19 @@ impl<T> Slots<T> {
         self.slots.iter().filter_map(|(_, value)| value.as_ref())
     }
 
-    /// All values, slot by slot, to be changed.
+    /// All values, slot by slot, mutable.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.slots.iter_mut().filter_map(|(_, value)| value.as_mut())
     }
 }
 
-/// The error of a handle whose object or instance was removed.
+/// The error for a stale handle: its object or instance was removed.
 pub(super) fn stale(path: &str, index: u32, generation: u32) -> InputError {
     let value = format!("{index} (generation {generation}), which was removed");
     InputError::new(path, value, "must still exist")
 }
 
-/// The error of an instance's handle in a scene that does not have the instance.
+/// The error for the handle of an instance that the scene does not have.
 pub(super) fn missing(scene: SceneNumber, instance: InstanceId) -> InputError {
     match instance.object.scene == scene {
         true => stale("instance", instance.index, instance.generation),
@@ -136,12 +136,12 @@ pub(super) fn missing(scene: SceneNumber, instance: InstanceId) -> InputError {
     }
 }
 
-/// The error of an instance that is no character.
+/// The error for an instance that is not a character.
 pub(super) fn no_character() -> InputError {
     InputError::new("instance", "no character", "must be an instance of a character")
 }
 
-/// The error of a handle that another scene gave.
+/// The error for a handle of another scene.
 pub(super) fn foreign(path: &str) -> InputError {
     InputError::new(path, "of another scene", "must be of this scene")
 }

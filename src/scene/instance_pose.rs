@@ -1,4 +1,4 @@
-//! The pose of an instance on the host, and what an engine's own kinematics makes of it.
+//! An instance's pose on the host, for the caller's own kinematics.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -10,12 +10,13 @@ use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::matrices::affine_of;
 
-/// The pose of an instance of a character on the host ([`Scene::pose`]): the transforms of all of its bones, which the caller
-/// may change, for [`Poses::write`](crate::scene::Poses::write) or for itself. Bones are given by index ([`Scene::bone`]).
+/// The pose of a character's instance on the host ([`Scene::pose`]): the transforms of all of its bones. The caller may
+/// change them, for [`Poses::write`](crate::scene::Poses::write) or its own use. Bones are given by index
+/// ([`Scene::bone`]).
 ///
 /// # Examples
 ///
-/// A head that looks at a point of the world, at most 1.2 radians aside from where its clip has it.
+/// A head that looks at a point of the world, but turns at most 1.2 radians away from its clip's pose.
 ///
 /// ```no_run
 /// use glam::{DQuat, DVec3};
@@ -30,7 +31,7 @@ use crate::scene::matrices::affine_of;
 /// }
 /// ```
 ///
-/// `examples/reach` has inverse kinematics on two bones.
+/// `examples/reach` shows inverse kinematics on two bones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InstancePose {
     parents: Vec<Option<u32>>,
@@ -44,22 +45,22 @@ impl InstancePose {
         Self { parents, pose, world_from_model }
     }
 
-    /// The transform of each bone in its parent's space.
+    /// The local transform of each bone, in its parent's space.
     pub fn locals(&self) -> &[Transform] {
         &self.pose.locals
     }
 
-    /// The transform of each bone from its space to the model's: three rows.
+    /// The model matrix of each bone: three rows of the transform from bone space to model space.
     pub fn model_matrices(&self) -> &[Affine] {
         &self.pose.model_matrices
     }
 
-    /// The transform from the model's space to the world: the instance's placement.
+    /// The transform from model space to the world: the instance's placement.
     pub fn world_from_model(&self) -> DAffine3 {
         self.world_from_model
     }
 
-    /// The transform of a bone in its parent's space, as [`Poses::write`](crate::scene::Poses::write) takes it.
+    /// The local transform of a bone, in its parent's space, as [`Poses::write`](crate::scene::Poses::write) takes it.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have.
@@ -67,7 +68,7 @@ impl InstancePose {
         self.pose.locals.get(bone).copied().ok_or_else(|| self.missing(bone))
     }
 
-    /// The transform from a bone's space to the world. It contains the scales of the instance and of the bones above.
+    /// The transform from bone space to the world. It contains the scales of the instance and of the bones above.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have.
@@ -76,7 +77,7 @@ impl InstancePose {
         Ok(self.world_from_model * affine_of(matrix))
     }
 
-    /// The position of a bone's origin, which is its joint, in world coordinates.
+    /// The world coordinates of a bone's origin, its joint.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have.
@@ -84,7 +85,7 @@ impl InstancePose {
         Ok(self.world_from_bone(bone)?.translation)
     }
 
-    /// Replaces the transform of a bone in its parent's space. The bones below follow.
+    /// Replaces the local transform of a bone, in its parent's space. The bones below follow.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have, and as [`Transform::checked`].
@@ -100,12 +101,11 @@ impl InstancePose {
         Ok(())
     }
 
-    /// Turns a bone about its origin by a rotation about axes of the world. The bones below follow. It is exact where the
-    /// scale of the instance and of the bones above is the same along all axes; elsewhere it is the nearest rotation in the
-    /// parent's space.
+    /// Turns a bone about its origin by a rotation in world axes. The bones below follow. The result is exact if the
+    /// instance and the bones above have uniform scale. Otherwise, the nearest rotation in the parent's space is used.
     ///
     /// # Errors
-    /// [`InputError`] for a bone that the skeleton does not have, for a rotation that is not finite or has length 0, and where
+    /// [`InputError`] for a bone that the skeleton does not have, for a rotation that is not finite or has length 0, and if
     /// the instance or a bone above is scaled by 0.
     pub fn turn(&mut self, bone: usize, rotation: DQuat) -> Result<(), InputError> {
         let local = self.local(bone)?;
@@ -127,10 +127,10 @@ impl InstancePose {
         self.set_local(bone, Transform { rotation: turned.to_array().map(|part| part as f32), ..local })
     }
 
-    /// The offset in a bone's space ([`Scene::attach`]) of one that is given in world units along the bone's axes: a mesh that
-    /// is attached with it is `offset.translation` world units away from the bone's origin, and `offset.scale` times as
-    /// large as its model, whatever the scale of the instance and of its bones in this pose. Rotations stay as they are. Where a
-    /// bone's scale differs from axis to axis, a rotated mesh is sheared, and the length of each of its axes is right.
+    /// Converts an offset in world units along a bone's axes to bone space, for [`Scene::attach`]. A mesh attached with the
+    /// result is `offset.translation` world units away from the bone's origin, and `offset.scale` times the size of its
+    /// model. This holds for any scale of the instance and of its bones in this pose. Rotations stay unchanged. If a bone's
+    /// scale differs between axes, a rotated mesh is sheared, but each of its axes has the right length.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have, for one that is scaled by 0, and as [`Transform::checked`].
@@ -155,7 +155,7 @@ impl InstancePose {
     }
 }
 
-/// The rotation of a matrix that is one, but for shear and scale.
+/// The rotation of a matrix, without its shear and scale.
 fn rotation_of(matrix: DMat3) -> DQuat {
     let x = matrix.x_axis.normalize();
     let y = (matrix.y_axis - x * x.dot(matrix.y_axis)).normalize();
@@ -163,9 +163,9 @@ fn rotation_of(matrix: DMat3) -> DQuat {
 }
 
 impl Scene {
-    /// The pose of an instance of a character at the time of the scene, as its clip and its layers have it: computed on the
-    /// CPU, equal to what the device computes within rounding, in some microseconds for a hundred bones. What is written to
-    /// driven bones ([`Poses::write`](crate::scene::Poses::write)) is not in it.
+    /// The pose of a character's instance at the scene's time, from its clip and layers. It is computed on the CPU, in a
+    /// few microseconds for a hundred bones, and equals the device's pose within rounding. Writes to driven bones
+    /// ([`Poses::write`](crate::scene::Poses::write)) are not included.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character.
@@ -184,7 +184,7 @@ mod tests {
     use super::*;
     use crate::asset::Bone;
 
-    /// A chain of three bones, each two units along +Y of the one above, whose first is scaled.
+    /// A chain of three bones, each two units along +Y from its parent. The first is scaled.
     fn chain(scale: [f32; 3], world_from_model: DAffine3) -> InstancePose {
         let bone = |index: u32| {
             let rest = Transform {
@@ -200,7 +200,7 @@ mod tests {
         InstancePose::new(&skeleton, Pose { locals, model_matrices }, world_from_model)
     }
 
-    /// What is below a bone turns about its joint as in the world, mirrored or not.
+    /// Bones below turn about the joint as in the world, mirrored or not.
     #[test]
     fn bones_turn_about_axes_of_the_world() {
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -2.0).normalize(), 0.7);
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// An offset in world units has its length and its size in the world.
+    /// An offset in world units keeps its length and size in the world.
     #[test]
     fn offsets_in_world_units_undo_scales() {
         let placed = DAffine3::from_scale_rotation_translation(

@@ -1,4 +1,4 @@
-//! The instances of one object on the host, and which of them the device does not know yet.
+//! The instances of one object on the host, with the changes that are not uploaded yet.
 
 use crate::asset::transform::Transform;
 use crate::scene::placement::Placement;
@@ -20,7 +20,7 @@ pub(super) const NOBODY: SceneInstance = SceneInstance {
     bounding_sphere: [0.0; 4],
 };
 
-/// Changed elements this close to each other are written together, with those in between.
+/// Largest gap between changed elements that are uploaded together, with the elements in between.
 const GAP: usize = 4;
 
 /// The instances of an object.
@@ -28,24 +28,24 @@ const GAP: usize = 4;
 pub(super) struct Instances {
     all: Vec<SceneInstance>,
     generations: Vec<u32>,
-    /// Indices that are free; the last is used first.
+    /// Free indices; the last is used first.
     free: Vec<u32>,
-    /// Number of instances that exist and are mirrored.
+    /// Number of existing instances that are mirrored.
     mirrored: usize,
     changed: Changed,
     last: Option<Last>,
 }
 
-/// The instances of the last frame, where they are kept.
+/// The instances of the last frame, for motion history.
 #[derive(Debug)]
 struct Last {
     all: Vec<SceneInstance>,
-    /// Which of them the device does not know yet.
+    /// Elements that must be uploaded.
     changed: Changed,
 }
 
 impl Instances {
-    /// Room for at least `capacity` instances.
+    /// Empty storage for at least `capacity` instances.
     pub fn new(capacity: usize) -> Self {
         let changed = Changed::default();
         let mut instances =
@@ -54,24 +54,24 @@ impl Instances {
         instances
     }
 
-    /// Number of instances that there is room for, a multiple of [`BLOCK`].
+    /// Number of instances there is room for, a multiple of [`BLOCK`].
     pub fn capacity(&self) -> usize {
         self.all.len()
     }
 
-    /// Number of instances that exist.
+    /// Number of existing instances.
     pub fn alive(&self) -> usize {
         self.all.len() - self.free.len()
     }
 
-    /// Whether there are instances that are not mirrored, and whether there are some that are. Without any instance, the
-    /// former is said.
+    /// Whether there are instances that are not mirrored, and whether there are mirrored ones. Without any instance:
+    /// `[true, false]`.
     pub fn sides(&self) -> [bool; 2] {
         let plain = self.alive() - self.mirrored;
         [plain > 0 || self.mirrored == 0, self.mirrored > 0]
     }
 
-    /// Makes room for at least `capacity` instances. Everything counts as changed then.
+    /// Makes room for at least `capacity` instances. Marks all as changed.
     pub fn grow(&mut self, capacity: usize) {
         let before = self.all.len();
         let after = capacity.max(1).next_multiple_of(BLOCK as usize).max(before);
@@ -84,7 +84,7 @@ impl Instances {
         self.change_all();
     }
 
-    /// Counts everything as changed.
+    /// Marks all instances as changed.
     pub fn change_all(&mut self) {
         self.changed.all(self.all.len());
         if let Some(last) = &mut self.last {
@@ -92,13 +92,13 @@ impl Instances {
         }
     }
 
-    /// Keeps the instances of the last frame from now on, or does no longer.
+    /// Sets whether the instances of the last frame are kept from now on.
     pub fn keep_last(&mut self, keeps: bool) {
         self.last = keeps.then(|| Last { all: self.all.clone(), changed: Changed::default() });
         self.change_all();
     }
 
-    /// Adds an instance, if there is room; returns its index and its generation.
+    /// Adds an instance. Returns its index and generation; `None` if there is no room.
     pub fn spawn(&mut self, placement: &Placement, sphere: &BoundingSphere) -> Option<[u32; 2]> {
         let index = self.free.pop()?;
         let flags = instance_flags_word(INSTANCE_ALIVE | INSTANCE_CASTS, u16::MAX.into());
@@ -108,7 +108,7 @@ impl Instances {
             bound(instance, sphere);
         });
         if let Some(last) = &mut self.last {
-            // It stands where it is, and did not come from where another was.
+            // A new instance has not moved; the index may have belonged to another one elsewhere.
             last.all[index as usize] = self.all[index as usize];
             last.changed.add(index, self.all.len());
         }
@@ -123,20 +123,20 @@ impl Instances {
         self.free.push(index);
     }
 
-    /// Whether an instance of this generation exists.
+    /// Whether an instance with this generation exists.
     pub fn contains(&self, [index, generation]: [u32; 2]) -> bool {
         let index = index as usize;
         self.generations.get(index) == Some(&generation) && self.all[index].flags & INSTANCE_ALIVE != 0
     }
 
-    /// Index and generation of all instances that exist, in ascending order.
+    /// Index and generation of every existing instance, in ascending order.
     pub fn each(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         let all = self.all.iter().zip(&self.generations).zip(0_u32..);
         let alive = all.filter(|((instance, _), _)| instance.flags & INSTANCE_ALIVE != 0);
         alive.map(|((_, generation), index)| [index, *generation])
     }
 
-    /// All instances, those that do not exist too.
+    /// All instances, including those that do not exist.
     pub fn all(&self) -> &[SceneInstance] {
         &self.all
     }
@@ -152,8 +152,8 @@ impl Instances {
         self.changed.add(index, self.all.len());
     }
 
-    /// Takes the runs of instances whose last frame's state the device does not know, each with the index of its first. Call
-    /// it once a frame, before [`Instances::take_changed`]. What changed in the last frame is taken once more, as it is.
+    /// Takes the runs of instances whose last-frame state must be uploaded, each with the index of its first. Call it once
+    /// a frame, before [`Instances::take_changed`]. Changes of the last frame are taken again with their present values.
     pub fn take_last(&mut self) -> Vec<(usize, Vec<SceneInstance>)> {
         let (Some(last), count) = (&mut self.last, self.all.len()) else { return Vec::new() };
         self.changed.indices.iter().for_each(|index| last.changed.add(*index, count));
@@ -166,7 +166,7 @@ impl Instances {
         runs
     }
 
-    /// Takes the runs of instances that have changed, each with the index of its first.
+    /// Takes the runs of changed instances, each with the index of its first.
     pub fn take_changed(&mut self) -> Vec<(usize, &[SceneInstance])> {
         let all = &self.all;
         self.changed.take(all.len()).into_iter().map(|[from, to]| (from, &all[from..to])).collect()
@@ -184,7 +184,7 @@ pub(super) fn set_casts(instance: &mut SceneInstance, casts: bool) {
     instance.flags = instance.flags & !INSTANCE_CASTS | if casts { INSTANCE_CASTS } else { 0 };
 }
 
-/// Sets the position, rotation and scale of an instance. The placement must be checked.
+/// Sets position, rotation and scale of an instance. The placement must have been checked.
 pub(super) fn place(instance: &mut SceneInstance, placement: &Placement) {
     instance.cell = placement.cell;
     instance.offset = placement.offset.into();
@@ -192,12 +192,12 @@ pub(super) fn place(instance: &mut SceneInstance, placement: &Placement) {
     instance.scale = placement.scale.into();
 }
 
-/// Sets the sphere around an instance.
+/// Sets the bounding sphere of an instance.
 pub(super) fn bound(instance: &mut SceneInstance, sphere: &BoundingSphere) {
     instance.bounding_sphere = sphere.center.extend(sphere.radius).into();
 }
 
-/// Which of a number of elements have changed.
+/// Set of changed elements.
 #[derive(Debug, Default)]
 pub(super) struct Changed {
     is_changed: Vec<bool>,
@@ -205,7 +205,7 @@ pub(super) struct Changed {
 }
 
 impl Changed {
-    /// Adds an element of `count`.
+    /// Marks one of `count` elements.
     pub fn add(&mut self, index: u32, count: usize) {
         self.is_changed.resize(count, false);
         if !std::mem::replace(&mut self.is_changed[index as usize], true) {
@@ -213,13 +213,12 @@ impl Changed {
         }
     }
 
-    /// Adds all of `count` elements.
+    /// Marks all of `count` elements.
     pub fn all(&mut self, count: usize) {
         (0..count as u32).for_each(|index| self.add(index, count));
     }
 
-    /// Takes the changes as runs, each from its first element to before its end. Runs that are close to each other are
-    /// joined.
+    /// Takes the changes as runs, each a half-open range of indices. Runs that are close to each other are joined.
     pub fn take(&mut self, count: usize) -> Vec<[usize; 2]> {
         self.indices.sort_unstable();
         let mut runs: Vec<[usize; 2]> = Vec::new();
@@ -272,7 +271,7 @@ mod tests {
         assert_eq!(instances.sides(), [true, true]);
         instances.despawn(plain);
         assert_eq!(instances.sides(), [true, false]);
-        // Its place is used again, not mirrored.
+        // The index is reused, for an instance that is not mirrored.
         assert_eq!(instances.spawn(&Placement::default(), &SPHERE), Some([plain, 1]));
         assert_eq!(instances.sides(), [true, false]);
     }
@@ -292,7 +291,7 @@ mod tests {
             (known, runs.iter().map(|(_, run)| run.len()).sum::<usize>())
         };
         assert_eq!(frame(&mut instances), ([0; 64], 64));
-        // All of them changed in the frame before, so all are taken once more.
+        // All changed in the frame before, so all are taken again.
         assert_eq!(frame(&mut instances), ([0; 64], 64));
         let at_9 = |word| std::array::from_fn(|at| if at == 9 { word } else { 0 });
         instances.change(9, |instance| instance.user_data = 1);
@@ -301,7 +300,7 @@ mod tests {
         assert_eq!(frame(&mut instances), (at_9(1), 1));
         assert_eq!(frame(&mut instances), (at_9(2), 1));
         assert_eq!(frame(&mut instances), (at_9(2), 0));
-        // A new instance was where it is.
+        // A new instance has not moved.
         let [index, _] = instances.spawn(&Placement::default(), &SPHERE).expect("room");
         let last = instances.take_last();
         assert!(last.iter().any(|(from, run)| {

@@ -1,4 +1,4 @@
-//! Clips above clips: layers, blends, and root motion.
+//! Animation layers, cross-fades and root motion.
 
 use crate::InputError;
 use crate::asset::Transform;
@@ -8,16 +8,16 @@ use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::placement::Play;
 
 impl Scene {
-    /// Lets a character play a clip on a layer, over what its base and the layers below play, with a weight from 0, where the
-    /// layer is not heard, to 1, where nothing else is heard on its bones. Layers are counted from 1
+    /// Plays a clip on a layer, over the base and the layers below, with a weight. At weight 0 the layer has no effect; at
+    /// 1 it replaces everything below on its bones. Layers are counted from 1
     /// ([`CharacterOptions::layers`](crate::scene::CharacterOptions::layers)). Rotations are blended along the chord
-    /// ([`animation::layers`](crate::animation::layers)); weights of morph targets are those of the base.
+    /// ([`animation::layers`](crate::animation::layers)). Weights of morph targets always come from the base.
     ///
-    /// While a layer is heard, all of the instance's bones are sampled in every frame that sees it, and it is culled by a
+    /// While a layer has a weight, all of the instance's bones are sampled in every frame that sees it. Culling then uses a
     /// sphere that holds any blend of the model's clips.
     ///
     /// # Errors
-    /// As [`Scene::play`], and [`InputError`] for a layer that the character does not have and a weight outside 0..=1.
+    /// As for [`Scene::play`]; [`InputError`] for a layer that the character does not have, and for a weight outside 0..=1.
     pub fn play_layer(
         &mut self,
         instance: InstanceId,
@@ -32,11 +32,11 @@ impl Scene {
         self.bound_again(instance)
     }
 
-    /// Lets the weight of a layer change evenly to another one, in so many seconds of the scene's time from now on.
+    /// Changes the weight of a layer linearly to `weight`, over `seconds` of the scene's time from now on.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, for a layer that it does not have, for a
-    /// weight outside 0..=1, and seconds outside 0..=1e6.
+    /// [`InputError`] for an instance that does not exist any more or is no character, for a layer that it does not have,
+    /// for a weight outside 0..=1, and for seconds outside 0..=1e6.
     pub fn fade_layer(
         &mut self,
         instance: InstanceId,
@@ -49,11 +49,11 @@ impl Scene {
         self.bound_again(instance)
     }
 
-    /// Changes to another clip in so many seconds: a layer, which must have all bones, plays it with a weight that grows from 0
-    /// to 1; then the base takes it over, and the layer is free again.
+    /// Cross-fades to another clip over `seconds`. A layer, which must have all bones, plays the clip with a weight that
+    /// grows from 0 to 1. Then the base takes the clip over, and the layer is free again.
     ///
     /// # Errors
-    /// As [`Scene::play_layer`] and [`Scene::fade_layer`], and [`InputError`] for a layer with a mask.
+    /// As for [`Scene::play_layer`] and [`Scene::fade_layer`]; [`InputError`] for a layer with a mask.
     pub fn cross_fade(
         &mut self,
         instance: InstanceId,
@@ -69,14 +69,14 @@ impl Scene {
         self.bound_again(instance)
     }
 
-    /// The motion that was taken out of the clip of an instance's base ([`CharacterOptions::root_motion`](crate::scene::CharacterOptions::root_motion)) between two times of
-    /// the scene, in seconds: a rotation about +Y and a translation, in the space of the model at the first time. The caller
-    /// moves the instance by it, as far as it wants to: its placement times this is its new placement
-    /// ([`Placement::moved_by`](crate::scene::Placement::moved_by)).
+    /// The root motion of an instance between two scene times in seconds, as extracted from the clip of its base
+    /// ([`CharacterOptions::root_motion`](crate::scene::CharacterOptions::root_motion)). It is a rotation about +Y and a
+    /// translation, in model space at the first time. The caller decides how far to apply it. The instance's placement
+    /// times this motion is its new placement ([`Placement::moved_by`](crate::scene::Placement::moved_by)).
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, is no character, or keeps its motion, and for times that are
-    /// not finite.
+    /// [`InputError`] for an instance that does not exist any more, is no character, or has no extracted motion, and for
+    /// times that are not finite.
     pub fn root_motion(&self, instance: InstanceId, from: f64, to: f64) -> Result<Transform, InputError> {
         let character = self.object_of(instance)?.character().ok_or_else(no_character)?;
         character.root_motion(instance.index, from, to)
@@ -86,7 +86,7 @@ impl Scene {
         self.instance_mut(instance)?.character_mut().ok_or_else(no_character)
     }
 
-    /// Sets the sphere of an instance that plays something else.
+    /// Updates the sphere of an instance after its clip or layers changed.
     fn bound_again(&mut self, instance: InstanceId) -> Result<(), InputError> {
         self.instance_mut(instance)?.bound_again(instance.index);
         self.carry(instance)

@@ -1,4 +1,4 @@
-//! How the instances and draws of all objects lie in the buffers of a scene and of its views.
+//! Layout of all objects' instances and draws in the buffers of a scene and its views.
 
 use std::sync::Arc;
 
@@ -11,45 +11,45 @@ use crate::scene::handles::ObjectId;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
-/// The place of an object in the buffers.
+/// An object's place in the buffers.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ObjectRange {
-    /// Index of its first instance.
+    /// Index of the first instance.
     pub first: u32,
-    /// Word of its first list in the lists of a view.
+    /// Word offset of the first list in a view's lists.
     pub first_list: u32,
-    /// Index of its first draw in the draws of a view.
+    /// Index of the first draw in a view's draws.
     pub first_draw: u32,
 }
 
-/// Buffers of all instances, as large as the objects need.
+/// Instance buffers of a scene, as large as the objects need.
 #[derive(Debug)]
 pub(crate) struct Layout {
-    /// Counts the layouts of a scene: what was prepared for another is out of date.
+    /// Number of the layout in its scene. Jobs prepared for another number are outdated.
     pub version: u64,
     pub instances: Buffer<SceneInstance>,
-    /// The same as they were in the last frame, if it is kept; else the same buffer.
+    /// Last frame's instances with motion history, else the same buffer as `instances`.
     pub last_instances: Buffer<SceneInstance>,
     pub keeps_last: bool,
-    /// The allowed displacement of each instance, in its model's units; −1 for those that no view sees.
+    /// Allowed displacement per instance, in its model's units; −1 for instances that no view sees.
     pub allowed: Buffer<f32>,
     pub objects: Buffer<LodObject>,
     pub object_count: u32,
-    /// The object of each block.
+    /// Object per block.
     pub block_objects: Buffer<u32>,
     /// Number of blocks, words of lists, and draws.
     pub blocks: u32,
     pub list_words: u32,
-    /// The draws of a view that sees nothing.
+    /// Draws of a view that sees nothing.
     pub draws: Vec<SceneDraw>,
-    /// The parts of instances that are drawn one by one.
+    /// Parts with sorted draws.
     pub sorted: Buffer<SortedDraw>,
-    /// What statistics need to know of the objects.
+    /// Objects, for statistics.
     pub counted: Arc<Counted>,
 }
 
 impl Layout {
-    /// Allocates the buffers of objects that were laid out one after the other, up to `end`.
+    /// Allocates the buffers for objects laid out one after the other, up to `end`.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -86,24 +86,24 @@ impl Layout {
     }
 }
 
-/// The errors of levels as kernels see them. Levels that do not exist have the largest number.
+/// Level errors in kernel format. Missing levels get the largest number.
 pub(super) fn error_vectors(errors: &[f32]) -> [Vec4; OBJECT_LEVELS as usize / 4] {
     let error = |at: usize| errors.get(at).copied().unwrap_or(f32::MAX);
     std::array::from_fn(|at| Vec4::from_array(std::array::from_fn(|lane| error(4 * at + lane))))
 }
 
-/// An object whose draws are counted.
+/// An object with counted draws.
 #[derive(Debug, Clone)]
 pub(super) struct CountedObject {
     pub object: ObjectId,
-    /// The first draw of each of its chunks.
+    /// First draw of each chunk.
     pub first_draws: Vec<u32>,
     pub parts: u32,
     pub levels: u32,
     pub mesh_fraction: f32,
 }
 
-/// All objects of a layout whose draws are counted.
+/// All objects of a layout with counted draws.
 #[derive(Debug)]
 pub(crate) struct Counted {
     pub(super) objects: Vec<CountedObject>,

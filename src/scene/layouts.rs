@@ -1,5 +1,5 @@
-//! The bind groups with which a scene is drawn, and their layouts. Group 0 is the view, group 1 the object, group 2 the
-//! surface, and group 3 is left to the caller's shading.
+//! Bind groups for drawing a scene, and their layouts. Group 0 is the view, group 1 the object, group 2 the surface, and
+//! group 3 belongs to the caller's shading.
 
 use crate::asset::Affine;
 use crate::gpu::bindings::render::{scene_mesh, scene_relief, scene_terrain};
@@ -10,36 +10,36 @@ use crate::shared::render::scene_instances::SceneObject;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 
-/// The layouts of all shaders of a scene. Those of the view are the same in all, and those of the object in all shaders
-/// of meshes, so that pipelines can change while the groups stay. Two values on one device may be mixed.
+/// Bind group layouts of all scene shaders. All shaders share the view's layouts, and all mesh shaders share the object's,
+/// so that pipelines can change while the groups stay bound. Two values on one device are interchangeable.
 #[derive(Debug, Clone)]
 pub(crate) struct SceneLayouts {
-    /// Of meshes with materials.
+    /// For meshes with materials.
     pub mesh: Layouts,
-    /// Of meshes with relief.
+    /// For relief-mapped meshes.
     pub relief: Layouts,
-    /// Of terrain.
+    /// For terrain.
     pub terrain: Layouts,
-    /// Group 1 of kinds of the caller's.
+    /// Group 1 of caller-defined kinds.
     own_object: wgpu::BindGroupLayout,
-    /// What views without a shadow bind.
+    /// Bindings for views without a shadow.
     shadow: ShadowBindings,
 }
 
-/// The instances of a scene in a view, which have an element each.
+/// Buffers with one element per instance of a scene, for one view.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InstancesInView<'a> {
-    /// The transforms from the model's space to the corner of the view's cell, and as many for the last frame, if it is kept.
+    /// Transforms from model space to the corner of the view's cell. With motion history, as many of the last frame follow.
     pub placements: &'a Buffer<Affine>,
-    /// All instances of the scene.
+    /// Instances of the scene.
     pub instances: &'a Buffer<SceneInstance>,
-    /// The same in the last frame.
+    /// Instances in the last frame.
     pub last_instances: &'a Buffer<SceneInstance>,
-    /// What the view decided in the last frame.
+    /// The view's decisions in the last frame.
     pub last_decisions: &'a Buffer<u32>,
 }
 
-/// The sampler of sun shadows, and a map for views that have none.
+/// The sampler of shadow maps, and a map for views without a shadow.
 #[derive(Debug, Clone)]
 struct ShadowBindings {
     sampler: wgpu::Sampler,
@@ -61,7 +61,7 @@ impl ShadowBindings {
     }
 }
 
-/// A map of `size` × `size` texels for the shadow of the sun.
+/// A sun's shadow map of `size` × `size` texels.
 pub(crate) fn shadow_map(gpu: &Gpu, size: u32) -> wgpu::Texture {
     gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some("sun shadow"),
@@ -75,7 +75,7 @@ pub(crate) fn shadow_map(gpu: &Gpu, size: u32) -> wgpu::Texture {
     })
 }
 
-/// The format of the maps of shadows.
+/// Texture format of shadow maps.
 pub(crate) const SHADOW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 impl SceneLayouts {
@@ -93,7 +93,7 @@ impl SceneLayouts {
         })
     }
 
-    /// Group 0: a view, the instances of the scene in it, and the map of its shadow, if it has one.
+    /// Group 0: a view, the scene's instances in it, and its shadow map, if any.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -116,7 +116,7 @@ impl SceneLayouts {
         group.bind(gpu, &self.mesh)
     }
 
-    /// Group 1 of a terrain in a view.
+    /// Group 1: a terrain in a view.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -124,7 +124,7 @@ impl SceneLayouts {
         scene_terrain::Group1 { ground }.bind(gpu, &self.terrain)
     }
 
-    /// Group 1 of an object of a kind of the caller's.
+    /// Group 1: an object of a caller-defined kind.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -154,7 +154,7 @@ impl SceneLayouts {
     }
 }
 
-/// What shaders of the caller's kinds know of an object: `scene_object` of `wgsl/render/scene_instances.wgsl`.
+/// Object bindings in shaders of caller-defined kinds: `scene_object` of `wgsl/render/scene_instances.wgsl`.
 const OWN_OBJECT: wgpu::BindGroupLayoutDescriptor<'static> = wgpu::BindGroupLayoutDescriptor {
     label: Some("object of a kind"),
     entries: &[wgpu::BindGroupLayoutEntry {

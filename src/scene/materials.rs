@@ -1,4 +1,4 @@
-//! What changes the materials of objects.
+//! Changing the materials and images of objects.
 
 use image::RgbaImage;
 
@@ -13,25 +13,26 @@ use crate::scene::object::Object;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Replaces a material of a mesh or a character, by its name or its index in the model. All instances show it from the
-    /// next frame on. Images are those of the model, by index; [`Scene::set_image`] replaces them and adds others.
+    /// Replaces a material of a mesh or a character, given by its name or its index in the model. All instances show it
+    /// from the next frame on. Images are given by their index in the model; [`Scene::set_image`] replaces them and adds
+    /// others.
     ///
-    /// Colours, cutoffs, normal scales, and textures among the images that the materials with which it is drawn show
-    /// already are written into buffers. Another texture or sampling is uploaded at once with those of these materials:
-    /// that allocates, and a render bundle must be made anew.
+    /// Cheap changes are colours, cutoffs, normal scales, and textures that are already uploaded with the materials drawn
+    /// together with this one. They only write into buffers. Any other texture or sampling is uploaded at once, with the
+    /// textures of these materials. That allocates memory, and render bundles must be made anew.
     ///
-    /// The first material with [`Alpha::Mask`] or
-    /// [`Alpha::Dithered`] among opaque ones, the first with a normal map, and the first
-    /// or last texture of a material that is drawn alone, may need a pipeline that a renderer does not have: call [`Renderer::prepare`](crate::render::Renderer::prepare), which
-    /// compiles what is missing. Otherwise [`Renderer::draw`](crate::render::Renderer::draw) says that the object is not
-    /// compiled.
+    /// Some changes may need a pipeline that a renderer does not have: the first material with [`Alpha::Mask`] or
+    /// [`Alpha::Dithered`] among opaque ones, the first with a normal map, and the first or last texture of a material that
+    /// is drawn alone. Then call [`Renderer::prepare`](crate::render::Renderer::prepare), which compiles the missing ones.
+    /// Without it, [`Renderer::draw`](crate::render::Renderer::draw) reports that the object is not compiled.
     ///
-    /// Whether a material is blended stays as it was: blended surfaces are drawn in a layer of their own.
+    /// A material cannot change between blended and not blended, because blended surfaces are drawn in a layer of their
+    /// own.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for a material or an image that the
-    /// model does not have, for values out of range, for a change from or to blending, and for a sampling that differs from that of the other materials with
-    /// which it is drawn; [`crate::gpu::GpuError`]. The material stays what it was then.
+    /// model does not have, for values out of range, for a change from or to blending, and for a sampling that differs from
+    /// the other materials drawn together with this one; [`crate::gpu::GpuError`]. The material then stays unchanged.
     pub fn set_material(&mut self, object: ObjectId, material: &str, new: &Material) -> Result<(), Error> {
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let mut staged = std::mem::take(&mut self.staged);
@@ -59,14 +60,15 @@ impl Scene {
         set
     }
 
-    /// Replaces an image of a mesh or a character, wherever its materials use it, or adds one: `index` is that of the image
-    /// in the model, or the number of images there are. Colours are sRGB with linear alpha, normal maps linear. The image is
-    /// uploaded at once with those that lie in the same array: that allocates, and a render bundle must be made anew.
+    /// Replaces an image of a mesh or a character in all materials that use it, or adds one. `index` is the image's index
+    /// in the model; the number of images adds a new one. Colours are sRGB with linear alpha, normal maps linear. The image
+    /// is uploaded at once, with the other images in its texture array. That allocates memory, and render bundles must be
+    /// made anew.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels or
-    /// larger than the device's textures, and for an index beyond; [`crate::gpu::GpuError`]. The images stay what they were
-    /// then.
+    /// larger than the device's textures, and for an index above the number of images; [`crate::gpu::GpuError`]. The images
+    /// then stay unchanged.
     pub fn set_image(&mut self, object: ObjectId, index: usize, image: RgbaImage) -> Result<(), Error> {
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let mut staged = std::mem::take(&mut self.staged);
@@ -85,7 +87,7 @@ impl Scene {
         set
     }
 
-    /// A material of a mesh or a character, by its name or its index in the model.
+    /// A material of a mesh or a character, given by its name or its index in the model.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, and for a material that the model
@@ -97,16 +99,16 @@ impl Scene {
     }
 }
 
-/// What changes in the materials of an object.
+/// A change to an object's materials.
 enum Change<'a> {
-    /// A material, which was another one.
+    /// A material's index, and its previous value.
     Material(usize, &'a Material),
-    /// An image.
+    /// An image's index.
     Image(usize),
 }
 
 impl Change<'_> {
-    /// What becomes of the materials of a part, if they change.
+    /// The new materials of a part; `None` if the part does not change.
     fn of(
         &self,
         gpu: (&Gpu, &SceneLayouts),
@@ -127,7 +129,7 @@ impl Change<'_> {
 }
 
 impl Object {
-    /// Changes materials of all parts, or of none.
+    /// Changes the materials of all parts, or of none if one fails.
     fn change_materials(
         &mut self,
         gpu: (&Gpu, &SceneLayouts),

@@ -1,4 +1,4 @@
-//! Transforms of instances and bones, as the host reads them.
+//! Transforms of instances and bones on the host.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -8,13 +8,13 @@ use crate::shared::lod::instance::SceneInstance;
 /// The model matrices of a character.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CharacterMatrices<'a> {
-    /// The matrices, at instance · bones + bone.
+    /// The matrices, with index instance · bones + bone.
     pub raw: &'a wgpu::Buffer,
     /// Number of bones.
     pub bones: usize,
 }
 
-/// The transform from the model's space to the world, relative to the corner of a cell.
+/// An instance's transform from model space to world axes, relative to a cell's corner.
 pub(super) fn placed_model(instance: &SceneInstance, cell: [i32; 3]) -> DAffine3 {
     let cells = |axis: usize| f64::from(instance.cell[axis]) - f64::from(cell[axis]);
     let corner = DVec3::from([0, 1, 2].map(cells)) * f64::from(crate::lod::CELL_SIZE);
@@ -23,13 +23,13 @@ pub(super) fn placed_model(instance: &SceneInstance, cell: [i32; 3]) -> DAffine3
     DAffine3 { matrix3: DMat3::from_cols(x, y, z), translation: corner + offset }
 }
 
-/// The transform of three rows.
+/// The transform of three matrix rows.
 pub(super) fn affine_of(rows: &Affine) -> DAffine3 {
     let column = |at: usize| DVec3::from(rows.map(|row| f64::from(row[at])));
     DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
 }
 
-/// The three rows of a transform.
+/// The three matrix rows of a transform.
 pub(super) fn rows_of(transform: DAffine3) -> Affine {
     let columns =
         [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis, transform.translation];

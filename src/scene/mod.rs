@@ -1,14 +1,14 @@
 //! A scene: terrain, meshes, reliefs and characters on the device, seen through any number of views.
 //!
-//! A [`Scene`] is everything there is; it knows no camera and no target. A [`View`] is a camera into it, with what that
-//! camera sees and how fine. A [`Renderer`](crate::render::Renderer) draws a scene through a view in the caller's render
-//! pass.
+//! A [`Scene`] holds every object and instance; it knows no camera and no target. A [`View`] is a camera into a scene, with
+//! the visible instances and their levels of detail. A [`Renderer`](crate::render::Renderer) draws a scene through a view
+//! in the caller's render pass.
 //!
 #![doc = include_str!("overview.md")]
 //!
-//! In a browser, which forbids to wait and tells errors late, use the forms whose names end in `_async`, and
-//! [`Scene::health`] once a frame. The other forms do the same work, but their errors come with a later call;
-//! `Scene::add_terrain` and `Scene::read_ground`, which wait, have the `_async` form alone.
+//! A browser forbids waiting and reports errors late. There, use the functions whose names end in `_async`, and call
+//! [`Scene::health`] once a frame. The other functions do the same work, but their errors surface in a later call.
+//! `Scene::add_terrain` and `Scene::read_ground` wait, so a browser has only their `_async` forms.
 
 mod attach;
 mod bounds;
@@ -117,10 +117,10 @@ use object::Object;
 use statistics::{SceneCounts, StageTimer};
 use watch::Watch;
 
-/// The number of recordings that may wait for their submission or execution.
+/// Largest number of recorded frames that may await submission or execution.
 pub const FRAMES_IN_FLIGHT: usize = 4;
 
-/// Everything there is, on the device: objects, which are terrain, meshes, reliefs and characters, and instances of them.
+/// A scene on the device: objects (terrain, meshes, reliefs, characters) and their instances.
 ///
 /// # Examples
 ///
@@ -153,7 +153,7 @@ pub const FRAMES_IN_FLIGHT: usize = 4;
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
-    /// Counts the devices that it has had.
+    /// Number of devices the scene has had.
     device: u32,
     objects: Slots<Object>,
     budget: ErrorBudget,
@@ -161,26 +161,26 @@ pub struct Scene {
     /// Seconds since the scene began, and seconds since the last frame.
     now: f64,
     step: f32,
-    /// Whether the last frame's placements and vertices are kept.
+    /// Whether the placements and vertices of the last frame are kept.
     keeps_last: bool,
-    /// Whether surfaces are looked up in the map of a sun's shadow.
+    /// Whether shading looks surfaces up in a sun's shadow map.
     is_shadowed: bool,
-    /// Number of frames that were recorded.
+    /// Number of recorded frames.
     frames: u64,
-    /// Whether the last frame was not recorded as a whole.
+    /// Whether the last frame was recorded only in part.
     is_broken: bool,
     layout: Option<Layout>,
     layouts: u64,
     staging: StagingRing,
     staged: Staged,
-    /// What the caller writes to driven bones goes through these buffers.
+    /// Staging buffers for the caller's writes to driven bones.
     pose_staging: StagingRing,
     uploaded: usize,
-    /// Bytes of what was added that a frame uploads; `None` for all.
+    /// Largest number of bytes of added data that a frame uploads; `None` for no limit.
     upload_budget: Option<usize>,
     passes: Passes,
     layouts_of_groups: SceneLayouts,
-    /// Whether frames are counted.
+    /// Whether statistics are collected.
     counted: bool,
     counts: Option<SceneCounts>,
     timer: Option<StageTimer>,
@@ -210,10 +210,10 @@ impl Passes {
 }
 
 impl Scene {
-    /// An empty scene.
+    /// Creates an empty scene.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors from the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, Error> {
         let passes = Passes::new(gpu)?;
         Ok(Self {
@@ -245,21 +245,21 @@ impl Scene {
         })
     }
 
-    /// As [`Scene::new`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    /// Like [`Scene::new`], but completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
-    /// As [`Scene::new`].
+    /// As for [`Scene::new`].
     pub async fn new_async(gpu: &Gpu) -> Result<Self, Error> {
         let scene = Self::new(gpu)?;
         gpu.check_async().await?;
         Ok(scene)
     }
 
-    /// Errors that the device reported later than in the call that caused them, as [`Gpu::check`] tells them. Ask once a
-    /// frame in a browser.
+    /// Checks for errors that the device reported after the call that caused them ([`Gpu::check`]). Call it once a frame in a
+    /// browser.
     ///
     /// # Errors
-    /// As [`Gpu::check`].
+    /// Those of [`Gpu::check`].
     pub fn health(&self) -> Result<(), GpuError> {
         self.gpu.check()
     }
@@ -269,7 +269,7 @@ impl Scene {
         &self.gpu
     }
 
-    /// Sets the light of everything, from the next recording on. Its direction is one of the world, towards the light.
+    /// Sets the light of the whole scene, from the next recording on. Its direction is in world space, towards the light.
     ///
     /// # Errors
     /// [`InputError`] as [`Light::validate`].
@@ -279,24 +279,24 @@ impl Scene {
         Ok(())
     }
 
-    /// The light of everything.
+    /// The light of the whole scene.
     pub fn light(&self) -> Light {
         self.light
     }
 
-    /// Lets renderers look surfaces up in the map of a sun's shadow from their next [`prepare`] on.
+    /// Makes renderers look surfaces up in a sun's shadow map from their next [`prepare`] on.
     ///
     /// [`prepare`]: crate::render::Renderer::prepare
     pub(crate) fn set_shadowed(&mut self) {
         self.is_shadowed = true;
     }
 
-    /// Whether surfaces are looked up in the map of a sun's shadow.
+    /// Whether shading looks surfaces up in a sun's shadow map.
     pub(crate) fn is_shadowed(&self) -> bool {
         self.is_shadowed
     }
 
-    /// Sets how the permitted displacement of characters is divided, from the next recording on.
+    /// Sets how characters divide their allowed displacement, from the next recording on.
     ///
     /// # Errors
     /// [`InputError`] as [`ErrorBudget::validate`].
@@ -310,11 +310,11 @@ impl Scene {
         Ok(())
     }
 
-    /// Advances the time of the scene by so many seconds; negative ones go back. Call it once a frame: what is sampled in a
-    /// frame depends on how far the time went.
+    /// Advances the scene's time by `seconds`; negative values go back. Call it once a frame: the elapsed time decides
+    /// which bones the frame samples.
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite.
+    /// [`InputError`] for a value that is not finite.
     pub fn advance(&mut self, seconds: f32) -> Result<(), InputError> {
         crate::animation::instance::check_seconds("seconds", seconds)?;
         self.now += f64::from(seconds);
@@ -322,9 +322,9 @@ impl Scene {
         Ok(())
     }
 
-    /// The factor by which the displacement that levels of detail may use was enlarged in the last frame, because the
-    /// device had no memory left for the vertices of what is seen of a character. It is 1 where the views'
-    /// [`Quality::pixels`] holds. [`Scene::refresh`] tries again whether there is memory.
+    /// The factor by which the last frame enlarged the displacement that an object's levels of detail may use. It is 1 as
+    /// long as the views' [`Quality::pixels`] holds. It exceeds 1 when the device has no memory left for the vertices of a
+    /// character's visible instances. [`Scene::refresh`] tries again to allocate that memory.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -332,9 +332,9 @@ impl Scene {
         Ok(self.object_at(object)?.lod_bias)
     }
 
-    /// The largest number of draws that an object takes in a view and a layer. It is at most 64, unless a binding of the
-    /// device is too small for the object: a character's instances are drawn in several chunks then, a mesh's triangles in
-    /// several pieces, each with draws of its own.
+    /// The largest number of draws that an object takes in one view and one layer. It is at most 64 if the object fits into
+    /// a binding of the device. Otherwise, a character is drawn in several chunks of instances, or a mesh in several pieces
+    /// of triangles, each with its own draws.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -342,21 +342,21 @@ impl Scene {
         Ok(self.object_at(object)?.draws())
     }
 
-    /// The number of bytes that the last recorded frame took from the host: cameras, times, what has
-    /// changed, and what waited ([`Scene::set_upload_budget`]).
+    /// The number of bytes uploaded from the host for the last recorded frame: cameras, times, changes, and delayed uploads
+    /// ([`Scene::set_upload_budget`]).
     pub fn uploaded(&self) -> usize {
         self.uploaded
     }
 
-    /// The time of the scene in seconds.
+    /// The scene's time in seconds.
     pub fn time(&self) -> f64 {
         self.now
     }
 
-    /// A view into the scene. It needs a camera ([`View::set`]) before a frame is recorded.
+    /// Creates a view into the scene. Set its camera ([`View::set`]) before recording a frame.
     ///
     /// # Errors
-    /// [`InputError`] for pixels that are negative or not finite; [`crate::gpu::GpuError`].
+    /// [`InputError`] for `pixels` that is negative or not finite; [`crate::gpu::GpuError`].
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
         View::new(&self.gpu, (self.objects.scene(), self.device), quality)
     }

@@ -1,4 +1,4 @@
-//! What an object is: what a scene asks of terrain, meshes, reliefs, characters and kinds of the caller's alike.
+//! The interface of a scene to its kinds of objects: terrain, meshes, reliefs, characters and caller-defined kinds.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -21,12 +21,12 @@ use crate::scene::stage::Stage;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 
-/// What an object is. The methods that have a body are for what is drawn as it is, at rest, of instances that are spawned.
+/// A kind of object. The default methods suit static objects with spawned instances.
 pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
-    /// What errors call it.
+    /// Name of the kind in errors.
     fn name(&self) -> &'static str;
 
-    /// Whether the caller spawns its instances; else they are its own.
+    /// Whether the caller spawns the instances; otherwise the kind has its own.
     fn is_spawned(&self) -> bool {
         true
     }
@@ -36,26 +36,26 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         false
     }
 
-    /// A sphere around an instance as it moves; `None` for that of the object.
+    /// A sphere around an instance in all of its motion; `None` for the object's sphere.
     fn sphere_of(&self, index: u32) -> Option<BoundingSphere> {
         let _ = index;
         None
     }
 
-    /// An instance was spawned; returns a sphere around it if that is not the object's.
+    /// Notes that an instance was spawned. Returns a sphere around it if that differs from the object's.
     fn spawned(&mut self, index: u32) -> Option<BoundingSphere> {
         let _ = index;
         None
     }
 
-    /// An instance was removed.
+    /// Notes that an instance was removed.
     fn despawned(&mut self, index: u32) {
         let _ = index;
     }
 
     // On the device.
 
-    /// Makes room for so many instances, all of which start afresh. If it fails, nothing has changed.
+    /// Makes room for `capacity` instances, all of which start afresh. Changes nothing if it fails.
     fn renew(
         &mut self,
         gpu: &Gpu,
@@ -68,7 +68,7 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(())
     }
 
-    /// Makes on another device what it has on its own, with the materials of the object and room for so many instances.
+    /// Creates the kind's resources on another device, with the object's materials and room for `capacity` instances.
     fn made_on<'a>(
         &'a self,
         gpu: &'a Gpu,
@@ -77,18 +77,18 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         capacity: usize,
     ) -> Making<'a>;
 
-    /// Takes what was made on another device besides chunks: [`OnDevice::other`].
+    /// Takes the resources besides chunks that were made on another device: [`OnDevice::other`].
     fn adopt(&mut self, other: Box<dyn Made>) {
         let _ = other;
     }
 
-    /// Keeps the last frame, once it is refreshed, or does no longer.
+    /// Sets whether motion history is kept, once the object is refreshed.
     fn keep_last(&mut self, keeps: bool) {
         let _ = keeps;
     }
 
-    /// What it has in a view by itself, which is bind group 1 there; `None` if its group is the same in all views. `number` is
-    /// that of the object.
+    /// The kind's resources for one view, which become bind group 1 there. `None` if group 1 is the same in all views.
+    /// `number` is the object's number.
     fn in_view(
         &self,
         gpu: &Gpu,
@@ -101,13 +101,13 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
 
     // In a frame, in this order.
 
-    /// Ends what has reached its end by a time of the scene; returns the instances whose spheres are others.
+    /// Finishes fades that end by scene time `now`. Returns the instances whose spheres changed.
     fn settle(&mut self, now: f64) -> Vec<u32> {
         let _ = now;
         Vec::new()
     }
 
-    /// Provides what the views of a frame need.
+    /// Allocates the memory that a frame's views need.
     fn provide(
         &mut self,
         gpu: &Gpu,
@@ -119,25 +119,25 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(Provided::default())
     }
 
-    /// Prepares what a frame needs.
+    /// Prepares the jobs of a frame.
     fn fit(&mut self, gpu: &Gpu, fitted: &Fitted<'_>, staged: &mut Staged) -> Result<(), Error> {
         let _ = (gpu, fitted, staged);
         Ok(())
     }
 
-    /// Stages the fraction of the allowed displacement that levels of detail use, after it has changed.
+    /// Stages the levels' fraction of the allowed displacement, after it has changed.
     fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
         let _ = (staged, fraction);
         Ok(())
     }
 
-    /// Stages what has changed since the last frame; `now` is the time of the scene in seconds.
+    /// Stages the changes since the last frame. `now` is the scene's time in seconds.
     fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
         let _ = (staged, frame, now);
         Ok(())
     }
 
-    /// Records what comes before the stages of the frame.
+    /// Records copies and jobs that precede the stages of the frame.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
         let _ = encoder;
     }
@@ -149,13 +149,13 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
 
     // On the host.
 
-    /// The triangles of an instance at a time of the scene, in full detail.
+    /// The triangles of an instance in full detail, at scene time `now`.
     fn surfaces(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
         let _ = (index, now);
         Ok(Vec::new())
     }
 
-    /// The first hit of an instance by a ray, up to a distance.
+    /// The first hit of an instance by a ray, within the ray's limit.
     fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
         let UnitRay { origin, direction, limit } = *ray;
         let surfaces = self.surfaces(instance.index, instance.now)?;
@@ -163,7 +163,7 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(hits.fold(None, SurfaceHit::nearer))
     }
 
-    /// The corners of the smallest box around an instance, in the space into which its place leads.
+    /// The corners of the smallest box around an instance, in the space of its place.
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {
         let surfaces = self.surfaces(instance.index, instance.now)?;
         let boxes = surfaces.iter().map(|surface| surface.bounds(instance.place));
@@ -171,13 +171,13 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(around.unwrap_or([instance.place.translation; 2]))
     }
 
-    /// The corners of a larger box, which costs less; `None` if the smallest costs as little.
+    /// The corners of a looser but cheaper box; `None` if the smallest is as cheap.
     fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
         let _ = instance;
         Ok(None)
     }
 
-    /// Whether an instance may reach beyond its sphere, so that its larger box decides what a ray may hit.
+    /// Whether an instance may extend beyond its sphere. Rays are then tested against its looser box.
     fn may_leave_sphere(&self, index: u32) -> bool {
         let _ = index;
         false
@@ -185,66 +185,66 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
 }
 
 impl dyn ObjectKind {
-    /// The kind, if it is this one.
+    /// The kind as `K`, if it is one.
     pub fn downcast<K: ObjectKind>(&self) -> Option<&K> {
         (self as &dyn Any).downcast_ref()
     }
 
-    /// As `downcast`, to be changed.
+    /// Mutable form of `downcast`.
     pub fn downcast_mut<K: ObjectKind>(&mut self) -> Option<&mut K> {
         (self as &mut dyn Any).downcast_mut()
     }
 }
 
-/// What a kind has in a view by itself.
+/// A kind's resources for one view.
 pub(super) trait KindInView: Debug + wgpu::WasmNotSendSync {
     /// Bind group 1.
     fn group(&self) -> &Group;
 
-    /// Stages it for a frame of the view's camera.
+    /// Stages the resources for a frame of the view's camera.
     fn stage(&self, staged: &mut Staged, camera: &Camera) -> Result<(), Error>;
 }
 
-/// Something that is made on another device. Natively it may move to another thread meanwhile.
+/// A future that creates resources on another device. Natively, it may move to another thread.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>> + Send + 'a>>;
-/// Something that is made on another device.
+/// A future that creates resources on another device.
 #[cfg(target_arch = "wasm32")]
 pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>> + 'a>>;
 
-/// Anything that was made on a device.
+/// Any resource made on a device.
 pub(super) trait Made: Any + Debug + wgpu::WasmNotSend {}
 
 impl<T: Any + Debug + wgpu::WasmNotSend> Made for T {}
 
-/// What an object has on a device.
+/// Device resources of an object.
 #[derive(Debug)]
 pub(super) struct OnDevice {
     pub chunks: Vec<Chunk>,
-    /// What the kind takes besides ([`ObjectKind::adopt`]).
+    /// The kind's resources besides chunks ([`ObjectKind::adopt`]).
     pub other: Box<dyn Made>,
 }
 
 impl OnDevice {
-    /// Chunks alone.
+    /// Chunks without other resources.
     pub fn chunks(chunks: Vec<Chunk>) -> Self {
         Self { chunks, other: Box::new(()) }
     }
 }
 
-/// What the views of a frame may see of an object.
+/// Inputs for deciding which of an object's instances a frame's views may see.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeenBy<'a> {
     pub views: &'a [SelectView],
-    /// The object, with the fraction of the displacement that its levels use by themselves.
+    /// The object's uniform, with the levels' fraction of the displacement before LOD bias.
     pub object: &'a LodObject,
     pub instances: &'a [SceneInstance],
 }
 
-/// What was provided for a frame.
+/// Result of providing memory for a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Provided {
-    /// The factor by which levels of detail must be coarser: 1 unless memory has ended.
+    /// LOD bias of the object: 1 unless memory has ended.
     pub lod_bias: f32,
     pub replaced: Replaced,
 }
@@ -255,45 +255,45 @@ impl Default for Provided {
     }
 }
 
-/// What is another than before.
+/// Resources that were replaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Replaced {
     Nothing,
     /// Buffers of some chunks.
     Buffers,
-    /// The chunks. The instances of those that were divided start afresh.
+    /// The chunks themselves. Instances of divided chunks start afresh.
     Chunks,
 }
 
-/// For what a kind prepares itself in a frame.
+/// Inputs for preparing a kind's jobs of a frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fitted<'a> {
     pub layout: &'a Layout,
-    /// Whether the layout is another than in the last frame.
+    /// Whether the layout changed since the last frame.
     pub is_new: bool,
     pub assign: &'a AssignPass,
     pub budget: ErrorBudget,
-    /// The fraction of the allowed displacement that levels of detail use.
+    /// The levels' fraction of the allowed displacement.
     pub mesh_fraction: f32,
     pub chunks: &'a [Chunk],
-    /// For each level the metric from which on it is drawn.
+    /// Smallest metric per level at which the level is drawn.
     pub thresholds: &'a [f32],
 }
 
-/// An instance in a place.
+/// An instance at its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
     pub index: u32,
-    /// The time of the scene.
+    /// The scene's time in seconds.
     pub now: f64,
-    /// The transform from the model's space to the corner of the cell.
+    /// The transform from model space to the cell's corner.
     pub place: DAffine3,
     pub cell: [i32; 3],
-    /// The corners of a box around its bounding sphere there.
+    /// The corners of a box around the placed bounding sphere.
     pub sphere_box: [DVec3; 2],
 }
 
-/// A ray relative to the corner of a cell.
+/// A ray relative to a cell's corner.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct UnitRay {
     pub origin: DVec3,

@@ -1,4 +1,4 @@
-//! What adds objects to a scene, shows them, and removes them.
+//! Adding objects to a scene, showing them, and removing them.
 
 use crate::asset::Model;
 use crate::gpu::Upload as _;
@@ -13,74 +13,76 @@ use crate::scene::terrain::TerrainSource;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Adds terrain: generates its patches on the device, unless it is made from fields of the caller
-    /// ([`TerrainSource::from_fields`]), and shows them. It reads their heights, by which it culls patches and which
-    /// [`Scene::ground`] answers, and waits for that.
+    /// Adds terrain and shows its patches. The device generates them, unless the terrain is made from the caller's fields
+    /// ([`TerrainSource::from_fields`]). The call waits until the heights are read back: views cull patches by them, and
+    /// [`Scene::ground`] answers from them.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration or patches out of bounds, for no patch or one that is given twice, and
-    /// for fields without a margin, of another size, or fewer than patches;
+    /// [`InputError`] for a configuration or patches out of bounds, for no patch, for a patch that is given twice, and for
+    /// fields that have no margin, have another size, or are fewer than the patches;
     /// [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         self.gpu.clone().block_on(self.add_terrain_async(source))
     }
 
-    /// As `Scene::add_terrain`, but completes once the device has generated the patches and told its errors; see
+    /// Like `Scene::add_terrain`, but completes once the device has generated the patches and reported its errors; see
     /// [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
     ///
     /// # Errors
-    /// As `Scene::add_terrain`.
+    /// As for `Scene::add_terrain`.
     pub async fn add_terrain_async(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
         let object = Object::of_terrain(&gpu, &self.layouts_of_groups, source).await?;
         self.add_checked(object.awaiting(pending)).await
     }
 
-    /// Adds a mesh that does not move by itself: all meshes of a model, posed at rest, with their levels of detail
-    /// ([`add_levels`](crate::skinning::add_levels); without them, every instance is drawn in full) and materials. There is
-    /// room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says what happens to more. A world unit is one unit of
-    /// the model times [`Placement::scale`](crate::scene::Placement::scale);
-    /// [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) tells about how large a model
-    /// is.
+    /// Adds a static mesh: all meshes of a model in the rest pose, with their materials and levels of detail. Without
+    /// levels ([`add_levels`](crate::skinning::add_levels)), every instance is drawn in full detail.
+    ///
+    /// The object has room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] describes growth beyond it. A
+    /// world unit is one unit of the model times [`Placement::scale`](crate::scene::Placement::scale).
+    /// [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) gives the approximate size
+    /// of a model.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with images
-    /// that are larger than the device's textures; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
+    /// images that are larger than the device's textures; [`crate::gpu::GpuError`].
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.mesh(model, capacity)?;
         Ok(self.add(object))
     }
 
-    /// As [`Scene::add_mesh`], but completes once the device has told its errors ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are
-    /// any, nothing is added.
+    /// Like [`Scene::add_mesh`], but completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
     ///
     /// # Errors
-    /// As [`Scene::add_mesh`].
+    /// As for [`Scene::add_mesh`].
     pub async fn add_mesh_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.mesh(model, capacity)?;
         self.add_checked(object).await
     }
 
-    /// Adds a character: its bones are sampled from its clips, gated, and its meshes morphed and skinned, each only as
-    /// far as a view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). There is room for at least `capacity`
-    /// instances, 1 to 2²⁰; [`Scene::spawn`] says what happens to more.
+    /// Adds a character: bones are sampled from clips and gated, meshes are morphed and skinned, each only as finely as a
+    /// view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). The object has room for at least `capacity`
+    /// instances, 1 to 2²⁰; [`Scene::spawn`] describes growth beyond it.
     ///
-    /// Without [`add_levels`](crate::skinning::add_levels) before, there is no level of detail but the model itself.
+    /// Call [`add_levels`](crate::skinning::add_levels) on the model first; otherwise its only level of detail is the full
+    /// mesh.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with images
-    /// that are larger than the device's textures; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
+    /// images that are larger than the device's textures; [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         self.add_character_with(model, capacity, &CharacterOptions::default())
     }
 
-    /// As [`Scene::add_character`], with layers of animation above the base, or with the motion of its root taken out of its
-    /// clips. A model without clips has neither.
+    /// Like [`Scene::add_character`], with animation layers above the base, or with root motion extracted from the clips.
+    /// Both are ignored for a model without clips.
     ///
     /// # Errors
-    /// As [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, and for
-    /// motion that cannot be taken out ([`RootMotion::extract`](crate::animation::RootMotion::extract)).
+    /// As for [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, and
+    /// for root motion that cannot be extracted ([`RootMotion::extract`](crate::animation::RootMotion::extract)).
     pub fn add_character_with(
         &mut self,
         model: &Model,
@@ -91,11 +93,11 @@ impl Scene {
         Ok(self.add(object))
     }
 
-    /// As [`Scene::add_character`], but completes once the device has told its errors
-    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are any, nothing is added.
+    /// Like [`Scene::add_character`], but completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
     ///
     /// # Errors
-    /// As [`Scene::add_character`].
+    /// As for [`Scene::add_character`].
     pub async fn add_character_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.character(model, capacity, &CharacterOptions::default())?;
         self.add_checked(object).await
@@ -128,51 +130,52 @@ impl Scene {
         Ok(object.awaiting(pending))
     }
 
-    /// Adds a mesh that carries a relief. There is room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says
-    /// what happens to more.
+    /// Adds a mesh with relief mapping. The object has room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`]
+    /// describes growth beyond it.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, for maps, options or a mesh that do not fit each other, for a mesh with numbers
-    /// that are not finite, and for images without texels or larger than the device's textures; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, for maps, options or a mesh that do not fit each other, for a mesh with
+    /// values that are not finite, and for images without texels or larger than the device's textures;
+    /// [`crate::gpu::GpuError`].
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.relief(relief, capacity)?;
         Ok(self.add(object))
     }
 
-    /// As [`Scene::add_relief`], but completes once the device has told its errors ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are
-    /// any, nothing is added.
+    /// Like [`Scene::add_relief`], but completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
     ///
     /// # Errors
-    /// As [`Scene::add_relief`].
+    /// As for [`Scene::add_relief`].
     pub async fn add_relief_async(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.relief(relief, capacity)?;
         self.add_checked(object).await
     }
 
-    /// Adds an object of a kind of the caller's. There is room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] says
-    /// what happens to more. Its levels change at once ([`Transition::Hard`]).
+    /// Adds an object of a caller-defined kind. It has room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`]
+    /// describes growth beyond it. Its levels change at once ([`Transition::Hard`]).
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, and for what the kind says of its levels, parts, indices or sphere
-    /// (`kind.parts[0].levels[1]`); [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for invalid levels, parts, indices or an invalid sphere of the kind;
+    /// the error names the field (`kind.parts[0].levels[1]`). [`crate::gpu::GpuError`].
     pub fn add_kind(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
         let object = Object::of_kind(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
         Ok(self.add(object.awaiting(pending)))
     }
 
-    /// As [`Scene::add_kind`], but completes once the device has told its errors
-    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)); where there are any, nothing is added.
+    /// Like [`Scene::add_kind`], but completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
     ///
     /// # Errors
-    /// As [`Scene::add_kind`].
+    /// As for [`Scene::add_kind`].
     pub async fn add_kind_async(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
         let object = Object::of_kind(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
         self.add_checked(object.awaiting(pending)).await
     }
 
-    /// Adds an object, unless the device tells errors of it.
+    /// Adds an object, unless the device reports errors.
     async fn add_checked(&mut self, object: Object) -> Result<ObjectId, Error> {
         self.gpu.check_async().await?;
         Ok(self.add(object))
@@ -191,7 +194,7 @@ impl Scene {
         id
     }
 
-    /// Removes an object with all of its instances, and releases its memory.
+    /// Removes an object and all of its instances, and frees its memory.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -205,15 +208,15 @@ impl Scene {
         Ok(())
     }
 
-    /// Shows or hides all instances of an object, in all views, from the next recording on. Hidden ones are neither sampled,
-    /// skinned nor drawn; the time of their clips goes on.
+    /// Shows or hides all instances of an object in all views, from the next recording on. Hidden instances are not
+    /// sampled, skinned or drawn, but the time of their clips advances.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene; [`crate::gpu::GpuError`].
     pub fn show(&mut self, object: ObjectId, is_shown: bool) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
-            // Until the next layout, the object's entries are written alone.
+            // Only this object's entries are written; a new layout writes all.
             let entries = entry.chunks.iter().map(|chunk| (chunk.number, entry.lod_object(chunk)));
             let entries: Vec<_> = entries.collect();
             if let Some(layout) = &self.layout {
@@ -225,13 +228,13 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets how the levels of detail of an object change, from the next recording on. Compile renderers for it
-    /// ([`Renderer::prepare`](crate::render::Renderer::prepare)). Objects change levels at once unless this is called.
+    /// Sets how an object changes its levels of detail, from the next recording on. Compile renderers for it
+    /// ([`Renderer::prepare`](crate::render::Renderer::prepare)). The default is [`Transition::Hard`].
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene and, with [`Transition::Geomorph`], for one without levels of
-    /// detail or whose meshes have no partners ([`add_levels`](crate::skinning::add_levels) finds them): terrain, reliefs, and
-    /// meshes beyond a binding of the device.
+    /// [`InputError`] for an object that is not of this scene. With [`Transition::Geomorph`], also for an object without
+    /// levels of detail or without partners in its meshes ([`add_levels`](crate::skinning::add_levels) finds them):
+    /// terrain, reliefs, and meshes that exceed a binding of the device.
     pub fn set_transition(&mut self, object: ObjectId, transition: Transition) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
         if transition == Transition::Geomorph && !entry.can_morph() {
@@ -245,7 +248,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether the levels of detail of an object can move into each other: whether it has any, and partners.
+    /// Whether an object can geomorph: it has levels of detail, and its vertices have partners.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.

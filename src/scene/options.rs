@@ -1,41 +1,40 @@
-//! What a character can do beyond playing one clip, and how terrain looks.
+//! Options of characters and of terrain.
 
 use crate::animation::RootMotion;
 use crate::animation::root_motion::Taken;
 use crate::asset::Model;
 use crate::{InputError, error};
 
-/// What a character can do beyond playing one clip, for
-/// [`Scene::add_character_with`](crate::scene::Scene::add_character_with).
+/// Layers and root motion of a character, for [`Scene::add_character_with`](crate::scene::Scene::add_character_with).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CharacterOptions<'a> {
-    /// The layers above the base, at most 7; none of them is heard at first. Each costs 16 bytes an instance, and as much as the
-    /// base where it is heard.
+    /// The layers above the base, at most 7. Their weights start at 0. Each costs 16 bytes per instance, and as much
+    /// sampling as the base while it has a weight.
     pub layers: Vec<LayerMask<'a>>,
-    /// The motion that is taken out of all clips, which then play in place; see
+    /// Root motion to extract from all clips, which then play in place; see
     /// [`Scene::root_motion`](crate::scene::Scene::root_motion).
     pub root_motion: Option<RootOptions<'a>>,
 }
 
-/// The bones on which a layer plays.
+/// The bones that a layer animates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LayerMask<'a> {
     /// All bones.
     All,
-    /// A bone, by its name or its index in digits, and all bones below it.
+    /// A bone, given by its name or its index in digits, and all bones below it.
     Below(&'a str),
 }
 
-/// The motion that is taken out of clips.
+/// Root motion to extract from clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RootOptions<'a> {
-    /// The bone whose motion it is, by its name or its index in digits.
+    /// The bone that carries the motion, given by its name or its index in digits.
     pub bone: &'a str,
-    /// Which parts of its motion.
+    /// The parts of the motion to extract.
     pub taken: Taken,
 }
 
-/// The index of a bone of a model, by its name or its index. A name that is a number takes precedence.
+/// The index of a model's bone, by its name or its index. A name that is a number takes precedence.
 ///
 /// # Errors
 /// [`InputError`] that lists up to 20 bones.
@@ -50,10 +49,10 @@ pub(super) fn bone_of(model: &Model, name_or_index: &str) -> Result<usize, Input
 }
 
 impl RootOptions<'_> {
-    /// Takes the motion out of all clips of a model.
+    /// Extracts the root motion from all clips of a model.
     ///
     /// # Errors
-    /// [`InputError`] as [`RootMotion::extract`], and for a bone that the model does not have.
+    /// As for [`RootMotion::extract`]; [`InputError`] for a bone that the model does not have.
     pub(super) fn take(&self, model: &mut Model) -> Result<Vec<RootMotion>, InputError> {
         let bone = bone_of(model, self.bone)?;
         let extracted =
@@ -64,12 +63,12 @@ impl RootOptions<'_> {
     }
 }
 
-/// How terrain looks in colour. In other layers it makes no difference.
+/// Appearance of terrain in colour. It has no effect on other layers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum TerrainStyle {
     /// Textures of the zones, blended by height.
     #[default]
     Textured,
-    /// The edges of the triangles that are drawn, lit, on dark ground that no light reaches.
+    /// Lit edges of the drawn triangles, on dark, unlit ground.
     Wireframe,
 }

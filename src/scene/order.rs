@@ -1,4 +1,4 @@
-//! The order in which transparent surfaces are drawn: instance by instance, from back to front.
+//! Drawing order of transparent surfaces: instance by instance, from back to front.
 
 use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
 use crate::lod::sorted::SortedDraw;
@@ -8,7 +8,7 @@ use crate::scene::chunk::{Chunk, SortedParts};
 use crate::scene::object::Object;
 
 impl Chunk {
-    /// Lays out the parts that are drawn instance by instance, behind those of other objects.
+    /// Appends the parts with sorted draws to those of other objects.
     pub(super) fn lay_out_sorted(&mut self, all: &mut Vec<SortedDraw>) {
         self.sorted.clear();
         let (instances, mut first_draw) = (self.slots.len() as u32, self.range.first_draw);
@@ -25,18 +25,19 @@ impl Chunk {
     }
 }
 
-/// An instance in its place.
+/// An instance with its sort key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ordered {
-    /// How far the middle of its bounding sphere is from the eye, or in a parallel view how far ahead.
+    /// Distance from the eye to the middle of the bounding sphere; in a parallel view, distance along the viewing
+    /// direction.
     pub distance: f64,
-    /// The number of its object in the layout, and its index in the object.
+    /// Index of its object in the layout, and its index in the object.
     pub object: usize,
     pub instance: u32,
 }
 
-/// Orders the instances of objects with transparent parts that a view may see, from back to front; of those as far away,
-/// in the order of objects and instances. The device decides which of them are seen.
+/// Sorts instances with transparent parts that a view may see, from back to front. Equal distances keep the order of
+/// objects and instances. The device decides which of them are visible.
 pub(super) fn back_to_front<'a>(
     order: &mut Vec<Ordered>,
     objects: impl Iterator<Item = &'a Object>,

@@ -1,5 +1,5 @@
-//! How many pages of skinned vertices a character needs in a frame: the host foresees what the device will decide, so that
-//! memory follows what is seen and no frame waits for an answer.
+//! Pages of skinned vertices that a character needs in a frame. The host predicts the device's decisions, so that memory
+//! follows visibility and no frame waits for a readback.
 
 use std::ops::Range;
 
@@ -8,34 +8,34 @@ use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
 use crate::lod::{LodObject, SceneInstance, SelectView};
 use crate::skinning::pages::{KEEPING_PAGE_BYTES, PAGE_BYTES};
 
-/// Up to this size, pages for all instances in full detail are allocated at once: 4 MiB.
+/// Up to this size (4 MiB), pages for all instances in full detail are allocated at once.
 const SMALL: usize = 4 << 20;
 
-/// The factor by which rounding may make the device allow less than the host.
+/// Safety factor: rounding may make the device allow less than the host.
 const CAUTION: f32 = 0.999;
 
-/// The factor between the displacements that are tried where pages for what is seen exceed the memory.
+/// Ratio of successive displacements to try, if pages for the visible instances exceed the memory.
 const COARSER: f32 = 1.25;
 
-/// The largest factor that is tried.
+/// Largest factor to try.
 const COARSEST: f32 = 1e6;
 
-/// The pages of one mesh for some instances, in numbers.
+/// Page counts of one mesh, for some instances.
 #[derive(Debug, Clone)]
 pub(super) struct Paging {
-    /// Clusters at each level of detail.
+    /// Clusters per level of detail.
     clusters: Vec<u32>,
     /// Pages for all instances in full detail.
     full: u32,
-    /// As many as a binding holds, or as memory is left for.
+    /// Largest number of pages that a binding holds, or that there is memory for.
     pub most: u32,
-    /// The bytes of a page.
+    /// Bytes per page.
     bytes: usize,
 }
 
 impl Paging {
-    /// Of a mesh with so many clusters at each level, for so many instances, with bindings of so many bytes, with last
-    /// positions or without.
+    /// Page counts of a mesh: `clusters` per level, a number of instances, bytes per binding, and whether previous
+    /// positions are kept.
     pub fn new(clusters: Vec<u32>, instances: usize, binding: u64, keeps_last: bool) -> Self {
         let bytes = if keeps_last { KEEPING_PAGE_BYTES } else { PAGE_BYTES };
         let full = clusters.first().map_or(0, |clusters| instances * *clusters as usize);
@@ -43,17 +43,18 @@ impl Paging {
         Self { clusters, full: u32::try_from(full).unwrap_or(u32::MAX), most, bytes }
     }
 
-    /// Whether so many pages are enough for all instances in full detail.
+    /// Whether `pages` suffice for all instances in full detail.
     pub fn is_full(&self, pages: usize) -> bool {
         pages as u64 >= u64::from(self.full)
     }
 
-    /// The number of pages to begin with.
+    /// The initial number of pages.
     pub fn initial(&self) -> u32 {
         self.full.min((SMALL / self.bytes) as u32).min(self.most).max(1)
     }
 
-    /// The number of pages for a frame that needs `needed`: more than that, so that the next frames need no others.
+    /// The number of pages to allocate for a frame that needs `needed`. It is larger, so that the next frames need no new
+    /// allocation.
     pub fn enough(&self, needed: u32) -> u32 {
         needed.saturating_add(needed / 2).min(self.full).min(self.most).max(1)
     }
@@ -64,23 +65,22 @@ impl Paging {
     }
 }
 
-/// What the views of a frame see of the instances of a character.
+/// Visibility of a character's instances in a frame's views.
 #[derive(Debug)]
 pub(super) struct Seen<'a> {
     object: &'a LodObject,
-    /// The smallest displacement that a view allows each instance, `None` if none may see it.
+    /// Smallest displacement that any view allows, per instance; `None` if no view may see it.
     allowed: Vec<Option<f32>>,
 }
 
 impl<'a> Seen<'a> {
-    /// All instances, in the views of a frame. `object` has the fraction of the displacement that levels of detail use by
-    /// themselves.
+    /// All instances, in the views of a frame. `object` has the levels' fraction of the displacement before LOD bias.
     pub fn new(views: &[SelectView], object: &'a LodObject, instances: &[SceneInstance]) -> Self {
         let allowed = instances.iter().map(|instance| allowed(views, object, instance)).collect();
         Self { object, allowed }
     }
 
-    /// The pages that some of the instances need, for each mesh, where levels may be off by so many times more.
+    /// Pages that some of the instances need, per mesh, if the displacement of levels is scaled by `lod_bias`.
     fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u64> {
         let fraction = CAUTION * lod_bias * self.object.mesh_fraction;
         let seen = || self.allowed[slots.clone()].iter().flatten();
@@ -88,20 +88,19 @@ impl<'a> Seen<'a> {
         meshes.iter().map(|mesh| mesh.needed(levels())).collect()
     }
 
-    /// As many pages as [`Seen::fits`] allows, for each mesh.
+    /// The same pages, per mesh, limited to [`Paging::most`].
     pub fn pages(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u32> {
         let pages = self.exactly(slots, meshes, lod_bias);
         pages.iter().zip(meshes).map(|(pages, mesh)| (*pages).min(mesh.most.into()) as u32).collect()
     }
 
-    /// Whether the pages that some of the instances need are no more than there may be.
+    /// Whether the needed pages of every mesh are within [`Paging::most`].
     pub fn fits(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> bool {
         let pages = self.exactly(slots, meshes, lod_bias);
         pages.iter().zip(meshes).all(|(pages, mesh)| *pages <= u64::from(mesh.most))
     }
 
-    /// The factor by which the displacement that levels may use must grow, so that all chunks fit: 1 unless there is more to
-    /// see than there is memory for.
+    /// The LOD bias with which all chunks fit: 1 unless the visible instances need more memory than there is.
     pub fn lod_bias<'b>(
         &self,
         chunks: impl Iterator<Item = (&'b Range<usize>, &'b [Paging])> + Clone,
@@ -115,7 +114,8 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The smallest displacement that a view allows an instance, `None` if none may see it. What is nearly seen counts.
+/// The smallest displacement that any view allows an instance; `None` if no view may see it. Nearly visible instances
+/// count.
 fn allowed(views: &[SelectView], object: &LodObject, instance: &SceneInstance) -> Option<f32> {
     let of_view = |view: &SelectView| {
         let (center, radius) = placed_sphere(instance, view.cell);

@@ -1,4 +1,4 @@
-//! Picking on the host: the instance that a ray hits first.
+//! Picking on the host: the first instance that a ray hits.
 
 use glam::{DAffine3, DVec3};
 
@@ -11,22 +11,21 @@ use crate::scene::object_kind::{Placed, UnitRay};
 use crate::scene::ray::{Hit, Ray, SurfaceHit};
 use crate::shared::lod::instance::{INSTANCE_ALIVE, instance_flags_mask};
 
-/// By how much a box or a sphere is enlarged, relative to what it is computed from: rounding moves what is drawn, in `f32`,
-/// by less.
+/// Relative enlargement of boxes and spheres. It exceeds the `f32` rounding of drawn positions.
 pub(super) const MARGIN: f64 = 1e-5;
 
 impl Scene {
-    /// The first instance that a ray hits, as it stands now, in the pose of the time of the scene and in full detail; `None` if
-    /// it hits none. Objects that are hidden are not hit, and triangles are hit from the sides that are seen. A relief is
-    /// hit on its mesh, and where its texture cuts a mesh out, the mesh is hit.
+    /// The first instance that a ray hits, in full detail and in the pose at the scene's time; `None` if the ray hits none.
+    /// Hidden objects are not hit, and triangles are hit only from their visible sides. A relief is hit on its mesh.
+    /// Cut-out pixels are ignored: the mesh is hit there.
     ///
-    /// Driven bones ([`Scene::drive`]) that the last frame wrote from the host ([`Poses::write`](crate::scene::Poses::write))
-    /// count as they were written, with the other bones in the pose of the time of the scene. What kernels wrote
-    /// ([`Poses::of`](crate::scene::Poses::of)) is unknown to the host: the ray meets those bones where the clip has them.
+    /// Driven bones ([`Scene::drive`]) that the host wrote in the last frame ([`Poses::write`](crate::scene::Poses::write))
+    /// keep those values; the other bones have the pose at the scene's time. The host does not know the writes of kernels
+    /// ([`Poses::of`](crate::scene::Poses::of)), so the ray meets those bones where the clip has them.
     ///
-    /// The host tests the bounding sphere of each instance, and where the ray meets it, every triangle of a mesh, or the
-    /// cells of terrain below the ray. The vertices of a character are posed and skinned for that: about a quarter
-    /// of a microsecond a vertex. Nearer spheres come first, and those behind the nearest hit are left out.
+    /// The host tests the bounding sphere of each instance. If the ray meets it, the host tests every triangle of a mesh,
+    /// or the terrain cells below the ray. For a character, it poses and skins all vertices, at about a quarter of a
+    /// microsecond per vertex. Nearer spheres come first, and spheres behind the nearest hit are skipped.
     ///
     /// # Errors
     /// [`InputError`] as [`Ray::validate`].
@@ -58,7 +57,7 @@ impl Scene {
         }))
     }
 
-    /// The transform of an instance from its model's space to the world, relative to the corner of a cell.
+    /// An instance's transform from model space to world axes, relative to a cell's corner.
     pub(super) fn placed(&self, instance: InstanceId, cell: [i32; 3]) -> Result<DAffine3, InputError> {
         if let Some(placed) = self.attached_placed(instance, cell)? {
             return Ok(placed);
@@ -67,7 +66,7 @@ impl Scene {
         Ok(placed_model(&object.instances.all()[instance.index as usize], cell))
     }
 
-    /// The instances whose bounding spheres a ray meets within its limit.
+    /// Instances whose bounding spheres a ray meets within its limit.
     fn spheres_near(&self, ray: &Ray, direction: DVec3) -> Result<Vec<Candidate<'_>>, InputError> {
         let mut near = Vec::new();
         for (object, entry) in self.objects.each().filter(|(_, entry)| entry.is_drawn()) {
@@ -95,14 +94,14 @@ impl Scene {
     }
 }
 
-/// An instance that a ray may hit, from this distance on.
+/// An instance that a ray may hit, at `distance` or further.
 struct Candidate<'a> {
     distance: f64,
     instance: InstanceId,
     entry: &'a Object,
 }
 
-/// The distance along a unit direction from the origin to a sphere; 0 inside it.
+/// The distance from the origin to a sphere along a unit direction; 0 inside the sphere.
 fn distance_to_sphere(center: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
     let along = center.dot(direction);
     let aside = (center - along * direction).length_squared();
@@ -114,7 +113,7 @@ fn distance_to_sphere(center: DVec3, direction: DVec3, radius: f64) -> Option<f6
 }
 
 impl Object {
-    /// The center and the radius of a sphere around an instance.
+    /// The center and radius of a sphere around an instance.
     fn sphere_around(&self, instance: &Placed) -> Result<(DVec3, f64), InputError> {
         if self.kind.may_leave_sphere(instance.index)
             && let Some([low, high]) = self.kind.wide_box(instance)?

@@ -1,5 +1,5 @@
-//! Meshes that a binding of the device cannot hold, in pieces: each level of detail is cut where its triangles begin to use
-//! more vertices than fit, and each piece has vertices of its own.
+//! Splitting meshes that exceed a binding of the device. Each level of detail is cut where its triangles begin to use more
+//! vertices than fit, and each piece has vertices of its own.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use crate::asset::{Influences, Mesh, Model};
 use crate::skinning::character_levels::own_levels;
 use crate::skinning::merged::{Merged, Part};
 
-/// The most that a piece may have.
+/// Largest numbers of vertices and indices in a piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Most {
     pub vertices: usize,
@@ -16,19 +16,19 @@ pub(super) struct Most {
 }
 
 impl Most {
-    /// Whether a mesh fits, with all its levels.
+    /// Whether a mesh fits, including all its levels.
     pub fn holds(self, mesh: &Mesh) -> bool {
         mesh.vertices() <= self.vertices && indices_of_levels(mesh) <= self.indices
     }
 }
 
-/// Number of indices of a mesh, those of all its levels together.
+/// Number of indices of a mesh, all levels together.
 pub(super) fn indices_of_levels(mesh: &Mesh) -> usize {
     mesh.indices.len() + mesh.levels.iter().map(|level| level.indices.len()).sum::<usize>()
 }
 
-/// A merged mesh at rest in pieces: meshes without levels, whose parts are drawn at one level each. The triangles of a level
-/// keep their order, and their vertices have the same bits.
+/// Splits a merged mesh at rest into pieces: meshes without levels, whose parts are drawn at one level each. The triangles
+/// of a level keep their order, and their vertices are identical to the bit.
 pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Merged {
     let whole = &merged.model.meshes[index];
     let own = own_levels(whole, &merged.errors);
@@ -65,15 +65,15 @@ pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Merged {
     all
 }
 
-/// A piece that is being filled.
+/// A piece under construction.
 #[derive(Default)]
 struct Piece<'a> {
-    /// For each vertex of the whole mesh that it has, its own index.
+    /// Vertex of the whole mesh → vertex of the piece.
     slots: HashMap<u32, u32>,
-    /// The vertex of the whole mesh that each of its vertices is.
+    /// Vertex of the piece → vertex of the whole mesh.
     vertices: Vec<u32>,
     indices: Vec<u32>,
-    /// The parts that it has triangles of, and where these end.
+    /// Parts with triangles in the piece, and the end of each part's indices.
     parts: Vec<(&'a Part, u32)>,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// Adds it to `all` as a mesh with parts that are drawn at `level` alone.
+    /// Appends it to `all` as a mesh with parts that are drawn only at `level`.
     fn finish(self, merged: &Merged, index: usize, level: usize, all: &mut Merged) {
         let (whole, mesh) = (&merged.model.meshes[index], all.model.meshes.len());
         let mut begin = 0;
@@ -129,7 +129,7 @@ impl<'a> Piece<'a> {
         });
     }
 
-    /// The values of its vertices among those of the whole mesh.
+    /// The values of its vertices, from those of the whole mesh.
     fn taken<T: Copy>(&self, of_whole: &[T]) -> Vec<T> {
         self.vertices.iter().map(|vertex| of_whole[*vertex as usize]).collect()
     }

@@ -1,4 +1,4 @@
-//! Where an instance stands, and what it plays.
+//! Placements of instances, and the clips that they play.
 
 use glam::{DVec3, Quat, Vec3};
 
@@ -8,11 +8,11 @@ use crate::animation::instance::check_seconds;
 use crate::asset::Transform;
 use crate::shared::lod::instance::CELL_SIZE;
 
-/// Where an instance stands in the world, how it is turned, and how large it is. A point of the model is scaled, then turned,
-/// then moved to the position. The world is right-handed: +X east, +Y up, +Z south.
+/// An instance's transform into the world: position, rotation and scale. A point of the model is scaled, then rotated, then
+/// translated. The world is right-handed: +X east, +Y up, +Z south.
 ///
-/// The position is a cell, of [`Placement::CELL`] world units along each axis, and an offset, so that it stays precise at any
-/// distance from the origin.
+/// The position is a cell and an offset from its corner, so that it stays precise at any distance from the origin. A cell
+/// has an edge of [`Placement::CELL`] world units.
 ///
 /// # Examples
 ///
@@ -63,12 +63,12 @@ impl Placement {
         Self { offset: position.into(), ..Self::default() }
     }
 
-    /// At a position in world coordinates, neither turned nor scaled. Positions beyond ±549,755,813,888 (2³¹ cells) are refused
-    /// when the placement is used.
+    /// At a position in world coordinates, neither turned nor scaled. A position beyond ±549,755,813,888 (2³¹ cells) is
+    /// refused where the placement is used.
     pub fn at_world(position: impl Into<DVec3>) -> Self {
         let position = position.into();
         let edge = f64::from(Self::CELL);
-        // Conversion saturates.
+        // The cast saturates.
         let cell = (position / edge).floor().to_array().map(|cell| cell as i32);
         Self { cell, offset: (position - Self::corner(cell)).as_vec3(), ..Self::default() }
     }
@@ -78,22 +78,22 @@ impl Placement {
         DVec3::from(cell.map(f64::from)) * f64::from(Self::CELL)
     }
 
-    /// The same placement with another rotation: about the vertical axis by an angle in radians, counter-clockwise seen from
-    /// above, so that what faces +Z at 0 faces +X at π/2.
+    /// The same placement, but with a rotation about the vertical axis by `angle` radians. Positive angles turn
+    /// counter-clockwise seen from above: the side that faces +Z at 0 faces +X at π/2.
     #[must_use]
     pub fn turned(self, angle: f32) -> Self {
         Self { turn: Quat::from_rotation_y(angle), ..self }
     }
 
-    /// The same placement with another scale: one factor for all axes, in world units per unit of the model.
+    /// The same placement, but with one scale factor for all axes, in world units per unit of the model.
     #[must_use]
     pub fn scaled(self, scale: f32) -> Self {
         Self { scale: Vec3::splat(scale), ..self }
     }
 
-    /// The placement after a motion in the model's space, as [`Scene::root_motion`](crate::scene::Scene::root_motion) gives it:
-    /// this placement times the motion, whose own scale is left out. It is exact for a scale of one size along all axes, mirrored or
-    /// not.
+    /// The placement after a motion in model space, such as [`Scene::root_motion`](crate::scene::Scene::root_motion): this
+    /// placement times the motion, whose own scale is ignored. It is exact if the scale has the same size along all axes,
+    /// mirrored or not.
     #[must_use]
     pub fn moved_by(self, motion: &Transform) -> Self {
         let ahead = self.turn * (self.scale * Vec3::from(motion.translation));
@@ -110,7 +110,7 @@ impl Placement {
         Self::corner(self.cell) + self.offset.as_dvec3()
     }
 
-    /// The same placement with a position inside its cell and a rotation of length 1.
+    /// The same placement with the position inside its cell and a unit rotation.
     ///
     /// # Errors
     /// [`InputError`] for values that are not finite, a rotation without direction, a scale of 0 along all axes, and a
@@ -150,7 +150,7 @@ impl Placement {
 /// [`InputError`] for a coordinate that is NaN or beyond the last cell.
 pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<(), InputError> {
     let world = Placement::corner(cell) + offset.as_dvec3();
-    // Of the cells.
+    // Bounds of the world along an axis: the corners of the first and last cells.
     let [first, end] = [i32::MIN, i32::MAX].map(|cell| Placement::corner([cell; 3]).x);
     let end = end + f64::from(Placement::CELL);
     match world.to_array().iter().position(|value| !(first..end).contains(value)) {
@@ -158,7 +158,7 @@ pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<()
         Some(axis) => {
             let value = match world[axis].is_infinite() {
                 true => "beyond ±3.4e38, the range of f32".to_owned(),
-                // The offset was rounded to f32, whose digits are those that the caller wrote.
+                // The offset was rounded to f32; its shortest decimal form is what the caller wrote.
                 false => (world[axis] as f32).to_string(),
             };
             let bound = format!("must be a number in {first}..{end}, the world's coordinates");
@@ -167,38 +167,38 @@ pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<()
     }
 }
 
-/// What a character plays.
+/// A clip for a character to play.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Play<'a> {
-    /// The name of the clip, or its index in the model, counted from 0. A clip without a name in its file is called
-    /// `animation_` and its index.
+    /// The clip's name, or its index in the model in digits, counted from 0. A clip without a name in its file is called
+    /// `animation_` followed by its index.
     pub clip: &'a str,
-    /// The time of the scene, in seconds, at which the clip begins. It may lie in the past: then the clip is under way.
+    /// The scene time, in seconds, at which the clip starts. A start in the past means that the clip is already under way.
     pub start: f64,
-    /// Seconds of the clip per second; negative to play it backwards.
+    /// Seconds of the clip per second of scene time; negative plays it backwards.
     pub rate: f32,
-    /// What happens at the end of the clip.
+    /// Behaviour at the end of the clip.
     pub wrap: Wrap,
 }
 
 impl<'a> Play<'a> {
-    /// A clip that began at time 0 of the scene, and repeats. For one that begins now, `start` is
+    /// A looping clip that started at scene time 0, with rate 1. To start it now, set `start` to
     /// [`Scene::time`](crate::scene::Scene::time).
     pub fn new(clip: &'a str) -> Self {
         Self { clip, start: 0.0, rate: 1.0, wrap: Wrap::Loop }
     }
 
-    /// Checks start and rate.
+    /// Checks `start` and `rate`.
     ///
     /// # Errors
-    /// [`InputError`] that names the field.
+    /// [`InputError`] that names the invalid field.
     pub fn validate(&self) -> Result<(), InputError> {
         check_seconds("play.start", self.start as f32)?;
         check_seconds("play.rate", self.rate)
     }
 }
 
-/// The clip that a character plays, and the time in it.
+/// The clip that a character plays, and the position in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClipTime {
     /// Index of the clip in the model.
@@ -223,7 +223,7 @@ mod tests {
         assert_eq!(turned.turn, Quat::from_xyzw(0.0, 0.6, 0.0, 0.8));
     }
 
-    /// A point that moves in the model's space, then stands in the world, is where the moved placement has it.
+    /// Moving a point in model space and then placing it equals placing it with the moved placement.
     #[test]
     fn placements_move_by_motions_of_the_model() {
         let rotation = Quat::from_rotation_y(0.6) * Quat::from_rotation_x(0.3);

@@ -1,8 +1,8 @@
-//! What the instances of characters play.
+//! Clips that instances of characters play.
 
 use crate::animation::{Instance, Wrap};
 
-/// What an instance plays.
+/// The clip that an instance plays, and how.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Playing {
     pub clip: u32,
@@ -15,8 +15,8 @@ impl Playing {
     /// The first clip, from time 0 on.
     pub const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
 
-    /// The same for the device, with a start that is counted from `epoch`. The start of a clip, so many seconds long, that
-    /// repeats is moved by whole repetitions, so that it stays near.
+    /// The same in device format, with a start relative to `epoch`. For a looping clip of `duration` seconds, the start is
+    /// moved by whole repetitions, so that it stays close to the epoch.
     pub fn on_device(&self, duration: f64, epoch: f64) -> Instance {
         let mut start = self.start - epoch;
         let period = duration / f64::from(self.rate.abs());

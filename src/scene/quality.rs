@@ -1,17 +1,17 @@
-//! How fine a view is, and what the permitted displacement is spent on.
+//! How fine a view is, and how its allowed displacement is divided.
 
 use crate::InputError;
 
 /// How fine a view is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quality {
-    /// The largest number of pixels of the camera's viewport by which any point of an instance may be drawn away from its
-    /// place, at least 0; 0 shows everything in full detail. It becomes a distance in the world that each instance is allowed,
-    /// and [`ErrorBudget`] divide that among levels of detail, bones and influences. Not bounded are shading, textures, and
-    /// shadow edges.
+    /// The largest error on the screen, in pixels of the camera's viewport: no point of an instance is drawn further from
+    /// its place. At least 0; 0 shows everything in full detail. The limit becomes an allowed displacement in the world per
+    /// instance, which [`ErrorBudget`] divides among levels of detail, bones and influences. Shading, textures and shadow
+    /// edges are not bounded.
     ///
-    /// Where the device has no memory left for the vertices of what is seen of a character, its levels are coarser than that:
-    /// [`Scene::lod_bias`](super::Scene::lod_bias) says by how much.
+    /// When the device has no memory left for the vertices of a character's visible instances, its levels are coarser than
+    /// this; [`Scene::lod_bias`](super::Scene::lod_bias) returns the factor.
     pub pixels: f32,
 }
 
@@ -23,10 +23,10 @@ impl Default for Quality {
 }
 
 impl Quality {
-    /// Checks the number of pixels.
+    /// Checks `pixels`.
     ///
     /// # Errors
-    /// [`InputError`] for pixels that are negative or not finite.
+    /// [`InputError`] for `pixels` that is negative or not finite.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.pixels >= 0.0 && self.pixels.is_finite() {
             return Ok(());
@@ -35,19 +35,19 @@ impl Quality {
     }
 }
 
-/// The fractions of the allowed displacement that each source of error may use. They add up to at most 1.
+/// Fraction of the allowed displacement that each source of error may use. The fractions add up to at most 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorBudget {
     /// Levels of detail of characters' meshes, 0 to 1. Static meshes use the whole displacement.
     pub mesh: f32,
-    /// Bones that keep an old pose, 0 to 1.
+    /// Bones that keep an older pose, 0 to 1.
     pub bones: f32,
-    /// Influences that are left out, 0 to 1.
+    /// Omitted influences, 0 to 1.
     pub influences: f32,
 }
 
 impl Default for ErrorBudget {
-    /// 0.9 for meshes, 0.08 for bones and 0.02 for influences: triangles cost most.
+    /// 0.9 for meshes, 0.08 for bones and 0.02 for influences, because triangles cost the most.
     fn default() -> Self {
         Self { mesh: 0.9, bones: 0.08, influences: 0.02 }
     }
@@ -57,7 +57,7 @@ impl ErrorBudget {
     /// Checks the fractions.
     ///
     /// # Errors
-    /// [`InputError`] that names the field.
+    /// [`InputError`] that names the invalid field.
     pub fn validate(&self) -> Result<(), InputError> {
         for (path, value) in
             [("budget.mesh", self.mesh), ("budget.bones", self.bones), ("budget.influences", self.influences)]

@@ -1,4 +1,4 @@
-//! What a scene knows of its instances, and, for measurements, what a view draws of them.
+//! Queries of a scene's instances and, for measurements, of what a view draws.
 
 use glam::DAffine3;
 
@@ -12,8 +12,8 @@ use crate::shared::lod::instance::SceneInstance;
 pub use drawn::{DrawnAs, DrawnInstance};
 
 impl Scene {
-    /// All instances of an object, in the order in which views list them. Those of terrain are its patches: they can be
-    /// hidden ([`Scene::set_visibility_mask`]), but neither moved, removed nor tinted.
+    /// All instances of an object, in the order of views' lists. The instances of terrain are its patches: they can be
+    /// hidden ([`Scene::set_visibility_mask`]), but not moved, removed or tinted.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -22,8 +22,8 @@ impl Scene {
         Ok(all.map(|[index, generation]| InstanceId { object, index, generation }).collect())
     }
 
-    /// Where an instance stands; of one that is attached to a bone, where it stands when it is detached:
-    /// [`Scene::world_from_model`] tells where it stands now.
+    /// The placement of an instance. For an attached instance, it is the placement that it takes when it is detached;
+    /// [`Scene::world_from_model`] returns its present transform.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -38,20 +38,20 @@ impl Scene {
         Ok(Placement { cell, offset: offset.into(), turn, scale: scale.into() })
     }
 
-    /// The transform from an instance's model space to world coordinates, in world units. A mesh that is attached to a bone
-    /// ([`Scene::attach`]) stands where the bone carries it in the pose of the time of the scene: the host samples the
-    /// character for that. Bones that were written in the last frame count as in [`Scene::pick`]. Every other instance stands
-    /// where its [`Scene::placement`] says.
+    /// The transform from an instance's model space to world coordinates, in world units. For an attached mesh
+    /// ([`Scene::attach`]), it follows the bone in the pose at the scene's time; the host samples the character for that.
+    /// Bones written in the last frame count as in [`Scene::pick`]. For every other instance, it equals
+    /// [`Scene::placement`].
     ///
-    /// It is no [`Placement`], since bones may shear a mesh. A [`Placement`] for a mesh without shear is
-    /// `to_scale_rotation_translation()` of it.
+    /// The result is not a [`Placement`], because bones may shear a mesh. Without shear, `to_scale_rotation_translation()`
+    /// of the result gives one.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     ///
     /// # Examples
     ///
-    /// The tip of a sword, 0.9 units along the model's +Y, in world coordinates.
+    /// World coordinates of the tip of a sword, 0.9 units along the model's +Y.
     ///
     /// ```no_run
     /// # use glam::DVec3;
@@ -65,7 +65,7 @@ impl Scene {
         Ok(DAffine3::from_translation(Placement::corner(cell)) * self.placed(instance, cell)?)
     }
 
-    /// The clip that an instance plays, and the time in it at the time of the scene; `None` for what is no character.
+    /// The clip that an instance plays, and the position in it at the scene's time; `None` if it is not a character.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -74,7 +74,7 @@ impl Scene {
         character.map(|character| character.clip_time(instance.index, self.now)).transpose()
     }
 
-    /// The object of an instance that exists.
+    /// The object of an existing instance.
     pub(super) fn object_of(&self, instance: InstanceId) -> Result<&Object, InputError> {
         self.objects.existing(instance).ok_or_else(|| missing(self.objects.scene(), instance))
     }
@@ -92,36 +92,36 @@ mod drawn {
     use crate::shared::lod::object::{MORPH_STEPS, list_entry_instance, list_entry_morph, morph_steps};
     use crate::skinning::vertex::Vertex;
 
-    /// An instance that a view may show, as the view's last frame drew it.
+    /// An instance that a view may show, as drawn in the view's last frame.
     #[derive(Debug, Clone, Copy)]
     pub struct DrawnInstance {
         /// The instance.
         pub instance: InstanceId,
-        /// How it was drawn; `None` if it was not.
+        /// How it was drawn; `None` if it was not drawn.
         pub drawn: Option<DrawnAs>,
     }
 
     /// How a view drew an instance.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct DrawnAs {
-        /// Its list, 2 · level + mirrored.
+        /// Index of its list: 2 · level + mirrored.
         pub list: u32,
-        /// How far its level had moved to the next coarser one, 0 to 1.
+        /// Progress of the geomorph to the next coarser level, 0 to 1.
         pub way: f64,
-        /// The transform from the model's space to the corner of the view's cell.
+        /// The transform from model space to the corner of the view's cell.
         pub placement: Affine,
     }
 
-    /// For the laboratory, which measures what was drawn.
+    /// For the laboratory, which measures drawn frames.
     #[doc(hidden)]
     impl Scene {
-        /// Whether the instances of an object are animated.
+        /// Whether an object is a character.
         pub fn is_character(&self, object: ObjectId) -> Result<bool, InputError> {
             Ok(self.object_at(object)?.character().is_some())
         }
 
-        /// The instances of an object that a view may show, as its last frame, which must be submitted, drew them. Waits
-        /// for the device.
+        /// The instances of an object that a view may show, as drawn in its last frame, which must have been submitted.
+        /// Waits for the device.
         pub fn drawn_instances(&self, view: &View, object: ObjectId) -> Result<Vec<DrawnInstance>, Error> {
             let entry = self.object_at(object)?;
             let buffers = self.lists_of(view)?;
@@ -160,8 +160,8 @@ mod drawn {
             lists.ok_or_else(|| InputError::new("view", "not recorded", bound))
         }
 
-        /// The triangles that a view draws of the instances of an object's list, for each of its merged meshes; corners are
-        /// slots of vertices. Waits for the device.
+        /// The triangles that a view draws for one list of an object, per merged mesh. Corners are vertex slots. Waits for
+        /// the device.
         pub fn drawn_triangles(
             &self,
             view: &View,
@@ -185,9 +185,10 @@ mod drawn {
             Ok(all)
         }
 
-        /// The vertices that are drawn of instances of an object, instance by instance, for each of its merged meshes: those
-        /// of their pages in the mesh's own order if it is a character, those without a page `None`; and those that all
-        /// instances share, slot by slot and once for all of them, if it is a mesh. Waits for the device.
+        /// The drawn vertices of an object's instances, per merged mesh. Waits for the device.
+        ///
+        /// - Character: per instance, the vertices of its pages in the mesh's own order; `None` without a page.
+        /// - Mesh: the vertices shared by all instances, once, slot by slot.
         pub fn drawn_vertices(
             &self,
             object: ObjectId,

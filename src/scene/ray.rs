@@ -1,4 +1,4 @@
-//! Rays, and the surfaces that they hit on the host.
+//! Rays, and surfaces for hit tests on the host.
 
 use std::borrow::Cow;
 
@@ -14,55 +14,55 @@ use crate::skinning::merged::Merged;
 /// A ray in the world, for [`Scene::pick`](crate::scene::Scene::pick).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// The cell to whose corner `offset` is relative; see [`Placement`].
+    /// The cell whose corner `offset` is relative to; see [`Placement`].
     pub cell: [i32; 3],
-    /// Where the ray begins, in world units relative to the cell's corner. With cell (0, 0, 0) these are world coordinates.
+    /// The start of the ray in world units, relative to the cell's corner. With cell (0, 0, 0) these are world coordinates.
     pub offset: DVec3,
-    /// Its direction, of any length but 0.
+    /// The direction, of any length but 0.
     pub direction: DVec3,
     /// The largest distance of a hit, in world units.
     pub limit: f64,
-    /// Instances are hit if their visibility mask shares a bit with this one.
+    /// Visibility mask: only instances whose mask shares a bit with it are hit.
     pub mask: u16,
 }
 
-/// What a ray hits first.
+/// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// The instance. Of terrain, it is the patch.
+    /// The instance; for terrain, the patch.
     pub instance: InstanceId,
     /// Its object.
     pub object: ObjectId,
-    /// The distance from the ray's beginning, in world units.
+    /// The distance from the start of the ray, in world units.
     pub distance: f64,
-    /// The cell of the ray, to whose corner `offset` is relative.
+    /// The ray's cell, whose corner `offset` is relative to.
     pub cell: [i32; 3],
-    /// The position in world units, relative to the cell's corner.
+    /// The hit point in world units, relative to the cell's corner.
     pub offset: DVec3,
-    /// The unit normal of the triangle, on its outer side.
+    /// The outward unit normal of the triangle.
     pub normal: DVec3,
 }
 
 impl Hit {
-    /// The position in world coordinates.
+    /// The hit point in world coordinates.
     pub fn world(&self) -> DVec3 {
         Placement::corner(self.cell) + self.offset
     }
 }
 
 impl Ray {
-    /// A ray from a position in world coordinates, without a limit, that hits what any mask shows.
+    /// A ray from a position in world coordinates, without a limit, that hits instances of any mask except 0.
     pub fn new(position: impl Into<DVec3>, direction: impl Into<DVec3>) -> Self {
         let (offset, direction) = (position.into(), direction.into());
         Self { cell: [0; 3], offset, direction, limit: f64::INFINITY, mask: u16::MAX }
     }
 
-    /// Where the ray begins, in world coordinates.
+    /// The start of the ray in world coordinates.
     pub fn world(&self) -> DVec3 {
         Placement::corner(self.cell) + self.offset
     }
 
-    /// The ray from a camera's near plane through a point of its picture, in pixels from the left and from the top: the middle
+    /// The ray from a camera's near plane through a point of its picture, in pixels from the left and the top. The middle
     /// of the first pixel is (0.5, 0.5).
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl Ray {
     /// Checks the ray.
     ///
     /// # Errors
-    /// [`InputError`] for a position or a direction that is not finite, a direction of length 0, and a limit that is negative.
+    /// [`InputError`] for a position or a direction that is not finite, a direction of length 0, and a negative limit.
     pub fn validate(&self) -> Result<(), InputError> {
         if !self.offset.is_finite() {
             return Err(InputError::new("ray.offset", self.offset, "must be finite"));
@@ -98,7 +98,7 @@ impl Ray {
                 "must be finite, with a length that f64 can hold, and not 0",
             ));
         }
-        // The comparison is false for NaN.
+        // A NaN limit fails this comparison.
         if self.limit >= 0.0 {
             return Ok(());
         }
@@ -106,15 +106,15 @@ impl Ray {
     }
 }
 
-/// Triangles on the host, in a model's space.
+/// Triangles on the host, in model space.
 #[derive(Debug, Clone)]
 pub(super) struct Surface<'a> {
     positions: Cow<'a, [[f32; 3]]>,
-    /// Runs of triangles, each with whether both of its sides are seen.
+    /// Runs of triangle indices, each with whether both sides are visible.
     parts: Vec<(&'a [u32], bool)>,
 }
 
-/// A hit of a surface: the distance, and the triangle's normal of any length.
+/// A hit of a surface: the distance, and the triangle's normal, of any length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SurfaceHit {
     pub distance: f64,
@@ -122,7 +122,7 @@ pub(super) struct SurfaceHit {
 }
 
 impl SurfaceHit {
-    /// The nearer one.
+    /// The nearer of two hits.
     pub fn nearer(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         let all = one.into_iter().chain(other);
         all.reduce(|one, other| if other.distance < one.distance { other } else { one })
@@ -130,12 +130,12 @@ impl SurfaceHit {
 }
 
 impl<'a> Surface<'a> {
-    /// Triangles whose sides are both seen or not.
+    /// Triangles that are all double-sided, or all single-sided.
     pub fn new(positions: impl Into<Cow<'a, [[f32; 3]]>>, indices: &'a [u32], double_sided: bool) -> Self {
         Self { positions: positions.into(), parts: vec![(indices, double_sided)] }
     }
 
-    /// A merged mesh in full detail, with these positions of its vertices.
+    /// A merged mesh in full detail, with the given vertex positions.
     pub fn of_merged(merged: &'a Merged, mesh: usize, positions: impl Into<Cow<'a, [[f32; 3]]>>) -> Self {
         let own = merged.parts.iter().filter(|part| part.mesh == mesh);
         let indices = &merged.model.meshes[mesh].indices;
@@ -144,14 +144,14 @@ impl<'a> Surface<'a> {
         Self { positions: positions.into(), parts }
     }
 
-    /// The corners of a box around the surface, along the axes of the space into which `placed` leads.
+    /// The corners of a box around the surface, along the axes of the target space of `placed`.
     pub fn bounds(&self, placed: DAffine3) -> [DVec3; 2] {
         let corners = self.positions.iter().map(|corner| placed.transform_point3(point(*corner)));
         corners.fold([DVec3::MAX, DVec3::MIN], |[low, high], corner| [low.min(corner), high.max(corner)])
     }
 
-    /// The nearest hit of a ray with a direction of length 1, in the space into which `placed` leads, up to a distance.
-    /// Triangles that are seen from one side alone are hit from there alone.
+    /// The nearest hit of a ray within `limit`, in the target space of `placed`. The direction must have length 1.
+    /// Single-sided triangles are hit only from their visible side.
     pub fn hit(&self, placed: DAffine3, [at, direction]: [DVec3; 2], limit: f64) -> Option<SurfaceHit> {
         let corners: Vec<DVec3> =
             self.positions.iter().map(|corner| placed.transform_point3(point(*corner)) - at).collect();
@@ -219,7 +219,7 @@ mod tests {
         assert!((middle.world() - eye.as_dvec3()).length() < 0.501);
         let corner = Ray::through(&camera, [0.0, 0.0]).expect("a pixel");
         let up = ahead.cross(DVec3::Y).normalize().cross(ahead);
-        // Half the field of view up, and twice as far aside.
+        // Half the field of view upwards, and twice as far sideways.
         let rise = corner.direction.normalize().dot(up) / corner.direction.normalize().dot(ahead);
         assert!((rise - 0.45_f64.tan()).abs() < 1e-5, "{rise}");
         assert_eq!(Ray::through(&camera, [f32::NAN, 0.0]).expect_err("refused").path, "pixel[0]");

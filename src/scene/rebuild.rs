@@ -1,4 +1,4 @@
-//! A scene on another device, after its own was lost.
+//! Rebuilding a scene on another device, after its own was lost.
 
 use crate::Error;
 use crate::gpu::{Gpu, Staged, StagingRing};
@@ -7,11 +7,10 @@ use crate::scene::object_kind::OnDevice;
 use crate::scene::statistics::StageTimer;
 use crate::scene::{FRAMES_IN_FLIGHT, Passes, Scene};
 
-/// Something that was made on a scene's device, and is made again after the device was lost: a
-/// [`View`](crate::scene::View), a [`Renderer`](crate::render::Renderer), a [`SunShadow`](crate::render::SunShadow), or a type
-/// of the caller's.
+/// A type with device resources that can be rebuilt after the scene's device was lost: a [`View`](crate::scene::View), a
+/// [`Renderer`](crate::render::Renderer), a [`SunShadow`](crate::render::SunShadow), or a type of the caller's.
 pub trait Rebuild {
-    /// Creates everything again on the device of a scene that was rebuilt there.
+    /// Recreates all device resources on the new device of a rebuilt scene.
     ///
     /// # Errors
     /// Those of the type's own `rebuild`.
@@ -19,16 +18,16 @@ pub trait Rebuild {
 }
 
 impl Scene {
-    /// Rebuilds the scene on another device ([`Scene::rebuild`]), and after it, in their order, its views, shadows and renderers.
-    /// What was forgotten is refused where it is used next, with the name of the function that rebuilds it. A renderer with the
-    /// caller's bind group layout needs a layout of the new device: call [`Renderer::rebuild_with_layout`] for it, and leave it out
-    /// here.
+    /// Rebuilds the scene on another device ([`Scene::rebuild`]), then its views, shadows and renderers, in their order.
+    /// The next use of a part that was left out is refused, with the name of the function that rebuilds it. A renderer with
+    /// the caller's bind group layout needs a layout of the new device. Leave it out here, and call
+    /// [`Renderer::rebuild_with_layout`].
     ///
     /// [`Renderer::rebuild_with_layout`]: crate::render::Renderer::rebuild_with_layout
     ///
     /// # Errors
-    /// As [`Scene::rebuild`]; nothing has changed then. The first error of a part, whose paths begin with `parts[0]`, …: the
-    /// scene and the parts before it are rebuilt then, the others are not.
+    /// As for [`Scene::rebuild`]; nothing has changed then. Otherwise, the first error of a part, with a path that starts
+    /// with `parts[0]`, …: the scene and the parts before it are then rebuilt, the others are not.
     ///
     /// # Examples
     ///
@@ -53,10 +52,10 @@ impl Scene {
         self.rebuild_parts(parts)
     }
 
-    /// As `Scene::rebuild_all`, but completes once the device has told its errors; see [`Gpu::wait_async`].
+    /// Like `Scene::rebuild_all`, but completes once the device has reported its errors; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// As `Scene::rebuild_all`.
+    /// As for `Scene::rebuild_all`.
     pub async fn rebuild_all_async(
         &mut self,
         gpu: &Gpu,
@@ -77,32 +76,34 @@ impl Scene {
         Ok(())
     }
 
-    /// Creates everything that the scene has on its device again, on another one, after the device was lost. Handles stay valid,
-    /// and so do placements, clips, times, attachments and what else was set. Views, renderers and shadows need
-    /// [`View::rebuild`](crate::scene::View::rebuild), [`Renderer::rebuild`](crate::render::Renderer::rebuild) and
-    /// [`SunShadow::rebuild`](crate::render::SunShadow::rebuild); [`Scene::rebuild_all`] does it all. The next frame is that of a scene that was
-    /// [refreshed](Scene::refresh). If it fails, the scene is as it was.
+    /// Recreates the scene's device resources on another device, after its own was lost. Handles stay valid. Placements,
+    /// clips, times, attachments and all other settings are kept. The next frame is that of a [refreshed](Scene::refresh)
+    /// scene. The scene stays unchanged if the rebuild fails.
     ///
-    /// What lies in buffers and textures of the caller cannot be brought back: terrain made from fields
+    /// Views, renderers and shadows need [`View::rebuild`](crate::scene::View::rebuild),
+    /// [`Renderer::rebuild`](crate::render::Renderer::rebuild) and
+    /// [`SunShadow::rebuild`](crate::render::SunShadow::rebuild); [`Scene::rebuild_all`] calls them all.
+    ///
+    /// Data in the caller's buffers and textures cannot be restored. Before the call, remove terrain made from fields
     /// ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields)) and reliefs made from textures
-    /// ([`Relief::of_maps`](crate::scene::Relief::of_maps)) must be removed before.
+    /// ([`Relief::of_maps`](crate::scene::Relief::of_maps)).
     ///
-    /// The scene keeps what it needs on the host: meshes with their images, clips, and the recipes of terrain, whose patches are
-    /// generated anew. It takes as long as adding the objects did, less what is computed for characters once
-    /// (bounds of motion), and compiles what the new device has not compiled.
+    /// The scene keeps its sources on the host: meshes with their images, clips, and the recipes of terrain, whose patches
+    /// are generated again. The rebuild takes as long as adding the objects did, except for computations that characters
+    /// need only once (bounds of motion). It compiles all shaders that the new device has not compiled yet.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for terrain and reliefs that lie in the caller's buffers; [`crate::gpu::GpuError`].
+    /// [`InputError`](crate::InputError) for terrain and reliefs in the caller's buffers; [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
         gpu.block_on(self.rebuild_async(gpu))
     }
 
-    /// As `Scene::rebuild`, but completes once the device has generated terrain and told its errors; see
+    /// Like `Scene::rebuild`, but completes once the device has generated terrain and reported its errors; see
     /// [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// As `Scene::rebuild`.
+    /// As for `Scene::rebuild`.
     pub async fn rebuild_async(&mut self, gpu: &Gpu) -> Result<(), Error> {
         let layouts = SceneLayouts::new(gpu)?;
         let passes = Passes::new(gpu)?;

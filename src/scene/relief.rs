@@ -1,4 +1,4 @@
-//! Meshes with relief in a scene: walls, cobbles, anything whose depth is a height map.
+//! Relief-mapped meshes in a scene: walls, cobbles, anything whose depth is a height map.
 
 use glam::{Vec2, Vec3};
 
@@ -25,24 +25,24 @@ use crate::surface::relief::textures::SurfaceTextures;
 use crate::surface::{Address, Green, Material, ReliefMaps, ReliefOptions};
 use crate::{Error, InputError};
 
-/// A mesh that carries a relief, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
+/// A relief-mapped mesh, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
 ///
-/// It has no levels of detail, and is drawn as it is at any distance: the error of a level says how far its surface is off,
-/// and nothing of its texture coordinates, along which rays march through the relief. Use a mesh with few triangles; the
-/// relief itself has the detail.
+/// It has no levels of detail, so it is drawn in full at any distance. The error of a level bounds only the displacement of
+/// the surface. It does not bound texture coordinates, along which rays march through the relief. Use a mesh with few
+/// triangles; the relief itself has the detail.
 #[derive(Debug, Clone)]
 pub struct Relief {
-    /// The mesh, in the model's space.
+    /// The mesh, in model space.
     pub mesh: SurfaceMesh,
     /// Heights, colours and normals.
     pub maps: ReliefSource,
-    /// The method, shadows and silhouette. Textures are made for one method.
+    /// Method, shadows and silhouette. Textures on the device are made for one method.
     pub options: ReliefOptions,
-    /// Depth, plane and the width of shadows. Its light is not used: a scene has one light.
+    /// Depth, plane and width of shadows. Its light is not used, because a scene has one light.
     pub material: Material,
-    /// How rays are marched, and what lies beyond the edges of the maps.
+    /// Ray marching, and the address mode beyond the edges of the maps.
     pub march: March,
-    /// Whether both sides of the mesh are seen.
+    /// Whether both sides of the mesh are visible.
     pub double_sided: bool,
 }
 
@@ -58,8 +58,8 @@ pub enum ReliefSource {
         /// Normals in tangent space, if [`ReliefOptions::normal_map`] asks for them.
         normals: Option<image::RgbaImage>,
     },
-    /// Textures on the device, which any number of objects and the caller share: heights that the caller computed there,
-    /// or colours in linear half floats ([`ColorTexture::linear`]), of which no driver decodes sRGB.
+    /// Textures on the device, shared by any number of objects and by the caller. Use them for heights computed on the
+    /// device, or for colours in linear half floats ([`ColorTexture::linear`]), which no driver decodes from sRGB.
     Textures {
         /// The heights and the acceleration map of a method.
         textures: Box<SurfaceTextures>,
@@ -71,21 +71,21 @@ pub enum ReliefSource {
 }
 
 impl Relief {
-    /// An upright square wall with an edge of one unit of the model, centered at the model's origin and facing +Z, that shows
-    /// the maps `tiles` times along each edge, their top edge upwards. Its back is not drawn, unless `double_sided` is set.
-    /// Otherwise as [`Relief::new`].
+    /// An upright square wall, facing +Z and centred at the model's origin, with an edge of one unit of the model. It shows
+    /// the maps `tiles` times along each edge, their top edge upwards. Its back is not drawn unless `double_sided` is set.
+    /// Everything else is as in [`Relief::new`].
     pub fn wall(tiles: f32, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self::new(SurfaceMesh::square(tiles), heights, albedo)
     }
 
-    /// A mesh with heights and colours, which repeat, drawn by the exact quadtree method with the depth of the relief. Where
-    /// heights are largest, the relief touches the mesh; elsewhere it lies behind it.
+    /// A mesh with repeating heights and colours. It is drawn by the exact quadtree method, and writes the depth of the
+    /// relief. The relief touches the mesh where heights are largest, and lies behind it elsewhere.
     pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self::of(mesh, ReliefSource::Images { heights, albedo, normals: None })
     }
 
-    /// A mesh with textures of the caller, which it shares, drawn by the method for which they were made, with normals from the
-    /// heights and with the depth of the relief. The address mode is that of the textures.
+    /// A mesh that shares the caller's textures. It is drawn by the method for which the textures were made, with normals
+    /// from the heights, and writes the depth of the relief. The address mode is that of the textures.
     pub fn of_maps(mesh: SurfaceMesh, maps: ReliefMaps<'_>) -> Self {
         let ReliefMaps { textures, albedo, normals } = maps;
         let (method, address) = (textures.method, textures.address);
@@ -110,8 +110,8 @@ impl Relief {
         }
     }
 
-    /// The same with normals from an image, whose green channel points in this direction, and not from the heights. Textures
-    /// on the device stay as they are.
+    /// The same relief with normals from an image instead of from the heights. `green` is the direction of the image's
+    /// green channel. Textures on the device stay as they are.
     #[must_use]
     pub fn with_normals(mut self, image: image::RgbaImage, green: Green) -> Self {
         if let ReliefSource::Images { normals, .. } = &mut self.maps {
@@ -121,10 +121,10 @@ impl Relief {
         self
     }
 
-    /// Whether it can be made again on another device.
+    /// Checks that the relief can be made again on another device.
     ///
     /// # Errors
-    /// [`InputError`] for textures, which were on the device that was lost.
+    /// [`InputError`] for textures, because they were on the lost device.
     fn check_can_be_rebuilt(&self) -> Result<(), InputError> {
         match &self.maps {
             ReliefSource::Images { .. } => Ok(()),
@@ -165,7 +165,7 @@ impl ObjectKind for Relief {
     }
 }
 
-/// Uploads a mesh with relief; a sphere around it, and how it is drawn.
+/// Uploads a relief-mapped mesh. Returns a sphere around it, its drawables and its draws.
 pub(super) fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -257,7 +257,7 @@ fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<Relief
     }
 }
 
-/// The length of a unit of uv in the model's units: the square root of the ratio of all areas.
+/// Model units per uv unit: the square root of the mesh's total area over its total area in uv.
 fn length_of_uv(mesh: &SurfaceMesh) -> Result<f32, InputError> {
     let (mut in_space, mut in_uv) = (0.0, 0.0);
     for triangle in mesh.indices.chunks_exact(3) {

@@ -1,4 +1,4 @@
-//! What spawns, moves and changes instances of the objects of a scene.
+//! Spawning, moving and changing instances.
 
 use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, ObjectId, missing, no_character};
@@ -8,15 +8,15 @@ use crate::scene::placement::{Placement, Play};
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Spawns an instance. It shows from the next recording on. A character plays the first clip of its model, from time 0
-    /// of the scene on; see [`Scene::play`].
+    /// Spawns an instance, visible from the next recording on. A character plays the first clip of its model, from scene
+    /// time 0 on; see [`Scene::play`].
     ///
-    /// If there is no room, the object grows to twice its capacity. This allocates memory, here and in the next recording,
-    /// and lets all instances of a character be sampled and skinned in full once. Handles stay valid, and no pipeline has to
-    /// be compiled; but views must be recorded again before they are drawn.
+    /// A full object grows to twice its capacity. Growth allocates memory, here and in the next recording, and makes all
+    /// instances of a character be sampled and skinned in full once. Handles stay valid, and no pipeline needs to be
+    /// compiled. Views must be recorded again before they are drawn.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, for terrain, whose patches are its instances, and as
+    /// [`InputError`] for an object that is not of this scene, for terrain, whose instances are its patches, and as
     /// [`Placement::checked`]; [`crate::gpu::GpuError`].
     pub fn spawn(&mut self, object: ObjectId, placement: Placement) -> Result<InstanceId, Error> {
         let placement = placement.checked()?;
@@ -43,7 +43,7 @@ impl Scene {
         Ok(InstanceId { object, index, generation })
     }
 
-    /// Removes an instance. Its handle is stale from then on, also where another instance takes its place in memory.
+    /// Removes an instance. Its handle becomes stale, even if another instance takes its place in memory.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, and for a patch of terrain.
@@ -56,8 +56,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves, turns and scales an instance: replaces its placement. One that is attached to a bone stays there, and takes the
-    /// placement when it is detached.
+    /// Replaces an instance's placement: moves, turns and scales it. An attached instance stays at its bone, and takes the
+    /// new placement when it is detached.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and as
@@ -73,7 +73,7 @@ impl Scene {
         self.carry(instance)
     }
 
-    /// Lets a character play a clip, at once and without a transition.
+    /// Starts a clip on a character, at once and without a transition.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a clip that its model does
@@ -86,8 +86,8 @@ impl Scene {
         self.carry(instance)
     }
 
-    /// Sets the factor of an instance's colours: red, green, blue and alpha, each 0 to 1, in linear light; (1, 1, 1, 1) at
-    /// first. It is kept in steps of 1/255. Alpha counts only where the material is cut out or dithered.
+    /// Sets the tint of an instance: factors of red, green, blue and alpha, each 0 to 1, in linear light. The default is
+    /// (1, 1, 1, 1). The tint is stored in steps of 1/255. Alpha has an effect only on cut-out and dithered materials.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and for values out of range.
@@ -100,7 +100,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets 32 bits of an instance for the caller's shading (`surface.user_data`); 0 at first.
+    /// Sets 32 bits of an instance for the caller's shading (`surface.user_data`); the default is 0.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -111,8 +111,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets the visibility mask of an instance, `u16::MAX` at first. A view sees the instances whose masks share a bit with its
-    /// own ([`View::set_mask`](crate::scene::View::set_mask)); a mask of 0 hides the instance everywhere.
+    /// Sets the visibility mask of an instance; the default is `u16::MAX`. A view sees the instances whose masks share a
+    /// bit with its own ([`View::set_mask`](crate::scene::View::set_mask)). A mask of 0 hides the instance everywhere.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -122,8 +122,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets whether an instance casts shadows; at first it does. Views of casters alone
-    /// ([`View::set_casters_only`](crate::scene::View::set_casters_only)), as that of a
+    /// Sets whether an instance casts shadows; the default is true. Views that show only casters
+    /// ([`View::set_casters_only`](crate::scene::View::set_casters_only)), such as the view of a
     /// [`SunShadow`](crate::render::SunShadow), leave out the others.
     ///
     /// # Errors
@@ -134,7 +134,7 @@ impl Scene {
         Ok(())
     }
 
-    /// As [`Self::instance_mut`], for what was spawned: patches of terrain stay where and what they are.
+    /// Like [`Self::instance_mut`], but refuses patches of terrain, which are not spawned.
     fn spawned_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
         let object = self.instance_mut(instance)?;
         if object.kind.is_spawned() {

@@ -1,4 +1,4 @@
-//! What the pipelines of a part are compiled from.
+//! Specializations: the inputs from which a part's pipelines are compiled.
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub(crate) enum Program {
     Mesh,
     Relief,
     Terrain,
-    /// Of a kind of the caller's.
+    /// A caller-defined kind's.
     Own(KindProgram),
 }
 
@@ -30,7 +30,7 @@ impl Program {
         }
     }
 
-    /// What its entry points are generated from.
+    /// Input of the generator of entry points.
     pub fn kind(&self) -> KindText<'_> {
         let of = |name, discards, blends, deep| KindText { name, discards, blends, deep, moves: true };
         match self {
@@ -41,12 +41,12 @@ impl Program {
         }
     }
 
-    /// The shader with what an output needs to know of it.
+    /// The shader, with the facts that an output needs about it.
     pub fn generated(&self) -> program::Program<'_> {
         program::Program { text: self.text(), kind: self.kind(), is_own: matches!(self, Self::Own(_)) }
     }
 
-    /// The names that a caller's text declares.
+    /// Names declared by the caller's text.
     pub fn declared(&self) -> &[String] {
         if let Self::Own(program) = self { program.declared() } else { &[] }
     }
@@ -62,44 +62,44 @@ impl Program {
     }
 }
 
-/// What a part needs of its pipelines besides the shader.
+/// Pipeline state of a part, besides the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) struct PartState {
     /// Whether alpha decides which pixels are drawn (masked or dithered).
     pub cut_out: bool,
-    /// Whether it is blended with what is behind it, in a layer of its own.
+    /// Whether it is blended, in a layer of its own.
     pub blended: bool,
-    /// Whether both sides of triangles are seen.
+    /// Whether both sides of triangles are visible.
     pub double_sided: bool,
-    /// Where it writes the depth of the surface and not that of the triangles.
+    /// Layers in which it writes the surface's depth instead of the triangles'.
     pub own_depth: OwnDepth,
 }
 
-/// The layers in which a part writes the depth of the surface and not that of the triangles.
+/// Layers in which a part writes the surface's depth instead of the triangles'.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) enum OwnDepth {
     #[default]
     Never,
-    /// In the layer of depth alone.
+    /// Only in the depth layer.
     Depth,
     Always,
 }
 
-/// For which layers constants are chosen.
+/// Groups of layers with different override constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shown {
     /// Lit surfaces.
     Lit,
     /// Surfaces before they are lit.
     Surface,
-    /// Places, and what is cut out, alone.
+    /// Positions and cut-outs only.
     Place,
 }
 
 /// Names and values of override constants.
 type Constants = Vec<(&'static str, f64)>;
 
-/// What the pipelines of a part are compiled from: equal ones share pipelines.
+/// Inputs of a part's pipelines. Equal specializations share pipelines.
 #[derive(Debug, Clone)]
 pub(crate) struct Specialization(Arc<Inner>);
 
@@ -107,7 +107,7 @@ pub(crate) struct Specialization(Arc<Inner>);
 struct Inner {
     program: Program,
     state: PartState,
-    /// For each of [`Shown`].
+    /// Override constants for each of [`Shown`].
     constants: [Constants; 3],
     hash: u64,
 }
@@ -144,7 +144,7 @@ impl Specialization {
         Self(Arc::new(inner))
     }
 
-    /// Of a mesh with materials, of which one has a texture or a normal map.
+    /// For a mesh with materials. `textured` and `normal_mapped` say whether any of them has a texture or a normal map.
     pub fn mesh(state: PartState, textured: bool, normal_mapped: bool, morphed: bool) -> Self {
         let PartState { double_sided, cut_out, .. } = state;
         let full = scene_mesh::Constants { double_sided, textured, normal_mapped, morphed, shadowed: false };
@@ -152,7 +152,7 @@ impl Specialization {
         Self::new(Program::Mesh, state, [full, full, place].map(|constants| constants.list()))
     }
 
-    /// Of a mesh with relief.
+    /// For a relief-mapped mesh.
     pub fn relief(options: &ReliefOptions, double_sided: bool) -> Self {
         let own_depth = if options.depth { OwnDepth::Always } else { OwnDepth::Depth };
         let state = PartState { cut_out: options.silhouette, blended: false, double_sided, own_depth };
@@ -167,7 +167,7 @@ impl Specialization {
             own_depth: false,
             reversed: false,
             shadowed: false,
-            // Reliefs have one level of detail.
+            // Reliefs have a single level of detail.
             morphed: false,
         };
         let surface = scene_relief::Constants { shadow: Shadow::None as u32, ..full };
@@ -175,7 +175,7 @@ impl Specialization {
         Self::new(Program::Relief, state, [full, surface, place].map(|constants| constants.list()))
     }
 
-    /// Of patches of terrain, which are seen from both sides.
+    /// For patches of terrain, which are double-sided.
     pub fn terrain(style: TerrainStyle) -> Self {
         let wireframe = |wireframe| scene_terrain::Constants { wireframe, shadowed: false }.list();
         let state = PartState { double_sided: true, ..PartState::default() };
@@ -183,9 +183,9 @@ impl Specialization {
         Self::new(Program::Terrain, state, [full, wireframe(false), wireframe(false)])
     }
 
-    /// Of a kind of the caller's.
+    /// For a caller-defined kind.
     pub fn own(program: &KindProgram, state: PartState) -> Self {
-        // Every text of a caller's has them.
+        // Every caller's text declares them.
         let constants = [SHADOWED, OWN_DEPTH, REVERSED].map(|name| (name, 0.0)).to_vec();
         Self::new(Program::Own(program.clone()), state, std::array::from_fn(|_| constants.clone()))
     }
@@ -198,8 +198,8 @@ impl Specialization {
         self.0.state
     }
 
-    /// The constants for some layers, with those that the renderer sets: whether surfaces are looked up in the map of a sun's
-    /// shadow, and whether depth falls with distance.
+    /// The constants for some layers, including those that the renderer sets: whether shading looks surfaces up in a sun's
+    /// shadow map, and whether depth falls with distance.
     pub fn constants(&self, shown: Shown, shadowed: bool, reversed: bool) -> Constants {
         let set = [
             (SHADOWED, shadowed),

@@ -3,18 +3,18 @@
 /// Number of stages of a frame.
 pub(super) const STAGES: usize = 5;
 
-/// A stage of a frame's compute work. Each is recorded for everything before the next one begins.
+/// A stage of a frame's compute work. Each is recorded for all objects and views before the next one begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stage {
-    /// What views see and how fine.
+    /// Culling and levels of detail of the views.
     Select,
-    /// Which bones are sampled.
+    /// Choice of the bones to sample.
     Gate,
-    /// Their local transforms, and the weights of morph targets.
+    /// Local transforms of sampled bones, and weights of morph targets.
     Sample,
-    /// Their model matrices.
+    /// Model matrices of updated bones.
     LocalToModel,
-    /// The vertices.
+    /// Skinned vertices.
     Skin,
 }
 
@@ -22,14 +22,14 @@ impl Stage {
     /// All stages, in order.
     pub const ALL: [Self; STAGES] = [Self::Select, Self::Gate, Self::Sample, Self::LocalToModel, Self::Skin];
 
-    /// All in one run.
+    /// All stages in one run.
     pub const WHOLE: [&[Self]; 1] = [&Self::ALL];
 
-    /// Each in a run of its own.
+    /// Each stage in a run of its own.
     pub const EACH: [&[Self]; STAGES] =
         [&[Self::Select], &[Self::Gate], &[Self::Sample], &[Self::LocalToModel], &[Self::Skin]];
 
-    /// In two runs, between which the caller may write poses.
+    /// Two runs, between which the caller may write poses.
     pub const HALVES: [&[Self]; 2] =
         [&[Self::Select, Self::Gate, Self::Sample], &[Self::LocalToModel, Self::Skin]];
 

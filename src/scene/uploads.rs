@@ -1,4 +1,4 @@
-//! Uploads of what was added, spread over frames.
+//! Uploads of added objects, spread over frames.
 
 use crate::gpu::{Gpu, PendingUploads};
 use crate::scene::Scene;
@@ -7,15 +7,16 @@ use crate::scene::object::Object;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Sets how many bytes of what is added each frame uploads; `None`, as at first, is everything with the next frame. It
-    /// holds for what is added from now on.
+    /// Sets the largest number of bytes of added data that each frame uploads. With `None`, the default, everything is
+    /// uploaded with the next frame. The setting applies to objects added from now on.
     ///
-    /// It is for programs that add objects while they run, where one long frame would be seen. Meshes, clips and textures
-    /// then wait on the host, object by object, and an object is neither drawn nor found by rays ([`Scene::pick`]) until all
-    /// of it has arrived; it can be changed and spawned meanwhile. A frame uploads whole rows of textures, hence up to a row
-    /// more than the budget. What adding an object costs the host (mip levels, bounds of motion), and what the device
-    /// computes for it (heights of terrain, maps of reliefs), stays in the call that adds it, and so does all uploading in
-    /// `Scene::rebuild`. Render bundles must be made anew when an object appears.
+    /// Use it if objects are added while the program runs, where one long frame would be visible. Meshes, clips and
+    /// textures then wait on the host, object by object. Until all of an object has arrived, it is neither drawn nor hit by
+    /// rays ([`Scene::pick`]), but it can be changed and spawned.
+    ///
+    /// A frame uploads whole rows of textures, so it may exceed the budget by up to a row. Some costs stay in the call that
+    /// adds an object: host work (mip levels, bounds of motion) and device work (heights of terrain, maps of reliefs).
+    /// `Scene::rebuild` also uploads everything at once. Render bundles must be made anew when an object appears.
     ///
     /// # Errors
     /// [`InputError`] for 0 bytes.
@@ -27,12 +28,12 @@ impl Scene {
         Ok(())
     }
 
-    /// The number of bytes that still wait on the host; see [`Scene::set_upload_budget`].
+    /// The number of bytes that wait on the host; see [`Scene::set_upload_budget`].
     pub fn waiting(&self) -> usize {
         self.objects.iter().filter_map(|object| object.pending.as_ref()).map(PendingUploads::len).sum()
     }
 
-    /// Whether a part of an object still waits on the host, so that it is not drawn; see [`Scene::set_upload_budget`].
+    /// Whether a part of an object waits on the host, so that the object is not drawn; see [`Scene::set_upload_budget`].
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -40,7 +41,7 @@ impl Scene {
         Ok(self.object_at(object)?.pending.is_some())
     }
 
-    /// The device on which an object is made, and where its uploads wait, if they do.
+    /// The device to create an object on, and the queue of its uploads if they are spread.
     pub(super) fn uploader(&self) -> (Gpu, Option<PendingUploads>) {
         if self.upload_budget.is_none() {
             return (self.gpu.clone(), None);
@@ -49,7 +50,7 @@ impl Scene {
         (gpu, Some(pending))
     }
 
-    /// Uploads as much of what waits as a frame may. Returns how many bytes that is.
+    /// Uploads waiting data, up to the budget of a frame. Returns the number of bytes.
     pub(super) fn upload(&mut self) -> Result<usize, Error> {
         let most = self.upload_budget.unwrap_or(usize::MAX);
         let mut sent = 0;
@@ -64,12 +65,12 @@ impl Scene {
 }
 
 impl Object {
-    /// Whether it is shown, and all of it has arrived on the device.
+    /// Whether it is visible and has arrived on the device completely.
     pub(super) fn is_drawn(&self) -> bool {
         self.is_shown && self.pending.is_none()
     }
 
-    /// Uploads about so many bytes of what waits.
+    /// Uploads about `most` bytes of waiting data.
     fn upload(&mut self, gpu: &Gpu, most: usize) -> Result<usize, Error> {
         let Some(pending) = &self.pending else { return Ok(0) };
         let sent = pending.send(gpu, most)?;

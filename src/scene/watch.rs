@@ -1,4 +1,4 @@
-//! Bones whose matrices arrive on the host some frames later, without a wait.
+//! Bone matrices that arrive on the host some frames later, without waiting.
 
 use glam::{DAffine3, DVec3};
 
@@ -13,32 +13,32 @@ use crate::scene::placement::Placement;
 use crate::shared::lod::instance::SceneInstance;
 use crate::{Error, InputError};
 
-/// The number of frames whose bones may be on their way. If all of them are, a frame's bones are left out.
+/// Largest number of frames whose bones are in flight. If all are taken, a frame's bones are left out.
 const FRAMES: usize = 8;
 
-/// Bones of instances, as a frame posed them.
+/// Watched bones, as posed in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WatchedBones {
-    /// The frame: the number of frames that the scene had recorded before it.
+    /// Number of the frame: how many frames the scene had recorded before it.
     pub frame: u64,
-    /// The time of the scene in that frame, in seconds.
+    /// The scene's time in that frame, in seconds.
     pub time: f64,
-    /// The bones, in the order in which they were asked for. Those of instances that did not exist any more are left out.
+    /// The bones, in the order of the request. Bones of instances that no longer existed are left out.
     pub bones: Vec<WatchedBone>,
 }
 
-/// A bone of an instance, as a frame posed it.
+/// A bone of an instance, as posed in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WatchedBone {
     /// The instance.
     pub instance: InstanceId,
     /// The index of the bone in the skeleton.
     pub bone: usize,
-    /// Whether a view of the frame saw the instance. If none did, its bones were left as they were when one did last.
+    /// Whether a view of the frame saw the instance. If not, its bones are those of the last frame in which a view saw it.
     pub is_current: bool,
     /// The cell of the instance's placement.
     pub cell: [i32; 3],
-    /// From the bone's space to the world's moved to the cell's corner: three rows.
+    /// The transform from bone space to world axes, relative to the cell's corner: three rows.
     pub cell_from_bone: Affine,
 }
 
@@ -48,13 +48,13 @@ impl WatchedBone {
         self.world_from_bone().translation
     }
 
-    /// The transform from the bone's space to the world.
+    /// The transform from bone space to the world.
     pub fn world_from_bone(&self) -> DAffine3 {
         DAffine3::from_translation(Placement::corner(self.cell)) * affine_of(&self.cell_from_bone)
     }
 }
 
-/// A frame on its way.
+/// A frame in flight.
 #[derive(Debug)]
 struct About {
     frame: u64,
@@ -62,7 +62,7 @@ struct About {
     bones: Vec<(InstanceId, usize, SceneInstance)>,
 }
 
-/// The bones that are watched.
+/// The watched bones.
 #[derive(Debug)]
 pub(super) struct Watch {
     chosen: Vec<(InstanceId, usize)>,
@@ -70,12 +70,13 @@ pub(super) struct Watch {
     last: Option<WatchedBones>,
 }
 
-/// Bytes of a bone: its model matrix, then what its instance is allowed.
+/// Bytes per bone: its model matrix, and its instance's allowed displacement.
 const BYTES: u64 = (size_of::<Affine>() + size_of::<f32>()) as u64;
 
 impl Scene {
-    /// Watches bones of characters, each by its name or its index in digits: from the next frame on, [`Scene::watched_bones`] gives
-    /// their matrices. They replace those that were watched before. A bone costs two small copies a frame.
+    /// Watches bones of characters, each given by its name or its index in digits. From the next frame on,
+    /// [`Scene::watched_bones`] returns their matrices. The list replaces the previous one. Each bone costs two small
+    /// copies per frame.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
@@ -90,15 +91,15 @@ impl Scene {
         Ok(())
     }
 
-    /// The watched bones in the last frame whose matrices have arrived; `None` before the first. Nothing is waited for: they
-    /// arrive when the device has executed the frame and is polled, as each submission does.
+    /// The watched bones of the last frame whose matrices have arrived; `None` before the first. The call does not wait:
+    /// matrices arrive when the device has executed the frame and is polled, which each submission does.
     pub fn watched_bones(&mut self) -> Option<&WatchedBones> {
         let watch = self.watch.as_mut()?;
         watch.arrive();
         watch.last.as_ref()
     }
 
-    /// The index of a bone of a character, by its name or its index in digits. A name that is a number takes precedence.
+    /// The index of a character's bone, given by its name or its index in digits. A name that is a number takes precedence.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does not
@@ -150,7 +151,7 @@ impl Watch {
         });
     }
 
-    /// Gives up frames that were dropped.
+    /// Discards frames that were dropped.
     pub(super) fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
         self.ring.invalidate(gpu)
     }

@@ -1,6 +1,6 @@
 //! The generator of entry points, which `build.rs` uses for the crate's own kinds.
 
-// Each user leaves out some of both.
+// Both users leave out some of the items.
 #[allow(dead_code)]
 #[path = "../../build/entries.rs"]
 pub(crate) mod entries;

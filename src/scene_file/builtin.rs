@@ -1,4 +1,4 @@
-//! Models and height maps that need no file, by the names that scene files give them after `builtin:`.
+//! Built-in models and height maps, which scene files name as `builtin:` and a name.
 
 use image::RgbaImage;
 
@@ -6,22 +6,23 @@ use crate::InputError;
 use crate::asset::Model;
 use crate::surface::HeightMap;
 
-/// Models and height maps that scene files name after `builtin:`. The crate `relievo-samples` has some.
+/// A provider of the models and height maps that scene files name after `builtin:`. The crate `relievo-samples` has
+/// one.
 pub trait BuiltIns {
-    /// The model of this name.
+    /// The built-in model with this name.
     ///
     /// # Errors
-    /// [`InputError`] for another name, which lists those there are.
+    /// [`InputError`] for another name, which lists the existing ones.
     fn model(&self, name: &str) -> Result<Model, InputError>;
 
-    /// The heights and the colours of the relief of this name.
+    /// The heights and colours of the built-in relief with this name.
     ///
     /// # Errors
-    /// [`InputError`] for another name, which lists those there are.
+    /// [`InputError`] for another name, which lists the existing ones.
     fn map(&self, name: &str) -> Result<(HeightMap, RgbaImage), InputError>;
 }
 
-/// Neither models nor height maps: a scene file may name files alone.
+/// A provider without models and height maps: scene files may then name only files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoBuiltIns;
 

@@ -1,4 +1,4 @@
-//! The camera of a scene file: a path in time, and the matrices of a view at a moment.
+//! The camera of a scene file: a path over time, and the view's matrices at a moment.
 
 use glam::{DVec3, Mat4, Vec4};
 
@@ -7,45 +7,45 @@ use crate::scene::{Camera, Depth, Placement};
 /// The range of vertical fields of view, in radians.
 pub(super) const FIELDS_OF_VIEW: [f64; 2] = [0.01, 3.1];
 
-/// A camera that moves on a smooth path, or stands still.
+/// A camera that moves on a smooth path, or does not move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraPath {
-    /// The moments of the path in ascending order; at least one.
+    /// The keys of the path in ascending order; at least one.
     pub(super) keys: Vec<CameraKey>,
     /// The distance of the near plane, > 0.
     pub(super) near: f64,
-    /// The distance of the far plane; none lies at infinity.
+    /// The distance of the far plane; `None` for infinity.
     pub(super) far: Option<f64>,
 }
 
-/// A camera at a moment.
+/// A key of a camera path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CameraKey {
-    /// Seconds.
+    /// Time in seconds.
     pub time: f64,
-    /// Where the eye is, in world units.
+    /// The eye's position in world units.
     pub at: DVec3,
-    /// Where it looks.
+    /// The point that it looks at.
     pub look: DVec3,
     /// Vertical field of view in radians.
     pub field_of_view: f64,
 }
 
 impl CameraPath {
-    /// The time of the last moment of the path, in seconds. The camera stands still from then on, and before the first.
+    /// The time of the path's last key, in seconds. The camera stands still after it, and before the first key.
     pub fn end(&self) -> f64 {
         self.keys[self.keys.len() - 1].time
     }
 
-    /// The camera at a time in seconds, for a picture of `viewport` pixels. Its cell is that of the eye.
+    /// The camera at a time in seconds, for a picture of `viewport` pixels, in the eye's cell.
     pub fn camera(&self, time: f64, viewport: [u32; 2], depth: Depth) -> Camera {
         let CameraKey { at, look, field_of_view, .. } = self.key(time);
         let edge = f64::from(Placement::CELL);
-        // Conversion saturates.
+        // Casts saturate.
         let cell = (at / edge).floor().to_array().map(|cell| cell as i32);
         let eye = (at - DVec3::from(cell.map(f64::from)) * edge).as_vec3();
         let forward = (look - at).normalize_or(DVec3::NEG_Z);
-        // Straight up and down, north replaces the undefined up vector.
+        // Looking straight up or down, −Z replaces the undefined up vector.
         let up = if forward.y.abs() > 0.9999 { DVec3::NEG_Z } else { DVec3::Y };
         Camera {
             cell,
@@ -56,8 +56,8 @@ impl CameraPath {
         }
     }
 
-    /// The path at a time, by cubic Hermite curves through its moments whose velocities are those between the moments
-    /// before and after (Catmull and Rom 1974, for uneven times).
+    /// The path at a time, by cubic Hermite curves through its keys. The velocity at a key is the mean velocity between
+    /// its neighbours (Catmull and Rom 1974, for uneven times).
     fn key(&self, time: f64) -> CameraKey {
         let keys = &self.keys;
         let (first, last) = (keys[0], keys[keys.len() - 1]);
@@ -136,12 +136,12 @@ mod tests {
         for key in &path.keys {
             assert_eq!(path.key(key.time), *key);
         }
-        // The first part is passed at one speed: that of the parts around its ends.
+        // The first segment has a constant speed, that of the segments around its ends.
         for time in [0.25, 0.5, 0.75] {
             assert!((x(time) - time).abs() < 1e-12, "{}", x(time));
         }
         assert_eq!((x(-1.0), x(9.0), path.end()), (0.0, 3.0, 4.0));
-        // No jump of the velocity where parts meet.
+        // The velocity is continuous between segments.
         let velocity = |time: f64| (x(time + 1e-6) - x(time - 1e-6)) / 2e-6;
         for time in [1.0, 3.0] {
             let [before, after] = [time - 1e-5, time + 1e-5].map(velocity);

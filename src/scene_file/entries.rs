@@ -1,4 +1,4 @@
-//! What a scene file says, checked, before any file that it names is read.
+//! The checked contents of a scene file, before the files that it names are read.
 
 use std::path::PathBuf;
 
@@ -16,24 +16,24 @@ use crate::terrain::recipe::Recipe;
 pub(super) struct TerrainEntry {
     pub recipe: Recipe,
     pub patches: Vec<[i32; 2]>,
-    /// What the heights become, and how far they are on the way.
+    /// The target heights, and how far the morph has progressed.
     pub target: Option<(Recipe, Morph)>,
 }
 
 /// A model with its instances.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ObjectEntry {
-    /// Its path in the scene file: `meshes[0]`.
+    /// Its path in the scene file, such as `meshes[0]`.
     pub path: String,
     pub source: Source,
     pub kind: EntryKind,
-    /// How its levels of detail change; as the scene's if it does not say.
+    /// Transition of its levels of detail; `None`: the scene's.
     pub transition: Option<Transition>,
     pub instances: Vec<InstanceEntry>,
     pub scatter: Option<Scatter>,
 }
 
-/// What an object is.
+/// The kind of an object.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum EntryKind {
     Mesh,
@@ -48,7 +48,7 @@ impl ObjectEntry {
     }
 }
 
-/// Where a model or a map comes from.
+/// The source of a model or a map.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) enum Source {
     /// The name after `builtin:`.
@@ -57,7 +57,7 @@ pub(super) enum Source {
     File(PathBuf),
 }
 
-/// The prefix of what needs no file.
+/// The prefix of built-in names.
 pub(super) const BUILT_IN: &str = "builtin:";
 
 impl std::fmt::Display for Source {
@@ -69,26 +69,26 @@ impl std::fmt::Display for Source {
     }
 }
 
-/// The relief that a mesh carries.
+/// The relief on a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ReliefEntry {
     pub heights: Source,
-    /// Whether heights are the alpha channel, and not the brightness.
+    /// Whether heights are the alpha channel instead of the brightness.
     pub is_alpha: bool,
     pub albedo: Option<Source>,
     pub normals: Option<Source>,
     /// Depth in tiles.
     pub scale: f32,
-    /// The factor of the mesh's texture coordinates.
+    /// Factor of the mesh's texture coordinates.
     pub tiles: f32,
     pub method: Method,
     pub shadow: Shadow,
 }
 
-/// What a character plays.
+/// A character's animation.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlayEntry {
-    /// Name or index; the first clip without.
+    /// Name or index of the clip; `None`: the first one.
     pub clip: Option<String>,
     pub rate: f32,
     pub start: f64,
@@ -101,28 +101,28 @@ pub(super) struct InstanceEntry {
     pub spot: Spot,
     pub turn: Quat,
     pub scale: Vec3,
-    /// What it plays, if it is a character.
+    /// Its animation, if it is a character.
     pub play: Option<PlayEntry>,
 }
 
-/// Where an instance stands.
+/// An instance's position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Spot {
-    /// In the world.
+    /// A position in the world.
     At(DVec3),
-    /// On the ground that is drawn, `lift` model units above it.
+    /// A position on the drawn ground, `lift` model units above it.
     On { x: f64, z: f64, lift: f64 },
 }
 
-/// Instances in places that a seed draws.
+/// Instances at pseudorandom places drawn from a seed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scatter {
     pub count: u32,
     pub seed: String,
-    /// Two corners: least and largest x and z. Without it, the patches of the terrain.
+    /// Two corners: smallest and largest x and z. `None`: the patches of the terrain.
     pub area: Option<[[f64; 2]; 2]>,
-    /// The least and the largest scale.
+    /// The smallest and the largest scale.
     pub scale: [f32; 2],
-    /// Model units above the ground.
+    /// Height above the ground in model units.
     pub lift: f64,
 }

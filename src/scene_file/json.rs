@@ -1,4 +1,4 @@
-//! JSON as a tree, and a cursor into it that names the path, the value and the bound of every mistake.
+//! JSON as a tree, and a cursor into it that reports every mistake with path, value and bound.
 
 use std::fmt;
 
@@ -16,10 +16,11 @@ pub(super) const COORDINATE: f64 = 1e9;
 pub(super) struct Json(Value);
 
 impl Json {
-    /// Reads a text.
+    /// Parses a JSON text.
     ///
     /// # Errors
-    /// [`InputError`] for text that is no JSON, with the path as far as it is known, and for a field that is given twice.
+    /// [`InputError`] for text that is not JSON, with the path as far as it is known, and for a field that is given
+    /// twice.
     pub fn parse(text: &str) -> Result<Self, InputError> {
         let mut reader = serde_json::Deserializer::from_str(text);
         let json: Self = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
@@ -97,7 +98,7 @@ impl<'de> Visitor<'de> for JsonVisitor {
     }
 }
 
-/// The value of a field that was there before: refused where the path is known.
+/// The value of a repeated field. Its deserialization fails, so that the error has its path.
 struct Twice;
 
 impl<'de> Deserialize<'de> for Twice {
@@ -106,7 +107,7 @@ impl<'de> Deserialize<'de> for Twice {
     }
 }
 
-/// A value, and its path from the root: `characters[1].scatter.count`.
+/// A cursor: a value and its path from the root, such as `characters[1].scatter.count`.
 #[derive(Debug, Clone)]
 pub(super) struct At<'a> {
     pub path: String,
@@ -114,7 +115,7 @@ pub(super) struct At<'a> {
 }
 
 impl<'a> At<'a> {
-    /// The error of this value.
+    /// An error about this value.
     pub fn error(&self, bound: impl Into<String>) -> InputError {
         InputError::new(self.path(), shown(self.value), bound)
     }
@@ -128,7 +129,7 @@ impl<'a> At<'a> {
         self.value
     }
 
-    /// The fields of an object, all of which must be known.
+    /// The fields of an object. Unknown fields are refused.
     pub fn fields(&self, known: &[&str]) -> Result<Fields<'a>, InputError> {
         let Value::Object(fields) = self.value else { return Err(self.error("must be an object")) };
         let all = Fields { path: self.path.clone(), fields };
@@ -139,7 +140,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// The entries of a list of `least` to `most`.
+    /// The entries of a list with `least` to `most` entries.
     pub fn list(&self, least: usize, most: usize) -> Result<Vec<Self>, InputError> {
         let Value::Array(all) = self.value else { return Err(self.error("must be a list")) };
         if !(least..=most).contains(&all.len()) {
@@ -158,7 +159,7 @@ impl<'a> At<'a> {
 
     /// A whole number in `low..=high`.
     pub fn whole(&self, low: i64, high: i64) -> Result<i64, InputError> {
-        // JSON does not tell 3 from 3.0.
+        // JSON does not distinguish 3 from 3.0.
         let whole = |value: f64| (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64);
         let number = self.value.as_i64().or_else(|| self.value.as_f64().and_then(whole));
         let number = number.filter(|value| (low..=high).contains(value));
@@ -173,7 +174,7 @@ impl<'a> At<'a> {
         numbers.try_into().map_err(|_| refused())
     }
 
-    /// A text of 1 to 1024 bytes.
+    /// A string of 1 to 1024 bytes.
     pub fn text(&self) -> Result<&'a str, InputError> {
         match self.value {
             Value::String(text) if (1..=1024).contains(&text.len()) => Ok(text),
@@ -181,12 +182,12 @@ impl<'a> At<'a> {
         }
     }
 
-    /// True or false.
+    /// A boolean.
     pub fn flag(&self) -> Result<bool, InputError> {
         self.value.as_bool().ok_or_else(|| self.error("must be true or false"))
     }
 
-    /// The value that a name stands for.
+    /// The value behind one of these names.
     pub fn one_of<T: Copy, const N: usize>(&self, names: [(&str, T); N]) -> Result<T, InputError> {
         let found = names.iter().find(|(name, _)| self.value.as_str() == Some(name));
         let bound = || format!("must be one of {}", names.map(|(name, _)| format!("{name:?}")).join(", "));
@@ -202,17 +203,17 @@ pub(super) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// A field, if it is there.
+    /// An optional field.
     pub fn get(&self, name: &str) -> Option<At<'a>> {
         Some(At { path: self.path_of(name), value: self.fields.get(name)? })
     }
 
-    /// A field that must be there; `what` says what it is.
+    /// A required field; `what` describes it.
     pub fn need(&self, name: &str, what: &str) -> Result<At<'a>, InputError> {
         self.get(name).ok_or_else(|| self.missing(name, what))
     }
 
-    /// The error of a field that is not there.
+    /// The error for a missing field.
     pub fn missing(&self, name: &str, what: &str) -> InputError {
         InputError::new(self.path_of(name), "missing", format!("must be given: {what}"))
     }
@@ -221,12 +222,12 @@ impl<'a> Fields<'a> {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// A number in `low..=high`; `otherwise` if it is not there.
+    /// A number in `low..=high`; `otherwise` if the field is missing.
     pub fn number(&self, name: &str, low: f64, high: f64, otherwise: f64) -> Result<f64, InputError> {
         Ok(self.maybe(name, |at| at.number(low, high))?.unwrap_or(otherwise))
     }
 
-    /// The value that a name stands for; `otherwise` if it is not there.
+    /// The value behind one of these names; `otherwise` if the field is missing.
     pub fn one_of<T: Copy, const N: usize>(
         &self,
         name: &str,
@@ -236,7 +237,7 @@ impl<'a> Fields<'a> {
         Ok(self.maybe(name, |at| at.one_of(names))?.unwrap_or(otherwise))
     }
 
-    /// What `read` makes of a field, if it is there.
+    /// The result of `read` for a field; `None` if the field is missing.
     pub fn maybe<T>(
         &self,
         name: &str,
@@ -276,7 +277,7 @@ mod tests {
         assert_eq!(refused(r#"{"a": 1} 2"#), "scene");
         assert_eq!(refused(r#"{"a": {"b": 1, "b": 2}}"#), "a.b");
         assert_eq!(refused(r#"{"a": [1, 1e999]}"#), "a[1]");
-        // Nested deeper than any scene is.
+        // Nested deeper than any scene.
         assert!(Json::parse(&format!("{}{}", "[".repeat(9999), "]".repeat(9999))).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! Reads the files that a scene names, and prepares what they hold: levels of detail, reliefs, textures.
+//! Reads the files that a scene names, and prepares their contents: levels of detail, reliefs, textures.
 
 use std::collections::{BTreeSet, HashMap};
 use std::io::Cursor;
@@ -20,13 +20,14 @@ use crate::terrain::config::ZoneTexture;
 use crate::terrain::texture::Texture;
 use crate::{InputError, srgb};
 
-/// Levels of detail are computed from a quarter of the poses that [`poses_of`] gives, 15 a second, within these bounds, so
-/// that a scene loads in seconds. `relievo scene --compare` measures what comes of it.
+/// Levels of detail use a quarter of the poses of [`poses_of`], 15 a second, within these bounds, so that a scene loads
+/// in seconds. `relievo scene --compare` measures the effect.
 const SPARSER: usize = 4;
 const LEAST_POSES: usize = 9;
 const MOST_POSES: usize = 48;
 
-/// A scene file with all files that it names, ready to become a [`World`](super::World), any number of times.
+/// A scene file with the contents of all files that it names. It can become a [`World`](super::World) any number of
+/// times.
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
     pub(super) file: SceneFile,
@@ -39,18 +40,18 @@ pub struct LoadedScene {
 /// The model of an object.
 #[derive(Debug, Clone)]
 pub(super) enum Loaded {
-    /// With levels of detail.
+    /// A model with levels of detail.
     Model(Arc<Model>),
     Relief(Box<Relief>),
 }
 
 impl LoadedScene {
-    /// What the file says.
+    /// The checked contents of the scene file.
     pub fn file(&self) -> &SceneFile {
         &self.file
     }
 
-    /// Reads a scene file and the files that it names, from the file system, and takes what it names after `builtin:` from
+    /// Reads a scene file, and the files that it names, from the file system. Names after `builtin:` come from
     /// `built_ins`.
     ///
     /// # Errors
@@ -66,14 +67,16 @@ impl LoadedScene {
 }
 
 impl SceneFile {
-    /// Reads the files that the scene names through `read`, which gets their paths relative to the scene file, and computes
-    /// levels of detail of all meshes and of characters in the clips that they play, from 15 poses a second and at most 48 a
-    /// clip. A model that several objects show is read and simplified once, for all that they do with it. What the scene
-    /// names after `builtin:` comes from `built_ins`; [`NoBuiltIns`](super::NoBuiltIns) has nothing.
+    /// Reads the files that the scene names through `read`, and computes levels of detail.
+    ///
+    /// `read` gets paths relative to the scene file. Names after `builtin:` come from `built_ins`;
+    /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes, and for characters in the clips
+    /// that they play, from 15 poses a second and at most 48 per clip. A model that several objects show is read and
+    /// simplified once, for all of their clips together.
     ///
     /// # Errors
-    /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for one
-    /// that does not suit its use, and for a clip that a model does not have.
+    /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for
+    /// one that does not suit its use, and for a clip that a model does not have.
     pub fn load(
         &self,
         read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
@@ -94,7 +97,7 @@ impl SceneFile {
     }
 }
 
-/// What was read so far, each model once.
+/// The files read so far; each model once.
 struct Files<'a> {
     read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
     built_ins: &'a dyn BuiltIns,
@@ -103,15 +106,15 @@ struct Files<'a> {
     levelled: HashMap<Source, Levelled>,
 }
 
-/// A model with levels of detail for all that objects do with it.
+/// A model with levels of detail for all objects that show it.
 #[derive(Clone)]
 struct Levelled {
     model: Arc<Model>,
-    /// The same at rest, if an object shows it so: with the same vertices, triangles and levels.
+    /// The model at rest, if an object shows it so, with the same vertices, triangles and levels.
     resting: Option<Arc<Model>>,
 }
 
-/// What objects do with a model that has levels of detail.
+/// The use that objects make of a model with levels of detail.
 #[derive(Default)]
 struct Needs {
     /// The clips that characters play.
@@ -131,7 +134,7 @@ impl<'a> Files<'a> {
         entries.iter().map(|entry| self.object(entry)).collect()
     }
 
-    /// Reads the model of an object, and notes what the object does with it.
+    /// Reads an object's model, and records the object's use of it.
     fn add_needs(&mut self, entry: &ObjectEntry) -> Result<(), InputError> {
         let path = format!("{}.file", entry.path);
         let model = self.model(&path, &entry.source)?;
@@ -245,7 +248,7 @@ impl<'a> Files<'a> {
         Ok(Relief { options, material, double_sided, ..made })
     }
 
-    /// The heights of a relief, and the colours that belong to them.
+    /// The heights of a relief, and the colours that come with them.
     fn heights(
         &self,
         path: &str,
@@ -288,12 +291,12 @@ impl<'a> Files<'a> {
     }
 }
 
-/// A mistake in a file, as a mistake of the name in the scene file.
+/// A mistake inside a file, reported at the file's name in the scene file.
 fn within(path: &str, source: &Source, error: &InputError) -> InputError {
     InputError::new(path, source, error.to_string())
 }
 
-/// The clips that a character and its instances play, in ascending order, each once.
+/// The clips that a character and its instances play, ascending, without duplicates.
 fn played(entry: &ObjectEntry, all: &PlayEntry, model: &Model) -> Result<Vec<usize>, InputError> {
     let index = |path: String, play: &PlayEntry| {
         let name = play.clip.as_deref().unwrap_or("0");
@@ -311,7 +314,7 @@ fn played(entry: &ObjectEntry, all: &PlayEntry, model: &Model) -> Result<Vec<usi
     Ok(clips)
 }
 
-/// All meshes of a model at rest as one, whose texture coordinates are multiplied by `tiles`.
+/// All meshes of a model at rest as one. Its texture coordinates are multiplied by `tiles`.
 fn surface_mesh(rest: &Model, tiles: f32) -> SurfaceMesh {
     let mut all = SurfaceMesh { vertices: Vec::new(), indices: Vec::new() };
     for mesh in &rest.meshes {
@@ -331,7 +334,7 @@ fn surface_vertex(mesh: &Mesh, at: usize, tiles: f32) -> SurfaceVertex {
     }
 }
 
-/// The image or the colour of the first material of a model; white without any.
+/// The image or colour of a model's first material; white without materials.
 fn base_color(model: &Model) -> RgbaImage {
     let material = model.meshes.iter().find_map(|mesh| model.material(mesh).ok().flatten());
     let color = material.map_or([1.0; 4], |material| material.color);
@@ -348,7 +351,7 @@ mod tests {
     use crate::samples::Samples;
     use crate::scene_file::NoBuiltIns;
 
-    /// A model that characters with different clips, and a mesh, show is simplified for all of them at once.
+    /// A model shown by a mesh and by characters with different clips is simplified once, for all of them.
     #[test]
     fn a_model_that_is_named_again_is_simplified_once() {
         let at = |x: u32| format!(r#""instances": [{{"at": [{x}, 0, 0]}}]"#);

@@ -1,12 +1,13 @@
-//! Scenes as files: JSON that names terrain, models, reliefs, a light and a camera. `relievo scene`, the demo and the golden
-//! tests draw such files, and a program may do the same.
+//! Scenes as files: JSON that names terrain, models, reliefs, a light and a camera. `relievo scene`, the demo and the
+//! golden tests draw such files, and a program may do the same.
 //!
-//! [`SceneFile::from_json`] checks a text. [`SceneFile::load`] reads what it names, through a function of the caller's, so
-//! that it works without a file system; what it names after `builtin:` comes from the caller's [`BuiltIns`]. `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it (and
-//! [`LoadedScene::build_async`] without blocking).
+//! [`SceneFile::from_json`] checks a text. [`SceneFile::load`] reads the files that it names through a function of the
+//! caller's, so it works without a file system. Names after `builtin:` come from the caller's [`BuiltIns`].
+//! `LoadedScene::build` makes a [`Scene`](crate::scene::Scene) of it; [`LoadedScene::build_async`] does so without
+//! blocking.
 //!
-//! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`), the
-//! value and the bound.
+//! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`),
+//! the value and the bound.
 //!
 #![doc = include_str!("../../docs/scene-files.md")]
 //!

@@ -13,36 +13,36 @@ use crate::scene::{Quality, Transition};
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
-/// The most entries of `meshes` and of `characters`.
+/// The largest number of entries of `meshes` and of `characters`.
 const MAX_OBJECTS: usize = 256;
 
-/// The most patches, and the most heights of all patches together.
+/// The largest number of patches, and of heights of all patches together.
 const MAX_PATCHES: usize = 4096;
 const MAX_HEIGHTS: u64 = 1 << 26;
 
-/// The most moments of a camera's path.
+/// The largest number of keys of a camera's path.
 const MAX_KEYS: usize = 4096;
 
-/// The latest moment of a camera's path, in seconds.
+/// The latest time of a camera's key, in seconds.
 const MAX_TIME: f64 = 1e6;
 
-/// The camera sees this far from the eye on, if a file does not say.
+/// Default distance of the near plane.
 const NEAR: f64 = 0.1;
 
-/// The field of view, if a file does not say.
+/// Default vertical field of view, in radians.
 const FIELD_OF_VIEW: f64 = 0.8;
 
-/// The sky, in linear light, if a file does not say.
+/// Default colour of the sky, in linear light.
 const BACKGROUND: [f32; 3] = [0.36, 0.55, 0.80];
 
 const FIELDS: [&str; 7] = ["terrain", "meshes", "characters", "light", "camera", "quality", "background"];
 
 impl SceneFile {
-    /// Reads a scene; the files that it names are not read yet ([`SceneFile::load`]).
+    /// Reads and checks a scene. The files that it names are read later ([`SceneFile::load`]).
     ///
     /// # Errors
-    /// [`InputError`] with the path of the mistake (`characters[1].scatter.count`): text that is no JSON, fields that are
-    /// not known, missing or given twice, values of other types and out of bounds.
+    /// [`InputError`] with the path of the mistake (`characters[1].scatter.count`): text that is not JSON, fields that
+    /// are unknown, missing or given twice, values of other types and out of bounds.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         let json = Json::parse(text)?;
         let root = json.at();
@@ -72,7 +72,7 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// Shadows end beyond the camera's near plane.
+    /// Checks that shadows end beyond the camera's near plane.
     fn check_shadow(&self) -> Result<(), InputError> {
         match self.shadow {
             Some(SunOptions { range, .. }) if f64::from(range) <= 1.001 * self.camera.near => {
@@ -84,7 +84,7 @@ impl SceneFile {
         }
     }
 
-    /// What stands on the ground needs some.
+    /// Refuses instances on the ground if there is no terrain.
     fn check_grounds(&self) -> Result<(), InputError> {
         if self.terrain.is_some() {
             return Ok(());
@@ -137,7 +137,7 @@ fn terrain_recipe(at: &At<'_>) -> Result<Recipe, InputError> {
     Recipe::from_value(at.value()).map_err(|error| below(&at.path, "config", error))
 }
 
-/// What the heights of `recipe` become, if anything: half way unless there is a time.
+/// The target of the heights of `recipe`, if there is one. Without a time, the morph is half way.
 fn target(
     fields: &Fields<'_>,
     recipe: &Recipe,
@@ -160,19 +160,19 @@ fn patch(at: &At<'_>) -> Result<[i32; 2], InputError> {
     let entries = at.list(2, 2).map_err(|_| at.error("must be two whole numbers: column and row"))?;
     let mut patch = [0; 2];
     for (axis, entry) in patch.iter_mut().zip(entries) {
-        // The range is that of the type.
+        // The range is within the type's.
         *axis = entry.whole(range[0], range[1])? as i32;
     }
     Ok(patch)
 }
 
-/// An error below a path; `whole` is the path that stands for the whole.
+/// Puts an error below a path; `whole` is the path of the whole value.
 pub(super) fn below(path: &str, whole: &str, error: InputError) -> InputError {
     let inner = if error.path == whole { path.to_owned() } else { format!("{path}.{}", error.path) };
     InputError { path: inner, ..error }
 }
 
-/// The light, and the shadow that it casts, if it does.
+/// The light and its shadow, if it casts one.
 fn light(at: &At<'_>) -> Result<(Light, Option<SunOptions>), InputError> {
     let fields = at.fields(&["direction", "color", "ambient", "shadow"])?;
     let otherwise = Light::default();
@@ -189,7 +189,7 @@ fn light(at: &At<'_>) -> Result<(Light, Option<SunOptions>), InputError> {
     Ok((light, fields.maybe("shadow", |at| shadow(&at))?.flatten()))
 }
 
-/// True, false, or what the shadow has.
+/// The shadow: true, false, or an object with options.
 fn shadow(at: &At<'_>) -> Result<Option<SunOptions>, InputError> {
     let otherwise = SunOptions::default();
     if !at.value().is_object() {
@@ -197,7 +197,7 @@ fn shadow(at: &At<'_>) -> Result<Option<SunOptions>, InputError> {
         return Ok(at.flag().map_err(|_| at.error(bound))?.then_some(otherwise));
     }
     let fields = at.fields(&["size", "range"])?;
-    // The bounds are those of the type.
+    // The bounds are within the type's.
     let size = fields.maybe("size", |at| at.whole(16, 8192))?.map_or(otherwise.size, |size| size as u32);
     Ok(Some(SunOptions { size, range: fields.number("range", 1e-3, 1e6, otherwise.range.into())? as f32 }))
 }
@@ -218,7 +218,7 @@ fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
     let near = fields.number("near", 1e-4, 1e4, NEAR)?;
     let far = fields.maybe("far", |at| {
         let far = at.number(0.0, COORDINATE)?;
-        // The depths of both are f32.
+        // Both depths are f32.
         if far < 1.001 * near {
             return Err(at.error(format!("must be beyond near = {near}, by a thousandth at least")));
         }
@@ -248,7 +248,7 @@ fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
     Ok(CameraPath { keys, near, far })
 }
 
-/// Where the eye is and looks.
+/// The eye's position and the point that it looks at.
 fn key(fields: &Fields<'_>, field_of_view: f64) -> Result<CameraKey, InputError> {
     let place = |name: &str, what: &str| {
         let at = fields.need(name, what)?;
@@ -256,7 +256,7 @@ fn key(fields: &Fields<'_>, field_of_view: f64) -> Result<CameraKey, InputError>
     };
     let (at, _) = place("at", "where the eye is: [x, y, z]")?;
     let (look, entry) = place("look", "where it looks: [x, y, z]")?;
-    // As near as this, rounding would decide the direction.
+    // If they were nearer, rounding would decide the direction.
     if at.distance(look) < 1e-6 * (1.0 + at.abs().max_element()) {
         return Err(entry.error("must lie apart from at, which is where the eye is"));
     }

@@ -15,11 +15,11 @@ use crate::scene::Transition;
 use crate::surface::Shadow;
 use crate::surface::relief::{MAX_SCALE, Method};
 
-/// The most instances of a mesh, and of a character, whose bones take memory.
+/// The largest number of instances of a mesh, and of a character, whose bones take memory.
 const MAX_MESHES: usize = 1 << 20;
 const MAX_CHARACTERS: usize = 1 << 16;
 
-/// The largest number of seconds, and of clip seconds per second.
+/// The largest number of seconds, and the largest playback rate.
 const MAX_SECONDS: f64 = 1e6;
 const MAX_RATE: f64 = 100.0;
 
@@ -71,18 +71,18 @@ fn placed(
     Ok(ObjectEntry { path: at.path.clone(), source, kind, transition, instances, scatter })
 }
 
-/// The model's `file`.
+/// The model's source, from the field `file`.
 fn model(fields: &Fields<'_>) -> Result<Source, InputError> {
     let at = fields.need("file", "a .glb, .gltf or .obj file, or a built-in model")?;
     source(&at, &ENDINGS, "must be a .glb, .gltf or .obj file")
 }
 
-/// An image file, or a built-in map.
+/// The source of a map: an image file or a built-in map.
 fn image(at: At<'_>) -> Result<Source, InputError> {
     source(&at, &["png", "jpg", "jpeg"], "must be a .png or .jpg file")
 }
 
-/// A file with one of these endings, in lower case, or what is built in.
+/// A built-in name, or a file with one of these endings, in lower case.
 fn source(at: &At<'_>, endings: &[&str], bound: &str) -> Result<Source, InputError> {
     let text = at.text()?;
     if let Some(name) = text.strip_prefix(BUILT_IN) {
@@ -112,7 +112,7 @@ fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
     })
 }
 
-/// What a character plays, where `fields` do not say, as `otherwise`.
+/// A character's animation; missing fields come from `otherwise`.
 fn play(fields: &Fields<'_>, otherwise: &PlayEntry) -> Result<PlayEntry, InputError> {
     let clip = fields.maybe("clip", |at| match at.value().is_number() {
         true => Ok(at.whole(0, i64::from(u32::MAX))?.to_string()),
@@ -154,12 +154,12 @@ fn instance(at: &At<'_>, of_character: Option<&PlayEntry>) -> Result<InstanceEnt
     })
 }
 
-/// Model units above the ground.
+/// A height above the ground in model units.
 fn lift(at: At<'_>) -> Result<f64, InputError> {
     at.number(-1e6, 1e6)
 }
 
-/// An angle about the vertical axis, or a quaternion.
+/// A rotation: an angle about the vertical axis, or a quaternion.
 fn turn(at: At<'_>) -> Result<Quat, InputError> {
     if at.value().is_number() {
         return Ok(upright(at.number(-1e6, 1e6)?));
@@ -176,7 +176,7 @@ fn turn(at: At<'_>) -> Result<Quat, InputError> {
     }
 }
 
-/// Three scale factors, of which one alone is enough.
+/// Three scale factors, or one for all axes.
 fn scale(at: &At<'_>) -> Result<Vec3, InputError> {
     let check = |factor: f64| (1e-6..=1e6).contains(&factor.abs());
     let all = match at.value().is_number() {
@@ -189,7 +189,7 @@ fn scale(at: &At<'_>) -> Result<Vec3, InputError> {
     Ok(all.map(|factor| factor as f32).into())
 }
 
-/// The rotation about the vertical axis by an angle, the same bits on every machine.
+/// The rotation about the vertical axis by an angle, with the same bits on every machine.
 pub(super) fn upright(angle: f64) -> Quat {
     Quat::from_xyzw(0.0, libm::sin(0.5 * angle) as f32, 0.0, libm::cos(0.5 * angle) as f32)
 }

@@ -1,13 +1,13 @@
-//! The places that a seed draws: counter-based, so that they are the same bits on every machine.
+//! Pseudorandom places from a seed. The generator is counter-based, so places have the same bits on every machine.
 
 use super::entries::Scatter;
 use crate::InputError;
 use crate::hash::{LANES, key_of, threefry2x32};
 
-/// Draws for each instance before an area counts as off the ground.
+/// Draws per instance after which an area is refused for lack of ground.
 const DRAWS: u64 = 64;
 
-/// The place of an instance, and what else is drawn for it.
+/// The place of an instance, and the other values drawn for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drawn {
     pub x: f64,
@@ -17,11 +17,11 @@ pub(super) struct Drawn {
     /// The angle about the vertical axis, 0 to 2π.
     pub turn: f64,
     pub scale: f32,
-    /// The fraction of its clip that a character has played at time 0.
+    /// The fraction of its clip that a character has played by time 0.
     pub phase: f64,
 }
 
-/// Draws places in rectangles (each two corners) of one size. `height` is that of the ground, and `None` where there is
+/// Draws places in rectangles (each two corners) of one size. `height` is the height of the ground, `None` if there is
 /// none; such places are skipped.
 ///
 /// # Errors
@@ -57,7 +57,7 @@ fn one(
     let lanes: [u32; LANES] = std::array::from_fn(|lane| lane as u32);
     let (first, second) = threefry2x32(key, [counter; LANES], lanes);
     let fraction = |word: u32| f64::from(word) / 4_294_967_296.0;
-    // Below the number of rectangles, since fractions are below 1.
+    // Below the number of rectangles, because fractions are below 1.
     let [low, high] = rectangles[(fraction(second[2]) * rectangles.len() as f64) as usize];
     let between = |axis: usize, word: u32| low[axis] + fraction(word) * (high[axis] - low[axis]);
     let (x, z) = (between(0, first[0]), between(1, second[0]));
@@ -95,14 +95,15 @@ mod tests {
         assert!(
             (mean(|at| f64::from(at.scale)) - 2.0).abs() < 0.1 && (mean(|at| at.phase) - 0.5).abs() < 0.03
         );
-        // More of them do not move those that were there.
+        // A larger count does not move the first places.
         let few = drawn(&scatter(7), &[SQUARE], |_, _| Some(1.0)).expect("ground");
         assert_eq!(few, all[..7]);
         let Drawn { x, z, .. } = few[0];
         assert_eq!([x, z].map(f64::to_bits), KNOWN, "{x}, {z}");
     }
 
-    /// The bits of the first place of the seed "rocks", which a separate implementation of Threefry in Python computed. They must not change: another place is another scene for some user.
+    /// The bits of the first place of the seed "rocks", computed by a separate implementation of Threefry in Python.
+    /// They must not change, because other places would change users' scenes.
     const KNOWN: [u64; 2] = [0x4004_cb01_0040_0000, 0x4024_87f3_4130_0000];
 
     #[test]

@@ -1,4 +1,4 @@
-//! A scene file that was read: what it says, and which files it names.
+//! A scene file after reading: its contents, and the files that it names.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -9,11 +9,11 @@ use crate::asset::Light;
 use crate::scene::{Quality, Transition};
 use crate::terrain::config::ZoneTexture;
 
-/// A scene as its file describes it, checked. Files that it names are not read yet.
+/// A checked scene file. The files that it names are not read yet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
     pub(super) terrain: Option<TerrainEntry>,
-    /// Those of `meshes`, then those of `characters`.
+    /// The entries of `meshes`, then those of `characters`.
     pub(super) objects: Vec<ObjectEntry>,
     pub(super) light: Light,
     pub(super) shadow: Option<SunOptions>,
@@ -23,12 +23,12 @@ pub struct SceneFile {
     pub(super) background: [f32; 3],
 }
 
-/// The shadow of the sun in a scene file, as [`SunShadow`](crate::render::SunShadow) takes it.
+/// Options of the sun's shadow in a scene file, for [`SunShadow`](crate::render::SunShadow).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunOptions {
     /// Texels along an edge of the map, 16 to 8192.
     pub size: u32,
-    /// World units ahead of the camera up to which surfaces lie in shadow, beyond its near plane.
+    /// Distance ahead of the camera, in world units, up to which surfaces receive shadow. Beyond the near plane.
     pub range: f32,
 }
 
@@ -45,14 +45,15 @@ impl SceneFile {
         &self.camera
     }
 
-    /// How fine the scene is drawn.
+    /// The quality: how finely the scene is drawn.
     pub fn quality(&self) -> Quality {
         self.quality
     }
 
-    /// The files that the scene names, relative to its own, in ascending order, each once. A browser can fetch them before
-    /// it loads the scene. Buffers, images and material libraries beside `.gltf` and `.obj` files are
-    /// not among them; `.glb` files need none.
+    /// The files that the scene names, relative to its own, ascending, without duplicates.
+    ///
+    /// A browser can fetch them before it loads the scene. The list lacks buffers, images and material libraries beside
+    /// `.gltf` and `.obj` files. `.glb` files need none.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut found = BTreeSet::new();
         let mut add = |source: &Source| {

@@ -1,4 +1,4 @@
-//! Builds the scene that a file describes.
+//! Building of the scene that a file describes.
 
 use std::sync::Arc;
 
@@ -15,16 +15,16 @@ use crate::gpu::Gpu;
 use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
 use crate::{Error, InputError};
 
-/// A scene that was built from a file, with the file's camera and quality.
+/// A scene built from a file, with the file's camera and quality.
 #[derive(Debug)]
 pub struct World {
     /// The scene, at time 0.
     pub scene: Scene,
-    /// What the scene has, in the order of the file: terrain, meshes, characters.
+    /// The scene's objects, in the order of the file: terrain, meshes, characters.
     pub objects: Vec<WorldObject>,
     /// The camera.
     pub camera: CameraPath,
-    /// How fine the scene is drawn.
+    /// The quality: how finely the scene is drawn.
     pub quality: Quality,
     /// The shadow of the light, if it casts one.
     pub shadow: Option<SunOptions>,
@@ -32,14 +32,14 @@ pub struct World {
     pub background: [f32; 3],
 }
 
-/// An object of the scene, and what it was made from.
+/// An object of the scene, and its source.
 #[derive(Debug, Clone)]
 pub struct WorldObject {
     /// Its handle.
     pub object: ObjectId,
-    /// What it is.
+    /// Its kind.
     pub kind: WorldKind,
-    /// The name of its file in the scene file, `builtin:` with a name, or the seed of terrain.
+    /// Its file's name in the scene file, `builtin:` with a name, or the seed of terrain.
     pub name: String,
     /// The model of a mesh or a character, with its levels of detail.
     pub model: Option<Arc<Model>>,
@@ -52,13 +52,13 @@ impl WorldObject {
     }
 }
 
-/// The kinds of objects.
+/// The kind of an object in a scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WorldKind {
     /// Patches of terrain.
     Terrain,
-    /// A mesh that does not move by itself.
+    /// A static mesh.
     Mesh,
     /// A mesh that carries a relief.
     Relief,
@@ -67,17 +67,17 @@ pub enum WorldKind {
 }
 
 impl LoadedScene {
-    /// Builds the scene: adds everything and spawns all instances. It waits for the heights of terrain.
+    /// Builds the scene: adds all objects and spawns all instances. Waits until the device has generated the terrain.
     ///
     /// # Errors
-    /// [`InputError`], with the path in the scene file, for what stands on the ground where there is none, and for what the
-    /// device cannot hold; [`crate::gpu::GpuError`].
+    /// [`InputError`], with the path in the scene file, for instances on the ground where there is none, and for
+    /// objects that the device cannot hold; [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn build(&self, gpu: &Gpu) -> Result<World, Error> {
         gpu.block_on(self.build_async(gpu))
     }
 
-    /// As `LoadedScene::build`, but completes once the device has generated the terrain and told its errors.
+    /// As `LoadedScene::build`, but completes once the device has generated the terrain and reported its errors.
     ///
     /// # Errors
     /// As `LoadedScene::build`.
@@ -110,7 +110,7 @@ impl LoadedScene {
         Ok(World { scene, objects, camera, quality, shadow: file.shadow, background })
     }
 
-    /// An object that says itself how its levels change must be able to.
+    /// Sets an object's transition. If the object's entry names one, the object must support it.
     fn set_transition(&self, scene: &mut Scene, entry: &ObjectEntry, object: ObjectId) -> Result<(), Error> {
         let transition = entry.transition.unwrap_or(self.file.transition);
         if transition == Transition::Hard || entry.transition.is_none() && !scene.can_morph(object)? {
@@ -167,7 +167,7 @@ impl LoadedScene {
         Ok(())
     }
 
-    /// The least and the largest x and z of each patch.
+    /// The smallest and the largest x and z of each patch.
     fn patches(&self) -> Vec<[[f64; 2]; 2]> {
         let patches = self.file.terrain.iter().flat_map(|terrain| {
             let edge = terrain.recipe.config.edge_length();
@@ -180,7 +180,7 @@ impl LoadedScene {
     }
 }
 
-/// The time at which a character began that has played a fraction of its clip at its own start.
+/// The start time of a clip that has played the fraction `phase` at the character's own start.
 fn begun(play: &PlayEntry, model: &Model, phase: f64) -> Result<f64, InputError> {
     let clip = model.clip(play.clip.as_deref().unwrap_or("0"))?;
     let rate = if play.rate == 0.0 { 1.0 } else { f64::from(play.rate) };
@@ -191,7 +191,7 @@ fn height(scene: &Scene, land: Option<ObjectId>, x: f64, z: f64) -> Option<f64> 
     Some(scene.ground(land?, x, z).ok()??.height)
 }
 
-/// Adds an object with room for its instances.
+/// Adds an object with capacity for its instances.
 async fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Result<WorldObject, Error> {
     let capacity = entry.count();
     let (kind, object) = match (loaded, &entry.kind) {

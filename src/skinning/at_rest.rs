@@ -1,5 +1,5 @@
-//! A model that does not move: its meshes at rest, or as they stand at some moment, baked into the model's space, so that
-//! drawing them needs no skinning.
+//! Static models: meshes at rest, or in a given pose, baked into the model's space, so that drawing them needs no
+//! skinning.
 
 use super::pose::{Moment, Pose};
 use super::vertex::{Vertex, check_range};
@@ -7,11 +7,12 @@ use crate::InputError;
 use crate::asset::skeleton::Bone;
 use crate::asset::{Influences, Mesh, Model, Skeleton, Skin, Transform};
 
-/// The model at rest: the positions, normals and tangents of all meshes are what skinning makes of them without a
-/// clip, with the morph weights that they have then. Its only bone and its only skin change nothing, so that skinning
-/// gives the same positions again. Triangles keep their order, since they are counter-clockwise once bones have
-/// transformed them ([`Mesh::indices`]), and so do vertices. There are no clips, morph targets or levels of detail;
-/// materials and images are those of the model.
+/// The model at rest, without animation. Positions, normals and tangents of all meshes are baked: they are what
+/// skinning computes without a clip, with the morph weights at rest.
+///
+/// Its only bone and its only skin are identities, so skinning gives the same positions again. Vertices and triangles
+/// keep their order; triangles are counter-clockwise once bones have transformed them ([`Mesh::indices`]). There are no
+/// clips, morph targets or levels of detail. Materials and images are those of the model.
 ///
 /// # Errors
 /// [`InputError`] for a mesh or a skin that does not match the model, and for vertices outside the range of
@@ -28,8 +29,8 @@ fn resting(model: &Model, index: usize) -> Result<Vec<Vertex>, InputError> {
     Ok(Pose::new(model, mesh, Moment::Rest).vertices(mesh))
 }
 
-/// The model as it stands with these vertices, those of each mesh in its own order: it does not move, and is otherwise as
-/// that of [`at_rest`]. A scene draws it as a static mesh, however the vertices were computed.
+/// A static model with these vertices, one list per mesh, in the mesh's own order; otherwise as [`at_rest`]. A scene
+/// draws it as a static mesh, however the vertices were computed.
 ///
 /// # Errors
 /// [`InputError`] for another number of meshes or vertices than the model has, and for vertices outside the range of

@@ -1,20 +1,20 @@
-//! How much normals and texture coordinates count beside positions when a mesh is simplified
+//! Weights of normals and texture coordinates, relative to positions, in mesh simplification
 //! ([`Surface::attributes`](crate::mesh::Surface::attributes)).
 
 use glam::{DVec2, DVec3};
 
 use crate::asset::{Mesh, Model};
 
-/// The factor of normals. Where normals differ at one point they are averaged, so that a larger one would keep the inside of
-/// flat faces, and cut their corners.
+/// Weight of normals. Differing normals at one point are averaged. A larger weight would therefore keep the inside of
+/// flat faces and cut their corners.
 pub const NORMAL: f32 = 0.05;
 
-/// The edge of a square, as a fraction of a mesh's size, on which a texture that slips over the surface by some distance
-/// counts as much as a position that is off by it.
+/// Edge of a reference square, as a fraction of the mesh's size. On it, a texture that slips by some distance counts as
+/// much as a position that is off by that distance.
 const SQUARE: f64 = 3e-2;
 
-/// The texture coordinates of a mesh that count: zeros where its material shows no texture. A mesh without a material may
-/// have any.
+/// A mesh's texture coordinates for simplification: zeros if its material shows no texture. A mesh without a material
+/// keeps its own, because it may be textured.
 pub fn shown_uv(model: &Model, mesh: &Mesh) -> Vec<[f32; 2]> {
     let material = mesh.material.and_then(|at| model.materials.get(at));
     let is_shown = material.is_none_or(|material| material.texture.is_some() || material.normal.is_some());
@@ -35,7 +35,7 @@ impl TextureArea {
         self.texture += (e - d).perp_dot(f - d).abs();
     }
 
-    /// The factor of texture coordinates of a mesh of this size; 0 without texture coordinates.
+    /// The weight of texture coordinates for a mesh of this size; 0 without texture coordinates.
     pub fn factor(&self, size: f64) -> f32 {
         let factor = ((self.surface / self.texture).sqrt() / (SQUARE * size)) as f32;
         if factor.is_finite() { factor } else { 0.0 }
@@ -46,7 +46,7 @@ impl TextureArea {
 mod tests {
     use super::*;
 
-    /// Twice as large a mesh, and twice as large a texture, each with its own factor.
+    /// A mesh twice as large, and a texture twice as large, each with its own factor.
     #[test]
     fn a_texture_counts_by_how_far_it_slips() {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
@@ -56,7 +56,7 @@ mod tests {
             area.add(corners.map(|corner| corner * scale), uv.map(|uv| uv * texture));
             area.factor(scale)
         };
-        // A unit of texture lies on a unit of length, which is the mesh's size.
+        // A unit of texture covers a unit of length, the mesh's size.
         let one = (1.0 / SQUARE) as f32;
         assert!((factor(1.0, 1.0) - one).abs() < 1e-3);
         assert!((factor(8.0, 1.0) - one).abs() < 1e-3);

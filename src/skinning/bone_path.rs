@@ -1,4 +1,4 @@
-//! Where a bone carries a sphere through a clip.
+//! The path of a sphere that a bone carries through a clip.
 
 use glam::{Vec3, Vec3Swizzles as _};
 
@@ -7,10 +7,10 @@ use crate::animation::bounds::reference::bounds;
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::asset::{Affine, Model};
 
-/// Where a bone carries a sphere through a clip, and how it deforms what it carries.
+/// The path of a sphere that a bone carries through a clip, and the bone's deformation of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BonePath {
-    /// A sphere around all places of the carried sphere, in the model's space.
+    /// A sphere around all positions of the carried sphere, in the model's space.
     pub sphere: BoundingSphere,
     /// The largest factor by which the bone enlarges a length.
     pub stretch: f32,
@@ -19,8 +19,8 @@ pub(crate) struct BonePath {
 }
 
 impl BonePath {
-    /// Follows a bone through a clip, sampled as [`BoundingSphere::in_clip`] samples it and enlarged like it for motion
-    /// between samples, with a sphere in the bone's space.
+    /// Follows a bone that carries a sphere, given in the bone's space, through a clip. Sampling and the margin for
+    /// motion between samples are those of [`BoundingSphere::in_clip`].
     pub fn new(model: &Model, clip: usize, bone: usize, carried: &BoundingSphere) -> Self {
         let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
         let (mut largest, mut mirrors) = (0.0_f32, None);
@@ -43,9 +43,10 @@ impl BonePath {
     }
 }
 
-/// An upper bound on how much a matrix with these rows stretches: the square root of the largest row sum of the
-/// products of columns (Gershgorin), or of the sum of their squares, whichever is less. Up to rounding it is
-/// exact for a rotation combined with any scale before it.
+/// An upper bound on the stretch of a matrix with these rows.
+///
+/// It is the smaller of two square roots: of the largest row sum of the products of columns (Gershgorin), and of the
+/// sum of their squares. Up to rounding it is exact for a rotation combined with any scale before it.
 fn stretch(rows: [Vec3; 3]) -> f32 {
     let squares: Vec3 = rows.iter().map(|row| row * row).sum();
     let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();
@@ -88,7 +89,7 @@ mod tests {
         let turned = of(Mat3::from_rotation_x(0.7) * Mat3::from_diagonal(Vec3::new(2.0, -3.0, 0.5)));
         assert!((turned - 3.0).abs() < 1e-5, "{turned}");
         let sheared = of(Mat3::from_cols(Vec3::X, Vec3::new(2.0, 1.0, 0.0), Vec3::Z));
-        // The golden ratio's relative: 1 + √2.
+        // 1 + √2, the silver ratio.
         assert!((2.414..=2.65).contains(&sheared), "{sheared}");
     }
 

@@ -1,4 +1,4 @@
-//! Bounding spheres: of points, and of models in all of their clips.
+//! Bounding spheres of points, and of models in all of their clips.
 
 use glam::Vec3;
 
@@ -10,8 +10,7 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::mesh::bone_radii;
 use crate::asset::{Clip, Model, Transform};
 
-/// The smallest and the largest number of moments at which a clip is sampled; the largest is an hour at 60 per
-/// second.
+/// The smallest and the largest number of samples of a clip; the largest is an hour at 60 per second.
 const MOMENTS: [usize; 2] = [32, 216_001];
 
 /// The factor by which a sphere's radius is enlarged.
@@ -27,8 +26,8 @@ pub struct BoundingSphere {
 }
 
 impl BoundingSphere {
-    /// A sphere around points, such as the vertices of a model at rest, larger by a twentieth. Without points it has
-    /// the radius 0 and lies at the origin.
+    /// A sphere around points, such as the vertices of a model at rest, enlarged by a twentieth. Without points it has
+    /// radius 0 and lies at the origin.
     pub fn around(points: impl Iterator<Item = Vec3> + Clone) -> Self {
         let (low, high) =
             points.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
@@ -47,14 +46,16 @@ impl BoundingSphere {
             return *other;
         }
         let radius = (apart + self.radius + other.radius) / 2.0;
-        // Larger by a little, for rounding.
+        // Enlarged slightly to cover rounding.
         Self { center: self.center + towards * ((radius - self.radius) / apart), radius: 1.000_01 * radius }
     }
 
-    /// A sphere around all meshes at rest and in every clip. Clips are sampled 60 times a second, at least 32 times; a clip of more
-    /// than an hour is sampled 216,001 times, at larger intervals. The sphere is enlarged by a twentieth for motion
-    /// between samples. It is computed from the distances of vertices from their bones only, so that it may be half
-    /// again as large as necessary; morph targets count as [`bone_radii`] says.
+    /// A sphere around all meshes, at rest and in every clip.
+    ///
+    /// Clips are sampled 60 times a second, at least 32 times. A clip of more than an hour is sampled 216,001 times, at
+    /// larger intervals. The sphere is enlarged by a twentieth for motion between samples. It is computed only from the
+    /// vertices' distances to their bones, so it may be half again as large as necessary. Morph targets count as
+    /// [`bone_radii`] says.
     ///
     /// # Panics
     /// As [`bone_radii`].
@@ -63,11 +64,11 @@ impl BoundingSphere {
         Self::in_poses(model, rest.chain(model.clips.iter().flat_map(poses)))
     }
 
-    /// A sphere around all meshes in one clip, computed as [`BoundingSphere::in_clips`] computes that of all. The
-    /// rest pose does not count, unless the model has no clips: then it alone counts, whichever clip is asked for.
+    /// A sphere around all meshes in one clip, computed as in [`BoundingSphere::in_clips`]. The rest pose does not
+    /// count. For a model without clips, only the rest pose counts, whatever clip is given.
     ///
     /// # Panics
-    /// For a clip that the model does not have while it has others, and as [`bone_radii`].
+    /// For a clip that the model does not have although it has others, and as [`bone_radii`].
     pub fn in_clip(model: &Model, clip: usize) -> Self {
         if model.clips.is_empty() {
             return Self::in_clips(model);
@@ -136,7 +137,7 @@ mod tests {
     use crate::skinning::skin::reference::skin;
     use crate::skinning::vertex::Blend;
 
-    /// The largest distance from a point of any vertex in 45 poses of a clip.
+    /// The largest distance of any vertex from a point, in 45 poses of a clip.
     fn farthest(model: &Model, clip: &Clip, center: Vec3) -> f32 {
         let mesh = &model.meshes[0];
         let in_pose = |moment: u16| {
@@ -196,7 +197,7 @@ mod tests {
         assert!(points.iter().all(|point| point.distance(center) <= radius) && radius < 1.5);
     }
 
-    /// A clip of a minute and a half with a jump that lasts a tenth of a second.
+    /// A clip of a minute and a half with a jump of a tenth of a second.
     #[test]
     fn the_sphere_holds_what_long_clips_do() {
         let mut model = crate::samples::creature().expect("valid");
@@ -214,7 +215,7 @@ mod tests {
         assert_eq!(BoundingSphere::in_clip(&model, 0).radius, radius);
     }
 
-    /// The rest pose counts only where there is no clip.
+    /// The rest pose counts only if there is no clip.
     #[test]
     fn clips_have_spheres_of_their_own() {
         let mut model = crate::samples::creature().expect("valid");

@@ -1,5 +1,4 @@
-//! Skinning data on the device: a mesh in clusters with its skin, and for each instance its palette, weights
-//! and vertices.
+//! Skinning data on the device: a mesh in clusters with its skin, and per instance its palette, weights and vertices.
 
 use glam::UVec4;
 
@@ -20,7 +19,7 @@ impl SeenAs<[f32; 2]> for Vertex {}
 impl SeenAs<Dispatched> for u32 {}
 impl SeenAs<u32> for InstanceLod {}
 
-/// A mesh on the device, and the skin that it follows. Vertices lie in clusters; see [`Clusters::order`].
+/// A mesh and its skin on the device. Vertices lie in clusters; see [`Clusters::order`].
 #[derive(Debug, Clone)]
 pub struct MeshBuffers {
     /// Vertices before morphing.
@@ -29,14 +28,13 @@ pub struct MeshBuffers {
     pub uv: Buffer<[f32; 2]>,
     /// Three indices per triangle, of all levels of detail; see [`Clusters::indices`].
     pub indices: Buffer<u32>,
-    /// The part of the mesh that each level of its character ([`level_errors`]) uses; the first level is the
-    /// mesh itself.
+    /// The mesh's range at each level of its character ([`level_errors`]); the first level is the mesh itself.
     pub levels: Vec<ClusterLevel>,
     /// See [`Clusters::influences`].
     pub influences: Buffer<u32>,
     /// See [`Clusters::masks`].
     pub masks: Buffer<u32>,
-    /// Where the deltas of each vertex begin; one more entry than there are vertices.
+    /// First delta of each vertex; one more entry than there are vertices.
     pub delta_offsets: Buffer<u32>,
     /// Three vectors per delta: position and, as bits, the target; normal; tangent.
     pub deltas: Buffer<[[f32; 4]; 3]>,
@@ -50,13 +48,13 @@ pub struct MeshBuffers {
     pub targets: usize,
     /// Number of bones of the skeleton.
     pub all_bones: usize,
-    /// Whether both sides of triangles are seen; see [`Mesh::double_sided`].
+    /// Whether both sides of triangles are visible; see [`Mesh::double_sided`].
     pub double_sided: bool,
 }
 
 impl MeshBuffers {
-    /// Uploads one of a model's meshes. At each level of the model's character ([`level_errors`]) the clusters
-    /// use the mesh's own level that [`own_levels`] assigns to it.
+    /// Uploads one of a model's meshes. At each level of the model's character ([`level_errors`]), the clusters use the
+    /// mesh's own level from [`own_levels`].
     ///
     /// # Errors
     /// [`InputError`] for a mesh that does not match its skin; [`GpuError`].
@@ -96,8 +94,7 @@ impl MeshBuffers {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// Number of clusters at each level of the character, as kernels look them up; levels that do not exist
-    /// have the last one's.
+    /// Number of clusters at each level of the character, as kernels look it up. Missing levels repeat the last one's.
     pub(crate) fn clusters_of_levels(&self) -> [UVec4; MAX_LEVELS / 4] {
         let of = |level: usize| self.level(level as u32).clusters;
         std::array::from_fn(|at| UVec4::from_array(std::array::from_fn(|lane| of(4 * at + lane))))
@@ -139,7 +136,7 @@ pub struct SkinnedCrowd {
     pub morphed: Buffer<Vertex>,
     /// Number of instances.
     pub instances: usize,
-    /// The kind of blending for which the palette is made.
+    /// The kind of blending that the palette is for.
     pub blend: Blend,
 }
 
@@ -175,16 +172,17 @@ impl SkinnedCrowd {
     }
 }
 
-/// The list of clusters to be skinned, in a buffer that kernels may fill.
+/// The list of clusters to skin, in a buffer that kernels may fill.
 #[derive(Debug, Clone)]
 pub struct ActiveClusters {
-    /// `cluster · instances + instance` of each; all other clusters are skipped. If last positions are kept, as many words
-    /// follow as there are pairs: for each what the last selection did to it ([`ClusterState`](super::select::ClusterState)).
+    /// `cluster · instances + instance` for each listed cluster; all other clusters are skipped. If last positions are
+    /// kept, one word per pair follows: the last selection's effect on it
+    /// ([`ClusterState`](super::select::ClusterState)).
     pub pairs: Buffer<u32>,
     /// Whether last positions are kept.
     pub keeps_last: bool,
-    /// Workgroups along x, y and z, as arguments of an indirect dispatch; the number of pairs; and a counter,
-    /// which is 0 between dispatches.
+    /// Workgroup counts along x, y and z as indirect dispatch arguments; the number of pairs; and a counter that is 0
+    /// between dispatches.
     pub dispatched: Buffer<u32>,
 }
 
@@ -204,7 +202,7 @@ impl ActiveClusters {
         })
     }
 
-    /// As [`ActiveClusters::new`], where last positions are kept.
+    /// As [`ActiveClusters::new`], with last positions kept.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -213,7 +211,7 @@ impl ActiveClusters {
         Ok(Self { pairs, keeps_last: true, ..Self::new(gpu, mesh, crowd)? })
     }
 
-    /// The number of words for so many pairs.
+    /// The number of words that `pairs` pairs take.
     pub(crate) fn words(&self, pairs: usize) -> usize {
         if self.keeps_last { 2 * pairs } else { pairs }
     }

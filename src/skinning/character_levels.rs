@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 
 use crate::asset::mesh::{MAX_LEVELS, Mesh};
 
-/// The errors of a character at its levels 1, 2 …, in the model's units: ascending, at most 15. They are the
-/// errors of all levels of its meshes. If there are more than 15, those are left out whose omission draws the
-/// fewest additional triangles, counted over the logarithm of the distance. For a character with one mesh whose
+/// The errors of a character's levels 1, 2 …, in the model's units: ascending, at most 15.
+///
+/// They are the errors of all levels of its meshes. If there are more than 15, the omitted ones are those whose
+/// omission adds the fewest triangles, counted over the logarithm of the distance. For a character with one mesh whose
 /// levels have different errors, they are those errors.
 pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     level_errors_within(meshes, MAX_LEVELS)
@@ -19,8 +20,8 @@ pub fn level_errors_within(meshes: &[Mesh], most: usize) -> Vec<f32> {
     if most < 2 {
         return Vec::new();
     }
-    // The triangles that a mesh loses when the error reaches that of its next level. The key is the error's
-    // bits, whose order is right because errors are not negative.
+    // The number of triangles that a mesh loses when the error reaches that of its next level. The key is the error's
+    // bits; their order is right because errors are not negative.
     let mut lost: BTreeMap<u32, usize> = BTreeMap::new();
     for mesh in meshes {
         let mut left = mesh.indices.len();
@@ -33,7 +34,7 @@ pub fn level_errors_within(meshes: &[Mesh], most: usize) -> Vec<f32> {
     let mut steps: Vec<Step> =
         lost.into_iter().map(|(error, lost)| Step::new(f32::from_bits(error), lost)).collect();
     while steps.len() >= most {
-        // Without a step, its triangles stay until the next step.
+        // If a step is removed, its triangles stay until the next step.
         let costs = steps.windows(2).map(|pair| pair[0].cost(&pair[1]));
         let cheapest = costs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(at, _)| at);
         let Step { lost, .. } = steps.remove(cheapest);
@@ -42,8 +43,8 @@ pub fn level_errors_within(meshes: &[Mesh], most: usize) -> Vec<f32> {
     steps.iter().map(|step| step.error).collect()
 }
 
-/// For each level of a character with these [`level_errors`], 0 included, the level that one of its meshes uses
-/// there: the coarsest whose error is at most the character's; 0 is the mesh itself.
+/// The level of a mesh at each level of its character, level 0 included. `errors` are the character's [`level_errors`].
+/// The result is the mesh's coarsest level whose error is at most the character's; 0 is the mesh itself.
 pub fn own_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
     let coarsest = |error: &f32| mesh.levels.partition_point(|level| level.error <= *error) as u32;
     std::iter::once(0).chain(errors.iter().map(coarsest)).collect()
@@ -54,7 +55,7 @@ struct Step {
     error: f32,
     /// Logarithm of the error.
     logarithm: f64,
-    /// Number of indices that are lost.
+    /// Number of indices lost.
     lost: usize,
 }
 
@@ -63,8 +64,7 @@ impl Step {
         Self { error, logarithm: libm::log(f64::from(error)), lost }
     }
 
-    /// The additional triangles drawn if the step is left out; infinite for an error of 0, which is always
-    /// permitted.
+    /// The additional triangles drawn if the step is left out; infinite for an error of 0, which is always allowed.
     fn cost(&self, next: &Self) -> f64 {
         if self.lost == 0 { 0.0 } else { self.lost as f64 * (next.logarithm - self.logarithm) }
     }
@@ -97,17 +97,17 @@ mod tests {
         assert_eq!(own[1], [0, 0, 0, 0, 1, 2]);
         assert_eq!(own[2], [0; 6]);
         assert_eq!(own[3], [0, 1, 1, 1, 2, 2]);
-        // Of levels with the same error, the coarsest is used.
+        // Of several levels with the same error, the coarsest is used.
         let twice = mesh(9, &[(6, 1.0), (3, 1.0)]);
         assert_eq!(own_levels(&twice, &level_errors(std::slice::from_ref(&twice))), [0, 2]);
         assert_eq!((level_errors(&[]), own_levels(&meshes[2], &[])), (vec![], vec![0]));
     }
 
-    /// There are no more levels than an instance can have, and those that save the least are left out. No level
-    /// exceeds the permitted error.
+    /// There are no more levels than an instance can have. The omitted ones are those that save the least. No level
+    /// exceeds the allowed error.
     #[test]
     fn levels_that_save_least_are_left_out() {
-        // Fifteen levels that halve the triangles as the error doubles, and between them some that save next to
+        // Fifteen levels that halve the triangles as the error doubles, and some between them that save next to
         // nothing.
         let doubling = |at: i32| libm::exp2f(at as f32);
         let levels: Vec<_> = (0..15).map(|at| (1 << (15 - at), doubling(at))).collect();

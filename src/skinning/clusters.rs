@@ -1,4 +1,4 @@
-//! Clusters: the vertices of a mesh in runs of [`CLUSTER`] that follow few bones, arranged for the kernels.
+//! Clusters: the vertices of a mesh in groups of [`CLUSTER`] that follow few bones, arranged for the kernels.
 
 use std::cmp::Reverse;
 
@@ -16,54 +16,55 @@ pub const CLUSTER: usize = cluster::CLUSTER as usize;
 /// The largest number of bones of a skin.
 pub const MAX_SKIN_BONES: usize = 1 << 16;
 
-/// The part of a mesh in clusters that a level of detail uses.
+/// The part of a clustered mesh that a level of detail uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClusterLevel {
-    /// Its vertices lie in this many slots, from the first on.
+    /// Number of vertices, in the slots from 0 on.
     pub vertices: u32,
-    /// This many clusters, from the first on, hold its vertices. The last of them may also hold vertices of a
-    /// finer level.
+    /// Number of clusters that hold its vertices, from the first on. The last one may also hold vertices of a finer
+    /// level.
     pub clusters: u32,
-    /// Index in [`Clusters::indices`] at which its triangles begin.
+    /// Index of its first triangle corner in [`Clusters::indices`].
     pub first_index: u32,
     /// Number of indices, three per triangle.
     pub indices: u32,
 }
 
-/// A mesh's vertices arranged in clusters; the last cluster may have fewer. Vertices of coarse levels come
-/// first.
+/// A mesh's vertices arranged in clusters. Vertices of coarse levels come first. The last cluster may be partly filled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
-    /// For each slot, the mesh's vertex there.
+    /// The mesh's vertex in each slot.
     pub order: Vec<u32>,
-    /// The vertices in this order, before morphing.
+    /// Vertices before morphing, by slot.
     pub vertices: Vec<Vertex>,
-    /// Texture coordinates in this order.
+    /// Texture coordinates, by slot.
     pub uv: Vec<[f32; 2]>,
     /// The triangles of all levels, one level after the other, in the mesh's order; indices are slots.
     pub indices: Vec<u32>,
-    /// The mesh itself with all of its vertices, followed by its levels ([`Mesh::levels`]) or by those that it
-    /// uses at the levels of a character ([`Clusters::with_levels`]).
+    /// The levels of detail; the first is the mesh itself with all of its vertices. The others are the mesh's own
+    /// levels ([`Mesh::levels`]), or those that it uses at the levels of a character ([`Clusters::with_levels`]).
     pub levels: Vec<ClusterLevel>,
-    /// Two words per cluster: where its influences begin, and the largest number per vertex. The influences lie
-    /// there in columns of [`CLUSTER`] words: the bones, two per word, with the strongest in the lower half of the
-    /// first; then the weights of all but the strongest, as bits. The weight of the strongest is 1 minus the
-    /// sum of the others.
+    /// Influences of each cluster, as two header words per cluster and columns of [`CLUSTER`] words.
+    ///
+    /// The header has the index of the first column, and the largest number of influences per vertex. The first columns
+    /// are the bones, two per word, with the strongest in the lower half of the first. Then follow the weights of all
+    /// but the strongest, as bits. The strongest weight is 1 minus the sum of the others.
     pub influences: Vec<u32>,
-    /// The bones of each cluster as [`Clusters::mask_words`] words of bits, one bit per slot of the skeleton's
+    /// The set of bones of each cluster, in [`Clusters::mask_words`] words: one bit per slot of the skeleton's
     /// [`Order`], as in gates and [`Active::updated_bones`](crate::animation::compact).
     pub masks: Vec<u32>,
-    /// [`Order::words`].
+    /// Words per set of bones: [`Order::words`].
     pub mask_words: usize,
     /// For each cluster, whether morph targets move any of its vertices.
     pub morphs: Vec<bool>,
 }
 
 impl Clusters {
-    /// Arranges a mesh, whose skin must match a skeleton.
+    /// Arranges a mesh in clusters. Its skin must match the skeleton.
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than [`MAX_SKIN_BONES`].
+    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than
+    /// [`MAX_SKIN_BONES`].
     pub fn new(mesh: &Mesh, skins: &[Skin], skeleton: &Skeleton) -> Result<Self, InputError> {
         mesh.validate(skins)?;
         let skin = &skins[mesh.skin];
@@ -90,8 +91,8 @@ impl Clusters {
         })
     }
 
-    /// The same clusters with the levels of a character: at each of them, the mesh's own level that
-    /// [`own_levels`](super::own_levels) gives.
+    /// The same clusters with the levels of a character. At each of them, the mesh uses its own level from
+    /// [`own_levels`](super::own_levels).
     #[must_use]
     pub fn with_levels(mut self, own: &[u32]) -> Self {
         self.levels = own.iter().map(|level| self.level(*level)).collect();
@@ -113,7 +114,7 @@ impl Clusters {
         self.order.is_empty()
     }
 
-    /// A level; the last one for a number beyond it.
+    /// A level of detail; the last one for a number beyond it.
     pub fn level(&self, level: u32) -> ClusterLevel {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
@@ -157,8 +158,8 @@ fn levels(mesh: &Mesh, bands: &[u32]) -> Vec<ClusterLevel> {
     (0..).zip(all_triangles(mesh)).map(level).collect()
 }
 
-/// The order of vertices: those of coarse levels first, then by strongest bone, by number of influences, and by
-/// the other bones.
+/// The order of vertices: first those of coarse levels, then by strongest bone, number of influences and the other
+/// bones.
 fn order(mesh: &Mesh, bands: &[u32]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
     order.sort_by_cached_key(|vertex| {
@@ -248,7 +249,7 @@ mod tests {
             }
             bones += if lane == 0 { mask.iter().map(|word| word.count_ones()).sum::<u32>() } else { 0 };
         }
-        // A cluster has few of the 153 bones.
+        // Each cluster follows few of the 153 bones.
         assert!(bones < 8 * clusters.len() as u32, "{bones} in {}", clusters.len());
     }
 

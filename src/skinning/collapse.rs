@@ -1,22 +1,19 @@
-//! Fewer bones for characters that are far away (A sections 8.8 and 9.6): bones collapse one by one into the
-//! nearest kept bone above them; the bone whose collapse moves skinned vertices least goes first. The result
-//! is a whole [`Model`], which every pass takes as it takes the original.
+//! Fewer bones for distant characters (A sections 8.8 and 9.6). Bones collapse one by one into the nearest kept bone
+//! above them; the bone whose collapse moves skinned vertices least goes first. The result is a complete [`Model`],
+//! which every pass accepts like the original.
 //!
 //! # What becomes of a collapsed bone
 //!
-//! - **Its motion** is folded into the tracks of the kept bones below it. These keep their model-space
-//!   transforms: within rounding at all key times, and within about a thousandth of the model's size (half
-//!   the diagonal of its bounding box) between keys, because keys are added where linear interpolation would
-//!   be further off. Where the collapsed bone does not move in a clip, the tracks keep their keys, their
-//!   interpolation and their tangents.
-//! - **Its vertices** follow the kept bone, rigidly as at rest. If two bones take a vertex to the same position,
-//!   their influences are added up, so that skins get fewer joints; if a skin was not bound at rest, its
-//!   joints remain separate.
+//! - **Its motion** is folded into the tracks of the kept bones below it. These keep their model-space transforms:
+//!   within rounding at all key times, and between keys within about a thousandth of the model's size (half the
+//!   diagonal of its bounding box). Keys are added where linear interpolation would be further off. If the collapsed
+//!   bone does not move in a clip, the tracks keep their keys, their interpolation and their tangents.
+//! - **Its vertices** follow the kept bone, rigidly as at rest. If two bones take a vertex to the same position, their
+//!   influences are added up, so skins get fewer joints. If a skin was not bound at rest, its joints remain separate.
 //!
-//! A bone with non-uniform scale is kept as long as bones below it are kept, because a translation, rotation
-//! and scale of these could not represent the shear. Materials, images, morph targets and their weights, and
-//! levels of detail do not change. The bones from which root motion is taken, roots and the uppermost bones
-//! that a clip moves, never collapse.
+//! A bone with non-uniform scale is kept as long as bones below it are kept: their translation, rotation and scale
+//! could not represent the shear. Materials, images, morph targets and their weights, and levels of detail do not
+//! change. Bones that provide root motion, roots, and the uppermost bones that a clip moves never collapse.
 
 mod bind;
 mod choice;
@@ -31,10 +28,10 @@ use crate::skinning::pose::{Moment, moments_in, poses_of};
 use choice::{Choice, Remap};
 use rest::Rest;
 
-/// How many bones [`collapse_bones`] leaves.
+/// The number of bones that [`collapse_bones`] leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KeptBones {
-    /// This number of bones, from 1 to that of the model.
+    /// This number of bones, from 1 to the model's.
     Count(usize),
     /// This fraction of the model's bones, above 0 and up to 1; rounded up.
     Fraction(f32),
@@ -52,13 +49,12 @@ impl KeptBones {
     }
 }
 
-/// How many bones [`collapse_bones`] leaves, and which of them never collapse.
+/// Options of [`collapse_bones`]: how many bones it leaves, and which of them never collapse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollapseOptions {
-    /// The number of bones that are left; it is exceeded if bones with non-uniform scale must be kept.
+    /// The number of bones left. It is exceeded if bones with non-uniform scale must be kept.
     pub bones: KeptBones,
-    /// Names of bones to keep, such as those that objects are attached to. A name keeps every bone that bears
-    /// it.
+    /// Names of bones to keep, such as those that objects are attached to. A name keeps every bone with that name.
     pub keep: Vec<String>,
     /// Whether bones without children, such as the ends of fingers and feet, are kept (A section 9.6.1).
     pub keep_end_effectors: bool,
@@ -71,9 +67,10 @@ impl CollapseOptions {
     }
 }
 
-/// How far a collapsed model is from the original, in the model's units. Both are sampled 60 times a second
-/// in every clip, start and end included, or at rest if there are no clips. Vertices are blended linearly,
-/// with the clips' weights of morph targets.
+/// The error of a collapsed model against the original, in the model's units.
+///
+/// Both are sampled 60 times a second in every clip, start and end included, or at rest if there are no clips. Vertices
+/// are blended linearly, with the clips' weights of morph targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollapseError {
     /// The largest distance of a vertex from its position in the original.
@@ -84,28 +81,27 @@ pub struct CollapseError {
     pub kept_bones: f32,
 }
 
-/// A model with fewer bones, and its distance from the original.
+/// A model with fewer bones, and its error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collapsed {
-    /// The model. Its clips, skins, meshes, materials and images are as many as the original's, in the same order.
+    /// The model. Clips, skins, meshes, materials and images have the same number and order as the original's.
     pub model: Model,
-    /// For each bone of the original, the index of the bone of [`Collapsed::model`] that it became or
-    /// collapsed into.
+    /// For each bone of the original, the index in [`Collapsed::model`] of the bone that it became or collapsed into.
     pub remap: Vec<u32>,
-    /// The distance of the model from the original.
+    /// The error of the model against the original.
     pub error: CollapseError,
 }
 
 /// Collapses bones of a model.
 ///
-/// The bones are chosen in up to 64 poses of each clip, evenly spaced. A bone's cost is the largest distance by which
-/// its collapse displaces one of its vertices, or of the vertices of bones that collapsed into it; the bone with the
-/// least cost collapses next. Of bones whose collapse displaces no vertex, as in models without clips, the bone whose
-/// vertices lie nearest to its origin goes first. The same model gives the same result.
+/// Costs are measured in up to 64 poses of each clip, evenly spaced. A bone's cost is the largest displacement of its
+/// vertices, or of the vertices of bones that collapsed into it. The bone with the least cost collapses next. If
+/// several collapses displace no vertex, as in models without clips, the bone whose vertices lie nearest to its origin
+/// goes first. The same model gives the same result.
 ///
 /// # Errors
-/// [`InputError`] for a number of bones out of range or below that of the bones that are kept, names that no
-/// bone has, clips longer than an hour, and a model whose parts do not fit together.
+/// [`InputError`] for a number of bones out of range or below the number of bones that are kept, names that no bone
+/// has, clips longer than an hour, and a model whose parts do not fit together.
 pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collapsed, InputError> {
     validate(model)?;
     let count = options.bones.count(model.skeleton.len())?;
@@ -128,7 +124,7 @@ pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collap
     Ok(Collapsed { model: collapsed, remap: remap.indices(), error })
 }
 
-/// Moments of every clip, 60 a second, but at most `most` of each.
+/// Moments of every clip, 60 a second, but at most `most` per clip.
 fn looked_at(model: &Model, most: usize) -> Result<Vec<Moment>, InputError> {
     let mut moments = Vec::new();
     for (at, clip) in model.clips.iter().enumerate() {
@@ -147,8 +143,8 @@ fn validate(model: &Model) -> Result<(), InputError> {
     (0..model.meshes.len()).try_for_each(|mesh| model.check_mesh(mesh))
 }
 
-/// The skeleton of the kept bones, each below the nearest kept bone above it. If a joint collapsed, the bone
-/// that it collapsed into becomes a joint.
+/// The skeleton of the kept bones, each below the nearest kept bone above it. If a joint collapsed, the bone that
+/// received it becomes a joint.
 fn reduced(skeleton: &Skeleton, remap: &Remap) -> Result<Skeleton, InputError> {
     let indices = remap.indices();
     let bone = |bone: usize| {

@@ -6,8 +6,8 @@ use crate::asset::mesh::Mesh;
 use crate::asset::obj::{ObjWriter, Object};
 use crate::skinning::vertex::Vertex;
 
-/// Writes one object per mesh, in order: vertices in the mesh's order with all digits that `f32` needs, texture
-/// coordinates (v up, as in OBJ), normals, triangles.
+/// Writes one OBJ object per mesh, in order. Each has vertices in the mesh's order with all digits that `f32` needs,
+/// texture coordinates (v up, as in OBJ), normals and triangles.
 ///
 /// # Errors
 /// The errors of `out`.

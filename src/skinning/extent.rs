@@ -1,5 +1,5 @@
-//! The extent of a mesh in clips: a bounding sphere, and how far the fade of influences displaces vertices.
-//! They determine the distances at which a crowd may fade without exceeding an error in pixels.
+//! The extent of a mesh in clips: a bounding sphere, and the displacement of vertices by the fade of influences. They
+//! determine at which distances a crowd may fade within an error in pixels.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -13,33 +13,33 @@ use crate::asset::Mesh;
 use crate::asset::Model;
 use crate::asset::influences::Influence;
 
-/// The margin by which [`Extent::stray`] exceeds the sampled maximum. If the displacement of a vertex were
-/// linear between two poses, its maximum would be at one of them; the margin covers curvature in between.
+/// Safety factor of [`Extent::stray`] over the sampled maximum. If a vertex's displacement were linear between two
+/// poses, its maximum would be at one of them. The factor covers curvature in between.
 const STRAY_MARGIN: f32 = 1.01;
 
-/// The extent of a mesh in its clips, in the model's units, with linear blending and with the clips' weights of
-/// morph targets.
+/// The extent of a mesh in its clips, in the model's units, with linear blending and the clips' weights of morph
+/// targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     /// The center of a sphere around all vertices in all poses.
     pub center: Vec3,
     /// The radius of the sphere.
     pub radius: f32,
-    /// The displacement per λ: at any λ of
-    /// [`InstanceLod::fade`](crate::skinning::instance_lod::InstanceLod::fade), no vertex is further than λ
-    /// times this from its position at full quality. It is the maximum over samples of displacement divided by
-    /// λ.
+    /// Displacement per λ, the value of [`InstanceLod::fade`](crate::skinning::instance_lod::InstanceLod::fade): at any
+    /// λ, no vertex is further than λ times this from its position at full quality. It is the maximum over samples of
+    /// displacement divided by λ.
     pub stray: f32,
 }
 
 impl Extent {
-    /// Samples `poses` of each of these clips, evenly spaced from start to end; the rest pose if there are no
-    /// clips. Between samples the values may be exceeded by 1 %; [`poses_of`](super::poses_of) gives a
-    /// sufficient number for a clip. Other clips, and layers above these, are not covered.
+    /// Samples `poses` of each of these clips, evenly spaced from start to end; the rest pose if there are no clips.
+    ///
+    /// Between samples the values may be exceeded by 1 %. [`poses_of`](super::poses_of) gives a sufficient number for a
+    /// clip. Other clips, and layers above these, are not covered.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh or clips that the model does not have, for 0 poses, and for a mesh that does
-    /// not match its skin.
+    /// [`InputError`] for a mesh or clips that the model does not have, for 0 poses, and for a mesh that does not match
+    /// its skin.
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         let moments = moments(model, mesh, clips, poses)?;
         let mesh = &model.meshes[mesh];
@@ -48,9 +48,10 @@ impl Extent {
         Ok(Self { center, radius: radius(model, mesh, &moments, center), stray: STRAY_MARGIN * all.stray })
     }
 
-    /// The extent of all meshes of a model, which share their levels and their fade. The
-    /// sphere's center is that of [`BoundingSphere::in_clips`]; the sphere contains the vertices of all meshes, and `stray` is the largest of all. Otherwise as
-    /// [`Extent::new`].
+    /// The common extent of all meshes of a model, which share levels and fade.
+    ///
+    /// The sphere contains the vertices of all meshes; its center is that of [`BoundingSphere::in_clips`]. `stray` is
+    /// the largest of all meshes. Otherwise as [`Extent::new`].
     ///
     /// # Errors
     /// As [`Extent::new`], and [`InputError`] for a model without meshes.
@@ -68,22 +69,23 @@ impl Extent {
         Ok(all)
     }
 
-    /// The projected distances at which a crowd may begin to fade and may be rigid, so that no vertex is drawn more than `pixels` from
-    /// its position, wherever it is in the picture. Placements must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation.
+    /// The projected distances from which a crowd may begin to fade, and from which it may be rigid.
     ///
-    /// Other errors add up: a gate's error of ε′ pixels and a fade of ε together show at most ε + ε′.
+    /// Within this range, no vertex is drawn more than `pixels` from its position, anywhere in the picture. Placements
+    /// must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation. Errors add up: a gate's error
+    /// of ε′ pixels and a fade of ε together show at most ε + ε′.
     pub fn fade_range(&self, projection: &Projection, pixels: f32) -> FadeRange {
         let start = self.beyond(projection, pixels, 0.0);
         FadeRange { start, end: self.beyond(projection, pixels, self.stray).max(start.next_up()) }
     }
 
-    /// The projected distances from which on levels with these `errors`
-    /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used, so that no point of a level is drawn more than `pixels` from
-    /// the mesh's surface, and no point of that surface from the level, as far as the errors hold at the point.
-    /// Placements must not scale. If 0 pixels are permitted, levels with an error begin at the largest number.
-    /// `docs/pixel-bounds.md` has the derivation.
+    /// The projected distances from which levels with these `errors`
+    /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used.
     ///
-    /// Other errors add up: split the permitted pixels between a fade and levels.
+    /// From there on, no point of a level is drawn more than `pixels` from the mesh's surface, and no point of that
+    /// surface more than that from the level, as far as the errors hold at the point. Placements must not scale. With 0
+    /// pixels, levels with an error begin at the largest number. `docs/pixel-bounds.md` has the derivation. Errors add
+    /// up: split the allowed pixels between a fade and levels.
     pub fn level_ranges(
         &self,
         projection: &Projection,
@@ -93,12 +95,12 @@ impl Extent {
         errors.into_iter().map(|error| self.beyond(projection, pixels, error)).collect()
     }
 
-    /// The distance at which an instance must count so that an error of `off` takes at most `pixels`; finite.
+    /// The projected distance beyond which an error of `off` takes at most `pixels`; finite.
     fn beyond(&self, projection: &Projection, pixels: f32, off: f32) -> f32 {
         let [focal, pixels, radius, off] =
             [projection.focal_pixels, pixels.max(0.0), self.radius, off].map(f64::from);
         let projected_distance = 3.0 * radius + off * (focal + pixels) / pixels;
-        // With no error any distance will do; with no pixels permitted, none.
+        // Without an error any distance is enough; with no pixels allowed, none is.
         projected_distance.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
     }
 }
@@ -139,7 +141,7 @@ fn look(pose: &Pose, mesh: &Mesh) -> Look {
     all
 }
 
-/// The radius of a sphere around a center that contains all vertices.
+/// The radius of a sphere around `center` that contains all vertices.
 fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     let farthest = |moment: &Moment| {
         let points = Pose::new(model, mesh, *moment).positions(mesh);
@@ -148,9 +150,10 @@ fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     MARGIN * moments.par_iter().map(farthest).reduce(|| 0.0, f32::max)
 }
 
-/// The maximum of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ over i > 1 and all λ. As a function of 1/λ, the sum is linear
-/// between the values at which one of the minima switches, where λ is wᵢ/w₂; its length is therefore largest at
-/// one of them.
+/// The maximum of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ over i > 1 and all λ.
+///
+/// As a function of 1/λ, the sum is linear between the values λ = wᵢ/w₂, at which one of the minima switches. It is
+/// therefore longest at one of these values.
 fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
     let Some(second) = influences.get(1) else { return 0.0 };
     let off = |fade: f32| {
@@ -189,7 +192,7 @@ mod tests {
         assert_eq!(field(0, &[0], 0), "poses");
     }
 
-    /// The sphere contains every mesh, and its center is that of the sphere that scenes use.
+    /// The sphere contains every mesh and has the center of the sphere that scenes use.
     #[test]
     fn models_have_one_extent() {
         let mut model = crate::samples::creature().expect("valid");
@@ -220,7 +223,7 @@ mod tests {
         let range = |extent: &Extent, pixels| extent.fade_range(&projection, pixels);
         let FadeRange { start, end } = range(&extent, 0.5);
         assert_eq!(start, 4.5);
-        // Twice the pixels allow half the distance.
+        // Twice the pixels halve the distance.
         let nearer = range(&extent, 1.0).end;
         assert!(((nearer - start) / (end - start) - 0.5).abs() < 1e-3, "{nearer} {end}");
         let endless = FadeRange { start: 4.5, end: f32::MAX };
@@ -256,7 +259,7 @@ mod tests {
             for pixels in [0.25, 1.0, 8.0] {
                 let mut largest = 0.0_f32;
                 for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
-                    // A center whose projected distance is the same.
+                    // A center at the same projected distance.
                     let middle = towards * (begin / (towards.z * towards.z));
                     let bounding_sphere = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
                     for (point, off) in bounding_sphere

@@ -1,5 +1,4 @@
-//! The skinning of a crowd in one object: everything between the bones' matrices and vertices that can be
-//! drawn.
+//! The skinning of a crowd: all steps from the bones' matrices to drawable vertices.
 
 use std::sync::Arc;
 
@@ -22,33 +21,33 @@ use crate::{Error, InputError};
 pub struct SkinFrame {
     /// The mesh on the device.
     pub mesh: MeshBuffers,
-    /// The arrangement of its vertices.
+    /// The arrangement of the mesh's vertices.
     pub clusters: Clusters,
-    /// InstanceLods and weights of morph targets, which the caller may write.
+    /// LODs and morph weights of instances, which the caller may write.
     pub crowd: SkinnedCrowd,
-    /// The updated bones: those that the model matrices record, or, if they record none, those that the caller
-    /// writes. [`SkinFrame::record_updated_bones`] clears the latter.
+    /// The updated bones: those that the model matrices record, or, if they record none, those that the caller writes.
+    /// [`SkinFrame::record_updated_bones`] clears the caller's.
     pub select: SelectBuffers,
-    /// The clusters that the last [`SkinFrame::record_updated_bones`] selected.
+    /// The clusters selected by the last [`SkinFrame::record_updated_bones`].
     pub active: ActiveClusters,
-    /// Skinned vertices, at `instance · vertices + slot`. Those of clusters beyond an instance's level of
-    /// detail are out of date.
+    /// Skinned vertices, at `instance · vertices + slot`. Clusters beyond an instance's level of detail are out of
+    /// date.
     pub skinned: Buffer<Vertex>,
     palette: Job,
-    /// The selection that keeps the updated bones, and the one that clears them.
+    /// Two selections: one keeps the updated bones, the other clears them.
     selections: [Job; 2],
-    /// The jobs of morph targets, if there are any, and of vertices.
+    /// The jobs of morph targets, if there are any, and of skinning.
     jobs: Vec<Job>,
     reader: Arc<UpdatedBonesReader>,
 }
 
 impl SkinFrame {
-    /// Prepares a model's mesh for `instances` instances, whose bones are posed by `matrices`.
+    /// Prepares a model's mesh for `instances` instances, with bones posed by `matrices`.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for
-    /// fewer matrices or bits of updated bones than needed, and for dual quaternions over matrices of a crowd
-    /// under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending only;
+    /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for fewer
+    /// matrices or bits of updated bones than needed, and for dual quaternions over matrices of a crowd under
+    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending only;
     /// [`crate::gpu::GpuError`].
     pub fn new(
         gpu: &Gpu,
@@ -77,22 +76,24 @@ impl SkinFrame {
         let skin = SkinPass::new(gpu, blend)?.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
         let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
         let jobs = morph.into_iter().chain([skin]).collect();
-        // This comes last: it claims the matrices for its kind of blending, which a refused frame must not do.
+        // This step is last: it claims the matrices for its kind of blending, which a refused frame must not do.
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
         Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selections, jobs, reader })
     }
 
-    /// Records the skinning of instances that are seen, at their level of detail, for these clusters: those with a
-    /// bone that was updated since the last such recording or with a changed morph weight, those beyond the level of
-    /// the frame before, and all clusters of instances whose influences changed or that were not seen in the frame
-    /// before. The first recording thus skins everything that is seen. It counts frames ([`SelectBuffers::skinned`]):
-    /// record it at most once per frame; frames may do without. The last of several frames of skinning over the same
-    /// model matrices clears the updated bones ([`UpdatedBones`]).
+    /// Records the skinning of visible instances at their level of detail. It skins only these clusters:
+    /// - clusters with a bone that was updated since the last such recording, or with a changed morph weight;
+    /// - clusters beyond the level of the frame before;
+    /// - all clusters of instances whose influences changed, or that were not visible in the frame before.
+    ///
+    /// The first recording therefore skins everything visible. It counts frames ([`SelectBuffers::skinned`]): record it
+    /// at most once per frame; frames may skip it. If several skinning frames share model matrices, the last of them
+    /// clears the updated bones ([`UpdatedBones`]).
     pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch_updated_bones(&mut compute_pass(encoder, "skinning"));
     }
 
-    /// Adds the same work as [`SkinFrame::record_updated_bones`] to a compute pass that is being recorded.
+    /// As [`SkinFrame::record_updated_bones`], into a compute pass that is being recorded.
     pub fn dispatch_updated_bones(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.palette.dispatch(pass);
         let [keeping, clearing] = &self.selections;
@@ -100,8 +101,8 @@ impl SkinFrame {
         self.jobs.iter().for_each(|job| job.dispatch(pass));
     }
 
-    /// Reads the vertices of an instance, in the mesh's own order; those beyond its level of detail are out of
-    /// date. Waits for the device.
+    /// Reads an instance's vertices, in the mesh's own order. Vertices beyond its level of detail are out of date.
+    /// Waits for the device.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].

@@ -5,14 +5,15 @@ use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 pub use crate::shared::skinning::instance_lod::InstanceLod;
 
-/// The projected distances between which the influences of an instance fade, in world units. The projected distance of a point
-/// at depth z and distance d from the eye is z²/d, because a small displacement there moves the point on screen by at most
-/// focal · displacement · d/z² pixels; in a parallel view it is d.
+/// The projected distances between which an instance's influences fade, in world units.
+///
+/// The projected distance of a point at depth z and distance d from the eye is z²/d, and d in a parallel view. A small
+/// displacement there moves the point on the screen by at most focal · displacement · d/z² pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FadeRange {
-    /// Up to this distance every influence counts.
+    /// Up to this distance all influences count.
     pub start: f32,
-    /// From this distance on each vertex follows one bone; above `start`.
+    /// From this distance on, each vertex follows one bone. Above `start`.
     pub end: f32,
 }
 
@@ -37,7 +38,7 @@ impl InstanceLod {
     /// All influences of all vertices.
     pub const FULL: Self = Self { influence_fade: 0.0, max_influences: MAX_INFLUENCES as u32, mesh_lod: 0 };
 
-    /// For an instance that is not seen: nothing is skinned.
+    /// No skinning, for an instance that is not visible.
     pub const UNSEEN: Self = Self { influence_fade: 0.0, max_influences: 0, mesh_lod: 0 };
 
     /// The `most` strongest influences.
@@ -78,7 +79,7 @@ impl InstanceLod {
         Self::fade(((distance - start) / (end - start)).clamp(0.0, 1.0))
     }
 
-    /// Checks the ranges; the instance must be one that is seen.
+    /// Checks the ranges of a visible instance.
     ///
     /// # Errors
     /// [`InputError`] that names the field.

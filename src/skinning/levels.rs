@@ -1,5 +1,5 @@
-//! Levels of detail of skinned meshes: the mesh is simplified for all poses of its clips, and the error of each
-//! level is measured (A sections 9.3 and 9.4: all poses of the animation count). Meshes of a model that share borders are
+//! Levels of detail of skinned meshes. A mesh is simplified for all poses of its clips, and each level's error is
+//! measured (A sections 9.3 and 9.4: all poses of the animation count). Meshes of a model that share borders are
 //! simplified as one, so that no gap opens between them (B section 5.2).
 
 use std::iter::successors;
@@ -32,24 +32,25 @@ mod whole;
 /// The error of the finest level, as a fraction of the mesh's size ([`Keys::size`]).
 const FIRST: f32 = 1e-3;
 
-/// The ratio of the errors of successive levels. Numbers of triangles fall by about its inverse.
+/// The ratio of the errors of successive levels. The number of triangles falls by about its inverse.
 const STEP: f32 = std::f32::consts::SQRT_2;
 
-/// A level is kept only if its triangles are at most this fraction of the level before.
+/// A level is kept only if it has at most this fraction of the triangles of the level before.
 const WORTHWHILE: f64 = 0.9;
 
-/// The margin by which [`MeshLevel::error`] exceeds the sampled maximum, for what lies between poses.
+/// Safety factor of [`MeshLevel::error`] over the sampled maximum, for poses in between.
 const ERROR_MARGIN: f32 = 1.03;
 
 /// Coarser levels of one of a model's meshes.
 #[derive(Debug, Clone)]
 pub struct MeshLevels {
-    /// The levels for [`Mesh::levels`](crate::asset::Mesh::levels). The first has an error of a thousandth of the mesh's size, and each
-    /// later one 1.4 times the error of the one before and at most 0.9 times its triangles. Empty if nothing
-    /// can be removed. The size is the diagonal of the box around the triangles at rest or, if clips make the
-    /// mesh more than twice as large or small, in the pose in which they make it largest. The units in which a
-    /// mesh was bound do not matter. Where meshes share borders, sizes and numbers of triangles are those of all of them
-    /// together, and all have equally many levels with the same errors.
+    /// The levels for [`Mesh::levels`](crate::asset::Mesh::levels); empty if nothing can be removed.
+    ///
+    /// The first has an error of a thousandth of the mesh's size. Each later one has 1.4 times the error of the one
+    /// before, and at most 0.9 times its triangles. The size is the diagonal of the box around the triangles at rest.
+    /// If clips make the mesh more than twice as large or small, the pose in which it is largest counts instead. The
+    /// units in which a mesh was bound do not matter. If meshes share borders, sizes and triangle counts are those of
+    /// all of them together, and all have equally many levels with the same errors.
     pub levels: Vec<MeshLevel>,
     /// The partner of each vertex, for [`Mesh::partners`](crate::asset::Mesh::partners).
     pub partners: Vec<u32>,
@@ -57,21 +58,23 @@ pub struct MeshLevels {
 }
 
 impl MeshLevels {
-    /// Simplifies a mesh for these clips and its rest pose, and measures each level in `poses` of each clip,
-    /// evenly spaced from start to end; [`poses_of`](super::poses_of) gives a sufficient number for a clip.
-    /// Without clips only the rest pose counts. Blending is linear, with the clips' weights of morph targets.
-    /// Edges that are hard in normals only do not hinder simplification: each remaining corner keeps a vertex
-    /// whose normal is close to its own, or to that of its triangle where this is flat-shaded. Texture coordinates count where
-    /// the mesh's material shows a texture, and where it has none. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
+    /// Simplifies a mesh for its rest pose and these clips, and measures each level in `poses` of each clip, evenly
+    /// spaced from start to end.
     ///
-    /// The error of a level is the largest distance, in all of these poses, between a vertex of the mesh and
-    /// the level's triangles close to it, and between midpoints of the level's triangles and edges and the
-    /// mesh's triangles for which they stand. It is increased by 3 % for poses in between. Other points of the
-    /// surfaces may be further apart: up to 1.4 times as far for a creature and a cow, and up to 10 times for a
-    /// mesh that is as coarse as its bumps.
+    /// [`poses_of`](super::poses_of) gives a sufficient number of poses for a clip. Without clips, only the rest pose
+    /// counts. Blending is linear, with the clips' weights of morph targets. Edges that are hard only in normals do not
+    /// hinder simplification: each remaining corner keeps a vertex whose normal is close to its own, or to its
+    /// triangle's if that is flat-shaded. Texture coordinates count if the mesh's material shows a texture, or if it
+    /// has no material. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
     ///
-    /// A model that is scaled has the same levels, with errors scaled alike, however it is scaled: exactly for
-    /// powers of two; for other factors rounding may decide between collapses of equal cost.
+    /// The error of a level is the largest distance, in all of these poses, of two kinds: between a vertex of the mesh
+    /// and the level's triangles close to it, and between midpoints of the level's triangles and edges and the mesh's
+    /// triangles that they stand for. It is increased by 3 % for poses in between. Other points of the surfaces may be
+    /// further apart: up to 1.4 times as far for a creature and a cow, and up to 10 times for a mesh that is as coarse
+    /// as its bumps.
+    ///
+    /// A scaled model has the same levels, with errors scaled alike: exactly for powers of two. For other factors,
+    /// rounding may decide between collapses of equal cost.
     ///
     /// # Errors
     /// [`InputError`] as [`Extent::new`](super::Extent::new).
@@ -83,9 +86,9 @@ impl MeshLevels {
         Ok(all.unwrap_or_default().remove(0).1)
     }
 
-    /// The point on level `level + 1` of the mesh that is nearest to `wanted`, the correct position of a vertex
-    /// of the mesh, among the triangles that were nearest in some pose. `point` gives the positions of the
-    /// level's vertices. A vertex that the level has is at its own position.
+    /// The point on level `level + 1` of the mesh that is nearest to `wanted`, among the triangles that were nearest in
+    /// some pose. `wanted` is the correct position of a vertex of the mesh. `point` gives the positions of the level's
+    /// vertices. A vertex that the level has is at its own position.
     ///
     /// # Panics
     /// For levels and vertices that do not exist.
@@ -94,10 +97,10 @@ impl MeshLevels {
     }
 }
 
-/// The part of progress that simplification takes; the rest is taken by looking at moments.
+/// The share of simplification in the progress; measuring moments takes the rest.
 const SIMPLIFICATION: f64 = 0.7;
 
-/// Levels that are to be found.
+/// The inputs of a computation of levels.
 struct Task<'a> {
     model: &'a Model,
     moments: &'a [Moment],
@@ -105,8 +108,9 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The levels of all meshes of these groups, each with its mesh; those of a group are simplified as one, and have equally
-    /// many levels with the same errors. `watch` gets fractions from 0 to 1 that do not decrease; if it breaks, there are none.
+    /// The levels of all meshes of these groups, each with its mesh. Meshes of a group are simplified as one, and have
+    /// equally many levels with the same errors. `watch` gets fractions from 0 to 1 that never decrease; if it breaks,
+    /// the result is `None`.
     fn run(
         &self,
         groups: &[Vec<usize>],
@@ -170,7 +174,7 @@ impl<'a> Group<'a> {
         Ok(Some(Self { whole, unit, simplified, levels, sides, suspects }))
     }
 
-    /// The levels of each mesh; `errors` has the largest distance of each level, in units.
+    /// The levels of each mesh. `errors` is the largest distance of each level, in units of `unit`.
     fn levels(&self, errors: &[f32]) -> Vec<(usize, MeshLevels)> {
         let whole = self.whole;
         let mut most = 0.0_f32;
@@ -200,22 +204,25 @@ impl<'a> Group<'a> {
     }
 }
 
-/// All moments that count in any way: these, and the rest pose.
+/// All moments that count: the given ones and the rest pose.
 fn looked_at(moments: &[Moment]) -> Vec<Moment> {
     std::iter::once(Moment::Rest).chain(moments.iter().copied()).collect()
 }
 
-/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them. Meshes whose borders have
-/// the same positions in every pose are simplified as one: their borders stay closed at every level, and they have equally
-/// many levels with the same errors. A mesh of which nothing is left at a level has one triangle without area there. `clips` are the indices
-/// of the clips that will be played, none for a mesh that stands still, and `poses` is the number of poses of each of them
-/// that are examined, at most 216,001: the largest of [`poses_of`](super::poses_of) misses no motion, fewer are quicker.
-/// Without clips the rest pose alone counts, and `poses` may be 1.
+/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them.
 ///
-/// The time grows with vertices × clips × poses, where vertices follow several bones; a vertex that follows one bone alone
-/// takes the same time for any number of poses. It is seconds for a character or a rock of tens of thousands of triangles.
-/// Programs that cannot wait so long at every start keep the result: a [`Model`] is stored with its levels by serde, in any
-/// format. [`add_levels_with_progress`] is for loading screens.
+/// Meshes whose borders have the same positions in every pose are simplified as one: their borders stay closed at every
+/// level, and they have equally many levels with the same errors. If nothing is left of a mesh at a level, it has one
+/// triangle without area there.
+///
+/// `clips` are the indices of the clips that will be played, none for a static mesh. `poses` is the number of poses
+/// examined per clip, at most 216,001. The largest of [`poses_of`](super::poses_of) misses no motion; fewer are
+/// quicker. Without clips only the rest pose counts, and `poses` may be 1.
+///
+/// The time grows with vertices × clips × poses for vertices that follow several bones. For a vertex that follows one
+/// bone, it does not depend on the number of poses. A character or a rock of tens of thousands of triangles takes
+/// seconds. To avoid this at every start, keep the result: serde stores a [`Model`] with its levels in any format.
+/// [`add_levels_with_progress`] is for loading screens.
 ///
 /// # Errors
 /// [`InputError`] as [`MeshLevels::new`].
@@ -224,7 +231,7 @@ pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Ve
     Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
 }
 
-/// As [`add_levels`], where levels keep their errors at rest too.
+/// As [`add_levels`], but levels keep their errors at rest too.
 ///
 /// # Errors
 /// As [`add_levels`].
@@ -238,9 +245,10 @@ pub(crate) fn add_levels_and_at_rest(
     Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
 }
 
-/// As [`add_levels`], and tells `watch` which fraction of the work is done: 0 first, 1 last, never less than before. It is
-/// called by the calling thread, many times a second for a model that takes long, so that it needs no lock. If it breaks, the
-/// model stays as it is, and the result is `None`.
+/// As [`add_levels`], and reports the completed fraction of the work to `watch`: 0 first, 1 last, never decreasing.
+///
+/// The calling thread calls it, so it needs no lock; for a model that takes long, many times a second. If it breaks,
+/// the model is unchanged and the result is `None`.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -266,17 +274,17 @@ pub fn add_levels_with_progress(
     watched(model, Looks { clips, poses, is_at_rest: false }, watch)
 }
 
-/// Never breaks.
+/// A `watch` that never breaks.
 fn unwatched<T>(_: T) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// The moments at which a model is looked at.
+/// The moments at which a model is sampled.
 struct Looks<'a> {
     clips: &'a [usize],
-    /// Of each clip.
+    /// Number of poses per clip.
     poses: usize,
-    /// Whether the rest pose counts beside clips.
+    /// Whether the rest pose counts in addition to clips.
     is_at_rest: bool,
 }
 
@@ -310,7 +318,7 @@ fn watched(
     Ok(Some(all))
 }
 
-/// `bodies` has the rigid body of each vertex, and `watch` gets the fraction of triangles that is removed.
+/// Simplifies the meshes. `bodies` has the rigid body of each vertex; `watch` gets the fraction of removed triangles.
 fn simplified(
     whole: &Whole<'_>,
     welded: &Welded,
@@ -336,12 +344,12 @@ fn simplified(
 struct Found {
     /// The vertex into which each vertex has collapsed.
     remap: Vec<u32>,
-    /// For each vertex of the level before, the vertex that takes its place.
+    /// For each vertex of the level before, the vertex that replaces it.
     into: Vec<u32>,
     indices: Vec<u32>,
 }
 
-/// The levels, each using a subset of the vertices of the one before.
+/// The levels. Each uses a subset of the vertices of the one before.
 fn found(whole: &Whole<'_>, welded: &Welded, keys: &Keys, simplified: &Simplified) -> Vec<Found> {
     let mut distances: Vec<f32> = simplified.collapses().iter().map(|collapse| collapse.distance).collect();
     distances.dedup();
@@ -365,8 +373,7 @@ mod tests {
     use crate::asset::{Influence, Influences, Mesh};
     use crate::skinning::pose::Pose;
 
-    /// If the simplifier saw all moments, the measured errors equal the distances that it kept: no near
-    /// triangle is overlooked.
+    /// If the simplifier saw all moments, the measured errors equal its own distances: no near triangle is overlooked.
     #[test]
     fn errors_are_the_distances_that_were_kept() {
         let plain = crate::samples::creature().expect("valid");
@@ -398,8 +405,8 @@ mod tests {
         }
     }
 
-    /// A ninth of the triangles remain within a hundredth of the height, and at moments that were not sampled
-    /// every level keeps its error too.
+    /// A ninth of the triangles remain within an error of a hundredth of the height. Every level keeps its error at
+    /// moments that were not sampled too.
     #[test]
     fn creatures_lose_triangles_by_distance() {
         let model = crate::samples::creature().expect("valid");
@@ -429,8 +436,8 @@ mod tests {
         }
     }
 
-    /// A mesh in which every triangle has vertices of its own, with its face normal; the remaining triangles
-    /// keep such normals.
+    /// A mesh in which every triangle has its own vertices, with its face normal. The remaining triangles keep such
+    /// normals.
     #[test]
     fn hard_edges_do_not_matter() {
         let mut model = crate::samples::creature().expect("valid");
@@ -452,7 +459,7 @@ mod tests {
         model.meshes[0] = hard;
         let found = add_levels(&mut model, &[0], 9).expect("valid").remove(0);
         assert_eq!(model.meshes[0].validate(&model.skins), Ok(()));
-        // Where normals are averages of others, other collapses come first, and a level more may be worthwhile.
+        // Averaged normals change the order of collapses, so there may be one level more.
         assert!(found.levels.len().abs_diff(smooth.levels.len()) <= 1);
         let mut compared = 0;
         for hard in &found.levels {

@@ -1,6 +1,5 @@
-//! Merges the meshes of a model, so that an object takes few draws however many primitives its file has: one mesh
-//! with the vertices of all of them, one skin, and for each level of detail the triangles sorted by what a draw must
-//! have in common.
+//! Merging of a model's meshes, so that an object takes few draws however many primitives its file has. The result is
+//! one mesh with all vertices, one skin, and for each level of detail triangles sorted by draw state.
 
 mod joined;
 mod parts;
@@ -14,25 +13,25 @@ use joined::{Union, joined};
 
 pub use parts::{MAX_PARTS, PartKey};
 
-/// The largest number of draws of an object: parts × levels × 2, since mirrored instances have draws of their own.
+/// The largest number of draws of an object: parts × levels × 2, because mirrored instances have their own draws.
 pub const MAX_DRAWS: usize = 64;
 
-/// A model whose meshes are merged.
+/// A model with merged meshes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Merged {
-    /// The model, with the skeleton, clips, materials and images that it had, one skin, and the merged meshes. It has
-    /// one mesh, and one more for each set of morph weights. They are drawn part by part: the `material` of a mesh is
-    /// only set where all of it has the same, and it is double-sided if any of it is.
+    /// The model: the original skeleton, clips, materials and images, one skin, and the merged meshes.
+    ///
+    /// It has one mesh, and one more for each set of morph weights. They are drawn part by part. The `material` of a
+    /// mesh is set only if all of it has the same one. A mesh is double-sided if any of it is.
     pub model: Model,
-    /// The errors of its levels 1, 2 … in the model's units, ascending; they are the
-    /// [`level_errors`](super::level_errors) of the merged meshes, whose [`own_levels`] tell what they use at each
-    /// level.
+    /// The errors of its levels 1, 2 … in the model's units, ascending: the [`level_errors`](super::level_errors) of
+    /// the merged meshes. [`own_levels`] gives the level that each mesh uses there.
     pub errors: Vec<f32>,
     /// For each mesh, the material of each of its vertices, as an index in the model.
     pub materials: Vec<Vec<Option<usize>>>,
-    /// For each mesh, the mesh of the model from which each of its vertices comes, as an index.
+    /// For each mesh, the original mesh of each of its vertices, as an index.
     pub sources: Vec<Vec<u32>>,
-    /// What is drawn at once. Every triangle belongs to one part.
+    /// The parts, each drawn at once. Every triangle belongs to one part.
     pub parts: Vec<Part>,
 }
 
@@ -41,31 +40,29 @@ pub struct Merged {
 pub struct Part {
     /// Index of the mesh in the merged model.
     pub mesh: usize,
-    /// What its triangles have in common.
+    /// The draw state that its triangles share.
     pub key: PartKey,
-    /// For each level of the object, level 0 included, the part's indices among those of the mesh's own level there
+    /// For each level of the object, level 0 included, the part's range among the indices of the mesh's own level
     /// ([`Mesh::triangles`](crate::asset::Mesh::triangles) of [`own_levels`]).
     pub indices: Vec<Range<u32>>,
 }
 
 /// Merges the meshes of a model, with at most `levels` levels of detail, level 0 included.
 ///
-/// Drawing the merged model is drawing the meshes of the model: at full detail they have the same triangles, whose
-/// vertices have the same positions, normals and tangents to the bit, in every pose. At a level, each mesh
-/// contributes the own level that [`own_levels`] gives it. A vertex keeps the order and the weights of its
-/// influences, which name the bones of one skin: all pairs of a bone and an inverse bind matrix that any vertex
-/// follows. Meshes without triangles are left out.
+/// Drawing the merged model is equivalent to drawing the model's meshes. At full detail they have the same triangles,
+/// with the same positions, normals and tangents to the bit, in every pose. At a level, each mesh contributes its own
+/// level from [`own_levels`]. A vertex keeps the order and weights of its influences. They refer to one skin, which has
+/// all pairs of a bone and an inverse bind matrix that any vertex follows. Meshes without triangles are left out.
 ///
-/// Meshes that morph targets move are merged with those that have the same weights in every clip, and stay meshes of
-/// their own otherwise. Parts differ in their [`PartKey`]. There are at most [`MAX_PARTS`] of them, or one or two for
-/// each merged mesh and use of alpha if these are more: samplings are given up until then, those with the fewest
-/// triangles first, in favour of the one that has most triangles of the same mesh, alpha and sides. A mesh that
-/// lacks textures or normal maps joins any sampling of these. Should there be so many morphed meshes that draws exceed [`MAX_DRAWS`], there are
-/// fewer levels, at least one.
+/// Meshes that morph targets move are merged only with meshes of the same weights in every clip. Parts differ in their
+/// [`PartKey`]. There are at most [`MAX_PARTS`] of them, or, if these are more, one or two for each merged mesh and use
+/// of alpha. To reach this number, samplings are given up, those with the fewest triangles first. They are replaced by
+/// the one with the most triangles of the same mesh, alpha and sides. A mesh that lacks textures or normal maps joins
+/// any sampling of these. If many morphed meshes make draws exceed [`MAX_DRAWS`], there are fewer levels, at least one.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or a skin that does not match the model, for a material or an image that the model
-/// lacks, and for more vertices in all than a mesh may have.
+/// [`InputError`] for a mesh or a skin that does not match the model, for a material or an image that the model lacks,
+/// and for more vertices in all than a mesh may have.
 pub fn merged(model: &Model, levels: usize) -> Result<Merged, InputError> {
     let keys = (0..model.meshes.len()).map(|mesh| checked(model, mesh)).collect::<Result<Vec<_>, _>>()?;
     let groups = groups(model);
@@ -86,7 +83,7 @@ pub fn merged(model: &Model, levels: usize) -> Result<Merged, InputError> {
     Ok(merged)
 }
 
-/// The key of a mesh that matches its model.
+/// Checks a mesh against its model, and returns its key.
 fn checked(model: &Model, mesh: usize) -> Result<PartKey, InputError> {
     model.check_mesh(mesh)?;
     model.check_material(mesh)?;
@@ -106,8 +103,8 @@ fn bare(model: &Model) -> Model {
     }
 }
 
-/// The meshes that have triangles, each group those that may become one: all that no morph target moves, and for each
-/// set of morph weights those that it moves.
+/// Groups of meshes that may be merged: all that no morph target moves, and for each set of morph weights the meshes
+/// with these weights. Meshes without triangles are left out.
 fn groups(model: &Model) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (at, mesh) in model.meshes.iter().enumerate().filter(|(_, mesh)| !mesh.indices.is_empty()) {
@@ -128,7 +125,7 @@ fn groups(model: &Model) -> Vec<Vec<usize>> {
 }
 
 impl Merged {
-    /// Adds the mesh that a group of meshes becomes; `parts` are all parts of the group.
+    /// Adds the merged mesh of a group. `parts` are all parts of the group.
     fn add<'a>(
         &mut self,
         model: &Model,

@@ -1,4 +1,4 @@
-//! The skinning of a crowd whose vertices lie in pages: memory follows what is seen, not the number of instances.
+//! Skinning of a crowd into pages of vertices. Memory follows the number of visible instances, not of all instances.
 
 use std::sync::Arc;
 
@@ -23,9 +23,9 @@ use crate::skinning::vertex::Vertex;
 pub struct PagedSkin {
     /// The mesh on the device.
     pub mesh: MeshBuffers,
-    /// The arrangement of its vertices.
+    /// The arrangement of the mesh's vertices.
     pub clusters: Arc<Clusters>,
-    /// InstanceLods and weights of morph targets, which the caller may write.
+    /// LODs and morph weights of instances, which the caller may write.
     pub crowd: SkinnedCrowd,
     active: ActiveClusters,
     palette: Job,
@@ -39,7 +39,7 @@ struct Paging {
     pages: PageBuffers,
     select: SelectBuffers,
     deal: Job,
-    /// The selection that keeps the updated bones, and the one that clears them.
+    /// Two selections: one keeps the updated bones, the other clears them.
     selections: [Job; 2],
     /// Morphing, if there are targets, and skinning.
     after: Vec<Job>,
@@ -64,12 +64,12 @@ impl Paging {
 }
 
 impl PagedSkin {
-    /// Prepares a mesh for so many instances, whose bones are posed by `matrices`, which must record the updated bones, with so
-    /// many pages.
+    /// Prepares a mesh for `instances` instances with `pages` pages. `matrices` poses the bones and must record the
+    /// updated bones.
     ///
-    /// With last positions the position that each vertex had before the last [`PagedSkin::dispatch`] is kept behind the vertices
-    /// of all pages ([`PageBuffers::last`]): a page takes 3584 bytes then instead of 2560. What moves is skinned once more after
-    /// it stops. What was not seen in the frame before counts as if it had not moved.
+    /// With last positions, the pages are followed by each vertex's position before the last [`PagedSkin::dispatch`]
+    /// ([`PageBuffers::last`]). A page then takes 3584 bytes instead of 2560. A moving vertex is skinned once more
+    /// after it stops. A vertex that was not visible in the frame before counts as static.
     ///
     /// # Errors
     /// [`InputError`] for no instances, for matrices without updated bones and for fewer of them than needed;
@@ -93,27 +93,27 @@ impl PagedSkin {
         Ok(Self { mesh, clusters, crowd, active, palette, paging, reader: Arc::new(updated.reader()) })
     }
 
-    /// The pages, and the vertices in them.
+    /// The pages with their vertices.
     pub fn pages(&self) -> &PageBuffers {
         &self.paging.pages
     }
 
-    /// Replaces the pages by so many others. Everything that is seen is dealt out and skinned anew in the next frame. After an
-    /// error the pages are those of before.
+    /// Replaces the pages by `pages` new ones. The next frame assigns pages to all visible instances and skins them
+    /// anew. After an error the old pages stay.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub fn set_pages(&mut self, gpu: &Gpu, pages: u32) -> Result<(), Error> {
-        // A new record of what was skinned: frames that are recorded already go on with the old one.
+        // A new record of skinned instances, because frames that are already recorded keep using the old one.
         let skinned = SelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
         let select = SelectBuffers { skinned, ..self.paging.select.clone() };
         self.paging = Paging::new(gpu, (&self.mesh, &self.crowd), (select, &self.active), pages)?;
         Ok(())
     }
 
-    /// Adds to a compute pass: pages for what is seen, palettes, and the vertices of clusters with an updated bone, a
-    /// changed morph weight, or a new page. The last of several skins over the same model matrices clears the updated
-    /// bones ([`UpdatedBones`](crate::animation::UpdatedBones)).
+    /// Adds to a compute pass: page assignment, palettes, and skinning of clusters with an updated bone, a changed
+    /// morph weight or a new page. If several skins share model matrices, the last of them clears the updated bones
+    /// ([`UpdatedBones`](crate::animation::UpdatedBones)).
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.paging.deal.dispatch(pass);
         self.palette.dispatch(pass);
@@ -122,7 +122,7 @@ impl PagedSkin {
         self.paging.after.iter().for_each(|job| job.dispatch(pass));
     }
 
-    /// Reads the vertices of each instance that have a page, in the mesh's own order; `None` for the others. Waits for
+    /// Reads the vertices of each instance that has pages, in the mesh's own order; `None` for the others. Waits for
     /// the device.
     ///
     /// # Errors
@@ -150,7 +150,8 @@ impl PagedSkin {
         Ok(instances.iter().map(of_instance).collect())
     }
 
-    /// Workgroups along x, y and z of the dispatch that skins, the number of clusters that it skins, and a counter.
+    /// Indirect arguments of the skinning dispatch: workgroup counts along x, y and z, the number of skinned clusters,
+    /// and a counter.
     pub fn dispatched(&self) -> &Buffer<u32> {
         &self.active.dispatched
     }

@@ -1,4 +1,4 @@
-//! A mesh at moments of clips and at rest, with linear blending, for computations at load time.
+//! A mesh at rest and at moments of clips, with linear blending, for computations at load time.
 
 use glam::Vec3;
 
@@ -16,18 +16,17 @@ use crate::skinning::palette::reference::palette;
 use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::Vertex;
 
-/// Poses per second of a clip that are enough for [`MeshLevels`](super::MeshLevels) and
-/// [`Extent`](super::Extent).
+/// A sufficient number of poses per second for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent).
 const POSES_A_SECOND: f32 = 60.0;
 
-/// The longest clip, in seconds, that may be sampled that often: an hour, with 216,001 poses.
+/// The longest clip, in seconds, that may be sampled at that rate: an hour, 216,001 poses.
 pub const LONGEST_LOOK: f32 = 3600.0;
 
-/// The most poses of a clip that are looked at: those of the longest.
+/// The largest number of sampled poses per clip: that of the longest clip.
 const MOST_POSES: usize = 216_001;
 
-/// The number of poses with which [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) sample a clip
-/// 60 times a second, start and end included; at least 2.
+/// The number of poses for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) to sample a clip 60 times a
+/// second, start and end included; at least 2.
 ///
 /// # Errors
 /// [`InputError`] for a clip of more than an hour.
@@ -58,8 +57,8 @@ pub(super) enum Moment {
 /// `poses` moments of each clip, evenly spaced from start to end; the rest pose if there are no clips.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or clips that the model does not have, for 0 poses or more than those of the longest clip, and for a mesh that does not
-/// match its skin.
+/// [`InputError`] for a mesh or clips that the model does not have, for 0 poses or more than the longest clip has, and
+/// for a mesh that does not match its skin.
 pub(super) fn moments(
     model: &Model,
     mesh: usize,
@@ -114,7 +113,7 @@ pub(super) fn weights_at(model: &Model, mesh: &Mesh, moment: Moment) -> Vec<f32>
     }
 }
 
-/// The positions of some of a mesh's vertices at a moment at which bones have these model matrices; they equal those of
+/// The positions of some of a mesh's vertices at a moment with these model matrices of bones. They equal those of
 /// [`Pose::positions`].
 pub(super) fn positions_of(
     model: &Model,
@@ -151,7 +150,7 @@ impl Pose {
         Self::at(model, mesh, &bones_at(model, moment), &weights_at(model, mesh, moment))
     }
 
-    /// With bones at these positions in the model's space.
+    /// The pose with these model matrices of bones and morph weights.
     pub(super) fn at(model: &Model, mesh: &Mesh, models: &[Affine], weights: &[f32]) -> Self {
         Self { palette: palette(&model.skins[mesh.skin], models), vertices: morph(mesh, weights) }
     }

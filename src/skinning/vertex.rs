@@ -9,27 +9,29 @@ use crate::asset::mesh::COORDINATE_LIMIT;
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Vertex {
-    /// Position, before skinning in the space of binding, afterwards in the model's space.
+    /// Position: in bind space before skinning, in the model's space afterwards.
     pub position: [f32; 3],
-    /// Normal of unit length.
+    /// Unit normal.
     pub normal: [f32; 3],
-    /// Tangent of unit length, and ±1; see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
+    /// Unit tangent, and handedness ±1; see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
     pub tangent: [f32; 4],
 }
 
-/// How the influences of a vertex are blended.
+/// Blending of a vertex's influences.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Blend {
     /// The mean of matrices, as glTF requires.
     #[default]
     Linear,
-    /// The mean of rigid motions. The guarantees of linear blending do not hold for it: the bound of
-    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), with which it is refused; the fades and levels of
+    /// The mean of rigid motions.
+    ///
+    /// The guarantees of linear blending do not hold for it: the bound of
+    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), which refuses it; the fades and levels of
     /// [`Extent`](super::Extent); and boxes and spheres around everything that bones move.
     DualQuaternion,
 }
 
-/// A mesh's vertices in the space of binding, without its morph targets.
+/// A mesh's vertices in bind space, without its morph targets.
 ///
 /// # Panics
 /// For a mesh that [`Mesh::validate`] refuses.
@@ -42,7 +44,7 @@ pub fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
     (0..mesh.vertices()).map(vertex).collect()
 }
 
-/// Refuses vertices of a mesh outside the range of coordinates, as large scales produce.
+/// Refuses vertices outside the range of coordinates, as large scales produce.
 ///
 /// # Errors
 /// [`InputError`] that names the mesh by its number, and the first such vertex.

@@ -5,7 +5,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::srgb::linear;
 use crate::surface::mips::Mips;
 
-/// A texture with its sampler.
+/// A colour texture with its sampler.
 #[derive(Debug, Clone)]
 pub struct ColorTexture {
     /// RGBA with all mip levels.
@@ -15,7 +15,7 @@ pub struct ColorTexture {
 }
 
 impl ColorTexture {
-    /// Uploads mip levels as 8-bit texels: sRGB for colours and linear for data, as `mips` says.
+    /// Uploads mip levels as 8-bit texels. `mips` selects the format: sRGB for colours, linear for data.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -27,8 +27,8 @@ impl ColorTexture {
         upload(gpu, mips, wraps, format, |level| level.as_raw().clone())
     }
 
-    /// Uploads mip levels as linear half floats, for pictures that are compared across drivers: this takes
-    /// twice the memory, but depends on no driver's sRGB decoding.
+    /// Uploads mip levels as linear half floats, for pictures that are compared across drivers. It takes twice the memory, but
+    /// does not depend on the driver's sRGB decoding.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -48,7 +48,7 @@ impl ColorTexture {
     }
 }
 
-/// A sampler.
+/// Creates a sampler.
 ///
 /// # Errors
 /// [`GpuError`].

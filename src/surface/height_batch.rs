@@ -1,10 +1,10 @@
-//! Height maps of one size on the device, one after another.
+//! A batch of height maps on the device.
 
 use super::map::HeightMap;
 use crate::gpu::{Buffer, Gpu};
 use crate::{Error, InputError};
 
-/// A batch of height maps of one size.
+/// Height maps of one size on the device, one after another.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     /// Heights, row by row, map by map.
@@ -41,6 +41,6 @@ impl HeightBatch {
     }
 }
 
-/// What helps where maps are larger than a binding.
+/// Advice in errors about maps larger than a binding.
 pub(crate) const REMEDY: &str =
     "use smaller or fewer height maps, or compute on the CPU with the functions in the `reference` modules";

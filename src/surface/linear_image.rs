@@ -1,4 +1,4 @@
-//! Images in linear light, which are averaged before they are encoded as sRGB.
+//! Images in linear light, for averaging before they are encoded as sRGB.
 
 use crate::srgb;
 
@@ -7,13 +7,12 @@ use crate::srgb;
 pub struct LinearImage {
     /// Pixels along x and y.
     pub size: [u32; 2],
-    /// The pixels.
     pub pixels: Vec<[f32; 3]>,
 }
 
 impl LinearImage {
-    /// The image reduced by `factor`: each pixel is the mean of `factor` × `factor` pixels; a remainder at the
-    /// edges is cut off.
+    /// The image reduced by `factor`: each pixel is the mean of `factor` × `factor` pixels. A remainder at the edges is cut
+    /// off.
     pub fn reduced(&self, factor: u32) -> Self {
         let size = self.size.map(|edge| edge / factor);
         let fraction = 1.0 / (factor * factor) as f32;

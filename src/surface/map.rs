@@ -1,14 +1,14 @@
-//! Height maps, over which all methods march.
+//! Height maps, the input of all methods.
 
 use std::path::Path;
 
 use crate::shared::surface::ray;
 use crate::{Error, InputError};
 
-/// The longest edge of a map in texels: WebGPU's default limit for a texture.
+/// Longest edge of a map in texels: WebGPU's default limit for a texture.
 pub const MAP_EDGE: u32 = 8192;
 
-/// What lies beyond the edge of a map.
+/// Address mode: what lies beyond the edge of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 #[repr(u32)]
@@ -16,12 +16,12 @@ pub enum Address {
     /// The map repeats.
     #[default]
     Wrap = ray::SURFACE_WRAP,
-    /// The texels at the edge continue without end.
+    /// The texels at the edge continue forever.
     Clamp = ray::SURFACE_CLAMP,
 }
 
 impl Address {
-    /// Its name in options and reports.
+    /// Name in options and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Wrap => "wrap",
@@ -29,15 +29,15 @@ impl Address {
         }
     }
 
-    /// The value for the shaders.
+    /// Value in the shaders.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         self as u32
     }
 }
 
-/// The heights of a tile, row by row from the top left, finite, 0 (lowest) to 1. The center of texel (i, j) is
-/// at uv ((i + ½) / width, (j + ½) / height); between centers heights are interpolated bilinearly.
+/// Heights of a tile, row by row from the top left, finite, 0 (lowest) to 1. The center of texel (i, j) is at uv ((i + ½) /
+/// width, (j + ½) / height). Between centers, heights are interpolated bilinearly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightMap {
     width: u32,
@@ -46,11 +46,10 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// A map of `width` × `height` texels.
+    /// Builds a map of `width` × `height` texels.
     ///
     /// # Errors
-    /// [`InputError`] for an edge outside 1 to [`MAP_EDGE`], for a wrong number of heights, and for a height
-    /// outside 0..=1.
+    /// [`InputError`] for an edge outside 1 to [`MAP_EDGE`], for a wrong number of heights, and for a height outside 0..=1.
     pub fn new(width: u32, height: u32, heights: Vec<f32>) -> Result<Self, InputError> {
         for (field, edge) in [("heights.width", width), ("heights.height", height)] {
             if !(1..=MAP_EDGE).contains(&edge) {
@@ -66,7 +65,7 @@ impl HeightMap {
         Ok(Self { width, height, heights })
     }
 
-    /// Reads the brightness of an image file, black as 0 and white as 1, in the file's full bit depth.
+    /// Reads the brightness of an image file as heights, black as 0 and white as 1, in the file's full bit depth.
     ///
     /// # Errors
     /// [`Error::File`] when the file cannot be read, [`InputError`] for its size.
@@ -74,7 +73,7 @@ impl HeightMap {
         Self::of_brightness(open(path)?).map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// Takes the brightness of an image, black as 0 and white as 1, in its full bit depth.
+    /// Takes the brightness of an image as heights, black as 0 and white as 1, in its full bit depth.
     ///
     /// # Errors
     /// [`InputError`] for its size.
@@ -82,7 +81,7 @@ impl HeightMap {
         Self::of_samples(image.width(), image.height(), image.into_luma16().into_raw())
     }
 
-    /// Reads the alpha channel of an image file as heights; also returns the image.
+    /// Reads the alpha channel of an image file as heights. Also returns the image.
     ///
     /// # Errors
     /// As [`HeightMap::from_file`], and [`Error::File`] for an image without alpha.
@@ -112,12 +111,12 @@ impl HeightMap {
         Self::new(width, height, samples.into_iter().map(|sample| f32::from(sample) / 65_535.0).collect())
     }
 
-    /// Texels per row.
+    /// Number of texels per row.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
@@ -127,8 +126,8 @@ impl HeightMap {
         &self.heights
     }
 
-    /// The next mip level: both edges halved, rounded down but at least 1. Each texel is the mean of the four
-    /// texels that it covers.
+    /// Next mip level: both edges halved, rounded down but at least 1. Each texel is the mean of the four texels that it
+    /// covers.
     #[cfg(feature = "gpu")]
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
@@ -142,7 +141,7 @@ impl HeightMap {
         Self { width, height, heights: heights.collect() }
     }
 
-    /// The height of a texel; beyond the edge `address` decides.
+    /// Height of a texel; beyond the edge, `address` decides.
     pub fn texel(&self, x: i32, y: i32, address: Address) -> f32 {
         let at = |index: i32, edge: u32| match address {
             Address::Wrap => index.rem_euclid(edge as i32),
@@ -166,7 +165,7 @@ pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
 /// Decodes an image after checking its size: no edge may be longer than [`MAP_EDGE`].
 ///
 /// # Errors
-/// What cannot be decoded, as `image` tells it.
+/// Decoding errors of the crate `image`.
 pub fn decode(
     bytes: impl std::io::BufRead + std::io::Seek,
 ) -> Result<image::DynamicImage, image::ImageError> {

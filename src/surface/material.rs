@@ -1,22 +1,22 @@
-//! Parameters of a relief's material: depth, plane, light, and the width of shadows.
+//! Parameters of a relief material: depth, plane, light, and softness of shadows.
 
 use crate::InputError;
 use crate::surface::relief::{MAX_SCALE, MAX_STEPS};
 
-/// How the surface shades itself.
+/// Self-shadowing of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Shadow {
-    /// The surface casts no shadow on itself.
+    /// No self-shadowing.
     #[default]
     None,
-    /// A ray from the light, traced with the same method as the eye's ray.
+    /// Hard shadows: a ray from the light, traced with the same method as the eye's ray.
     Hard,
-    /// Penumbras, from samples along the way to the light.
+    /// Penumbras, from height samples along the way to the light.
     Soft,
 }
 
-/// The direction to which the green channel of a normal map points.
+/// Direction that the green channel of a normal map points to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Green {
@@ -27,25 +27,25 @@ pub enum Green {
     Down,
 }
 
-/// The parameters of a relief, besides its maps, that may change without a new pipeline. Whether there are
-/// shadows and silhouettes is not among them (`surface::ReliefOptions`).
+/// Parameters of a relief, besides its maps, that may change without a new pipeline. Options such as shadows and silhouettes
+/// are compiled into the pipeline (`surface::ReliefOptions`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].
     pub scale: f32,
     /// Height of the polygon within the relief, 0 (bottom) to 1 (top).
     ///
-    /// **Decided**: 1 by default, for every method. B's text has the polygon at the top (3.1.2), its table 4.4 at the
-    /// bottom, and its bias of parallax in the middle (3.1.1), which is ½ here.
+    /// **Decided**: 1 by default, for every method. B's text has the polygon at the top (3.1.2), its table 4.4 at the bottom,
+    /// and its bias of parallax in the middle (3.1.1), which is ½ here.
     pub plane: f32,
     /// Unit vector towards the light, in world space.
     pub light: [f32; 3],
     /// Light that shadowed points still receive, 0 to 1.
     pub ambient: f32,
-    /// Number of heights that a soft shadow samples on the way to the light, 1 to 1024.
+    /// Number of height samples of a soft shadow on the way to the light, 1 to 1024.
     pub shadow_steps: u32,
-    /// The ratio of the surface's height above the way to the light to its distance at which a soft shadow is
-    /// full; > 0.
+    /// Ratio at which a soft shadow is full, > 0: the height of the surface above the way to the light, divided by the
+    /// distance.
     pub softness: f32,
 }
 

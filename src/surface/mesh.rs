@@ -11,24 +11,23 @@ pub struct SurfaceVertex {
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Unit tangent along u, and ±1. The bitangent, along v, is this sign times normal × tangent. In glTF the
-    /// bitangent points against v, up the image, so that glTF's fourth component has the opposite sign.
+    /// Unit tangent along u, and a sign ±1. The bitangent, along v, is the sign times normal × tangent. glTF's bitangent points
+    /// against v, up the image, so that glTF's fourth component has the opposite sign.
     pub tangent: [f32; 4],
-    /// Texture coordinates; one tile of the relief covers 1.
+    /// Texture coordinates; a range of 1 is one tile of the relief.
     pub uv: [f32; 2],
 }
 
 /// A mesh that carries relief.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceMesh {
-    /// Vertices.
     pub vertices: Vec<SurfaceVertex>,
     /// Three indices per triangle.
     pub indices: Vec<u32>,
 }
 
 impl SurfaceMesh {
-    /// A square with an edge of one world unit, centered at the origin and facing +Z. u runs along +X and v
+    /// A square in the plane z = 0 with an edge of one world unit, centered at the origin and facing +Z. u runs along +X and v
     /// along −Y, both from 0 to `tiles`.
     pub fn square(tiles: f32) -> Self {
         let vertex = |x: f32, y: f32| SurfaceVertex {

@@ -4,22 +4,22 @@ use image::RgbaImage;
 
 use crate::srgb;
 
-/// An image with all its mip levels. Each texel is the mean of those that it covers.
+/// An image with all its mip levels. Each texel is the mean of the texels that it covers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mips {
-    /// The levels, from the image itself to a single texel.
+    /// Levels, from the image itself to a single texel.
     pub levels: Vec<RgbaImage>,
-    /// Whether red, green and blue are sRGB; if so, they were averaged in linear light.
+    /// Whether red, green and blue are sRGB. If so, they were averaged in linear light.
     pub is_srgb: bool,
 }
 
 impl Mips {
-    /// The levels of an sRGB image.
+    /// Mip levels of an sRGB image.
     pub fn of_color(image: RgbaImage) -> Self {
         Self::new(image, true)
     }
 
-    /// The levels of an image whose channels are data and not colours.
+    /// Mip levels of an image whose channels are data, not colours.
     pub fn of_data(image: RgbaImage) -> Self {
         Self::new(image, false)
     }
@@ -34,7 +34,7 @@ impl Mips {
     }
 }
 
-/// The next level, or `None` after a single texel.
+/// Next level; `None` after a single texel.
 fn halved(image: &RgbaImage, is_srgb: bool, light: &[f32]) -> Option<RgbaImage> {
     let (width, height) = image.dimensions();
     if width * height <= 1 {

@@ -1,4 +1,4 @@
-//! How a relief is drawn, and its maps on the device.
+//! Pipeline options of a relief, and its maps on the device.
 
 #[cfg(feature = "gpu")]
 use crate::surface::color::ColorTexture;
@@ -7,26 +7,25 @@ use crate::surface::relief::Method;
 #[cfg(feature = "gpu")]
 use crate::surface::relief::textures::SurfaceTextures;
 
-/// Options that are fixed when a pipeline is compiled. [`Material`](crate::surface::Material) has the
-/// parameters that may change without a new pipeline.
+/// Options that are fixed when a pipeline is compiled. [`Material`](crate::surface::Material) has the parameters that may
+/// change without a new pipeline.
 ///
-/// The default uses [`Method::Quadtree`], without shadow, with normals from the heights, without silhouette,
-/// with the polygon's depth, and with mip level 0.
+/// The default is [`Method::Quadtree`], with no shadow, normals from the heights, no silhouette, the polygon's depth, and mip
+/// level 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReliefOptions {
-    /// The method that finds the surface; the [`SurfaceTextures`] must be made for it.
+    /// Method that finds the surface; the [`SurfaceTextures`] must be made for it.
     pub method: Method,
     /// Self-shadow.
     pub shadow: Shadow,
-    /// If set, normals come from a normal map whose green channel points in this direction; otherwise they
-    /// follow from the heights.
+    /// Green direction of the normal map that provides the normals; `None` derives normals from the heights.
     pub normal_map: Option<Green>,
     /// Whether to discard points outside the mesh's range of uv, so that silhouettes follow the relief.
     pub silhouette: bool,
-    /// Whether to write the depth of the relief and not that of the polygon. This disables early depth tests.
+    /// Whether to write the depth of the relief instead of the polygon's. This disables early depth tests.
     pub depth: bool,
-    /// Whether to choose the mip level of the heights from the size of a pixel. Acceleration maps belong to
-    /// level 0, so that `cone` and `quadtree` always march there.
+    /// Whether to choose the mip level of the heights from the size of a pixel. Acceleration maps exist for level 0 only, so
+    /// that `cone` and `quadtree` always march there.
     pub mip: bool,
 }
 
@@ -45,7 +44,7 @@ impl Default for ReliefOptions {
 
 #[cfg(feature = "gpu")]
 impl ReliefOptions {
-    /// Whether the mip level of the heights follows the size of a pixel: acceleration maps belong to level 0.
+    /// Whether the mip level of the heights follows the size of a pixel. Methods with acceleration maps always use level 0.
     pub(crate) fn chooses_mip(&self) -> bool {
         self.mip && !matches!(self.method, Method::Cone | Method::Quadtree)
     }
@@ -57,8 +56,8 @@ impl ReliefOptions {
 pub struct ReliefMaps<'a> {
     /// Heights and their acceleration map.
     pub textures: &'a SurfaceTextures,
-    /// Colour, sRGB.
+    /// Colour, in sRGB.
     pub albedo: &'a ColorTexture,
-    /// Tangent-space normals: required if [`ReliefOptions::normal_map`] is set, else ignored.
+    /// Tangent-space normals: required if [`ReliefOptions::normal_map`] is set, otherwise ignored.
     pub normals: Option<&'a ColorTexture>,
 }

@@ -1,9 +1,9 @@
-//! What covers the ground, as shaders take it: zones, the texels of their textures at the scale of a colour map, and how these lie
-//! on the ground.
+//! Ground cover in the form that shaders use: zones, the texels of their textures at the scale of a colour map, and the mapping
+//! of textures onto the ground.
 
 pub use crate::shared::terrain::texturing::{TILES_PERIOD, TRIPLANAR_PLANES};
 pub use crate::shared::terrain::tiles::MapZone;
-/// A zone as shaders take it ([`zone_of`]).
+/// Zone in the form that shaders use ([`zone_of`]).
 pub use crate::shared::terrain::zones::Zone as ShaderZone;
 use crate::terrain::config::{
     Config, MAX_REPEATS, Slope, Zone, check_range, check_terrain_scale, check_zone_count, finite,
@@ -11,13 +11,13 @@ use crate::terrain::config::{
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{InputError, srgb};
 
-/// 2^22 of these units are a texture tile, so that a word holds [`TILES_PERIOD`] tiles.
+/// Fixed-point one of texture tiles, 2^22: a word holds [`TILES_PERIOD`] tiles.
 const TILE_ONE: f64 = 4_194_304.0;
 
-/// A zone in the form of the shaders.
+/// Converts a zone to the form that shaders use.
 pub fn zone_of(zone: &Zone) -> ShaderZone {
     let Slope { min, max, fade } = zone.slope;
-    // Tangents of half the angles at which a weight is 0 and 1; what begins at 0° or ends at 90° has no transition there.
+    // Tangents of half the angles at which a weight is 0 and 1. Ranges that begin at 0° or end at 90° have no transition there.
     let half = |degrees: f64| libm::tan(degrees.clamp(0.0, 90.0).to_radians() / 2.0);
     let line = |from: f64, to: f64| {
         let [zero, one] = [half(from), half(to)];
@@ -33,26 +33,26 @@ pub fn zone_of(zone: &Zone) -> ShaderZone {
     }
 }
 
-/// What covers the ground of colour maps.
+/// Ground cover of colour maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cover {
-    /// The zones, 1 to 32, each with a place in `texels`: `first`, and 4^`edge_log2` texels from there on.
+    /// Zones, 1 to 32. Each has 4^`edge_log2` texels in `texels`, starting at `first`.
     pub zones: Vec<MapZone>,
-    /// Linear texels, row by row: red, green, blue, and the height in the texture, 16 bits each, 0 to 65535.
+    /// Linear texels, row by row: red, green, blue, and the height of the texture, 16 bits each, 0 to 65535.
     pub texels: Vec<[u16; 4]>,
     /// World units between neighbouring samples.
     pub terrain_scale: f64,
     /// World units that a texture tile covers.
     pub tile: f64,
-    /// The strength of the variation of colour, 0 to 1.
+    /// Strength of the colour variation, 0 to 1.
     pub variation: f32,
-    /// Whether textures lie on steep ground from the sides too.
+    /// Whether steep ground is also textured from the sides.
     pub triplanar: bool,
 }
 
 impl Cover {
-    /// The cover of a configuration with one texture for each zone, of which it takes the mip level whose texels are nearest to
-    /// the distance between samples.
+    /// Cover of a configuration, with one texture per zone. It takes the mip level of each texture whose texel size is nearest
+    /// to the distance between samples.
     ///
     /// # Errors
     /// [`InputError`] where the numbers of zones and textures differ, and as [`Config::validate`].
@@ -81,7 +81,7 @@ impl Cover {
         Ok(cover)
     }
 
-    /// Checks that there are 1 to 32 zones with valid ranges, whose texels are there, and every other field.
+    /// Checks that there are 1 to 32 zones with valid ranges and existing texels, and checks every other field.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -119,7 +119,7 @@ impl Cover {
         Ok(())
     }
 
-    /// The texels as the colour map reads them: red and green in the halves of a word, blue and height in those of another.
+    /// Packed texels for the colour map kernel: red and green in the halves of one word, blue and height in those of another.
     #[cfg(feature = "gpu")]
     pub fn packed_texels(&self) -> Vec<[u32; 2]> {
         let packed = |texel: &[u16; 4]| {
@@ -134,30 +134,30 @@ impl Cover {
         [self.terrain_scale / self.tile, 1.0 / self.tile].map(|tiles| (tiles * TILE_ONE).round() as u32)
     }
 
-    /// The position in tiles of the first sample of a patch, in 2^-22 tiles and without whole multiples of [`TILES_PERIOD`], from
-    /// the column and row of the patch and the samples along its edge.
+    /// Position of a patch's first sample in 2^-22 tiles, modulo [`TILES_PERIOD`]. `patch` is the patch's column and row, and
+    /// `patch_size` the number of samples along its edge.
     pub fn place(&self, patch: [i32; 2], patch_size: u32) -> [u32; 2] {
         let tiles = f64::from(patch_size.saturating_sub(1)) * self.terrain_scale / self.tile;
-        // Rounding up to the period itself gives 0.
+        // Rounding may give the period itself; it wraps to 0.
         let fixed = |index: i32| (f64::from(index) * tiles).rem_euclid(TILES_PERIOD.into()) * TILE_ONE;
         patch.map(|index| fixed(index).round() as u64 as u32)
     }
 }
 
-/// The number of planes from which textures lie on the ground.
+/// Number of planes from which textures are projected onto the ground.
 #[cfg(feature = "gpu")]
 pub fn planes(triplanar: bool) -> u32 {
     if triplanar { TRIPLANAR_PLANES } else { 1 }
 }
 
-/// The mip level whose texels are nearest to the distance between samples, which is that of so many texels of level 0.
+/// Mip level whose texel size is nearest to the distance between samples. `between` is that distance in texels of level 0.
 fn level_of(between: f64) -> u32 {
     (0..TEXTURE_SIZE.ilog2())
         .find(|level| between < f64::from(1 << level) * std::f64::consts::SQRT_2)
         .unwrap_or(TEXTURE_SIZE.ilog2())
 }
 
-/// A texel in linear light.
+/// Converts a texel to linear light.
 fn linear(texel: &[u8]) -> [u16; 4] {
     let color = |channel: usize| (srgb::linear(texel[channel]) * 65_535.0 + 0.5) as u16;
     [color(0), color(1), color(2), u16::from(texel[3]) * 257]

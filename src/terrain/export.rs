@@ -1,4 +1,4 @@
-//! Heights as other programs keep them: hashes, and fields without their margins.
+//! Heights for use by other programs: hashes, and fields without their margins.
 
 use crate::hash;
 
@@ -7,7 +7,7 @@ pub fn sha256(heights: &[i32]) -> String {
     hash::sha256(&heights.iter().map(|height| height.cast_unsigned()).collect::<Vec<_>>())
 }
 
-/// A copy of a field with `width` samples per row, without its outermost `samples` rings.
+/// Copies a field with `width` samples per row without its outermost `samples` rings.
 pub fn cropped(field: &[i32], width: usize, samples: usize) -> Vec<i32> {
     let inner = width - 2 * samples;
     let rows = field.chunks_exact(width).skip(samples).take(inner);

@@ -1,4 +1,4 @@
-//! Injected heights (B sections 3.3.1 and 4.4): reading them, and finding those that a window sees.
+//! Injected heights (B sections 3.3.1 and 4.4): reading them, and finding the ones that a window sees.
 
 #[cfg(feature = "gpu")]
 mod index;
@@ -26,8 +26,7 @@ pub use index::{FeatureGrid, FeatureIndex};
 pub struct FeatureFile {
     /// Coordinates of the patch.
     pub patch_coordinates: [i32; 2],
-    /// x, y and height of one point after the other. x and y count samples of the patch; heights are in height
-    /// units.
+    /// Points as x, y and height, one point after the other. x and y count samples of the patch; heights are in height units.
     pub precomputed_heights: Vec<f64>,
 }
 
@@ -35,7 +34,7 @@ impl FeatureFile {
     /// Reads B's JSON.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not such JSON.
+    /// [`InputError`] for text that is not valid JSON of this form.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         from_json_object("features", text)
     }
@@ -43,13 +42,13 @@ impl FeatureFile {
     /// Reads a JSON file.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] when it is not such JSON.
+    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] when it is not valid JSON of this form.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         Self::from_json(&read_text(path)?)
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// The points as (X, Y, height in 1/65536 units), checked against the patch.
+    /// Points as (X, Y, height in 1/65536 units), checked against the patch.
     fn points(&self, config: &Config) -> Result<Vec<(i32, i32, i32)>, InputError> {
         let values = &self.precomputed_heights;
         if !values.len().is_multiple_of(3) {
@@ -77,13 +76,13 @@ impl FeatureFile {
     }
 }
 
-/// The injected heights of a world, indexed so that a window finds those that it sees.
+/// Injected heights of a world, indexed for lookup by window.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Features {
-    /// What injection does to a computed height.
+    /// Effect of injection on a computed height.
     pub mode: FeatureMode,
-    // In `seamless` there is one world, (0, 0); in the other modes each patch is a world of its own. Points are
-    // indexed by (Y, X) in world coordinates, which in those modes start at the patch.
+    // In `seamless` there is one world, (0, 0). In the other modes each patch is a world of its own, whose world coordinates
+    // start at the patch. Points are indexed by (Y, X) in world coordinates.
     worlds: BTreeMap<[i32; 2], BTreeMap<(i64, i64), i32>>,
 }
 
@@ -109,7 +108,7 @@ impl Features {
     /// As [`Features::new`].
     pub fn add(&mut self, config: &Config, file: &FeatureFile) -> Result<(), InputError> {
         let patch = file.patch_coordinates;
-        // Patch coordinates that no window can have would never be seen.
+        // Features of a patch that no window can have would never be seen.
         Window { patch, apron: 0 }.validate(config)?;
         let spacing = config.sample_spacing();
         let seamless = config.border == Border::Seamless;
@@ -140,17 +139,17 @@ impl Features {
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
 
-    /// Whether there are no injected points at all.
+    /// Whether there are no injected points.
     pub fn is_empty(&self) -> bool {
         self.worlds.values().all(BTreeMap::is_empty)
     }
 
-    /// The number of injected points.
+    /// Number of injected points.
     pub fn len(&self) -> usize {
         self.worlds.values().map(BTreeMap::len).sum()
     }
 
-    /// The mode of injection, or `None` if there are no features.
+    /// Mode of injection; `None` if there are no features.
     #[cfg(feature = "gpu")]
     pub fn injection(&self) -> Option<FeatureMode> {
         (!self.is_empty()).then_some(self.mode)
@@ -165,9 +164,8 @@ impl Features {
             .unwrap_or(0)
     }
 
-    /// The injected points of a square lattice in the world coordinates of `world`, as (column, row, height),
-    /// sorted by row and column. With `new_only`, points that also lie on the lattice of twice the spacing are
-    /// left out.
+    /// Injected points on a square lattice in the world coordinates of `world`, as (column, row, height), sorted by row and
+    /// column. `new_only` excludes points that also lie on the lattice of twice the spacing.
     pub(crate) fn on_lattice(
         &self,
         world: [i32; 2],
@@ -190,9 +188,8 @@ impl Features {
         found
     }
 
-    /// (column, row) of every injected point of the windows of `patches`, sorted by row. In `wrap` and `blend`,
-    /// the samples around a patch belong to other patches, or to the other side of the patch itself, and so do
-    /// their features.
+    /// Positions (column, row) of the injected points of each window of `patches`, sorted by row. In `wrap` and `blend`, the
+    /// samples around a patch, and their features, belong to other patches or to the other side of the patch itself.
     pub(crate) fn in_windows(
         &self,
         config: &Config,
@@ -229,7 +226,7 @@ impl Features {
             .collect()
     }
 
-    /// The world in which a patch lies; see [`Features::on_lattice`].
+    /// World that contains a patch; see [`Features::on_lattice`].
     pub(crate) fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
     }

@@ -1,4 +1,4 @@
-//! Whole fields on the CPU: the references of the operations, applied in the order of a recipe.
+//! Complete fields on the CPU: the references of the operations, in the order of a recipe.
 
 use rayon::prelude::*;
 
@@ -13,8 +13,8 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
 
-/// The final heights of `patches` in 1/65536 units, each with `margin` samples around it, in rows of patchSize
-/// + 2·margin. Patches are generated in parallel on rayon's threads.
+/// Final heights of `patches` in 1/65536 units, each with `margin` samples around it, in rows of patchSize + 2·margin. Patches
+/// are generated in parallel on rayon's threads.
 ///
 /// # Errors
 /// [`InputError`] as [`Recipe::validate`].
@@ -42,7 +42,7 @@ pub fn field_with(
         field
     };
     let injected = recipe.injected(patches, apron);
-    // Patches of `blend` depend on each other; all others are generated independently, each from start to end.
+    // Patches of `blend` depend on each other; all others are generated independently from start to end.
     if let Border::Blend(_) = config.border {
         let windows = generate(config, features, patches, apron);
         return Ok(windows.into_par_iter().zip(&injected).map(|(window, at)| finished(window, at)).collect());
@@ -54,7 +54,7 @@ pub fn field_with(
     Ok(patches.par_iter().zip(&injected).map(made).collect())
 }
 
-/// The windows of `patches` before despiking and erosion.
+/// Windows of `patches` before despiking and erosion.
 pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<i32>> {
     if config.border == Border::Seamless {
         let made = match config.interpolation {

@@ -10,11 +10,11 @@ pub struct Fields {
     pub heights: Buffer<i32>,
     /// Samples along an edge of a field.
     pub width: u32,
-    /// Fields in the buffer.
+    /// Number of fields in the buffer.
     pub count: u32,
 }
 
-/// Where one field of a batch lies, when the batch is split into parts.
+/// Location of one field in a batch that is split into parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Place {
     /// Index of the part.
@@ -23,7 +23,7 @@ pub(crate) struct Place {
     pub index: u32,
 }
 
-/// The places of all fields of `parts`, in order; all fields are `width` samples wide.
+/// Places of all fields of `parts`, in order. All fields must be `width` samples wide.
 ///
 /// # Errors
 /// [`InputError`] that names a part of another width, or one whose buffer is too short.
@@ -38,7 +38,7 @@ pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputEr
     Ok(places)
 }
 
-/// What helps where fields are larger than a binding.
+/// Advice in errors about fields larger than a binding.
 pub(crate) const REMEDY: &str = "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer \
     iterations of erosion), or compute on the CPU with the functions in the `reference` modules";
 
@@ -53,16 +53,16 @@ impl Fields {
         Ok(Self { heights, width, count })
     }
 
-    /// The largest number of fields of `width` in one part: as many as fit a binding of WebGPU's default size,
-    /// 128 MiB, and one dispatch; at least one. Batches are split there even on devices that allow more, so
-    /// that the work on one part stays short.
+    /// Largest number of fields of `width` in one part: as many as fit in one dispatch and in a binding of WebGPU's default
+    /// size, 128 MiB; at least one. Batches are split at this size even on devices that allow more, so that the work on one
+    /// part stays short.
     pub fn most(gpu: &Gpu, width: u32) -> usize {
         let bytes = 4 * u64::from(width) * u64::from(width);
         let binding = gpu.max_binding().min(wgpu::Limits::default().max_storage_buffer_binding_size);
         (binding / bytes.max(1)).clamp(1, 65_535) as usize
     }
 
-    /// The heights of each field. Waits for the device.
+    /// Heights of each field. Waits for the device.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -71,7 +71,7 @@ impl Fields {
         gpu.block_on(self.read(gpu))
     }
 
-    /// The heights of each field; see [`Buffer::read`].
+    /// Heights of each field; see [`Buffer::read`].
     ///
     /// # Errors
     /// [`GpuError`].
@@ -81,30 +81,29 @@ impl Fields {
         Ok(all.chunks_exact(points).take(self.count as usize).map(<[i32]>::to_vec).collect())
     }
 
-    /// The same memory, described as fields that are `samples` smaller on every side. Their width is 0 where
-    /// nothing is left.
+    /// The same memory, viewed as fields that are `samples` smaller on every side. Their width is 0 if nothing is left.
     pub fn cropped(&self, samples: u32) -> Self {
         Self { width: self.inner_width(samples), ..self.clone() }
     }
 
-    /// Samples along an edge of the fields when they are `crop` samples smaller on every side.
+    /// Samples along an edge of the fields if they were `crop` samples smaller on every side.
     fn inner_width(&self, crop: u32) -> u32 {
         self.width.saturating_sub(crop.saturating_mul(2))
     }
 
-    /// The threads of a kernel that makes a sample each, when the fields are `crop` samples smaller on every side.
+    /// Thread counts of a kernel with one thread per sample, if the fields were `crop` samples smaller on every side.
     pub fn threads(&self, crop: u32) -> [u32; 3] {
         let width = self.inner_width(crop);
         [width, width, self.count]
     }
 
-    /// Number of samples in all fields when they are `crop` samples smaller on every side.
+    /// Number of samples in all fields if they were `crop` samples smaller on every side.
     pub fn points(&self, crop: u32) -> usize {
         (self.inner_width(crop) as usize).pow(2) * self.count as usize
     }
 
-    /// Checks that something is left of the fields when they are `crop` samples smaller on every side, and that
-    /// the buffer holds them all.
+    /// Checks that the fields are not empty if they were `crop` samples smaller on every side, and that the buffer holds them
+    /// all.
     ///
     /// # Errors
     /// [`InputError`] that names `field`.

@@ -5,32 +5,32 @@ use crate::hash::{LANES, threefry2x32};
 use crate::shared::terrain::features;
 use crate::terrain::config::{Config, Offset};
 
-/// The mean of four heights, rounded half up.
+/// Mean of four heights, rounded half up.
 #[inline(always)]
 pub fn mean_of_four(a: i32, b: i32, c: i32, d: i32) -> i32 {
     (a >> 2) + (b >> 2) + (c >> 2) + (d >> 2) + (((a & 3) + (b & 3) + (c & 3) + (d & 3) + 2) >> 2)
 }
 
-/// (9 (b + c) − (a + d)) / 16, rounded half up, for values of at most 1.25 · 2^30.
+/// Returns (9 (b + c) − (a + d)) / 16, rounded half up, for values of at most 1.25 · 2^30.
 #[inline(always)]
 pub fn four_point(a: i32, b: i32, c: i32, d: i32) -> i32 {
     let whole = 9 * ((b >> 4) + (c >> 4)) - ((a >> 4) + (d >> 4));
     whole + ((9 * ((b & 15) + (c & 15)) - ((a & 15) + (d & 15)) + 8) >> 4)
 }
 
-/// The mean of two heights, rounded half up.
+/// Mean of two heights, rounded half up.
 #[inline(always)]
 pub fn mean_of_two(a: i32, b: i32) -> i32 {
     (a >> 1) + (b >> 1) + (((a & 1) + (b & 1) + 1) >> 1)
 }
 
-/// The high word of the 64-bit product of two words.
+/// High word of the 64-bit product of two words.
 #[inline(always)]
 pub fn multiply_high(a: u32, b: u32) -> u32 {
     ((u64::from(a) * u64::from(b)) >> 32) as u32
 }
 
-/// Draws the random offsets of one seed and one distribution.
+/// Generator of random offsets for one seed and one distribution.
 #[derive(Debug, Clone, Copy)]
 pub struct Draw {
     key: [u32; 2],
@@ -57,8 +57,8 @@ impl Draw {
         }
     }
 
-    /// The offset of a height from the words drawn for it. Its constants are written again, because known heights,
-    /// which independent programs computed, check them and the shader's.
+    /// Offset of a height from its two random words. The constants are not shared with the shader: known heights from
+    /// independent programs check both copies.
     #[inline(always)]
     fn offset_of(&self, range: u32, first: u32, second: u32) -> i32 {
         let uniform = match self.offset {
@@ -73,19 +73,19 @@ impl Draw {
     }
 }
 
-/// What injection does to a computed height.
+/// Effect of injection on a computed height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FeatureMode {
-    /// An injected point has the feature's height.
+    /// The feature's height replaces the computed height.
     #[default]
     Keep,
-    /// An injected point has the sum of the computed height and the feature's.
+    /// The feature's height is added to the computed height.
     Additive,
 }
 
 impl FeatureMode {
-    /// The value of the shaders' `FEATURES` for this mode; 0 means that there are no features.
+    /// Value of the shaders' `FEATURES` for this mode; there, 0 means no features.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
@@ -95,7 +95,7 @@ impl FeatureMode {
     }
 }
 
-/// The height of a point after injection.
+/// Height of a point after injection.
 pub(crate) fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
     match mode {
         FeatureMode::Keep => feature,

@@ -1,8 +1,7 @@
-//! Whole fields on the device: the kernels in the order of a recipe. This is the GPU side of
-//! [`crate::terrain::field`].
+//! Complete fields on the device: the kernels in the order of a recipe. This is the GPU side of [`crate::terrain::field`].
 //!
-//! At no time do its buffers hold more than two `i32` per sample of the enlarged windows, or ten with hydraulic erosion, results
-//! included: each stage frees what the next one does not read. An index of features takes a further two bits per sample
+//! Its buffers never hold more than two `i32` per sample of the enlarged windows, results included, or ten with hydraulic
+//! erosion. Each stage frees the data that the next one does not read. An index of features takes a further two bits per sample
 //! and level.
 
 mod erosion;
@@ -35,7 +34,7 @@ pub struct Generator {
     pad: PadPass,
     despike: DespikePass,
     thermal: ThermalPass,
-    /// Compiled only for a recipe that has it.
+    /// Compiled only for a recipe with hydraulic erosion.
     hydraulic: Option<HydraulicPass>,
 }
 
@@ -62,21 +61,20 @@ impl Generator {
         })
     }
 
-    /// The number of patches that one part of the result may hold.
+    /// Number of patches that one part of the result may hold.
     pub(crate) fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
         self.most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
     }
 
-    /// The largest number of windows in one part: the flow of hydraulic erosion takes four words a sample.
+    /// Largest number of windows in one part. The flow of hydraulic erosion takes four words per sample.
     fn most(&self, gpu: &Gpu, width: u32) -> usize {
         let windows = Fields::most(gpu, width);
         if self.recipe.hydraulic.is_some() { (windows / 4).max(1) } else { windows }
     }
 
-    /// The final heights of `patches` with `margin` samples around each, in parts that each fit one storage
-    /// binding. Calls `progress` with the number of patches of each part that is done. Waits for the device. At
-    /// most two `i32` per sample of the enlarged windows, or ten with hydraulic erosion, are allocated at once, apart from
-    /// features.
+    /// Final heights of `patches` with `margin` samples around each, in parts that each fit one storage binding. Calls
+    /// `progress` after each part with its number of patches. Waits for the device. At most two `i32` per sample of the
+    /// enlarged windows, or ten with hydraulic erosion, are allocated at once, apart from features.
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -91,7 +89,7 @@ impl Generator {
         gpu.block_on(self.generate_async(gpu, patches, margin, progress))
     }
 
-    /// As `Generator::generate`, but completes once the device has finished; see [`Gpu::wait_async`].
+    /// As `Generator::generate`, but completes when the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -132,7 +130,7 @@ impl Generator {
         self.generated(gpu, patches, apron, capacity).await
     }
 
-    /// Fields of `patches` with `apron`, with room for so many features.
+    /// Generates fields of `patches` with `apron`, with room for `capacity` features.
     async fn generated(
         &self,
         gpu: &Gpu,
@@ -150,8 +148,7 @@ impl Generator {
         Ok(fields)
     }
 
-    /// The number of features that a window sees, halos included: those within its base lattice and one point
-    /// around it.
+    /// Number of features that a window sees, including halos: those within its base lattice and one point around it.
     fn seen_features(&self, window: Window) -> usize {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         if features.is_empty() {
@@ -160,7 +157,7 @@ impl Generator {
         let spacing = config.sample_spacing();
         let finer = 1 << config.levels();
         let base = window.levels(config)[0];
-        // The region is one cell larger than any alignment of the windows needs.
+        // The region is one cell larger than needed for any alignment of the windows.
         let origin = base.map(|span| (span.first - 2) * finer * spacing);
         let width = base.map(|span| (span.width() as i64 + 4) * finer).into_iter().max().unwrap_or(0) as u32;
         features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()
@@ -176,7 +173,7 @@ impl Generator {
         let mut sizes = part_sizes(patches.len(), self.most(gpu, width));
         let all = surrounds(config, patches);
         let injected = self.recipe.injected(patches, apron);
-        // The last part takes the patches that remain.
+        // The last part takes the remaining patches.
         sizes.pop();
         let (mut parts, mut start) = (Vec::new(), 0);
         for size in sizes {
@@ -186,13 +183,13 @@ impl Generator {
             start += size;
         }
         let last = self.padded(gpu, apron, &all[start..], &alone).await?;
-        // Only the last windows read the patches: free them, because the stages that follow need the memory.
+        // Free the patches, which only the last windows read: the following stages need the memory.
         drop(alone);
         parts.push(self.finish(gpu, apron, &injected[start..], last).await?);
         Ok(parts)
     }
 
-    /// Windows around patches, filled from all of them.
+    /// Windows around patches, gathered from all of them.
     async fn padded(
         &self,
         gpu: &Gpu,
@@ -207,7 +204,7 @@ impl Generator {
         Ok(windows)
     }
 
-    /// The patches without the samples around them, after the transitions of `blend`.
+    /// Patches without the samples around them, after the transitions of `blend`.
     async fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
         let config = &self.recipe.config;
         let mut parts = Vec::new();
@@ -233,7 +230,7 @@ impl Generator {
         if self.recipe.apron(0) == 0 {
             return Ok(windows);
         }
-        // Each of them drops a ring of samples before it writes to the second buffer.
+        // Each stage drops a ring of samples before it writes to the second buffer.
         let other = Fields::new(gpu, "terrain windows", windows.cropped(1).width, windows.count)?;
         let mut both = [windows, other];
         if let Some(despike) = despike {
@@ -251,7 +248,7 @@ impl Generator {
         Ok(windows)
     }
 
-    /// An index of every injected point of the windows; `injected` gives (column, row) for each window.
+    /// Index of every injected point of the windows; `injected` has the (column, row) pairs of each window.
     fn index(&self, gpu: &Gpu, apron: u32, injected: &[Vec<(u32, u32)>]) -> Result<FeatureIndex, GpuError> {
         let width = self.recipe.config.patch_size + 2 * apron;
         let points = injected.iter().map(Vec::len).sum::<usize>();
@@ -265,9 +262,8 @@ impl Generator {
     }
 }
 
-/// Splits `count` patches into as few parts of at most `most` patches as possible, the smaller parts first:
-/// while a part is worked on, the memory of a later, equally large part is not allocated yet and is free for
-/// scratch.
+/// Splits `count` patches into as few parts of at most `most` patches as possible, the smaller parts first. While an early part
+/// is processed, the memory of a later, equally large part is not allocated yet and is free for scratch.
 fn part_sizes(count: usize, most: usize) -> Vec<usize> {
     let parts = count.div_ceil(most.max(1));
     (0..parts).map(|part| (count + part) / parts.max(1)).collect()

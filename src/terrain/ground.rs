@@ -1,5 +1,4 @@
-//! The ground of a world of patches on the CPU: the height and the normal, at a world position, of the
-//! triangles that are drawn.
+//! Ground queries on the CPU for a world of patches: height and normal of the drawn triangles at a world position.
 
 mod ray;
 
@@ -11,11 +10,10 @@ use crate::terrain::export::cropped;
 use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fraction};
 pub use ray::GroundHit;
 
-/// The heights of any number of patches of one configuration, kept on the CPU, which answer where the ground
-/// is.
+/// Heights of any number of patches of one configuration on the CPU, for queries of the ground.
 ///
-/// The answers are those of the triangles that relievo draws and exports ([`HeightField::write_obj`]), so
-/// that what stands on the ground neither floats nor sinks. A patch takes four bytes per sample.
+/// The answers are those of the triangles that relievo draws and exports ([`HeightField::write_obj`]), so that objects on the
+/// ground neither float nor sink. A patch takes four bytes per sample.
 ///
 /// ```
 /// use relievo::ops::terrain::field::field;
@@ -51,9 +49,9 @@ impl Ground {
         Ok(Self { size: config.patch_size, spacing: config.terrain_scale, patches: HashMap::new() })
     }
 
-    /// Adds the patch at `patch`, or replaces it. `heights` are in 1/65536 units, row by row, with `margin`
-    /// samples around the patch, as [`crate::terrain::field::field`] returns them and as fields on the device
-    /// hold them. The margin is dropped.
+    /// Adds the patch at `patch`, or replaces it. `heights` are in 1/65536 units, row by row, with `margin` samples around the
+    /// patch. [`crate::terrain::field::field`] returns them in this form, and fields on the device hold them so. The margin is
+    /// dropped.
     ///
     /// # Errors
     /// [`InputError`] when the number of heights is not (patchSize + 2 · margin)².
@@ -77,23 +75,23 @@ impl Ground {
         self.patches.remove(&patch).is_some()
     }
 
-    /// The lowest and the highest height of a patch in world units; `None` where the ground has no such patch.
+    /// Lowest and highest height of a patch in world units; `None` if the ground has no such patch.
     pub fn extremes(&self, patch: [i32; 2]) -> Option<[f64; 2]> {
         self.patches.get(&patch).map(HeightField::extremes)
     }
 
-    /// The ground at world position (x east, z south), where position 0 is the first sample of patch (0, 0);
+    /// Height and normal of the ground at world position (x east, z south). Position 0 is the first sample of patch (0, 0).
     /// `None` where no patch is.
     ///
-    /// Patches of `seamless` terrain have the same heights along a shared edge, so a point on that edge has the
-    /// same height in both, bit for bit. Where both patches are present, the eastern or southern one answers.
-    /// (Patches of `wrap` terrain have edges of their own, and there the choice makes a difference.)
+    /// Patches of `seamless` terrain have the same heights along a shared edge, so a point on that edge has the same height in
+    /// both, bit for bit. If both patches are present, the eastern or southern one answers. (Patches of `wrap` terrain have
+    /// edges of their own; for them, the choice makes a difference.)
     pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
         self.point_from([0, 0], x, z)
     }
 
-    /// As [`Ground::point_at`], with position 0 at the first sample of patch `origin`. A viewer far from patch (0, 0)
-    /// chooses an origin nearby: positions near 0 are precise, however far away the origin is.
+    /// As [`Ground::point_at`], with position 0 at the first sample of patch `origin`. A viewer far from patch (0, 0) should
+    /// choose an origin nearby: positions near 0 are precise, however far away the origin is.
     pub fn point_from(&self, origin: [i32; 2], x: f64, z: f64) -> Option<GroundPoint> {
         let columns = self.cells(origin[0], x)?;
         let rows = self.cells(origin[1], z)?;
@@ -108,7 +106,7 @@ impl Ground {
         .next()
     }
 
-    /// The cells along one axis that hold a position: two where patches meet, the one after the edge first.
+    /// Cells along one axis that contain a position. Where patches meet there are two, the one after the edge first.
     fn cells(&self, origin: i32, position: f64) -> Option<[Option<Cell>; 2]> {
         let edge = i64::from(self.size) - 1;
         let (sample, fraction) = sample_and_fraction(position / self.spacing)?;
@@ -127,6 +125,6 @@ impl Ground {
 struct Cell {
     patch: i32,
     index: usize,
-    /// The position in the cell, 0 to [`FRACTION_ONE`].
+    /// Position in the cell, 0 to [`FRACTION_ONE`].
     fraction: i64,
 }

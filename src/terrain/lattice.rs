@@ -1,11 +1,12 @@
-//! Lattices of points in world coordinates: the base lattice, from which subdivision starts, and the features of a lattice.
+//! Lattices of points in world coordinates: the base lattice, where subdivision starts, and the features of a lattice.
 
 use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, Interpolation, PATCH_EDGE};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject};
 use crate::terrain::window::{Lattice, Span};
 
-/// The heights of the base lattice of a patch: random ones on the points of `spans` or, for a patch by itself, its corners.
+/// Heights of the base lattice of a patch: random ones on the points of `spans`, or the corners of a patch that is generated
+/// alone.
 pub(crate) fn base_lattice(
     config: &Config,
     features: &Features,
@@ -41,12 +42,12 @@ fn corners(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
     corners
 }
 
-/// The nearest height of at most [`HEIGHT_LIMIT`].
+/// Clamps a height to ±[`HEIGHT_LIMIT`].
 pub(crate) fn limited(height: i32) -> i32 {
     height.clamp(-HEIGHT_LIMIT as i32, HEIGHT_LIMIT as i32)
 }
 
-/// The world coordinate of a point of a lattice.
+/// World coordinate of a lattice point.
 pub(crate) fn world(index: i64, spacing: i64) -> u32 {
     (index * spacing) as u32
 }
@@ -58,8 +59,8 @@ pub(crate) struct Injected {
 }
 
 impl Injected {
-    /// Those on a lattice that has `rim` points more than the window on every side: points outside of it, of which others
-    /// are computed, see features too. With `new_only`, points of the coarser lattice are left out.
+    /// Features of the window's lattice extended by `rim` points on every side: outside points from which others are computed
+    /// see features too. `new_only` excludes points of the coarser lattice.
     pub(crate) fn new(
         features: &Features,
         spans: [Span; 2],
@@ -72,7 +73,7 @@ impl Injected {
         Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
     }
 
-    /// Injects into each `heights[i]`, which is the point (x + i·step, y) in units of the lattice.
+    /// Injects features into each `heights[i]`, the point (x + i·step, y) in units of the lattice.
     pub(crate) fn inject_row(&self, features: &Features, y: i64, x: i64, step: i64, heights: &mut [i32]) {
         let row = (y - self.origin[1]) as u32;
         let start = self.points.partition_point(|point| point.1 < row);

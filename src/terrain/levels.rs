@@ -1,5 +1,5 @@
-//! Levels of subdivision on the device, a dispatch each: what the passes of `kernels/terrain/height.wgsl`, `smooth.wgsl` and
-//! `wrap.wgsl` have in common.
+//! Levels of subdivision on the device, one dispatch per level: the common part of the passes of `kernels/terrain/height.wgsl`,
+//! `smooth.wgsl` and `wrap.wgsl`.
 
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::level::Level;
@@ -10,17 +10,17 @@ use crate::terrain::lattice::base_lattice;
 use crate::terrain::window::{Lattice, SMOOTH_RIM, Span, Window};
 use crate::{Error, InputError};
 
-/// A kernel that makes a level of the next coarser one.
+/// A kernel that computes a level from the next coarser one.
 #[derive(Debug, Clone)]
 pub(in crate::terrain) struct LevelPass {
     pub label: &'static str,
     pub kernel: Kernel,
-    /// The kernel's bind groups.
+    /// Creates the kernel's bind groups.
     pub bind: fn(&Gpu, &Kernel, LevelBuffers<'_>) -> Result<Vec<Group>, GpuError>,
     pub with_features: bool,
 }
 
-/// What a dispatch reads and writes.
+/// Buffers of one dispatch.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::terrain) struct LevelBuffers<'a> {
     pub level: &'a Uniform<Level>,
@@ -31,7 +31,7 @@ pub(in crate::terrain) struct LevelBuffers<'a> {
 }
 
 impl LevelPass {
-    /// Prepares the generation of `count` windows with `apron`, of a valid configuration of the kernel's kind.
+    /// Prepares the generation of `count` windows with `apron`. The configuration must be valid and of the kernel's kind.
     ///
     /// # Errors
     /// [`InputError`] for an apron out of bounds, and for buffers that are too short; [`GpuError`].
@@ -73,7 +73,7 @@ impl LevelPass {
                 features: &features,
             };
             let groups = (self.bind)(gpu, &self.kernel, buffers)?;
-            // A thread for each coarse point: a window may start anywhere in its first cell.
+            // One thread per coarse point: a window may start anywhere in its first cell.
             let edge = params.fine_width / 2 + 1;
             steps.push(Step::covering(&self.kernel, groups, [edge, edge, count]));
             origins.push(starts);
@@ -83,7 +83,7 @@ impl LevelPass {
     }
 }
 
-/// Points along an edge at every level, the base lattice first: enough for windows of any alignment.
+/// Points along an edge at every level, the base lattice first; enough for windows of any alignment.
 fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
     let halo = match (config.border, config.interpolation) {
         (Border::Seamless, Interpolation::Linear) => 3,
@@ -98,7 +98,7 @@ fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
     widths
 }
 
-/// The points around a window whose features a level sees. The grids of an index have room for one.
+/// Number of points around a window whose features a level sees. The grids of an index already have room for one.
 fn rim(config: &Config) -> u32 {
     match config.interpolation {
         Interpolation::Linear => 1,
@@ -110,11 +110,11 @@ fn points(width: u32, count: u32) -> usize {
     count as usize * (width as usize).pow(2)
 }
 
-/// Scratch memory for the levels between the base lattice and the output: about a third of the output. Jobs of one
-/// configuration, count and apron may share it.
+/// Scratch memory for the levels between the base lattice and the output: about a third of the output's size. Jobs with the
+/// same configuration, count and apron may share it.
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
-    // The two buffers alternate: the last dispatch reads the first, the one before it the second, and so on.
+    // The two buffers alternate: the last dispatch reads the first, the dispatch before it the second, and so on.
     buffers: [Buffer<i32>; 2],
 }
 
@@ -130,8 +130,8 @@ impl HeightScratch {
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
-    /// The largest level that each buffer ever holds: coarse levels of small patches are wider than fine ones. The base lattice and
-    /// the output lie elsewhere.
+    /// Size of the largest level that each buffer ever holds; coarse levels of small patches are wider than fine ones. The base
+    /// lattice and the output are elsewhere.
     fn points(widths: &[u32], count: u32) -> [usize; 2] {
         let mut most = [0; 2];
         for (left, width) in widths[1..].iter().rev().skip(1).enumerate() {
@@ -145,13 +145,13 @@ impl HeightScratch {
         self.buffers.iter().zip(needed).try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
     }
 
-    /// Bytes that the scratch takes on the device.
+    /// Size of the scratch on the device, in bytes.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(Buffer::bytes).sum()
     }
 }
 
-/// The prepared generation of a batch of windows: set the patches, then record as often as wanted.
+/// A prepared generation of a batch of windows: set the patches, then record any number of times.
 #[derive(Debug, Clone)]
 pub struct HeightJob {
     config: Config,
@@ -159,19 +159,19 @@ pub struct HeightJob {
     apron: u32,
     widths: Vec<u32>,
     base: Buffer<i32>,
-    /// The first point of each window, in units of the level's spacing, for every level after the base lattice.
+    /// First point of each window at every level after the base lattice, in units of the level's spacing.
     origins: Vec<Buffer<[i32; 2]>>,
     features: FeatureIndex,
     job: Job,
 }
 
 impl HeightJob {
-    /// The number of heights that the output must hold.
+    /// Number of heights that the output must hold.
     pub fn output_points(config: &Config, count: u32, apron: u32) -> usize {
         points(config.patch_size + 2 * apron, count)
     }
 
-    /// Sets the patches and features of the next recordings: at most `count` patches.
+    /// Sets the patches, at most `count`, and the features of the next recordings.
     ///
     /// # Errors
     /// [`InputError`] for patches out of bounds; [`GpuError::Limit`] for more features than there is room for.
@@ -228,7 +228,7 @@ mod tests {
         assert_eq!(points(257, 0, 0), [3 * 131 * 131, 3 * 68 * 68]);
         assert_eq!(points(3, 0, 0), [0, 0], "one dispatch");
         assert_eq!(points(5, 0, 0), [3 * 5 * 5, 0], "two");
-        // Where interpolation is smooth, the levels before the last of 3 points are 9, 12, 13, 14, 14, … points wide.
+        // With smooth interpolation, the levels before the last of 3 points are 9, 12, 13, 14, 14, … points wide.
         let smooth = Config {
             interpolation: Interpolation::Smooth,
             coarse_levels: 8,
@@ -237,7 +237,7 @@ mod tests {
         assert_eq!(HeightScratch::points(&level_widths(&smooth, 0), 3), [3 * 14 * 14; 2]);
     }
 
-    /// The widths of levels, which are the same for all windows, cover every window, whatever its alignment.
+    /// The widths of levels are the same for all windows and cover every window, whatever its alignment.
     #[test]
     fn level_widths_cover_every_alignment() {
         for (size, coarse_levels, apron) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {

@@ -1,4 +1,4 @@
-//! Zones of terrain and their textures on the device.
+//! Terrain zones and their textures on the device.
 
 use crate::gpu::{Buffer, Gpu};
 use crate::terrain::config::Zone;
@@ -6,7 +6,7 @@ use crate::terrain::cover::{ShaderZone, zone_of};
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{Error, InputError};
 
-/// Zones and their textures on the device.
+/// Zones with their textures on the device.
 #[derive(Debug, Clone)]
 pub struct Materials {
     pub(crate) zones: Buffer<ShaderZone>,
@@ -32,7 +32,7 @@ impl Materials {
         Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
     }
 
-    /// A view of the textures, a layer a zone, to bind.
+    /// Array view of the textures, one layer per zone, to bind.
     pub(crate) fn view(&self) -> wgpu::TextureView {
         self.textures.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),

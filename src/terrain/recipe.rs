@@ -1,4 +1,4 @@
-//! A recipe for terrain: the configuration, the features, and the operations after generation.
+//! Terrain recipes: the configuration, the features, and the operations after generation.
 
 mod json;
 
@@ -13,26 +13,26 @@ use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
 use crate::{Error, InputError};
 
-/// How a field of patches is made. The order is that of the fields: generation, borders, despiking, thermal erosion, hydraulic
-/// erosion, and thermal erosion once more.
+/// Complete description of a field of patches. Operations run in the order of the struct's fields: generation, borders,
+/// despiking, thermal erosion, hydraulic erosion, and thermal erosion once more.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
-    /// How heights are generated.
+    /// Configuration of the generation.
     pub config: Config,
     /// Injected heights.
     pub features: Features,
-    /// Removal of spikes, if wanted.
+    /// Removal of spikes; `None` skips it.
     pub despike: Option<Despike>,
-    /// Thermal erosion, if wanted.
+    /// Thermal erosion; `None` skips it.
     pub thermal: Option<Thermal>,
-    /// Hydraulic erosion, if wanted.
+    /// Hydraulic erosion; `None` skips it.
     pub hydraulic: Option<Hydraulic>,
-    /// Thermal erosion after hydraulic erosion, if wanted.
+    /// Thermal erosion after hydraulic erosion; `None` skips it.
     pub thermal_after: Option<Thermal>,
 }
 
 impl Recipe {
-    /// A recipe that only generates.
+    /// A recipe with generation only.
     pub fn new(config: Config) -> Self {
         Self {
             config,
@@ -55,7 +55,7 @@ impl Recipe {
         Ok(recipe)
     }
 
-    /// Samples beyond the patch that generation must provide for a final field with `margin` samples around it.
+    /// Number of samples beyond the patch that generation must provide for a final field with `margin` samples around it.
     pub fn apron(&self, margin: u32) -> u32 {
         let iterations = |thermal: Option<Thermal>| thermal.map_or(0, |thermal| thermal.iterations);
         [
@@ -68,8 +68,8 @@ impl Recipe {
         .fold(margin, u32::saturating_add)
     }
 
-    /// (column, row) of the injected points of each window, which despiking leaves alone. The lists are empty
-    /// without despiking.
+    /// Positions (column, row) of each window's injected points, which despiking leaves alone. The lists are empty without
+    /// despiking.
     pub(crate) fn injected(&self, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
         match self.despike {
             Some(_) => self.features.in_windows(&self.config, patches, apron),
@@ -102,7 +102,7 @@ impl Recipe {
         Ok(())
     }
 
-    /// An error that names the apron, as one that names the field that makes it large.
+    /// Replaces an error about the apron by one about the field that makes it large.
     fn caused(&self, error: InputError) -> InputError {
         match self.hydraulic {
             Some(Hydraulic { iterations, .. }) if error.path == "apron" && iterations > 0 => {

@@ -5,13 +5,13 @@ use std::iter::successors;
 use crate::InputError;
 use crate::terrain::config::{Border, Config, Interpolation};
 
-/// The largest number of samples by which a window may extend beyond its patch.
+/// Largest number of samples by which a window may extend beyond its patch.
 pub const MAX_APRON: u32 = 4096;
 
-/// The points outside of a window whose features it sees at every level but the first, where interpolation is smooth.
+/// Number of points outside a window whose features it sees, at every level but the first, with smooth interpolation.
 pub(crate) const SMOOTH_RIM: u32 = 3;
 
-/// A patch and the samples around it: (patchSize + 2·apron)² of them.
+/// A patch and the samples around it: (patchSize + 2·apron)² samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Window {
     /// Patch coordinates.
@@ -20,7 +20,7 @@ pub struct Window {
     pub apron: u32,
 }
 
-/// Indices of lattice points along one axis, both ends included, in units of the lattice's spacing.
+/// An inclusive range of lattice indices along one axis, in units of the lattice's spacing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Span {
     /// The first index.
@@ -30,23 +30,22 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    /// The span of the lattice with twice the spacing that is needed to compute this span: one cell of halo on
-    /// each side.
+    /// Span of the lattice with twice the spacing from which this span is computed: one cell of halo on each side.
     pub(crate) fn coarser(self) -> Self {
         Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
     }
 
-    /// As [`Span::coarser`] where interpolation is smooth: three points more on each side.
+    /// As [`Span::coarser`] for smooth interpolation: three more points on each side.
     fn coarser_smooth(self) -> Self {
         Self { first: self.first.div_euclid(2) - 3, last: (self.last + 1).div_euclid(2) + 3 }
     }
 
-    /// As [`Span::coarser`] of a patch by itself, whose ends lie on both lattices.
+    /// As [`Span::coarser`] for a patch that is generated alone: its ends lie on both lattices.
     fn halved(self) -> Self {
         Self { first: self.first / 2, last: self.last / 2 }
     }
 
-    /// The number of indices in the span.
+    /// Number of indices in the span.
     pub(crate) fn width(self) -> usize {
         (self.last - self.first + 1) as usize
     }
@@ -58,7 +57,7 @@ impl Window {
         config.patch_size + 2 * self.apron
     }
 
-    /// The columns and rows of the window, in units of samples.
+    /// Columns and rows of the window, in units of samples.
     pub(crate) fn spans(&self, config: &Config) -> [Span; 2] {
         let edge = i64::from(config.patch_size) - 1;
         self.patch.map(|patch| {
@@ -67,7 +66,7 @@ impl Window {
         })
     }
 
-    /// The columns and rows of the window at every level, the base lattice first. Those of a patch by itself are its own, without
+    /// Columns and rows of the window at every level, the base lattice first. For a patch that is generated alone, they exclude
     /// the apron.
     pub(crate) fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
         let (apron, coarser): (_, fn(Span) -> Span) = match (config.border, config.interpolation) {
@@ -83,7 +82,7 @@ impl Window {
         levels
     }
 
-    /// The lattice of the window's samples, in the world that holds its features.
+    /// Lattice of the window's samples, in the world that holds its features.
     pub(crate) fn lattice(&self, config: &Config) -> Lattice {
         let spacing = config.sample_spacing();
         let origin = if config.border == Border::Seamless {
@@ -120,14 +119,14 @@ impl Window {
 pub(crate) struct Lattice {
     /// World coordinates (X, Y) of the first point; a multiple of `spacing`.
     pub origin: [i64; 2],
-    /// Points along an edge.
+    /// Number of points along an edge.
     pub width: u32,
     /// Distance between neighbouring points in world coordinates.
     pub spacing: i64,
 }
 
 impl Lattice {
-    /// The lattice with this many more points on every side.
+    /// The lattice with `rim` more points on every side.
     #[cfg(feature = "gpu")]
     pub(crate) fn grown(self, rim: u32) -> Self {
         let origin = self.origin.map(|start| start - i64::from(rim) * self.spacing);

@@ -1,6 +1,6 @@
 // The tables of a set of clips, and positions in time.
 
-// Where the parts of a clip lie in a set.
+// Location of a clip's data in a set of clips.
 struct ClipEntry {
     // Index of its first timeline.
     first_timeline: u32,
@@ -8,7 +8,7 @@ struct ClipEntry {
     timelines: u32,
     // Duration in seconds.
     duration: f32,
-    // Its first row in gate tables, which have one row for each time of its first timeline and one more.
+    // Index of its first row in gate tables. A clip has one row per time of its first timeline, and one more.
     first_row: u32,
 }
 
@@ -28,8 +28,8 @@ struct KeyframeCursor {
     fraction: f32,
 }
 
-// The cursor with these two words. Sampling loads both in one memory operation, which on processors decides its
-// speed; the members of a struct take one each.
+// The cursor in these two words. Sampling loads both in one memory operation, which decides its speed on CPUs. The members of a
+// struct would take one operation each.
 fn cursor_of_words(words: vec2<u32>) -> KeyframeCursor {
     return KeyframeCursor(words.x, bitcast<f32>(words.y));
 }
@@ -37,12 +37,11 @@ fn cursor_of_words(words: vec2<u32>) -> KeyframeCursor {
 // A track of a set, in two words that one memory operation loads; see timeline_of, interpolation_of and
 // first_value_of.
 struct SetTrack {
-    // In x a track word. In y the index of the first value; for a
-    // constant spline, of the middle one of its three.
+    // x: a track word. y: the index of the first value; for a constant spline, of the middle one of its three.
     words: vec2<u32>,
 }
 
-// The timeline, counted from the clip's first, or CONSTANT; and INTERPOLATION_STEP, INTERPOLATION_LINEAR or
+// Track word: the timeline, counted from the clip's first, or CONSTANT; and INTERPOLATION_STEP, INTERPOLATION_LINEAR or
 // INTERPOLATION_SPLINE.
 // packed Track: timeline 30, interpolation 2
 // The timeline of a track whose value never changes.
@@ -53,7 +52,7 @@ fn timeline_of(track: SetTrack) -> u32 {
     return track_timeline(track.words.x);
 }
 
-// How a track's values go from one key to the next: INTERPOLATION_STEP or another.
+// Interpolation between a track's keys: INTERPOLATION_STEP or another.
 fn interpolation_of(track: SetTrack) -> u32 {
     return track_interpolation(track.words.x);
 }

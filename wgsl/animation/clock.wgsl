@@ -1,9 +1,9 @@
 // The time inside a clip.
 
-// Times outside the clip are clamped to its start and end; 0 loops.
+// Wrap code of instances that clamp times outside the clip to its start and end; 0 loops.
 const WRAP_CLAMP = 1u;
 
-// After this many turns, f32 cannot resolve a position in a clip.
+// Number of turns from which f32 cannot resolve a position in a clip.
 const MAX_TURNS: f32 = 16777216.0;
 
 // Converts a time in clip seconds, which may be negative, to seconds since the clip's start, 0 to `duration`. A

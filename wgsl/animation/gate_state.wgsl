@@ -1,4 +1,4 @@
-// The state of an instance by which gates decide.
+// State per instance that gates read.
 
 // An instance's level of detail.
 struct Lod {
@@ -7,10 +7,9 @@ struct Lod {
     omega: u32,
     // The motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
     allowed: u32,
-    // The weight of this instance's motion against that of other instances, 0 to FULL_WEIGHT, proportional to its
-    // size on screen.
+    // Weight of this instance's motion against that of other instances, 0 to FULL_WEIGHT, proportional to its size on screen.
     weight: u32,
-    // LOD_HIDDEN, LOD_FORCED or none of them; a hidden instance is not sampled even if it has both.
+    // LOD_HIDDEN, LOD_FORCED or neither. A hidden instance is not sampled, even if it has both.
     flags: u32,
 }
 
@@ -27,23 +26,23 @@ const FULL_WEIGHT: u32 = 65535u;
 struct ClipClock {
     // Row of the gate's table: the clip's first row plus the key before the current time.
     row: u32,
-    // In a progress word the fraction of the way to the next row, 0 to FRACTION_ONE; above them the
-    // [`UpdateReason`].
+    // Progress word: the fraction of the way to the next row, 0 to FRACTION_ONE, and the [`UpdateReason`].
     fraction_and_reason: u32,
     // Index of the clip.
     clip: u32,
-    // The row at the time at which bones may be sampled ahead; equal to `row` if there is no such time.
+    // Row at the look-ahead time, at which bones may be sampled ahead; `row` if there is no such time.
     ahead_row: u32,
-    // The fraction of the way from that row to the next, 0 to FRACTION_ONE.
+    // Fraction of the way from the look-ahead row to the next, 0 to FRACTION_ONE.
     ahead_fraction: u32,
 }
 
-// ClipClock::fraction_and_reason: the fraction of the whole way to the next row, and the update reason.
+// Progress word of `ClipClock::fraction_and_reason`: the fraction of the way to the next row, and the update reason.
 // packed Progress: fraction 20, reason 12
-// The fraction of the whole way from one row to the next.
+// 1 in fixed point: the fraction of the whole way from one row to the next.
 const FRACTION_ONE: u32 = 65536u;
 
-// Update reasons: the gate decides; nothing is sampled; everything is; layers are blended over the clip.
+// Update reasons. FREE: the gate decides. HIDDEN: nothing is sampled. FORCED: everything is sampled. BLENDED: layers are
+// blended over the clip.
 const UPDATE_REASON_FREE: u32 = 0u;
 const UPDATE_REASON_HIDDEN: u32 = 1u;
 const UPDATE_REASON_FORCED: u32 = 2u;
@@ -54,7 +53,7 @@ fn update_reason_of(clip_clock: ClipClock) -> u32 {
     return progress_reason(clip_clock.fraction_and_reason);
 }
 
-// Whether bones that are sampled ahead get a different pose.
+// Whether the pose at the look-ahead time differs from the current one.
 fn is_ahead(clip_clock: ClipClock) -> bool {
     return clip_clock.ahead_row != clip_clock.row || clip_clock.ahead_fraction != fraction_of(clip_clock);
 }
@@ -64,5 +63,5 @@ fn fraction_of(clip_clock: ClipClock) -> u32 {
     return progress_fraction(clip_clock.fraction_and_reason);
 }
 
-// Marks a pair of instance and bone that is sampled ahead.
+// Flag of a pair of instance and bone: it is sampled ahead.
 const PAIR_AHEAD: u32 = 0x80000000u;

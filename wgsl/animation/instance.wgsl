@@ -4,7 +4,7 @@ struct AnimationInstance {
     clip: u32,
     // How times outside the clip are treated: 0 loops, 1 clamps.
     wrap_code: u32,
-    // The time inside the clip when no time has elapsed, in seconds.
+    // Time inside the clip at elapsed time 0, in seconds.
     start: f32,
     // Playback rate in clip seconds per second; negative plays backwards.
     rate: f32,

@@ -1,6 +1,6 @@
-// How values go from one key to the next, as tracks and weights say it.
+// Interpolation of values between keys, in tracks and in weights.
 
-// They stay until the next key.
+// Values stay constant until the next key.
 const INTERPOLATION_STEP: u32 = 0u;
 // A straight line; rotations take the shortest arc.
 const INTERPOLATION_LINEAR: u32 = 1u;

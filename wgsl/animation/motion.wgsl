@@ -6,14 +6,13 @@ fn scale_by_fraction(value: u32, fraction: u32) -> u32 {
         + (value & 0xffffu) * (fraction >> 16u);
 }
 
-// The sum of motion at a time. `row` has the sum at the row's start and its rise to the next; `fraction` is the
+// Accumulated motion at a time. `row` has the sum at the row's start (x) and its rise to the next row (y). `fraction` is the
 // way there, 0 to 65536.
 fn motion_at(row: vec2<u32>, fraction: u32) -> u32 {
     return row.x + scale_by_fraction(row.y, fraction);
 }
 
-// The smaller difference of two sums: directly, or across the clip's end. `period` is the sum of the whole
-// clip.
+// The smaller difference between two sums: direct, or across the clip's end. `period` is the sum of the whole clip.
 fn motion_between(now: u32, last: u32, period: u32) -> u32 {
     let direct = max(now, last) - min(now, last);
     return min(direct, max(period, direct) - direct);

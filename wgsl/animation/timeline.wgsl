@@ -3,7 +3,7 @@ import package::wgsl::animation::clip::{KeyframeCursor, Timeline};
 
 @group(0) @binding(4) var<storage, read> times: array<f32>;
 
-// The cursor on a timeline at a time. Of equal times the last counts.
+// The cursor on a timeline at a time. Among equal times, the last one counts.
 fn keyframe_cursor(timeline: Timeline, time: f32) -> KeyframeCursor {
     let first = timeline.first_time;
     let last = timeline.keys - 1u;

@@ -1,13 +1,13 @@
-// What chooses the level of an instance: a metric of the instance in a view, and a threshold for each level. The coarsest level is
-// drawn whose threshold the metric reaches. `src/lod/criterion.rs` is the reference.
+// The criterion for an instance's level: a metric of the instance in a view, compared with a threshold per level. The coarsest
+// level whose threshold is at most the metric is drawn. `src/lod/criterion.rs` is the reference.
 import package::wgsl::lod::object::LodObject;
 import package::wgsl::lod::view::LodCamera;
 
-// The criteria of an object's flags.
+// Criteria in the flags word of an object.
 const CRITERION_ERROR = 0u;
 
-// The metric of an instance in a camera: by the projected error, the part of the displacement that levels may use, in the model's
-// units. `center` is that of the instance's sphere, `allowed` the displacement that the camera allows it.
+// Metric of an instance in a camera. For the projected error: the part of the allowed displacement that levels may use, in
+// model units. `center` is the center of the instance's bounding sphere, `allowed` the displacement that the camera allows it.
 fn criterion_metric(object: LodObject, camera: LodCamera, center: vec3<f32>, allowed: f32) -> f32 {
     return object.mesh_fraction * allowed;
 }

@@ -8,9 +8,9 @@ const CELL_SIZE: f32 = 256.0;
 const INSTANCE_ALIVE = 1u;
 // The instance casts shadows.
 const INSTANCE_CASTS = 2u;
-// The instance is a character that carries a mesh: its bones are sampled in every frame that sees it.
+// The instance is a character that carries a mesh: its bones are sampled in every frame in which a view sees it.
 const INSTANCE_CARRIES = 4u;
-// The instance is a mesh that is attached to a bone: only its rows in a view tell where it is.
+// The instance is a mesh that is attached to a bone: it has a placement only as rows in a view.
 const INSTANCE_FOLLOWS = 8u;
 // `SceneInstance.flags`: the bits above, and the visibility mask.
 // packed InstanceFlags: bits 16, mask 16
@@ -23,13 +23,13 @@ struct SceneInstance {
     flags: u32,
     // Its position in the cell, in world units.
     offset: vec3<f32>,
-    // A word of the caller's, for shaders.
+    // User data: a word that the caller's shading reads.
     user_data: u32,
     // A unit quaternion.
     rotation: vec4<f32>,
     // Scale factors along the model's axes, applied before the rotation; negative ones mirror.
     scale: vec3<f32>,
-    // The factor of its colours: red, green, blue and alpha, 8 bits each, red in the lowest.
+    // Tint that multiplies its colours: red, green, blue and alpha, 8 bits each, red in the lowest.
     tint: u32,
     // A sphere around everything that it may draw, in the model's space: center and radius.
     bounding_sphere: vec4<f32>,
@@ -42,7 +42,7 @@ struct Axes {
     z: vec3<f32>,
 }
 
-// The scale of an instance followed by its rotation.
+// Linear part of an instance's transform: the scale, then the rotation.
 fn instance_axes(instance: SceneInstance) -> Axes {
     let q = instance.rotation;
     let s = instance.scale;

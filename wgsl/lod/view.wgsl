@@ -1,4 +1,4 @@
-// Views of a scene, by which instances are selected.
+// Views of a scene: the input of instance selection.
 
 // The largest number of cameras that decide levels of detail.
 const VIEW_CAMERAS = 4u;
@@ -7,11 +7,11 @@ const VIEW_CAMERAS = 4u;
 struct LodCamera {
     // Its position, relative to the corner of the view's cell.
     eye: vec3<f32>,
-    // The number of pixels that a world unit takes at a distance of one unit on the axis; in a parallel view, anywhere.
+    // Pixels per world unit at a distance of one unit on the axis; in a parallel view, at any distance.
     focal: f32,
-    // The unit vector ahead.
+    // Unit vector of the view direction.
     ahead: vec3<f32>,
-    // The largest number of pixels by which anything may be off.
+    // Allowed error on screen, in pixels.
     pixels: f32,
     // The distance of the near plane.
     near: f32,
@@ -21,31 +21,31 @@ struct LodCamera {
     unused_b: f32,
 }
 
-// A view: what it sees, and which cameras decide how fine.
+// A view: its volume, and the cameras that decide levels of detail.
 struct SelectView {
-    // Planes of the view volume, relative to the corner of the view's cell: unit normals that point inwards, and
-    // distances. A plane that excludes nothing is (0, 0, 0, 1).
+    // Planes of the view volume, relative to the corner of the view's cell: unit normals that point inwards, and distances. The
+    // plane (0, 0, 0, 1) excludes nothing.
     planes: array<vec4<f32>, 6>,
     cameras: array<LodCamera, 4>,
-    // The cell to whose corner positions are relative.
+    // The cell of the origin: positions are relative to its corner.
     cell: vec3<i32>,
-    // Instances are seen if their visibility mask shares a bit with this one, 16 bits.
+    // Visibility mask, 16 bits: the view sees instances whose mask shares a bit with it.
     mask: u32,
     // Number of cameras, 1 to `VIEW_CAMERAS`.
     camera_count: u32,
-    // 1 if this is the first view of the frame, which starts the allowed displacements anew.
+    // 1 if this is the first view of the frame. It resets the allowed displacements.
     is_first: u32,
-    // 1 if only instances that cast shadows are seen.
+    // 1 if the view sees only instances that cast shadows.
     casters: u32,
     // Number of blocks of instances.
     blocks: u32,
-    // 1 if the view was in the last frame too, so that the decisions before this one are that frame's.
+    // 1 if the view was in the last frame too: the decisions in the buffer are then that frame's.
     is_next: u32,
     unused_a: u32,
     unused_b: u32,
     unused_c: u32,
 }
 
-// How far rounding may move what is computed from positions relative to the corner of the view's cell, as a fraction of
-// all their lengths.
+// Bound of the rounding error of results that are computed from positions relative to the corner of the view's cell. Unit: the
+// sum of the positions' lengths.
 const POSITION_SLACK: f32 = 3e-6;

@@ -1,4 +1,4 @@
-// The outputs `color` and `transparent`: the shaded colour of surfaces, through which all light goes.
+// The outputs `color` and `transparent`: the lit colour of a surface. All lighting of a scene happens here.
 // output color
 // output transparent
 import package::wgsl::render::scene_shade::{Surface, shade};
@@ -21,7 +21,7 @@ fn lit(given: Surface) -> vec4<f32> {
     return mix(shade(surface, scene_seen_by()), vec4<f32>(surface.unlit.rgb, 1.0), surface.unlit.w);
 }
 
-// Ignores alpha: pixels are drawn whole or not at all.
+// Opaque surfaces have alpha 1: a pixel is drawn fully or discarded.
 fn color_write(given: Surface) -> ColorTargets {
     var surface = given;
     surface.alpha = 1.0;

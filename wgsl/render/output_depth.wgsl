@@ -1,13 +1,13 @@
-// The output `depth`, for prepasses and shadow maps, of parts that write their own depth.
+// The output `depth`, for depth prepasses and shadow maps, of parts whose fragments write their own depth.
 
-// Whether pictures in colour have the depth of the surface and not that of the polygon.
+// Whether the colour pass writes the depth of the surface (true) or of the polygon (false).
 override OWN_DEPTH: bool = false;
-// Whether depth falls with distance, from 1 at the near plane.
+// Whether depth is reversed: 1 at the near plane, decreasing with distance.
 override REVERSED: bool = false;
 
-// A depth that is never in front of the one that the same fragment has in colour, so that colour passes a test for less or
-// equal behind a prepass: two pipelines may round differently, and the polygon's depth varies between the samples of a pixel,
-// by at most `slope`.
+// A depth at or behind the depth that the colour pass writes for the same fragment. After a prepass, colour then passes a depth
+// test that accepts equal depths, although two pipelines may round differently. `slope` is the largest difference of the
+// polygon's depth between the samples of a pixel.
 fn depth_behind(depth: f32, polygon: f32, slope: f32) -> f32 {
     if REVERSED {
         let deepest = select(min(depth, polygon - slope), depth, OWN_DEPTH);

@@ -1,11 +1,11 @@
-// The output `measure`: where surfaces are.
+// The output `measure`: the position of a surface, with its object and instance.
 // output measure
 import package::wgsl::render::scene_shade::Surface;
 
 struct MeasureTargets {
     // The position relative to the corner of the view's cell; w: 1.
     @location(0) position: vec4<f32>,
-    // The numbers of the object and the instance.
+    // Object number (from 1) and instance number in the object (from 0).
     @location(1) id: vec2<u32>,
 }
 

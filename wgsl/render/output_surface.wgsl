@@ -1,4 +1,4 @@
-// The output `surface`: what surfaces are before they are lit.
+// The output `surface`: normal, albedo, object and instance of a surface, before lighting.
 // output surface
 import package::wgsl::render::scene_shade::Surface;
 
@@ -7,7 +7,7 @@ struct SurfaceTargets {
     @location(0) normal: vec4<f32>,
     // The linear colour; w: 1.
     @location(1) albedo: vec4<f32>,
-    // The numbers of the object and the instance.
+    // Object number (from 1) and instance number in the object (from 0).
     @location(2) id: vec2<u32>,
 }
 

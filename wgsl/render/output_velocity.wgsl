@@ -1,5 +1,5 @@
-// The output `velocity`: the motion of surfaces on the screen since the last frame, as a fraction of the picture's width, to the
-// right, and of its height, downwards; w: 1. What lay behind the last frame's eye has the velocity 0.
+// The output `velocity`: screen-space motion of a surface since the last frame; w: 1. The unit is the picture's width for x (to
+// the right) and its height for y (downwards). A point that lay behind the last frame's eye has velocity 0.
 // output velocity: moves
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;

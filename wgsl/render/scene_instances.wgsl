@@ -1,4 +1,4 @@
-// Instances of the object that is drawn: where they are in a view, and where they were.
+// Placements of the drawn object's instances in a view, in this frame and in the last one.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::object::list_entry_instance;
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, triangle_surface};
@@ -6,36 +6,36 @@ import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 
-// For each instance of the scene the transform from the model's space to positions relative to the corner of the view's cell,
-// three rows. Those of instances that the view sees are written. If the scene keeps its last frame, as many follow: the
-// transforms of that frame. Those of meshes that are attached to bones are written.
+// Three rows per instance of the scene: the transform from model space to positions relative to the corner of the view's cell.
+// Valid for instances that the view sees. If the scene keeps its last frame, the same number of transforms of that frame
+// follows. These are valid for meshes attached to bones.
 @group(0) @binding(1) var<storage, read> placements: array<array<vec4<f32>, 3>>;
 // All instances of the scene.
 @group(0) @binding(2) var<storage, read> instances: array<SceneInstance>;
-// All instances of the scene as they were in the last frame, if it keeps it; else as they are.
+// All instances as they were in the last frame. If the scene does not keep its last frame: as they are.
 @group(0) @binding(3) var<storage, read> last_instances: array<SceneInstance>;
 
-// Where the instances of an object lie.
+// A chunk: the instances of an object that are drawn together.
 struct SceneObject {
-    // The index in the scene of its first instance here.
+    // Index in the scene of the chunk's first instance.
     first_instance: u32,
-    // Its number, from 1 on.
+    // Number of the object, from 1 on.
     number: u32,
-    // The number in the object of its first instance here.
+    // Number in the object of the chunk's first instance.
     first_slot: u32,
 }
 
 @group(1) @binding(0) var<uniform> scene_object: SceneObject;
 
-// Determinants below this have no inverse.
+// Matrices with a smaller determinant (absolute value) are not inverted.
 const LEAST_DETERMINANT: f32 = 1e-30;
 
-// The instance of a list's entry, counted from the object's first one here.
+// Index in the chunk of the instance of a list entry.
 fn entry_instance(entry: u32) -> u32 {
     return list_entry_instance(entry);
 }
 
-// The index in the scene of the instance of a list's entry.
+// Index in the scene of the instance of a list entry.
 fn instance_index(entry: u32) -> u32 {
     return scene_object.first_instance + entry_instance(entry);
 }
@@ -45,8 +45,7 @@ fn instance_placement(index: u32) -> Rows {
     return Rows(placements[index][0], placements[index][1], placements[index][2]);
 }
 
-// The same as it was in the last frame. A mesh that was attached to a bone and is no longer counts as if it had been where it
-// is.
+// The same transform in the last frame. A mesh that was detached from its bone since then gets its current placement.
 fn last_placement(index: u32) -> Rows {
     let instance = last_instances[index];
     if (instance.flags & INSTANCE_FOLLOWS) != 0u {
@@ -61,7 +60,7 @@ fn last_placement(index: u32) -> Rows {
         vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z));
 }
 
-// The transform from where an instance is to where it was, for what does not move in the model's space.
+// Transform from an instance's current placement to its last one, for points that are static in model space.
 fn rows_to_last(index: u32) -> Rows {
     let now = instance_placement(index);
     let last = last_placement(index);
@@ -84,34 +83,33 @@ fn rows_to_last(index: u32) -> Rows {
         vec4<f32>(x, moved.x - dot(x, at)), vec4<f32>(y, moved.y - dot(y, at)), vec4<f32>(z, moved.z - dot(z, at)));
 }
 
-// Where a point of the model's space was in the last frame, relative to the corner of the view's cell: `position` is where the
-// point was in the model's space then.
+// Position of a point in the last frame, relative to the corner of the view's cell. `position` is the point's model-space
+// position in the last frame.
 fn scene_last_placed(entry: u32, position: vec3<f32>) -> vec3<f32> {
     return placed_position(last_placement(instance_index(entry)), position);
 }
 
-// Where a point was in the last frame that does not move in the model's space; both are relative to the corner of the view's
-// cell.
+// Position in the last frame of a point that is static in model space. Argument and result are relative to the corner of the
+// view's cell.
 fn scene_last_rigid(entry: u32, position: vec3<f32>) -> vec3<f32> {
     return placed_position(rows_to_last(instance_index(entry)), position);
 }
 
-// A vertex given in the model's space, at the placement of the instance of a list's entry. The tangent's w is the side of the
-// bitangent in the model's space.
+// A model-space vertex, placed with the instance of a list entry. `tangent.w` is the sign of the bitangent in model space.
 fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec4<f32>, uv: vec4<f32>) -> SceneVertex {
     let placement = instance_placement(instance_index(entry));
     let along = vec3<f32>(
         dot(placement.x.xyz, tangent.xyz), dot(placement.y.xyz, tangent.xyz), dot(placement.z.xyz, tangent.xyz));
     let determinant = dot(placement.x.xyz, cross(placement.y.xyz, placement.z.xyz));
-    // Cofactors turn the normal inwards where the placement mirrors, which also changes the bitangent's side.
+    // If the placement mirrors, cofactors turn the normal inwards, and the sign of the bitangent flips.
     let side = select(1.0, -1.0, determinant < 0.0);
     return SceneVertex(
         placed_position(placement, position), side * placed_normal(placement, normal),
         vec4<f32>(along, side * tangent.w), uv, vec4<f32>(0.0), vec3<u32>(0u), side);
 }
 
-// A white, opaque, lit surface of the triangle itself, on the side that is seen, with the tint, the user data and the
-// number of its instance. The colour does not contain the tint yet.
+// Default surface of a fragment: white, opaque and lit, with the triangle's normal on the visible side. It has the tint, the
+// user data and the number of its instance. The colour does not contain the tint yet.
 fn scene_surface(in: SceneFragment) -> Surface {
     var surface = triangle_surface(in);
     let side = select(-1.0, 1.0, in.is_outside);

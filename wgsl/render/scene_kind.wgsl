@@ -5,13 +5,14 @@ import package::wgsl::lod::object::list_entry_instance;
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
 
-// A vertex of an instance as its kind places it.
+// A vertex of an instance, placed by its kind.
 struct SceneVertex {
     // Relative to the corner of the view's cell.
     position: vec3<f32>,
-    // Outwards, of any length but 0.
+    // Outward normal, not normalized, never 0.
     normal: vec3<f32>,
-    // Along u, of any length but 0; w: the bitangent along v is w · normal × tangent, of unit vectors.
+    // Direction of u, not normalized, never 0. w: sign of the bitangent (along v), which is w · normal × tangent of the unit
+    // vectors.
     tangent: vec4<f32>,
     // Two sets of texture coordinates.
     uv: vec4<f32>,
@@ -25,43 +26,43 @@ struct SceneVertex {
 
 // A fragment of an instance.
 struct SceneFragment {
-    // Interpolated from the vertices.
+    // The fields of `SceneVertex`: interpolated, except `words`.
     position: vec3<f32>,
     normal: vec3<f32>,
     tangent: vec4<f32>,
     uv: vec4<f32>,
     values: vec4<f32>,
     words: vec3<u32>,
-    // The instance, counted from the object's first one here.
+    // Index of the instance in its chunk.
     instance: u32,
-    // The position in the last frame, where the output needs motion; else that of this frame.
+    // Position in the last frame if the output needs motion, else in this frame.
     last_position: vec3<f32>,
-    // The position in the target in pixels, and the depth.
+    // Pixel position in the target, and depth.
     clip: vec4<f32>,
     // Whether the outer side of the triangle is seen.
     is_outside: bool,
 }
 
-// In the last word that a vertex hands over: triangles seen from outside run counter-clockwise on the screen.
+// Flag in the last word of a vertex: triangles seen from outside run counter-clockwise on screen.
 const COUNTER_CLOCKWISE = 0x80000000u;
 
-// The words that a vertex hands over: the kind's own, and the instance with `COUNTER_CLOCKWISE`.
+// Words that the vertex shader passes on: the kind's own, then the instance with `COUNTER_CLOCKWISE`.
 fn scene_words(placed: SceneVertex, entry: u32) -> vec4<u32> {
     let facing = select(0u, COUNTER_CLOCKWISE, view.side * placed.side > 0.0);
     return vec4<u32>(placed.words, list_entry_instance(entry) | facing);
 }
 
-// The instance of those words.
+// Index of the instance in these words.
 fn words_instance(words: vec4<u32>) -> u32 {
     return words.w & ~COUNTER_CLOCKWISE;
 }
 
-// Whether the outer side is seen of a triangle with those words, which runs counter-clockwise on the screen if it is in front.
+// Whether the outer side of a triangle is visible. `is_front`: it runs counter-clockwise on screen.
 fn words_outside(words: vec4<u32>, is_front: bool) -> bool {
     return is_front == ((words.w & COUNTER_CLOCKWISE) != 0u);
 }
 
-// A white, opaque, lit surface of the triangle itself. It has no instance: `scene_surface` has.
+// Default surface without an instance: white, opaque and lit, with the triangle's geometry. `scene_surface` adds the instance.
 fn triangle_surface(in: SceneFragment) -> Surface {
     var surface: Surface;
     surface.position = in.position;

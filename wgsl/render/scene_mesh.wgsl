@@ -1,5 +1,5 @@
-// The kind `mesh`: instances of a mesh of a scene, static or skinned, with textures and normal maps. Surfaces are opaque, cut
-// out, blended, or drawn through a screen-door pattern, as each vertex's material says.
+// The kind `mesh`: instances of a mesh, static or skinned, with textures and normal maps. Each vertex's material says whether
+// the surface is opaque, alpha-tested, blended or dithered (screen-door transparency).
 // kind mesh: discards, blends
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex};
 import package::wgsl::render::scene_instances::scene_surface;
@@ -16,36 +16,36 @@ override NORMAL_MAPPED: bool = false;
 
 // The cutoff of materials that ignore alpha.
 const CUTOFF_OPAQUE: f32 = -1.0;
-// The cutoff of materials whose alpha decides how many pixels of a pattern are drawn.
+// The cutoff of dithered materials: alpha decides the fraction of pixels that are drawn.
 const CUTOFF_DITHERED: f32 = -2.0;
 // The layer of materials that lack a texture.
 const NO_LAYER: u32 = 4294967295u;
 
 // A material in the table of its part.
 struct SceneMaterial {
-    // Linear red, green and blue, and alpha, by which the texture is multiplied.
+    // Linear RGB and alpha. They multiply the texture.
     color: vec4<f32>,
-    // Pixels with an alpha below it are not drawn, or one of the constants above.
+    // Alpha cutoff: pixels with a lower alpha are discarded. Or one of the constants above.
     cutoff: f32,
-    // The layers of its texture and of its normal map, or `NO_LAYER`.
+    // Array layers of the texture and of the normal map, or `NO_LAYER`.
     layer: u32,
     normal_layer: u32,
-    // The factor of the normal map's x and y.
+    // Scale of the normal map's x and y.
     normal_scale: f32,
 }
 
-// The table of the part.
+// The materials of the part.
 @group(2) @binding(0) var<storage, read> materials: array<SceneMaterial>;
-// Colours and alpha, a layer a texture.
+// Colour and alpha, one layer per texture.
 @group(2) @binding(1) var albedo: texture_2d_array<f32>;
-// Normal maps, a layer each; the green channel points up the image, against v.
+// Normal maps, one per layer. The green channel points up the image, against v.
 @group(2) @binding(2) var normals: texture_2d_array<f32>;
 // Filters colours.
 @group(2) @binding(3) var filtering: sampler;
 // Filters normal maps.
 @group(2) @binding(4) var normal_filtering: sampler;
 
-// The first word of a vertex: the index of its material.
+// Word 0 of a vertex is the index of its material.
 fn mesh_place(entry: u32, vertex: u32) -> SceneVertex {
     var placed = placed_vertex(entry, vertex);
     placed.words.x = material_of[vertex];
@@ -56,7 +56,7 @@ fn mesh_last_position(entry: u32, vertex: u32) -> vec3<f32> {
     return last_position(entry, vertex);
 }
 
-// A normal, given outwards, on the side that is seen.
+// The outward normal, flipped on back faces of double-sided meshes.
 fn facing(outwards: vec3<f32>, in: SceneFragment) -> vec3<f32> {
     if DOUBLE_SIDED {
         return select(-outwards, outwards, in.is_outside);
@@ -64,7 +64,7 @@ fn facing(outwards: vec3<f32>, in: SceneFragment) -> vec3<f32> {
     return outwards;
 }
 
-// The unit normal outwards, of the normal map where the material has one.
+// The outward unit normal, from the normal map if the material has one.
 fn bumpy_normal(in: SceneFragment, material: SceneMaterial, normal: vec3<f32>) -> vec3<f32> {
     let is_plain = material.normal_layer == NO_LAYER;
     let texel = textureSample(normals, normal_filtering, in.uv.xy, select(material.normal_layer, 0u, is_plain));

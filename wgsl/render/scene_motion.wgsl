@@ -1,27 +1,27 @@
-// Where the vertices of a mesh were in the last frame.
+// Positions of a mesh's vertices in the last frame.
 import package::wgsl::lod::object::{OBJECT_LEVELS, decision_list, decision_morph, morph_steps};
 import package::wgsl::render::scene_instances::{entry_instance, instance_index, scene_last_placed};
 import package::wgsl::render::scene_vertex::{MORPHED, VertexMorph, material_of, mesh, morphed, partner_index, partner_level, vertex_index_of, vertex_morph, vertices, way_of};
 import package::wgsl::skinning::vertex::vertex_position;
 
-// For each instance of the scene the decision of the view in the last frame; 0 if the view did not see it then.
+// Per instance of the scene: the view's decision word in the last frame; 0 if the view did not see the instance then.
 @group(0) @binding(6) var<storage, read> last_decisions: array<u32>;
 
-// Where a vertex of an instance was in the model's space.
+// Model-space position of an instance's vertex in the last frame, before its morph.
 fn last_local(instance: u32, vertex: u32) -> vec3<f32> {
     let at = vertex_index_of(instance, vertex);
     let first = select(5u * at, mesh.last + 2u * at, mesh.last != 0u);
     return vertex_position(vertices[first], vertices[first + 1u]);
 }
 
-// The vertex that stood for another in the last frame, where that vertex went, and how far it had moved there.
+// Morph of a vertex in the last frame: the vertex that stood for it (`standing`), and that vertex's morph.
 struct LastMorph {
     standing: u32,
     to: VertexMorph,
 }
 
-// If the last frame had a coarser level of detail, a vertex was where the one was that had taken its place; if it had a finer
-// one, the vertex had not moved. An instance that the view did not see then counts as if its level had been as it is.
+// With a coarser level in the last frame, a vertex was at the vertex that had replaced it. With a finer level, it had not
+// morphed. An instance that the view did not see then gets its current level.
 fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     let decision = last_decisions[instance_index(entry)];
     if decision == 0u || mesh.partners == 0u {
@@ -40,7 +40,7 @@ fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     return LastMorph(standing, VertexMorph(partner_index(word), way_of(morph_steps(decision_morph(decision)))));
 }
 
-// Where a vertex of an instance, given by the entry of its list, was, relative to the corner of the view's cell.
+// Position of a vertex in the last frame, relative to the corner of the view's cell. `entry` is the list entry of its instance.
 fn last_position(entry: u32, vertex: u32) -> vec3<f32> {
     let instance = entry_instance(entry);
     var position = vec3<f32>(0.0);

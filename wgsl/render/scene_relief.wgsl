@@ -1,4 +1,4 @@
-// The kind `relief`: instances of a static mesh of a scene with relief (B section 3.1, tables 4.1 to 4.4) by any method, with
+// The kind `relief`: instances of a static mesh with a relief (B section 3.1, tables 4.1 to 4.4), traced by any method. It has
 // self-shadow, silhouettes and the depth of the relief.
 // kind relief: discards, deep
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex};
@@ -26,16 +26,16 @@ override GREEN_UP: bool = true;
 override SILHOUETTE: bool = false;
 // Whether to choose the mip level of the heights from the size of a pixel, once per fragment.
 override CHOOSE_MIP: bool = false;
-// The smallest cosine of the angle between the light and the normal of the polygon, for the way out of the volume.
+// Lower bound of the cosine between the light and the polygon's normal. It bounds the light's way out of the relief volume.
 const LEAST_COSINE: f32 = 0.05;
 
-// A relief, besides its maps.
+// Parameters of a relief. Its maps have bindings of their own.
 struct ReliefParams {
-    // The mesh's range of uv: lower and upper end.
+    // Range of uv that the mesh covers: lower end (xy) and upper end (zw).
     range: vec4<f32>,
-    // Linear red, green and blue, by which the texture is multiplied.
+    // Linear RGB that multiplies the texture.
     color: vec4<f32>,
-    // Depth of the relief in uv units, and height of the polygon in the relief.
+    // Depth of the relief in uv units, and height of the polygon in the relief, 0 (bottom) to 1 (top).
     scale: f32,
     plane: f32,
     // The model's units per uv unit.
@@ -48,10 +48,10 @@ struct ReliefParams {
 @group(2) @binding(0) var<uniform> relief: ReliefParams;
 @group(2) @binding(1) var<uniform> march: SurfaceMarch;
 @group(2) @binding(2) var heights: texture_2d<f32>;
-// The acceleration map of the method, or any texture.
+// The acceleration map of the method; any texture if it needs none.
 @group(2) @binding(3) var acceleration: texture_2d<f32>;
 @group(2) @binding(4) var albedo: texture_2d<f32>;
-// Any texture without `NORMAL_MAP`.
+// The normal map; any texture without `NORMAL_MAP`.
 @group(2) @binding(5) var normals: texture_2d<f32>;
 @group(2) @binding(6) var filtering: sampler;
 // Filters the normal map.
@@ -75,7 +75,7 @@ struct Frame {
     normal: vec3<f32>,
 }
 
-// What the eye's ray through a fragment finds.
+// Result of tracing the eye's ray through a fragment.
 struct Traced {
     hit: SurfaceHit,
     frame: Frame,
@@ -112,8 +112,8 @@ fn in_world(frame: Frame, direction: vec3<f32>) -> vec3<f32> {
     return direction.x * frame.tangent + direction.y * frame.bitangent + direction.z * frame.normal;
 }
 
-// Where the ray from a hit towards the sun leaves the volume of the relief. The relief's own shadow ends there, and that of
-// everything else begins.
+// Point where the ray from a hit towards the sun leaves the relief volume. The relief's own shadow ends there; shadows of
+// everything else begin there.
 fn above(in: SceneFragment, found: Traced) -> vec3<f32> {
     let cosine = dot(found.frame.normal, view.light.xyz);
     let deep = (1.0 - found.hit.height) * relief.scale * in.values.x;

@@ -1,41 +1,40 @@
-// Shading: `Surface` is a point that is seen, `View` what sees it, and `shade` the colour that it has then. The caller's
-// own `shade` replaces this one.
+// Shading: `shade` returns the colour of a point (`Surface`) that a `View` sees. The caller's own `shade` replaces this one.
 import package::wgsl::light::lambert;
 
 // A point of a surface.
 struct Surface {
-    // Its position in world units, relative to the corner of the view's cell; on a relief the point that the ray met.
+    // Position in world units, relative to the corner of the view's cell. On a relief: the ray's hit.
     position: vec3<f32>,
-    // The unit normal, with normal maps and the relief, on the side that is seen.
+    // Unit normal on the visible side, with normal map and relief.
     normal: vec3<f32>,
-    // The unit normal that vertices have, without normal maps and relief, on the side that is seen.
+    // Unit normal of the vertices, interpolated, on the visible side, without normal map and relief.
     geometric_normal: vec3<f32>,
-    // Texture coordinates; on a relief those of the point that the ray met.
+    // Texture coordinates; on a relief those of the ray's hit.
     uv: vec2<f32>,
     // Linear red, green and blue of the material, its texture and the instance's tint.
     color: vec3<f32>,
-    // The alpha of the same in the layer of transparent surfaces; 1 in the colour of opaque ones.
+    // Alpha of material, texture and tint in the layer of transparent surfaces; 1 for opaque surfaces.
     alpha: f32,
-    // The fraction of the light, 0..1, that reaches the point: less than 1 where a relief shades itself.
+    // Fraction of the light that reaches the point, 0 to 1: below 1 in shadow, of the relief itself or of casters.
     sunlit: f32,
     // The tint of the instance: linear red, green, blue, and alpha.
     tint: vec4<f32>,
     // The user data of the instance (`Scene::set_user_data`); 0 unless it is set.
     user_data: u32,
-    // The number of the object, from 1 on, and that of the instance in it, from 0 on, as handles tell them.
+    // Number of the object (from 1) and of the instance in it (from 0), as in handles.
     object: u32,
     instance: u32,
     // The position in the target in pixels, from its upper left corner.
     pixel: vec2<f32>,
-    // Linear red, green and blue that no light changes; w: the fraction of the pixel that it covers, 0..1.
+    // Linear RGB that lighting does not change; w: the fraction of the pixel that it covers, 0 to 1.
     unlit: vec4<f32>,
-    // Where the sun's shadow is looked up: `position`, on a relief the point where the light enters it.
+    // Position of the shadow map lookup: `position`; on a relief the point where the light enters the volume.
     light_position: vec3<f32>,
     // The position in the last frame, relative to the corner of this frame's cell. Only velocities need it.
     last_position: vec3<f32>,
-    // Pixels whose alpha is below it are not drawn.
+    // Alpha cutoff: pixels with a lower alpha are discarded.
     cutoff: f32,
-    // The depth, 0 to 1; on a relief that of the point that the ray met.
+    // Depth, 0 to 1; on a relief that of the ray's hit.
     depth: f32,
 }
 
@@ -43,11 +42,12 @@ struct Surface {
 struct View {
     // From positions relative to the corner of the view's cell to clip space, depth 0..1.
     clip_from_world: mat4x4<f32>,
-    // The position of the eye relative to that corner (w = 1), or in a parallel view the direction towards it (w = 0).
+    // Position of the eye relative to the corner of the view's cell (w = 1); in a parallel view the direction towards it (w =
+    // 0).
     eye: vec4<f32>,
-    // The cell to whose corner positions are relative. Cells are cubes with an edge of 256 world units.
+    // The cell of the origin: positions are relative to its corner. Cells are cubes with an edge of 256 world units.
     cell: vec3<i32>,
-    // The light that surfaces facing away still receive, 0..1.
+    // Ambient light: the fraction of the light that surfaces facing away still receive, 0 to 1.
     ambient: f32,
     // Unit vector towards the light.
     light: vec3<f32>,
@@ -55,7 +55,7 @@ struct View {
     light_color: vec3<f32>,
 }
 
-// Matt surfaces, after Lambert.
+// Lambertian (matte) surfaces.
 fn shade(surface: Surface, view: View) -> vec4<f32> {
     let direct = max(dot(surface.normal, view.light), 0.0) * surface.sunlit;
     return vec4<f32>(lambert(surface.color * view.light_color, view.ambient, direct), surface.alpha);

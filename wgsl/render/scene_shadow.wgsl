@@ -1,27 +1,27 @@
-// The shadow of the sun: the fraction of its light that passes everything the sun's view has drawn into its map, by percentage
-// closer filtering (Reeves, Salesin and Cook 1987). docs/shadows.md derives the constants.
+// The sun's shadow, from its shadow map by percentage closer filtering (Reeves, Salesin and Cook 1987). docs/shadows.md derives
+// the constants.
 import package::wgsl::render::scene_view::view;
 
-// Whether surfaces are looked up in the map.
+// Whether surfaces are shadowed by the shadow map.
 override SHADOWED: bool = false;
 
-// The distances along the light, 0 at the sun's near plane to 1, of what the sun sees first; 1 where it sees nothing.
+// Distance along the light to the nearest caster: 0 at the sun's near plane; 1 where there is no caster.
 @group(0) @binding(4) var shadow_map: texture_depth_2d;
-// Compares a distance with four texels, and filters the results.
+// Compares a distance with four texels, and filters the four results.
 @group(0) @binding(5) var shadow_sampler: sampler_comparison;
 
-// The filter reaches less than 2 texels along both axes, hence less than this along any direction: 2 · √2.
+// Bound of the filter's reach in texels, in any direction: it is below 2 along both axes, hence below 2 · √2.
 const SHADOW_REACH: f32 = 2.828427;
-// What is added to the sine of the angle between the normal and the light, since triangles lean away from the normals between
-// their vertices: by 0.2 radians or less.
+// Added to the sine of the angle between normal and light: triangles lean by 0.2 radians or less from the normals interpolated
+// between their vertices.
 const SHADOW_LEAN: f32 = 0.2;
-// What rounding may do to a distance in the map, as a fraction of the distance between the sun's near and far plane.
+// Bound of the rounding error of a distance in the map, as a fraction of the distance between the sun's near and far plane.
 const SHADOW_ROUNDING: f32 = 2e-6;
-// The part of the way from the middle of the map to its edge along which shadows fade.
+// Width of the margin where shadows fade out, as a fraction of the way from the map's middle to its edge.
 const SHADOW_FADE: f32 = 0.05;
 
-// The fraction of the sun's light that reaches a point, relative to the corner of the view's cell, of a surface with this unit
-// normal; 1 in a view without a shadow.
+// Fraction of the sun's light that reaches a surface point, 0 to 1; 1 in a view without a shadow. `position` is relative to the
+// corner of the view's cell, `normal` is a unit vector.
 fn scene_sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let cosine = clamp(dot(normal, view.light.xyz), -1.0, 1.0);
     let sine = sqrt(1.0 - cosine * cosine);
@@ -34,9 +34,8 @@ fn scene_sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     return 1.0 - fade * (1.0 - shadow_filtered(uv, clamp(depth, 0.0, 1.0)));
 }
 
-// The weighted fraction of 4 × 4 texels that are no nearer to the sun than a depth. Along each axis their weights are 1 − s,
-// 2 − s, 1 + s and s, where s is how far the place lies beyond the second one's center; four samples between two texels each
-// have them all (Castaño 2013).
+// Weighted fraction of 4 × 4 texels that are no nearer to the sun than `depth`. Along each axis, the weights are 1 − s, 2 − s,
+// 1 + s and s; s is the offset from the second texel's center. Four bilinear samples cover all 16 texels (Castaño 2013).
 fn shadow_filtered(uv: vec2<f32>, depth: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(shadow_map));
     let place = uv * size;

@@ -1,5 +1,6 @@
-// The kind `terrain`: patches of a scene straight from their heights (B section 3.3.1, tables 4.7 and 4.8), an indexed patch for
-// each visible one, with zone textures blended by height, slope and their own height maps, or as a wireframe.
+// The kind `terrain`: patches of a scene, drawn directly from their heights (B section 3.3.1, tables 4.7 and 4.8). Each visible
+// patch is one instance of an indexed mesh. Zone textures are blended by height, slope and their own height maps.
+// Alternatively, a wireframe is drawn.
 // kind terrain:
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, triangle_surface};
 import package::wgsl::render::scene_shade::Surface;
@@ -7,24 +8,24 @@ import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_uv, triplanar_weight, triplanar_weights, varied};
 import package::wgsl::terrain::zones::{Zone, steepness, zone_blend, zone_blended, zone_color};
 
-// Whether the edges of triangles are drawn, on ground that no light reaches.
+// Whether to draw triangle edges on unlit, dark ground.
 override WIREFRAME: bool = false;
 
 const LINE_COLOR: vec3<f32> = vec3<f32>(0.35, 0.75, 0.5);
 const DARK_COLOR: vec3<f32> = vec3<f32>(0.01, 0.014, 0.02);
 
-// Where the samples of a terrain lie in a view. Positions are counted from a sample near the view, so that they are
-// precise far from the terrain's origin, and equal samples give equal bits, whichever patch they belong to.
+// Placement of a terrain's samples in a view. Positions are relative to a sample near the view, so that they are precise far
+// from the terrain's origin. Equal samples give equal bits in every patch.
 struct TerrainView {
-    // The sample from which positions are counted.
+    // The sample that positions are relative to.
     base: vec2<i32>,
-    // The place of that sample at height 0, relative to the corner of the view's cell.
+    // Position of the sample `base` at height 0, relative to the corner of the view's cell.
     rest: vec3<f32>,
     // The number of the object, from 1 on.
     object: u32,
 }
 
-// What the patches of a terrain have in common.
+// Parameters that the patches of a terrain share.
 struct TerrainParams {
     // Samples along an edge of a window, and along an edge of the patch inside it.
     in_width: u32,
@@ -36,13 +37,13 @@ struct TerrainParams {
     tiling: f32,
     tiles_per_unit: f32,
     zone_count: u32,
-    // 1 if zones add their weights as they are, 0 if these are normalized.
+    // 1 if zone weights are added as they are, 0 if they are normalized.
     additive: u32,
-    // 1 where textures lie on the ground from above alone, 3 where they lie on it from the sides too.
+    // Number of planes that textures are projected from: 1 (from above) or 3 (triplanar).
     planes: u32,
-    // The strength of the variation of colour, 0 to 1.
+    // Strength of the colour variation, 0 to 1.
     variation: f32,
-    // The number in the object of its first patch here.
+    // Number in the object of the chunk's first patch.
     first_patch: u32,
 }
 
@@ -50,9 +51,9 @@ struct TerrainParams {
 struct TerrainPatch {
     // Its first sample, in samples from the terrain's origin.
     origin: vec2<i32>,
-    // Texture coordinates at that sample, without whole multiples of TILES_PERIOD.
+    // Texture coordinates at that sample, modulo TILES_PERIOD.
     uv: vec2<f32>,
-    // The index of its window among the heights.
+    // Index of its window in `heights`.
     window: u32,
     unused: u32,
 }
@@ -64,12 +65,12 @@ struct TerrainPatch {
 // One per instance.
 @group(2) @binding(2) var<storage, read> patches: array<TerrainPatch>;
 @group(2) @binding(3) var<storage, read> zones: array<Zone>;
-// A layer a zone.
+// One layer per zone.
 @group(2) @binding(4) var textures: texture_2d_array<f32>;
 @group(2) @binding(5) var texture_sampler: sampler;
 
-// Equal samples give equal bits, so that patches that share an edge leave no crack. The values of a vertex: 1 at one corner of
-// each triangle and 0 at the others, and the height in units.
+// Equal samples give equal bits, so that patches that share an edge leave no crack. Values of a vertex: barycentric coordinates
+// (1 at one corner of each triangle, 0 at the others), and the height in units.
 fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let patch_of = patches[instance];
     let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
@@ -83,7 +84,7 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let sample_index = vec2<f32>(patch_of.origin + vec2<i32>(at) - ground.base);
     let position = ground.rest
         + vec3<f32>(sample_index.x * terrain.spacing, height, sample_index.y * terrain.spacing);
-    // All triangles of a patch give a vertex the same corner.
+    // A vertex is the same corner in all triangles of a patch.
     var values = vec4<f32>(0.0, 0.0, 0.0, height);
     values[(at.x + 2u * at.y) % 3u] = 1.0;
     return SceneVertex(

@@ -5,15 +5,15 @@ import package::wgsl::render::scene_kind::SceneVertex;
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_tangent};
 
-// Whether levels of detail of the mesh move into each other.
+// Whether the mesh's levels of detail geomorph.
 override MORPHED: bool = false;
 
-// A vertex's partner: its index, and the coarsest level of detail that has the vertex itself.
+// Partner word of a vertex: the index of its partner, and the coarsest level of detail that contains the vertex itself.
 // packed Partner: index 24, level 8
 
-// Where the vertices of a mesh lie.
+// Location of a mesh's vertex data.
 struct MeshParams {
-    // Number of clusters of the mesh if vertices lie in pages; 0 if all instances share those of the mesh.
+    // Number of clusters of the mesh if vertices lie in pages; 0 if all instances share the mesh's vertices.
     clusters: u32,
     // The index in `vertices` of the last frame's positions, two pairs per vertex in pages; 0 if vertices do not move.
     last: u32,
@@ -26,13 +26,14 @@ struct MeshParams {
 @group(1) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
 // The page of each cluster of each instance of the object, if vertices lie in pages.
 @group(1) @binding(4) var<storage, read> page_table: array<u32>;
-// For each vertex of the mesh, the index of its material in the table of its part; then, from `MeshParams.partners` on, its
-// partner, towards which it moves, with the coarsest level that has the vertex.
+// Per vertex of the mesh: the index of its material in the part's table. From `MeshParams.partners` on, per vertex: its partner
+// word, with the vertex that it morphs towards.
 @group(1) @binding(3) var<storage, read> material_of: array<u32>;
 // One pair per vertex of the mesh.
 @group(1) @binding(2) var<storage, read> texture_coordinates: array<vec2<f32>>;
 
-// Where a vertex lies, in vertices. One without a page, which no triangle that is drawn has, lies anywhere.
+// Index of an instance's vertex in the vertex buffer, in vertices. Arbitrary for a vertex without a page: no drawn triangle
+// uses it.
 fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
     if mesh.clusters == 0u {
         return vertex;
@@ -40,13 +41,13 @@ fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
     return CLUSTER * page_table[instance * mesh.clusters + vertex / CLUSTER] + vertex % CLUSTER;
 }
 
-// Where a vertex goes in the next coarser level, and how far it has moved there, 0 to 1.
+// Morph of a vertex: the vertex that it moves towards in the next coarser level, and how far it has moved, 0 to 1.
 struct VertexMorph {
     partner: u32,
     way: f32,
 }
 
-// The vertices that the next coarser level has too stay, and so do all if the entry's level has not moved.
+// Vertices that exist in the next coarser level too do not move. Without a morph in the list entry, no vertex moves.
 fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
     let word = material_of[mesh.partners + vertex];
     let morph = list_entry_morph(entry);
@@ -57,17 +58,17 @@ fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
     return VertexMorph(partner_index(word), way_of(steps));
 }
 
-// The way of so many steps. Division may round: all of them are 1.
+// Progress of a morph, 0 to 1. The last step gives exactly 1; the division may round.
 fn way_of(steps: u32) -> f32 {
     return select(f32(steps) / f32(MORPH_STEPS), 1.0, steps == MORPH_STEPS);
 }
 
-// Between two vectors; at 0 and 1 one of them, to the bit.
+// Linear interpolation, exact to the bit at 0 and 1.
 fn morphed(a: vec3<f32>, b: vec3<f32>, way: f32) -> vec3<f32> {
     return a * (1.0 - way) + b * way;
 }
 
-// A vertex of an instance, given by the entry of its list; `vertex` counts those of the mesh.
+// A placed vertex of the instance of a list entry. `vertex` is an index in the mesh.
 fn placed_vertex(entry: u32, vertex: u32) -> SceneVertex {
     let instance = entry_instance(entry);
     let at = 5u * vertex_index_of(instance, vertex);

@@ -1,6 +1,6 @@
-// Skinning: the functions with which a vertex shader draws skinned vertices at their placements, or skins from
-// a palette by itself. `build.rs` joins this file and what it imports into one text, for shaders that are not
-// composed with WESL: put that text before your own code.
+// Skinning: functions for vertex shaders that draw skinned vertices at their placements, or that skin from a palette
+// themselves. `build.rs` joins this file and its imports into one text, for shaders that are not composed with WESL. Prepend
+// that text to your own code.
 import package::wgsl::affine::product_row;
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};

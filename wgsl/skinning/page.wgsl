@@ -1,4 +1,4 @@
 // Pages of skinned vertices.
 
-// The page of a cluster that has none.
+// Page index of a cluster without a page.
 const NO_PAGE: u32 = 4294967295u;

@@ -10,16 +10,16 @@ struct Rows {
 // A vector whose components are all smaller than this has no direction: devices may flush smaller values to zero.
 const LEAST_LENGTH: f32 = 1e-30;
 
-// The vector scaled to length 1, or another one if it has no direction.
+// The normalized vector, or `other` if it has no direction.
 fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
     let scaled = vector / max(size, LEAST_LENGTH);
     return select(scaled * inverseSqrt(max(dot(scaled, scaled), 0.5)), other, size < LEAST_LENGTH);
 }
 
-// The matrix of a bone, or of a weighted sum of bones, from a palette of dual quaternions: rotation and dual
-// part, both of any length but 0, then the stretch that is applied before them, as its diagonal (x, y, z) and
-// the elements above it (xy, xz, yz).
+// The matrix of a bone, or of a weighted sum of bones, from a palette of dual quaternions. `real` and `dual`, the rotation and
+// the dual part, have any length but 0. The stretch is applied before them: its diagonal (x, y, z) and the elements above it
+// (xy, xz, yz).
 fn rows_of_dual(real: vec4<f32>, dual: vec4<f32>, diagonal: vec4<f32>, above: vec4<f32>) -> Rows {
     // A factor of 2 over the squared length replaces normalization.
     let twice = 2.0 * (1.0 / dot(real, real));

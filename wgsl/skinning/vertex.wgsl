@@ -10,7 +10,7 @@ fn vertex_normal(second: vec2<f32>, third: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(second.y, third);
 }
 
-// Of length 1; w is 1 or -1, and the bitangent w · normal × tangent.
+// Unit tangent; w is 1 or -1, and the bitangent is w · normal × tangent.
 fn vertex_tangent(fourth: vec2<f32>, fifth: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(fourth, fifth);
 }

@@ -19,7 +19,8 @@ fn surface_atlas_at(cells: vec2<u32>, level: u32, index: vec2<i32>) -> vec2<i32>
     return index + vec2<i32>(vec2<u32>((cells.x + 3u) & ~3u, above));
 }
 
-// The index, among the texels of all maps of a batch, of the texel at the first corner of a cell, up to one cell beyond the last.
+// Index of the texel at the first corner of a cell, among the texels of all maps of a batch. Cells up to one beyond the last
+// are valid.
 fn surface_corner_index(size: vec2<u32>, address: u32, map: u32, cell: vec2<i32>) -> u32 {
     let texels = vec2<i32>(size);
     let wrapped = select(cell, vec2<i32>(0), cell >= texels);

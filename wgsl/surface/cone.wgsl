@@ -6,8 +6,7 @@ import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit,
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::linear::surface_narrowed;
 
-// `cones` is the cone map of `heights`, which surface/cone_map computes. Of `march`, the address and the binary
-// steps are used.
+// `cones` is the cone map of `heights`, computed by surface/cone_map. Uses the address and the binary steps of `march`.
 fn surface_cone(
     heights: texture_2d<f32>, cones: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {

@@ -58,10 +58,10 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
     return SurfaceGrid(texels, cells, first, texel - base, 1.0 / scale, travel, inverse, address);
 }
 
-// The most cells that a ray is taken to cross.
+// Largest number of cells that a ray is assumed to cross.
 const SURFACE_MAX_CROSSED: f32 = 16384.0;
 
-// A number of steps that is enough for any ray: every node that it can touch, once.
+// Upper bound of the steps of a ray: it visits every node that it can touch once.
 fn surface_bound(grid: SurfaceGrid, levels: u32) -> u32 {
     let crossed = min(abs(grid.travel.x) + abs(grid.travel.y), SURFACE_MAX_CROSSED);
     return 2u * (u32(crossed) + 3u) + levels;
@@ -164,8 +164,8 @@ fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f
     return select(-1.0, leave, a + 2.0 * b + c <= 0.0);
 }
 
-// The corner from which a leaf's patch is counted. Along an axis on which the leaf extends to infinity heights
-// are constant, and any corner will do.
+// The corner that a leaf's patch is relative to. Along an axis where the leaf extends to infinity, heights are constant, and
+// any corner will do.
 fn surface_corner(leaf: SurfaceNode) -> vec2<i32> {
     return select(leaf.low, leaf.high - 1, leaf.low == vec2<i32>(-SURFACE_FAR));
 }

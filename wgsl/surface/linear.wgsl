@@ -7,7 +7,7 @@ import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 // Limits of the numbers of steps in a march.
 const SURFACE_MAX_STEPS: u32 = 1024u;
 const SURFACE_MAX_BINARY: u32 = 24u;
-// The height above and below the surface, added up, from which on they are divided.
+// Lower bound of the divisor: the sum of the heights above and below the surface.
 const SURFACE_LEAST_SPAN: f32 = 1e-12;
 
 // The two points between which a linear search stopped: the last one above the surface, and the first one on or
@@ -20,7 +20,7 @@ struct SurfaceBracket {
     samples: u32,
 }
 
-// The number of linear steps at a cosine: ⌈mix(min, max, 1 − V.z)⌉, 1 to SURFACE_MOST_STEPS.
+// The number of linear steps at a cosine: ⌈mix(min, max, 1 − V.z)⌉, 1 to `SURFACE_MAX_STEPS`.
 fn surface_steps(march: SurfaceMarch, cosine: f32) -> u32 {
     let low = f32(march.min_steps);
     let steps = ceil(low + (f32(march.max_steps) - low) * (1.0 - min(cosine, 1.0)));

@@ -4,8 +4,7 @@ import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit,
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
 
-// `pyramid` is the max-mip pyramid of `heights`, which surface/height_pyramid computes. Of `march`, the address
-// is used.
+// `pyramid` is the max-mip pyramid of `heights`, computed by surface/height_pyramid. Uses the address of `march`.
 fn surface_quadtree(
     heights: texture_2d<f32>, pyramid: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {

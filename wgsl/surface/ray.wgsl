@@ -11,8 +11,8 @@ const SURFACE_HIT: u32 = 1u;
 // The method ran out of steps; the result is the point that it had reached.
 const SURFACE_EXHAUSTED: u32 = 2u;
 
-// The smallest cosine with which a ray is marched (89.55° from the normal). Flatter rays are marched with it,
-// so that no step divides by a value close to 0.
+// Smallest cosine of a marched ray (89.55° from the normal). Flatter rays are marched with this cosine, so that no step divides
+// by a value close to 0.
 const SURFACE_LEAST_COSINE: f32 = 0.0078125;
 
 // A ray through the relief volume, in tangent space: at parameter t it is at uv origin + t · slope and height 1 − t.

@@ -8,7 +8,7 @@ import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
 
 // The height difference below which a point does not shade itself, as a fraction of the relief's depth.
 const SURFACE_SHADOW_BIAS: f32 = 0.005;
-// What is added to the distance of an occluder, as a fraction of the relief's depth, so that none is at distance 0.
+// Added to the distance of an occluder, as a fraction of the relief's depth, so that none is at distance 0.
 const SURFACE_LEAST_OCCLUSION: f32 = 0.001;
 
 // The ray from the light to a point of the surface: it falls from the top of the volume to the hit. `light` is
@@ -23,9 +23,8 @@ fn surface_shaded(first: SurfaceHit, hit: SurfaceHit) -> bool {
     return first.parameter < 1.0 - hit.height - SURFACE_SHADOW_BIAS;
 }
 
-// The light that reaches a point, 0 in full shadow to 1 in full light, from `steps` heights on the way to the
-// light. `softness` is the width of the penumbra: the ratio of the surface's height above the way to its
-// distance at which shadow is full.
+// Light that reaches a point, 0 (full shadow) to 1 (full light), from `steps` heights on the way to the light. `softness` is
+// the width of the penumbra: the ratio of the surface's height above the way to its distance at which shadow is full.
 fn surface_soft_shadow(
     heights: texture_2d<f32>, hit: SurfaceHit, light: vec3<f32>, scale: f32, march: SurfaceMarch,
     steps: u32, softness: f32,

@@ -1,5 +1,5 @@
-// A level of subdivision for a batch of windows or patches: what its kernels read and write. A thread makes the four fine points
-// that belong to a coarse one: its `id` has the column and row of the coarse point, and the window.
+// A level of subdivision for a batch of windows or patches: the input and output of its kernels. A thread makes the four fine
+// points that belong to a coarse one: its `id` has the column and row of the coarse point, and the window.
 import package::wgsl::hash::threefry2x32;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, injected};
 import package::wgsl::terrain::offset::height_offset;
@@ -14,7 +14,7 @@ struct Level {
     coarse_width: u32,
     // World coordinates between neighbouring fine points.
     spacing: u32,
-    // The range of offsets, and that of points on edges, where interpolation is smooth.
+    // Range of the random offsets. With smooth interpolation, points on edges have a range of their own.
     range: u32,
     edge_range: u32,
     @align(16) features: FeatureGrid,
@@ -26,7 +26,7 @@ struct Level {
 @group(0) @binding(2) var<storage, read> coarse: array<i32>;
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
 
-// Whether a thread has something to do, wherever the window starts in its first cell.
+// Whether a thread may have points to write, for every start of the window in its first cell.
 fn has_point(id: vec3<u32>) -> bool {
     return all(id.xy <= vec2<u32>(level.fine_width / 2u));
 }

@@ -1,9 +1,9 @@
-// How textures lie on the ground, to import into any material shader: from above, on steep ground also from the sides
-// (triplanar mapping), and with a variation of colour over many tiles, so that they are not seen to repeat.
+// Texture mapping of the ground, for any material shader: from above, on steep ground also from the sides (triplanar mapping).
+// A colour variation over many tiles hides their repetition.
 
-// Texture coordinates count tiles, and are the same 1024 tiles further on: the host subtracts whole multiples of it.
+// Period of texture coordinates in tiles: the host subtracts whole multiples of it.
 const TILES_PERIOD: u32 = 1024u;
-// Planes from which triplanar mapping takes its texture.
+// Number of planes of triplanar mapping.
 const TRIPLANAR_PLANES: u32 = 3u;
 
 // The weights of the planes by a unit normal: from above, from the east or west, from the north or south. They sum to 1. Ground
@@ -14,8 +14,8 @@ fn triplanar_weights(normal: vec3<f32>) -> vec3<f32> {
     return squared / (squared.x + squared.y + squared.z);
 }
 
-// The texture coordinates on a plane, 0 to 2 as above, of a position in tiles: east, up, south. On walls the texture's top is up.
-// It is linear, so that it also takes derivatives.
+// Texture coordinates, on a plane (0 to 2, in the order of the weights), of a position in tiles: east, up, south. On walls, the
+// top of the texture is up. The function is linear, so that it also takes derivatives.
 fn triplanar_uv(plane: u32, tiles: vec3<f32>) -> vec2<f32> {
     let wall = vec2<f32>(select(tiles.x, tiles.z, plane == 1u), -tiles.y);
     return select(wall, tiles.xz, plane == 0u);

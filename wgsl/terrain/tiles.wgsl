@@ -6,14 +6,14 @@ struct MapZone {
     zone: Zone,
     // The index of the first texel of its texture.
     first: u32,
-    // The texels along an edge of its texture are 2 to this power.
+    // Binary logarithm of the number of texels along an edge of its texture.
     edge_log2: u32,
 }
 
-// The bits of a position in tiles behind the point; those before it are the 10 bits of TILES_PERIOD.
+// Number of fractional bits of a position in tiles. Its integer part has the 10 bits of TILES_PERIOD.
 const TILE_BITS: u32 = 22u;
 
-// A height in 2^-22 tiles, rounded down, without whole multiples of TILES_PERIOD, given the tiles per unit of height.
+// Converts a height to 2^-22 tiles, rounded down, modulo TILES_PERIOD. `tiles_per_unit` are the 2^-22 tiles per unit of height.
 fn tiles_up(height: i32, tiles_per_unit: u32) -> u32 {
     let part = u32(height) & 0xffffu;
     let low = part * (tiles_per_unit & 0xffffu);

@@ -1,5 +1,5 @@
-// Windows of heights, and their inner samples: those that are not on the outermost ring. A thread makes an inner sample of a window:
-// `id` has its column, its row and the window.
+// Windows of heights, and their inner samples: all samples except the outermost ring. A thread makes an inner sample of a
+// window: `id` has its column, its row and the window.
 
 @group(0) @binding(1) var<storage, read> windows: array<i32>;
 

@@ -21,13 +21,13 @@ struct Zone {
     repeats: f32,
 }
 
-// What the blended colour depends on, accumulated over all zones.
+// State of the blend, accumulated over all zones.
 struct ZoneBlend {
-    // The sum of colours, each by its zone's weight and height map.
+    // Sum of the zones' colours, each weighted by its zone's weight and height map.
     color: vec3<f32>,
-    // The sum of these factors.
+    // Sum of the same weights.
     total: f32,
-    // The sum of the weights without height maps.
+    // Sum of the zones' weights alone, without height maps.
     weight: f32,
     // The colour of the zone whose range of heights is nearest, and its distance in height units, which is negative inside the
     // range.
@@ -54,8 +54,8 @@ fn zone_weight(zone: Zone, height: f32, steep: f32) -> f32 {
     return max(0.0, (range - abs(height - zone.max)) * (1.0 / range)) * (rise * fall);
 }
 
-// The factor of a weight by the height of a texel, 0 to 1: what stands high in its texture shows first where zones meet.
-// 1 without height blending; otherwise down to 16^-4 in the deepest texels.
+// Factor of a weight by the height of a texel, 0 to 1: high texels show first where zones meet. It is 1 without height
+// blending, otherwise down to 16^-4 in the deepest texels.
 fn zone_prominence(zone: Zone, texel_height: f32) -> f32 {
     let depth = 0.9375 * zone.height_blend;
     let reduced = (1.0 - depth) + depth * texel_height;

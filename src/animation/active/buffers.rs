@@ -8,19 +8,19 @@ use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::shared::animation::compact::WIDTH;
 use crate::{Error, InputError};
 
-/// The pairs of instance and bone to be sampled, in a buffer that kernels may fill.
+/// List of (instance, bone) pairs to sample, in a buffer that kernels may fill.
 #[derive(Debug, Clone)]
 pub struct ActivePairs {
-    /// `instance · bones + bone` of each pair, with [`PAIR_AHEAD`](crate::animation::active::PAIR_AHEAD) if it
-    /// is sampled ahead. All other pairs are skipped.
+    /// Pair index `instance · bones + bone`, with the flag [`PAIR_AHEAD`](crate::animation::active::PAIR_AHEAD) if the bone is
+    /// sampled ahead. Pairs that are not listed are skipped.
     pub pairs: Buffer<u32>,
-    /// Workgroups of 64 along x, y and z, as arguments of an indirect dispatch, and the number of pairs.
+    /// Indirect dispatch arguments (workgroups of 64 along x, y and z), followed by the number of pairs.
     pub dispatched: Buffer<u32>,
     consumer: ExclusiveConsumer,
 }
 
 impl ActivePairs {
-    /// Allocates a list with room for all pairs of a crowd. It is empty at first.
+    /// Allocates an empty list with room for all pairs of a crowd.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -35,7 +35,7 @@ impl ActivePairs {
         crowd.model_matrices.consumer().check_same(&self.consumer)
     }
 
-    /// Sets the list from the host.
+    /// Uploads the list from the host.
     ///
     /// # Errors
     /// [`GpuError`], also for more pairs than the crowd has.
@@ -47,23 +47,24 @@ impl ActivePairs {
     }
 }
 
-/// The work of a frame for a crowd. The caller may read and bind all buffers.
+/// Work lists of one frame for a crowd. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Active {
-    /// One bit per slot of each instance, in [`Order::words`] words per instance: the bones that are sampled;
-    /// then, in the same layout, those of them that are sampled ahead. A gate or the caller writes them. Then
-    /// come those whose model matrices the frame updates ([`Active::updated_words`]).
+    /// Three bit masks, each with one bit per slot and [`Order::words`] words per instance. First: the sampled bones. Second:
+    /// the bones among them that are sampled ahead. A gate or the caller writes both. Third ([`Active::updated_words`]): the
+    /// bones whose model matrices the frame updates.
     pub bits: Buffer<u32>,
-    /// The bones whose model matrices this frame or one before updated, until skinning has followed them.
+    /// Bones whose model matrices this or an earlier frame updated and that skinning has not followed yet.
     pub updated_bones: UpdatedBones,
     /// The pairs to be sampled.
     pub pairs: ActivePairs,
     /// Indices of the instances that have an active bone.
     pub instances: Buffer<u32>,
-    /// Arguments of indirect dispatches. First, workgroups of 64 along x, y and z for one thread per listed
-    /// instance, and the number of these instances. Then, for each level of chains, workgroups for one thread
-    /// per chain of each instance, and the level's number of chains. Last, workgroups for one thread per cursor
-    /// of each instance, and an instance's number of cursors.
+    /// Arguments of indirect dispatches, in three groups:
+    ///
+    /// - workgroups of 64 along x, y and z for one thread per listed instance, then the number of these instances;
+    /// - for each level of chains, workgroups for one thread per chain of each instance, then the level's number of chains;
+    /// - workgroups for one thread per cursor of each instance, then the number of cursors per instance.
     pub dispatches: Buffer<[u32; 4]>,
     pub(crate) slots: Buffer<crate::shared::animation::order::Slot>,
     pub(crate) counts: Buffer<u32>,
@@ -71,7 +72,7 @@ pub struct Active {
 }
 
 impl Active {
-    /// Allocates the lists for a crowd of a skeleton; nothing is active.
+    /// Allocates lists for a crowd of a skeleton. Nothing is active at first.
     ///
     /// # Errors
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
@@ -95,8 +96,8 @@ impl Active {
         })
     }
 
-    /// The words of [`Active::bits`] that hold the bones whose model matrices the frame updates: active ones, and all
-    /// below them.
+    /// Range of words in [`Active::bits`] with the bones whose model matrices the frame updates: active bones and all their
+    /// descendants.
     pub fn updated_words(&self) -> std::ops::Range<usize> {
         let words = self.instances.len() * self.words as usize;
         2 * words..3 * words

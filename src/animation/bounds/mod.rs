@@ -1,17 +1,17 @@
-//! Axis-aligned bounding boxes of animated instances, in the model's space, for culling.
+//! Axis-aligned bounding boxes of animated instances, in model space, for culling.
 //!
-//! Everything that a bone moves lies in a sphere around the bone's origin, whose *radius* is given in metres in
-//! the bone's own space. The bone's matrix turns the sphere into an ellipsoid. Along an axis, the ellipsoid
-//! extends as far as the radius times the length of the matrix's row of that axis, whatever the scales above
-//! have done. (The length of the longest column would not do, since uneven scales of a parent shear its
-//! children.) The result is the box around the ellipsoids of all bones. Points that several bones share by
-//! weights from 0 to 1 lie between the positions under each bone alone, so they are inside too.
+//! Everything that a bone moves lies in a sphere around the bone's origin. The sphere's *radius* is given in metres, in the
+//! bone's own space. The bone's matrix turns the sphere into an ellipsoid. Along an axis, the ellipsoid's extent is the radius
+//! times the length of the matrix row of that axis, whatever the scales of the ancestors. (The length of the longest column
+//! would be wrong, because uneven scales of a parent shear its children.) The result is the box around the ellipsoids of all
+//! bones. It also holds for points that several bones share with weights from 0 to 1: such points lie between their positions
+//! under each bone alone.
 //!
-//! The caller provides the radii: for each bone the distance of the farthest vertex that it moves,
-//! `|inverse_bind · v|`; or, without a mesh, the bones' own lengths ([`bone_radii`]).
+//! The caller provides one radius per bone: the distance of the farthest vertex that the bone moves, `|inverse_bind · v|`.
+//! Without a mesh, use the bones' own lengths ([`bone_radii`]).
 //!
-//! A box is rounded outward: on every device it contains the exact box of the matrices' `f32` values, as long
-//! as values stay below 2⁶³. `docs/rounding-bounds.md` has the derivation.
+//! A box is rounded outward. On every device it contains the exact box of the matrices' `f32` values, as long as values stay
+//! below 2⁶³. `docs/rounding-bounds.md` has the derivation.
 
 use crate::InputError;
 use crate::asset::skeleton::Skeleton;
@@ -23,11 +23,11 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::BoundsPass;
 
-/// The largest difference allowed between a side and the reference, on any device, relative to the largest
-/// side: 14ε and 6ε of the extent, 4ε of the center and 2ε of the side from either: 52ε < 4e-6.
+/// Largest allowed difference between a side and the reference, on any device, relative to the largest side. The sum is 14ε and
+/// 6ε of the extent, 4ε of the center and 2ε of the side, from either: 52ε < 4e-6.
 pub const BOUNDS_BOUND: f32 = 4e-6;
 
-/// A box along the axes of the model's space.
+/// An axis-aligned box in model space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
@@ -38,20 +38,19 @@ pub struct Bounds {
     pub high: [f32; 4],
 }
 
-/// The radius of each bone if there is no mesh: the bone's length ([`Skeleton::lengths`]).
+/// Radius of each bone for a skeleton without a mesh: the bone's length ([`Skeleton::lengths`]).
 pub fn bone_radii(skeleton: &Skeleton) -> Vec<f32> {
-    // The next larger f32 if rounding made the length smaller.
+    // Round up: the conversion to f32 may have made the length smaller.
     let up = |length: f64| {
         if f64::from(length as f32) < length { (length as f32).next_up() } else { length as f32 }
     };
     skeleton.lengths().into_iter().map(up).collect()
 }
 
-/// Checks the radii of `bones` bones.
+/// Checks that there are `bones` valid radii.
 ///
 /// # Errors
-/// [`InputError`] for a number of radii that is not one per bone, and for radii that are negative or not
-/// finite.
+/// [`InputError`] for a number of radii that is not one per bone, and for radii that are negative or not finite.
 pub fn check_bone_radii(bone_radii: &[f32], bones: usize) -> Result<(), InputError> {
     InputError::check_len("bone_radii", bone_radii.len(), bones, "a bone")?;
     let is_good = |radius: &f32| (0.0..f32::INFINITY).contains(radius);

@@ -20,16 +20,16 @@ impl BoundsPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the bounds of a crowd's instances from its model matrices, with one radius per bone in metres.
+    /// Prepares the bounds of a crowd's instances from its model matrices. `bone_radii` has one radius per bone, in metres.
     ///
     /// # Errors
-    /// [`InputError`] for radii that do not match the crowd, for 2²⁶ instances or more, and for a buffer with
-    /// less than one box per instance; [`GpuError`].
+    /// [`InputError`] for radii that do not match the crowd, for 2²⁶ instances or more, and for a buffer with less than one box
+    /// per instance; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

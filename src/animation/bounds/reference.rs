@@ -4,7 +4,7 @@ use crate::animation::bounds::Bounds;
 use crate::asset::transform::Affine;
 use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTER};
 
-/// The bounds of each instance, from its model matrices and the radius of each bone.
+/// Box of each instance, from its model matrices and the radius of each bone.
 ///
 /// # Panics
 /// If there are no radii.

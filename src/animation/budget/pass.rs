@@ -9,7 +9,7 @@ use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Step, Uniform};
 use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM, TIES};
 
-/// Decides which bones are sampled.
+/// Decides which bones are sampled within a budget.
 #[derive(Debug, Clone)]
 pub struct BudgetPass {
     stages: [Kernel; 5],
@@ -18,7 +18,7 @@ pub struct BudgetPass {
 }
 
 impl BudgetPass {
-    /// Uploads a table and compiles the pipelines. `bones`: the budget until a job sets another.
+    /// Uploads a table and compiles the pipelines. `bones` is the budget until a job sets another.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -31,8 +31,8 @@ impl BudgetPass {
     /// Prepares the decision from a crowd's clip clocks.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a crowd of other bones or clips than the table, for motion along another path than the
-    /// crowd's rotations take, and for another crowd than the active bones are listed of; [`GpuError`].
+    /// [`crate::InputError`] for a crowd with other bones or clips than the table, for a table computed for another rotation
+    /// path than the crowd uses, and for lists of active bones of another crowd; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -77,7 +77,7 @@ impl BudgetPass {
 pub type BudgetJob = ParamsJob<BudgetParams>;
 
 impl BudgetJob {
-    /// Sets the number of bones that may be sampled in the next submission.
+    /// Sets the budget of the next submission: the number of bones that may be sampled.
     ///
     /// # Errors
     /// [`GpuError`].

@@ -5,8 +5,8 @@ use crate::animation::gate_table::ExpectationTable;
 use crate::animation::gate_table::sums::{motion_at, motion_between};
 use crate::animation::lod::Lod;
 
-/// One bit per slot of each instance, in [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words per
-/// instance. `sampled` holds, for each slot of each instance, the sum of motion when it was last sampled.
+/// Selected bones: one bit per slot of each instance, in [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words
+/// per instance. `sampled` holds, for each slot of each instance, the accumulated motion when it was last sampled.
 ///
 /// # Panics
 /// If there are fewer levels of detail or sums than clip clocks need.
@@ -57,8 +57,8 @@ fn missed_by(table: &ExpectationTable, clip_clock: &ClipClock, slot: usize, last
     motion_between(motion_now(table, clip_clock, slot), last, table.period(clip_clock.clip, slot))
 }
 
-/// The rank, 1 to 768, by the logarithm of `missed · weight`: sixteen ranks per octave. It is
-/// computed from the whole product, with constants of its own, so that it checks the kernel's two words.
+/// Rank from 1 to 768: the logarithm of `missed · weight`, with sixteen ranks per octave. It uses the full product and its own
+/// constants, so that it checks the kernel's two-word arithmetic.
 pub fn rank_of(missed: u32, weight: u32) -> u32 {
     let product = u64::from(missed) * u64::from(weight);
     let Some(lead) = product.checked_ilog2() else { return 1 };

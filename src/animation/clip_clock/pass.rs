@@ -18,7 +18,7 @@ impl ClipClockPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
@@ -26,7 +26,7 @@ impl ClipClockPass {
     /// Prepares the clip clocks of a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for clips of another set than the crowd's; [`GpuError`].
+    /// [`InputError`] for a clip set other than the crowd's; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -59,12 +59,12 @@ impl ClipClockPass {
     }
 }
 
-/// Prepared clip clocks: set the time, then record.
+/// A prepared computation of clip clocks: set the time, then record.
 pub type ClipClockJob = ParamsJob<ClipClockParams>;
 
 impl ClipClockJob {
-    /// Sets the time of the next submission, as [`super::super::keyframe_cursor::KeyframeCursorJob::set`] does,
-    /// and the seconds by which bones may be sampled ahead of it
+    /// Sets the times of the next submission, both in seconds. `elapsed` is as in
+    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`]. `ahead` is how far ahead of it bones may be sampled
     /// ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
     ///
     /// # Errors

@@ -11,8 +11,8 @@ use crate::asset::keyframe::keyframe_cursor;
 use crate::shared::animation::clip_clock::CLIP_HASH_FACTOR;
 use crate::shared::animation::gate_state::FRACTION_ONE;
 
-/// The clip clock of each instance. `layers` are those above the base, `ahead` is the number of seconds by
-/// which bones may be sampled ahead, and `history` is kept from frame to frame, zero at first.
+/// Clip clock of each instance. `layers` are the layers above the base. `ahead` is how far ahead of their time bones may be
+/// sampled, in seconds. `history` is kept from frame to frame and is zero at first.
 ///
 /// # Panics
 /// If there are fewer levels of detail or histories than instances.
@@ -60,7 +60,7 @@ pub fn clip_clocks(
     instances.iter().enumerate().map(of).collect()
 }
 
-/// A hash of the clips that play above the base; 0 if there are none.
+/// Hash of the clips that play above the base; 0 if there are none.
 fn clips_above(layers: &[Layer], instance: usize) -> u32 {
     layers.iter().fold(0, |clips: u32, layer| {
         let heard = if layer.weights[instance] > 0.0 { layer.instances[instance].clip + 1 } else { 0 };

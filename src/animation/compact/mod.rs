@@ -1,6 +1,5 @@
-//! Turns bits into lists: the pairs of instance and bone to be sampled, the slots to be concatenated because a
-//! bone at or above them is sampled, and the arguments of the indirect dispatches. It uses prefix sums, so that
-//! the order is the same on every device.
+//! Turns bit masks into lists: the (instance, bone) pairs to sample, the slots to concatenate because they or an ancestor are
+//! sampled, and the arguments of the indirect dispatches. Prefix sums make the order the same on every device.
 
 #[cfg(feature = "gpu")]
 mod pass;

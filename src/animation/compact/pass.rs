@@ -7,13 +7,13 @@ use crate::gpu::bindings::animation::compact as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::{CompactParams, SCAN, SCATTER, SPREAD};
 
-/// Turns bits into lists.
+/// Turns bit masks into lists.
 #[derive(Debug, Clone)]
 pub struct CompactPass {
     stages: [Kernel; 3],
 }
 
-/// The prepared lists.
+/// A prepared compaction of a crowd's bits into lists.
 #[derive(Debug, Clone)]
 pub struct CompactJob {
     job: Job,
@@ -21,12 +21,12 @@ pub struct CompactJob {
 }
 
 impl CompactJob {
-    /// Records the lists.
+    /// Records the compaction.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation/compact"));
     }
 
-    /// Adds the lists to a compute pass that is being recorded, and tells the readers of [`Active::updated_bones`].
+    /// Adds the compaction to a compute pass that is being recorded, and notifies the readers of [`Active::updated_bones`].
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.updated.update();
         self.job.dispatch(pass);
@@ -37,13 +37,13 @@ impl CompactPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let stage = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
         Ok(Self { stages: [stage(SPREAD)?, stage(SCAN)?, stage(SCATTER)?] })
     }
 
-    /// Prepares the lists of a crowd's active bits.
+    /// Prepares the compaction of a crowd's active bits.
     ///
     /// # Errors
     /// [`GpuError`].

@@ -5,24 +5,24 @@ use crate::animation::gate::reference::Chosen;
 use crate::animation::gate_table::bits_of;
 use crate::animation::order::Order;
 
-/// The work of a frame.
+/// Work lists of one frame.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Work {
-    /// `instance · bones + bone` of each pair to be sampled, in the order of instances and slots, with
+    /// Pair index `instance · bones + bone` of each pair to sample, in the order of instances and slots, with the flag
     /// [`PAIR_AHEAD`] if it is sampled ahead.
     pub pairs: Vec<u32>,
-    /// One bit per slot of each instance, set for active bones and for all bones below them.
+    /// One bit per slot of each instance, set for active bones and all their descendants.
     pub updated_bones: Vec<u32>,
     /// Indices of the instances that have an active bone.
     pub instances: Vec<u32>,
 }
 
-/// The updated bones of this frame and of those before that readers have not yet followed.
+/// Accumulates the updated bones of this frame with those of earlier frames that readers have not followed yet.
 pub fn accumulated(before: &[u32], updated_bones: &[u32]) -> Vec<u32> {
     before.iter().zip(updated_bones).map(|(before, now)| before | now).collect()
 }
 
-/// The work for the given bits, of which there are [`Order::words`] words per instance.
+/// Work lists for the given bits, with [`Order::words`] words per instance.
 pub fn compact(order: &Order, chosen: &Chosen) -> Work {
     let Chosen { bits, ahead } = chosen;
     let bones = order.slots.len() as u32;

@@ -1,9 +1,9 @@
-//! Driven bones: those whose local transforms the caller writes itself, between sampling and concatenation, for inverse
-//! kinematics and ragdolls.
+//! Driven bones: bones whose local transforms the caller writes between sampling and concatenation, for inverse kinematics and
+//! ragdolls.
 //!
-//! A gate does not know what the caller makes of a bone. Driven bones are therefore sampled in every frame in which their
-//! instance is seen, at the time of the frame, whatever the gate says; they and all bones below them count as updated. They
-//! are added to the bits of a gate before [`compact`](super::compact) makes lists of them.
+//! A gate does not know what the caller does to a bone. Driven bones are therefore sampled in every frame in which their
+//! instance is visible, at the time of the frame, whatever the gate decides. They and all bones below them count as updated.
+//! They are added to a gate's bits before [`compact`](super::compact) turns the bits into lists.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -15,8 +15,8 @@ pub use pass::DrivePass;
 use super::order::Order;
 pub use crate::shared::animation::drive::DrivenWord;
 
-/// The words of bits that hold the driven bones of instances: pairs of an instance and its bones, by index. Each word occurs
-/// once, in ascending order.
+/// The bit words that contain driven bones, each once and in ascending order. The input lists, per instance index, the indices
+/// of its driven bones.
 ///
 /// # Panics
 /// For bones that the order does not have.

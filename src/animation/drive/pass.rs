@@ -9,7 +9,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::animation::drive::DriveParams;
 use crate::{Error, InputError};
 
-/// Adds driven bones to those that a gate chose.
+/// Adds driven bones to the bones that a gate chose.
 #[derive(Debug, Clone)]
 pub struct DrivePass {
     kernel: Kernel,
@@ -19,13 +19,13 @@ impl DrivePass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the addition to a crowd's bits. Record it behind the gate, and the lists
-    /// ([`CompactPass`](crate::animation::compact::CompactPass)) behind it.
+    /// Prepares the addition to a crowd's bits. Record it after the gate and before the lists
+    /// ([`CompactPass`](crate::animation::compact::CompactPass)).
     ///
     /// # Errors
     /// [`InputError`] for words that the crowd does not have; [`GpuError`].

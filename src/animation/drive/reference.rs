@@ -2,8 +2,8 @@
 
 use super::DrivenWord;
 
-/// Adds driven bones to the bits of a gate: `bits` are the bones that are sampled, `ahead` those of them that are sampled ahead,
-/// in `words` words per instance. Instances for which `hidden` is set are left alone.
+/// Adds driven bones to a gate's bits. `bits` are the sampled bones and `ahead` those among them that are sampled ahead, in
+/// `words` words per instance. Instances with `hidden` set are left alone.
 ///
 /// # Panics
 /// For words beyond the bits.

@@ -1,6 +1,6 @@
-//! A frame of a crowd under a gate as one object, from the time to model matrices: `clip_clock`, `gate` (or `budget`) and
-//! `compact`, then `keyframe_cursor`, `sample` and `local_to_model` for active bones, in one compute pass. The bound of
-//! `bounded` holds only in this order, because cursors use the times that the gate saw.
+//! A complete frame of a crowd under a gate, from the time to model matrices, in one compute pass. The steps are `clip_clock`,
+//! `gate` (or `budget`) and `compact`, then `keyframe_cursor`, `sample` and `local_to_model` for active bones. The error bound
+//! of [`Gate::Bounded`] holds only in this order, because cursors use the times that the gate saw.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -20,9 +20,9 @@ use crate::gpu::{Gpu, Job, Upload, compute_pass};
 /// A prepared frame: set the time, then record.
 #[derive(Debug, Clone)]
 pub struct GatedFrame {
-    /// The gate's state; levels of detail may be written between frames.
+    /// The gate's state. Levels of detail may be written between frames.
     pub state: GateState,
-    /// The work of the frame that was recorded last.
+    /// Work lists of the last recorded frame.
     pub active: Active,
     model_matrices: ModelMatrices,
     /// Whether bones may be sampled ahead of their time.
@@ -36,12 +36,12 @@ pub struct GatedFrame {
 }
 
 impl GatedFrame {
-    /// Compiles and prepares everything for a crowd. Rotations use the crowd's path.
+    /// Compiles and prepares all passes for a crowd. Rotations use the crowd's path.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a crowd of another skeleton, clips of another set than the crowd's, a gate of other
-    /// bones or clips, or of motion along another path than the crowd's ([`Crowd::path`]), and for [`Gate::Bounded`] over model
-    /// matrices that dual quaternions were prepared to blend; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) for a crowd of another skeleton, for clips of another set than the crowd's, for a gate
+    /// of other bones or clips or with motion for another rotation path than the crowd's ([`Crowd::path`]), and for
+    /// [`Gate::Bounded`] if the model matrices were prepared for dual quaternion blending; [`GpuError`](crate::gpu::GpuError).
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,
@@ -69,14 +69,13 @@ impl GatedFrame {
         })
     }
 
-    /// The input of skinning: the crowd's model matrices, with the record of which bones a frame updates and of
-    /// the gate that decides it.
+    /// Input of skinning: the crowd's model matrices, with the record of the updated bones and of the gate that chooses them.
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
     }
 
-    /// Sets frame and time of the next submission. The time is in seconds since the starts of the instances.
-    /// Move the starts every few minutes, because `f32` seconds lose precision.
+    /// Sets the frame and time of the next submission. `elapsed` is in seconds since the starts of the instances. Move the
+    /// starts every few minutes, because `f32` seconds lose precision.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`](crate::gpu::GpuError).
@@ -103,7 +102,7 @@ impl GatedFrame {
         self.gate.set_budget(gpu, bones)
     }
 
-    /// Records the frame. Afterwards the crowd's model matrices are those of the set time.
+    /// Records the frame. Afterwards the crowd's model matrices are up to date for the set time.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation"));
     }
@@ -115,7 +114,7 @@ impl GatedFrame {
         self.dispatch_local_to_model(pass);
     }
 
-    /// Adds the first part of the frame: which bones are active. It tells the readers of [`Active::updated_bones`].
+    /// Adds the first part of the frame: the choice of active bones. It notifies the readers of [`Active::updated_bones`].
     pub fn dispatch_gate(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.clip_clock.dispatch(pass);
         self.gate.dispatch(pass);
@@ -128,7 +127,7 @@ impl GatedFrame {
         self.sample.dispatch(pass);
     }
 
-    /// Adds the third part: model matrices of the active bones and of all bones below them.
+    /// Adds the third part: model matrices of the active bones and all their descendants.
     pub fn dispatch_local_to_model(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.local_to_model.dispatch(pass);
     }

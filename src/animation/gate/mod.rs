@@ -1,8 +1,8 @@
-//! Animation level of detail: which bones of which instances are sampled in a frame (A sections 10 to 12).
+//! Animation level of detail: decides which bones of which instances are sampled in a frame (A sections 10 to 12).
 //!
-//! A gate decides from integers, so that every device decides alike. It saves work: a bone that is not sampled
-//! keeps its last local transform and, unless a bone above it is active, is not concatenated either. Bones that
-//! their clip does not move cost nothing under any gate.
+//! A gate decides with integers, so that every device decides alike. It saves work: a bone that is not sampled keeps its last
+//! local transform. It is concatenated only if one of its ancestors is active. Bones that their clip does not move cost nothing
+//! under any gate.
 //!
 //! [`animation::frame`](super::frame) has the steps of a frame before and after the gate.
 
@@ -16,53 +16,54 @@ pub use pass::{GateJob, GatePass};
 use super::gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 use crate::asset::keyframe::RotationPath;
 
-/// How the bones to be sampled are chosen. Each gate owns the table by which it decides.
+/// The method that chooses the bones to sample. Each variant owns the table by which it decides.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gate {
-    /// Every bone that moves is sampled.
+    /// Samples every bone that its clip moves.
     Off(AnimatedBones),
-    /// A's rule (section 12.10): a bone *skips* one update per period of `priority · Ω · period` ticks.
+    /// Skips updates by A's rule (section 12.10): a bone *skips* one update per period of `priority · Ω · period` ticks.
     ///
-    /// **Decided**: the period is the time between two *skipped* updates, as in A's example. A also calls it the time
-    /// step of updates, which would update important bones least.
+    /// **Decided**: the period is the time between two *skipped* updates, as in A's example. A also calls it the time step of
+    /// updates, which would update important bones least.
     ///
     /// **Decided**: at Ω = 1 no update is skipped, as A says of near objects. A's rule alone would still skip one per
     /// `priority · period` there.
     ///
-    /// **Decided**: an update is skipped where the clock passes a multiple of the current period. A does not say from
-    /// when it counts. The clock needs no memory per bone where priority and Ω change. A hash of the instance's number
-    /// sets its clock forward by 0 to 65,535 ticks, so that instances do not skip in step.
+    /// **Decided**: an update is skipped where the clock passes a multiple of the current period. A does not say where the
+    /// period begins. With this choice, the clock needs no memory per bone when priority and Ω change. A hash of the instance's
+    /// index offsets its clock by 0 to 65,535 ticks, so that instances do not skip in step.
     SkipPeriod {
-        /// The priorities of each clip's bones.
+        /// Priorities of each clip's bones.
         table: PriorityTable,
-        /// The period in ticks for priority 1 at Ω = 1; A uses one second.
+        /// Period in ticks for priority 1 at Ω = 1; A uses one second.
         period: u32,
     },
-    /// All bones of an instance together, in a fraction Ω of the frames; engines call this update-rate
-    /// optimization.
+    /// Samples all bones of an instance together, in a fraction Ω of the frames. Engines call this update-rate optimization.
     Uniform(AnimatedBones),
-    /// A random fraction Ω of all bones, by a hash of frame and bone: on average as many as [`Gate::Uniform`].
+    /// Samples a random fraction Ω of all bones, by a hash of frame and bone: on average as many as [`Gate::Uniform`].
     Random(AnimatedBones),
-    /// Bones that may have moved further than the instance permits, parents first. A bone that missed no more
-    /// than its fraction of the remaining error budget is not sampled, and passes the rest on to the bones
-    /// below it. A bone that missed more is sampled, and passes on all of it. Bones thus take turns, and one
-    /// uses what another does not. No point, and no vertex under linear blending, is ever further from its place
-    /// than [`Lod::allowed`](super::lod::Lod::allowed). Dual quaternions are not convex combinations, so that
-    /// the bound does not hold for them; skinning refuses them under this gate.
+    /// Samples bones that may have moved further than the instance's error budget permits, parents first.
+    ///
+    /// A bone whose missed motion is within its fraction of the remaining budget is not sampled. What it does not use is left
+    /// to the bones below it. A bone that missed more is sampled and leaves all of the budget. Bones thus take turns, and one
+    /// uses what another does not need.
+    ///
+    /// No point, and no vertex under linear blend skinning, is ever further from its place than
+    /// [`Lod::allowed`](super::lod::Lod::allowed). The bound does not hold for dual quaternions, because they are not convex
+    /// combinations. Skinning refuses them under this gate.
     Bounded(BoundTable),
-    /// At most this many bones of the crowd, those whose stale transforms are expected to be most visible: see
+    /// Samples a limited number of bones of the crowd: those whose stale transforms are expected to be most visible. See
     /// [`super::budget`].
     Budget {
-        /// The motion of each bone as it is expected to be visible.
+        /// Expected visible motion of each bone.
         table: ExpectationTable,
-        /// The largest number of bones in a frame. Instances that must be sampled in full are sampled beyond
-        /// it.
+        /// Largest number of bones per frame. Instances that must be sampled in full are sampled even beyond it.
         bones: u32,
     },
 }
 
 impl Gate {
-    /// The gate's name on the command line and in reports.
+    /// Name of the gate on the command line and in reports.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Off(_) => "off",
@@ -84,8 +85,7 @@ impl Gate {
         }
     }
 
-    /// The rotation path for which the gate's table of motion was computed; `None` for gates that do not use
-    /// motion.
+    /// Rotation path for which the gate's motion table was computed; `None` for gates that do not use motion.
     pub fn path(&self) -> Option<RotationPath> {
         match self {
             Self::Off(_) | Self::Uniform(_) | Self::Random(_) | Self::SkipPeriod { .. } => None,
@@ -94,7 +94,7 @@ impl Gate {
         }
     }
 
-    /// The seconds by which bones may be sampled ahead in a frame; only [`Gate::Bounded`] does so.
+    /// How far ahead of the frame's time bones may be sampled, in seconds; 0 except for [`Gate::Bounded`].
     pub fn ahead(&self, frame: &Frame) -> f32 {
         if matches!(self, Self::Bounded(_)) { frame.ahead } else { 0.0 }
     }
@@ -103,13 +103,13 @@ impl Gate {
 /// The time of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame {
-    /// A monotonic clock; the caller chooses the length of a tick. It wraps at 2³².
+    /// Monotonic clock in ticks; the caller chooses the length of a tick. It wraps at 2³².
     pub ticks: u32,
-    /// Ticks since the last frame.
+    /// Ticks since the previous frame.
     pub frame_ticks: u32,
     /// Number of frames so far.
     pub frame: u32,
-    /// Seconds by which [`Gate::Bounded`] may sample a bone ahead of its time: a bone that is off by as much
-    /// before as after can stay twice as long. Use about the length of a frame; 0 disables it.
+    /// How far ahead of its time [`Gate::Bounded`] may sample a bone, in seconds. A bone whose error is split evenly before and
+    /// after the sampled time stays valid twice as long. Use about the length of a frame; 0 disables it.
     pub ahead: f32,
 }

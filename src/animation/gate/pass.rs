@@ -1,4 +1,4 @@
-//! The pass of `kernels/animation/gate.wgsl`; the kernels of [`Gate::Budget`] belong to `animation::budget`.
+//! The GPU pass of `kernels/animation/gate.wgsl`. The kernels of [`Gate::Budget`] are in `animation::budget`.
 
 use super::{Frame, Gate};
 use crate::animation::active::Active;
@@ -20,7 +20,7 @@ pub struct GatePass {
 
 #[derive(Debug, Clone)]
 enum Decider {
-    /// The gate's kernel for a mode, with the period and the first row of parents that some modes need.
+    /// The gate's kernel for one mode. Some modes use the period and the index of the first row of parents.
     Gate { kernel: Kernel, mode: u32, period: u32, first_above: u32, table: TableBuffers },
     /// The kernels of a budget.
     Budget(Box<BudgetPass>),
@@ -90,7 +90,7 @@ impl GatePass {
             frame: 0,
         };
         let uniform = Uniform::new(gpu, "gate", &params)?;
-        // The error budget that bones leave, if bones below need it in the same frame.
+        // Error budget that each bone leaves, for descendants that need it in the same frame.
         let is_bounded = mode == BOUNDED;
         let remaining = Buffer::new(gpu, "remaining", if is_bounded { crowd.pairs() } else { 0 })?;
         if is_bounded {
@@ -106,7 +106,7 @@ impl GatePass {
             remaining: remaining.slice(),
             bits: active.bits.slice(),
         };
-        // One per word of bits, or one per instance if words depend on each other.
+        // One thread per word of bits, or one per instance if words depend on each other.
         let threads = params.instances * if is_bounded { 1 } else { params.words };
         let job = Job::spread(gpu, "animation/gate", (kernel, group.bind(gpu, kernel)?), threads)?;
         Ok(GateJob { work: Work::Gate { params, uniform, job } })
@@ -126,7 +126,7 @@ enum Work {
 }
 
 impl GateJob {
-    /// Sets the frame of the next submission. A budget ignores it.
+    /// Sets the frame of the next submission. [`Gate::Budget`] ignores it.
     ///
     /// # Errors
     /// [`GpuError`] for errors of the device.

@@ -11,7 +11,7 @@ use crate::shared::animation::gate::{SCRAMBLE_FIRST, SCRAMBLE_SECOND};
 /// The bones that a gate decides to sample.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chosen {
-    /// A bit for each slot of each instance: [`AnimatedBones::words`] words an instance.
+    /// One bit per slot of each instance, in [`AnimatedBones::words`] words per instance.
     pub bits: Vec<u32>,
     /// The bones of `bits` that are sampled ahead of the frame's time, in the same layout.
     pub ahead: Vec<u32>,
@@ -56,11 +56,11 @@ pub fn gate(
 /// Up to 32 bones of an instance.
 struct Word<'a> {
     instance: u32,
-    /// The first bone's slot.
+    /// Slot of the first bone.
     first: usize,
     lod: &'a Lod,
     clip_clock: &'a ClipClock,
-    /// A bit for each bone of the word.
+    /// Mask with a bit for each bone of the word.
     all: u32,
     /// The bones that may have to be sampled.
     candidates: u32,
@@ -81,8 +81,7 @@ fn words<'a>(
     })
 }
 
-/// The decision of a gate that decides on each word separately: `thin` selects from the candidates of a word,
-/// unless the instance is at full detail.
+/// Decides on each word separately: `thin` selects from a word's candidates, unless the instance is at full detail.
 fn thinned(
     bones: &AnimatedBones,
     lods: &[Lod],
@@ -121,15 +120,15 @@ fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled:
     chosen
 }
 
-/// Hashes a word by Wellons' "lowbias32".
+/// Hashes a word with Wellons' "lowbias32".
 pub fn scramble(word: u32) -> u32 {
     let mixed = (word ^ (word >> 16)).wrapping_mul(SCRAMBLE_FIRST);
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(SCRAMBLE_SECOND);
     mixed ^ (mixed >> 15)
 }
 
-/// A's rule skips one update per period: in every frame if a period is no longer than a frame, otherwise in a
-/// frame in which the clock passes a multiple of the period.
+/// Whether A's rule skips this update. One update per period is skipped: every update if the period is no longer than a frame,
+/// otherwise the one in which the clock passes a multiple of the period.
 pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
     period <= frame_ticks || ticks % period < frame_ticks
 }
@@ -159,18 +158,18 @@ fn at_random(word: &Word<'_>, bones: usize, frame: &Frame) -> u32 {
     bits_of(word.candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
-/// What is left of the error budget of an instance.
+/// The remaining error budget of an instance.
 struct Remaining<'a> {
-    /// What the previous bone left.
+    /// Left by the previous bone.
     last: u32,
-    /// What bones with several children left.
+    /// Left by bones with several children, by slot.
     by_slot: &'a mut [u32],
 }
 
-/// Decides for the bones of a word, parents first. A bone that missed no more than its fraction of the
-/// remaining budget is not sampled, and passes the rest on to the bones below it. A bone that missed more is
-/// sampled, and passes on all of it; or it is sampled ahead, if its motion until then is within its fraction
-/// too. Returns the bones that are sampled, and those of them that are sampled ahead.
+/// Decides on the bones of a word, parents first. A bone whose missed motion is within its fraction of the remaining budget is
+/// not sampled; the unused part is left to the bones below it. A bone that missed more is sampled and leaves all of the budget.
+/// It is sampled ahead if its motion until then is within its fraction too. Returns the sampled bones, and those among them
+/// that are sampled ahead.
 fn by_motion(
     table: &BoundTable,
     word: &Word<'_>,
@@ -178,8 +177,8 @@ fn by_motion(
     remaining: &mut Remaining<'_>,
 ) -> [u32; 2] {
     let Word { first, lod, clip_clock, all, candidates, .. } = *word;
-    // Sums of motion describe a single clip, so they cannot be used for other reasons to update. If nothing may
-    // be missed, all candidates are sampled too.
+    // Accumulated motion describes a single clip, so it cannot be used for other update reasons. If nothing may be missed, all
+    // candidates are sampled too.
     let asked = if clip_clock.reason().forces_motion() { all } else { 0 };
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let [mut active, mut ahead] = [forced, 0];

@@ -5,8 +5,8 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::order::Order;
 use crate::asset::clip::{Clip, Interpolation, Part};
 
-/// The bones that each clip of a set moves. [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and
-/// `Random` decide by this table, and it is a part of every other table.
+/// The bones that each clip of a set moves. [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` decide by this
+/// table, and every other gate table contains it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnimatedBones {
     bones: usize,

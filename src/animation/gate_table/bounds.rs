@@ -1,4 +1,4 @@
-//! Bounds of the motion that a stale bone misses.
+//! Bounds on the motion that a stale bone misses.
 
 use super::columns::{Column, columns};
 use super::motion::MotionTable;
@@ -14,35 +14,33 @@ use crate::shared::animation::gate;
 use crate::shared::animation::gate_state::FRACTION_ONE;
 use crate::shared::animation::order::NO_PARENT;
 
-/// The exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are
-/// needed if fractions alone decide; with 0, all animated bones get equal fractions.
+/// Exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are needed if fractions
+/// alone decide; with 0, all animated bones get equal fractions.
 const EVENNESS: f64 = 0.5;
 
-/// The factor by which a bone may exceed its fraction. The bound holds for any factor, because bones below use
-/// what is left. Bones seldom miss all of their fractions at once: of 1, 1.6, 2.5 and 4, the factor 1.6 needs
-/// the fewest samples on a walk and a run if `uniform` samples every 2nd to 4th frame, and 1 if it samples
-/// every 8th.
+/// Factor by which a bone may exceed its fraction. The bound holds for any factor, because the bones below get only what
+/// remains. A factor above 1 helps because bones seldom all miss their whole fraction at once. Of 1, 1.6, 2.5 and 4, the factor
+/// 1.6 needs the fewest samples on a walk and a run if `uniform` samples every 2nd to 4th frame, and 1 if it samples every 8th.
 const FAVOUR: f64 = 1.6;
 
-/// Bounds on the motion that each bone contributes to any point, and the fractions of the error budget that bones
-/// take: the table of [`Gate::Bounded`](crate::animation::Gate::Bounded).
+/// Bounds on the motion that each bone contributes to any point, and each bone's fraction of the error budget: the table of
+/// [`Gate::Bounded`](crate::animation::Gate::Bounded).
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundTable {
     motion: MotionTable,
-    /// The index of the first clip's row of parents.
+    /// Index of the first clip's row of parents.
     first_above: usize,
     radius: f32,
 }
 
 impl BoundTable {
-    /// Computes the table of a set's clips. `bone_radii` gives, for each bone, the distance from its origin, in
-    /// metres, of points that follow it alone. `path` is the rotation path with which instances are sampled;
-    /// crowds with another path are refused, because nlerp turns faster than slerp in the middle between two
-    /// keys.
+    /// Computes the table of a set's clips. `bone_radii` gives, for each bone, the largest distance in metres from its origin
+    /// to a point that follows it alone. `path` is the rotation path with which instances are sampled. Crowds with another path
+    /// are refused, because nlerp turns faster than slerp in the middle between two keys.
     ///
     /// # Errors
-    /// As [`AnimatedBones::new`]; [`InputError`] also for a number of radii that is not one per bone, for radii
-    /// that are negative or not finite, and for a table of more than 2²⁷ entries.
+    /// As [`AnimatedBones::new`]; [`InputError`] also for a number of radii that is not one per bone, for radii that are
+    /// negative or not finite, and for a table of more than 2²⁷ entries.
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -72,7 +70,7 @@ impl BoundTable {
         Ok(table)
     }
 
-    /// Writes the parent of each bone, skipping bones that the clip does not move.
+    /// Writes each bone's nearest ancestor that the clip moves.
     fn write_tree(&mut self, skeleton: &Skeleton, order: &Order, clip: u32) {
         let slot_of = order.slots_of_bones();
         let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
@@ -102,36 +100,36 @@ impl BoundTable {
         &self.motion.animated_bones
     }
 
-    /// The rotation path for which the motion was computed.
+    /// Rotation path for which the motion was computed.
     pub fn path(&self) -> RotationPath {
         self.motion.path
     }
 
-    /// The entries, row by row: the sum of motion at the row's time and its rise to the next row. A clip's last
-    /// row holds the sum over the whole clip and an [`ErrorBudget`]. After all others follows one more row per
-    /// clip: for each slot that the clip moves, the nearest slot above it that the clip moves, or `u32::MAX`.
+    /// Entries row by row: the accumulated motion at the row's time and its rise to the next row. A clip's last row holds the
+    /// motion of the whole clip and an [`ErrorBudget`]. One more row per clip follows after all others: for each slot that the
+    /// clip moves, the nearest ancestor slot that the clip moves, or `u32::MAX`.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.motion.rows
     }
 
-    /// A bound on the distance of any point from the model's origin in any clip, in metres.
+    /// Upper bound on the distance of any point from the model's origin in any clip, in metres.
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// Converts a distance in metres in the model's space to [`Lod::allowed`](crate::animation::Lod::allowed);
-    /// divide metres in the world by the instance's scale.
+    /// Converts a distance in metres of model space to the unit of [`Lod::allowed`](crate::animation::Lod::allowed). Divide
+    /// metres in the world by the instance's scale first.
     pub fn units(&self, metres: f32) -> u32 {
-        // The motion of a whole clip is less than `EVERYTHING`.
+        // A whole clip's motion is below `EVERYTHING`, so the clamp changes no decision.
         (f64::from(metres) / self.motion.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
     }
 
-    /// The distance in metres of the model that a unit of [`BoundTable::units`] is.
+    /// Size of one unit of [`BoundTable::units`], in metres of model space.
     pub fn unit(&self) -> f32 {
         self.motion.unit as f32
     }
 
-    /// The index of the first clip's row of parents.
+    /// Index of the first clip's row of parents.
     #[cfg(feature = "gpu")]
     pub(crate) fn first_above(&self) -> u32 {
         self.first_above as u32
@@ -142,27 +140,27 @@ impl BoundTable {
         self.motion.motion(row, slot)
     }
 
-    /// A slot's motion along a whole clip, and its error budget.
+    /// A slot's motion over a whole clip, and its error budget.
     pub(crate) fn of_clip(&self, clip: u32, slot: usize) -> (u32, ErrorBudget) {
         let [period, granted] = self.motion.of_clip(clip, slot);
         (period, ErrorBudget(granted))
     }
 
-    /// The nearest slot above one that a clip moves, among those that the clip moves.
+    /// Nearest ancestor slot that the clip moves, for a slot that the clip moves.
     pub(crate) fn above(&self, clip: u32, slot: usize) -> Option<usize> {
         let [above, _] = self.motion.motion(self.first_above as u32 + clip, slot);
         (above != NO_PARENT).then_some(above as usize)
     }
 }
 
-/// How much of the allowed error a bone may take, as the kernel reads it.
+/// A bone's share of the allowed error, packed for the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ErrorBudget(pub u32);
 
 impl ErrorBudget {
-    /// Set if the bone above is not the previous one in the order.
+    /// Flag: the nearest animated ancestor is not the previous bone in the order.
     const STARTS: u32 = gate::STARTS;
-    /// Set if what the bone leaves is needed later.
+    /// Flag: a later bone needs what this bone leaves.
     const REMAINING: u32 = gate::REMAINING;
 
     /// Packs a fraction from 0 to 1 and `quantization_slack`, which is a power of two or 0.
@@ -171,23 +169,23 @@ impl ErrorBudget {
         Self(((fraction * f64::from(FRACTION_ONE)).floor() as u32) << gate::BUDGET_FRACTION_SHIFT | bits)
     }
 
-    /// The fraction of what the bones above leave, in 65536ths.
+    /// Fraction of what the ancestors leave, in 65536ths.
     pub fn fraction(self) -> u32 {
         self.0 >> gate::BUDGET_FRACTION_SHIFT
     }
 
-    /// The number of units that rounding may hide.
+    /// Number of units of motion that rounding may hide.
     pub fn quantization_slack(self) -> u32 {
         ((1_u64 << (self.0 & gate::BUDGET_SLACK_MASK)) >> 1) as u32
     }
 
-    /// Whether the bone above is not the previous one in the order.
+    /// Whether the nearest animated ancestor is not the previous bone in the order.
     pub fn starts(self) -> bool {
         self.0 & Self::STARTS != 0
     }
 }
 
-/// Sets each bone's fraction of the error budget that the bones above it leave.
+/// Sets each bone's fraction of the error budget that its ancestors leave.
 fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.path.total().powf(EVENNESS)).collect();
     for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {

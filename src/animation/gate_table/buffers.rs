@@ -1,4 +1,4 @@
-//! The tables of gates in buffers of the device.
+//! Gate tables in device buffers.
 
 use super::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable, check_path};
 use crate::InputError;
@@ -6,24 +6,24 @@ use crate::animation::crowd::Crowd;
 use crate::asset::keyframe::RotationPath;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// A table on the device.
+/// A gate table on the device.
 #[derive(Debug, Clone)]
 pub(crate) struct TableBuffers {
     pub animated_bones: Buffer<u32>,
     pub rows: Buffer<[u32; 2]>,
-    /// Number of entries of a row.
+    /// Number of entries per row.
     pub stride: u32,
     /// Number of words of bits per instance.
     pub words: u32,
     bones: usize,
     clips: usize,
-    /// The rotation path of the motion; `None` without motion.
+    /// Rotation path of the motion; `None` for a table without motion.
     path: Option<RotationPath>,
 }
 
 impl TableBuffers {
     pub fn of_animated_bones(gpu: &Gpu, table: &AnimatedBones) -> Result<Self, GpuError> {
-        // The kernel reads no entry of this table.
+        // Placeholder: the kernel reads no entry of this table.
         Self::new(gpu, table, &[[0; 2]], 0, None)
     }
 
@@ -59,7 +59,7 @@ impl TableBuffers {
         })
     }
 
-    /// Refuses a crowd with other bones or clips than the table's, and one that uses another rotation path.
+    /// Refuses a crowd whose bones, clips or rotation path differ from the table's.
     pub fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
         InputError::check_same("table.bones", self.bones, crowd.bones, "as the crowd's")?;
         InputError::check_same("table.clips", self.clips, crowd.clips, "as the crowd's")?;

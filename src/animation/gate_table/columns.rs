@@ -5,9 +5,9 @@ use crate::animation::motion::{BoneMotion, Path};
 
 /// The motion of one bone along a clip.
 pub(super) struct Column {
-    /// The path of points that follow the bone.
+    /// Path of the points that follow the bone.
     pub(super) path: Path,
-    /// The fraction of what the bones above leave, 0 to 1.
+    /// Fraction of what the ancestors leave, 0 to 1.
     pub(super) fraction: f64,
 }
 
@@ -28,10 +28,10 @@ impl Column {
 
     /// Writes the column into a table.
     ///
-    /// Sums at row starts are rounded to the nearest unit, rises up, and interpolated sums down, so that the
-    /// difference of two sums is at most 4 units too small. Fractions are cut to 16 bits, 2⁻¹⁶ of a segment,
-    /// and may be off by the rounding of their division; 2⁻¹² of the steepest segment exceeds both errors for
-    /// two sums. The quantization slack, which covers these errors, is a power of two.
+    /// Rounding: sums at row starts go to the nearest unit, rises go up, and interpolated sums go down. The difference of two
+    /// sums is thus at most 4 units too small. Fractions are cut to 16 bits (2⁻¹⁶ of a segment) and may also be off by the
+    /// rounding of their division. For two sums, 2⁻¹² of the steepest segment exceeds both errors. The quantization slack
+    /// covers these errors and is a power of two.
     pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;

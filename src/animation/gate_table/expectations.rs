@@ -1,4 +1,4 @@
-//! The motion that a stale bone is expected to show.
+//! Motion that a stale bone is expected to show.
 
 use super::AnimatedBones;
 use super::columns::columns;
@@ -10,8 +10,8 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// The motion that each bone is expected to contribute to points that follow it or a bone below it, as a root
-/// sum of squares. [`Gate::Budget`](crate::animation::Gate::Budget) ranks bones by it.
+/// Expected motion that each bone contributes to points that follow it or a bone below it, as a root sum of squares.
+/// [`Gate::Budget`](crate::animation::Gate::Budget) ranks bones by it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectationTable(MotionTable);
 
@@ -41,13 +41,13 @@ impl ExpectationTable {
         &self.0.animated_bones
     }
 
-    /// The rotation path for which the motion was computed.
+    /// Rotation path for which the motion was computed.
     pub fn path(&self) -> RotationPath {
         self.0.path
     }
 
-    /// The entries, row by row: the sum of motion at the row's time and its rise to the next row. A clip's
-    /// last row holds the sum over the whole clip and an [`ErrorBudget`](super::ErrorBudget) of 0.
+    /// Entries row by row: the accumulated motion at the row's time and its rise to the next row. A clip's last row holds the
+    /// motion of the whole clip and an [`ErrorBudget`](super::ErrorBudget) of 0.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.0.rows
     }
@@ -57,7 +57,7 @@ impl ExpectationTable {
         self.0.motion(row, slot)
     }
 
-    /// A slot's motion along a whole clip.
+    /// A slot's motion over a whole clip.
     pub(crate) fn period(&self, clip: u32, slot: usize) -> u32 {
         self.0.of_clip(clip, slot)[0]
     }

@@ -1,6 +1,5 @@
-//! Tables by which gates decide; they are computed once, when clips are loaded. Columns are the slots of an
-//! [`Order`](super::Order). Rows are the key times of each clip, one clip after another; a clip's last row
-//! describes the whole clip.
+//! Tables by which gates decide, computed once when clips are loaded. Columns are the slots of an [`Order`](super::Order). Rows
+//! are the key times of each clip, one clip after another; a clip's last row describes the whole clip.
 
 mod animated_bones;
 mod bounds;
@@ -25,14 +24,14 @@ pub(crate) use buffers::TableBuffers;
 pub use expectations::ExpectationTable;
 pub use priorities::PriorityTable;
 
-/// The largest sum of motion over a whole clip, in units of the table.
+/// Largest accumulated motion of a whole clip, in units of the table.
 const MAX_MOTION: f64 = EVERYTHING as f64;
 
 /// The largest number of entries of a table.
 const MAX_ENTRIES: usize = 1 << 27;
 
-/// Refuses sampling with another rotation path than the one for which a table's motion was computed. Tables
-/// without motion permit any.
+/// Refuses sampling with a rotation path other than the one for which a table's motion was computed. A table without motion
+/// permits any path.
 ///
 /// # Errors
 /// [`InputError`] that names both paths.
@@ -46,12 +45,12 @@ pub fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Resu
     }
 }
 
-/// Number of rows of all clips of a set.
+/// Number of rows of all clips in a set.
 fn rows_of(set: &ClipSet) -> usize {
     set.clips().iter().map(|entry| set.rows(entry) as usize).sum()
 }
 
-/// Zeroed entries: the rows of a set's clips and `more` rows after them, of `stride` entries each.
+/// Zeroed entries for the rows of a set's clips and `more` rows after them, with `stride` entries per row.
 fn empty_rows(set: &ClipSet, more: usize, stride: usize) -> Result<Vec<[u32; 2]>, InputError> {
     let rows = rows_of(set) + more;
     match rows.checked_mul(stride).filter(|entries| *entries <= MAX_ENTRIES) {

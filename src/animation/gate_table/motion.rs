@@ -1,4 +1,4 @@
-//! Tables of accumulated motion, the common part of bounds and expectations.
+//! Tables of accumulated motion, shared by the bound table and the expectation table.
 
 use super::columns::Column;
 use super::{AnimatedBones, MAX_MOTION, empty_rows};
@@ -10,20 +10,20 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// For each row and slot, the sum of motion at the row's time and its rise to the next row, in units of the
-/// table. A clip's last row holds the sum over the whole clip and an [`ErrorBudget`](super::ErrorBudget).
+/// Accumulated motion of each row and slot: the sum at the row's time and its rise to the next row, in units of the table. A
+/// clip's last row holds the motion of the whole clip and an [`ErrorBudget`](super::ErrorBudget).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MotionTable {
     pub animated_bones: AnimatedBones,
-    /// The rotation path between keys for which the motion was computed.
+    /// Rotation path between keys for which the motion was computed.
     pub path: RotationPath,
     pub rows: Vec<[u32; 2]>,
-    /// Size of a unit, in metres or in the dimension of the motion.
+    /// Size of one unit, in metres or in the dimension of the motion.
     pub unit: f64,
 }
 
 impl MotionTable {
-    /// Makes a table without motion, with `more` rows after those of the clips, and the order of its columns.
+    /// Makes a table without motion, with `more` rows after the clips' rows, and the order of its columns.
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -39,7 +39,7 @@ impl MotionTable {
         Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
     }
 
-    /// Writes the columns of every clip, in the smallest unit in which they fit.
+    /// Writes the columns of every clip, in the smallest unit that lets them fit.
     pub fn fill(&mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<(), InputError> {
         for (clip, columns) in columns.iter().enumerate() {
             if let Some(bone) = columns.iter().position(|column| !column.path.total().is_finite()) {

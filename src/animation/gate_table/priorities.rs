@@ -7,8 +7,7 @@ use crate::animation::order::Order;
 use crate::animation::priority::Priorities;
 use crate::asset::clip::Clip;
 
-/// The priorities of each clip's bones, by which [`Gate::SkipPeriod`](crate::animation::Gate::SkipPeriod)
-/// decides.
+/// Priorities of each clip's bones, by which [`Gate::SkipPeriod`](crate::animation::Gate::SkipPeriod) decides.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PriorityTable {
     animated_bones: AnimatedBones,
@@ -52,7 +51,7 @@ impl PriorityTable {
         &self.animated_bones
     }
 
-    /// The entries, row by row: four priorities of 16 bits.
+    /// Entries row by row: four priorities of 16 bits each.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.rows
     }

@@ -1,18 +1,16 @@
-//! Sums of motion in integers, as kernels compute them: the reference of `wgsl/animation/motion.wgsl`.
+//! Integer arithmetic of accumulated motion, as kernels compute it: the reference of `wgsl/animation/motion.wgsl`.
 
-/// `value · fraction / 65536`; the fraction is at most 65536.
+/// Returns `value · fraction / 65536`; the fraction is at most 65536.
 pub fn scale_by_fraction(value: u32, fraction: u32) -> u32 {
     ((u64::from(value) * u64::from(fraction)) >> 16) as u32
 }
 
-/// The sum of motion at a time, given the sum at a row's start, its rise to the next row, and the fraction of
-/// the way there.
+/// Accumulated motion at a time, from the sum at a row's start, its rise to the next row, and the fraction of the way there.
 pub fn motion_at([start, rise]: [u32; 2], fraction: u32) -> u32 {
     start.wrapping_add(scale_by_fraction(rise, fraction))
 }
 
-/// The smaller difference of two sums: directly, or across the clip's end. `period` is the sum of the whole
-/// clip.
+/// Smaller difference of two sums: directly, or across the clip's end. `period` is the motion of the whole clip.
 pub fn motion_between(now: u32, last: u32, period: u32) -> u32 {
     let direct = now.abs_diff(last);
     direct.min(period.max(direct) - direct)

@@ -20,7 +20,7 @@ impl KeyframeCursorPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { compacted });
         Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
@@ -78,7 +78,7 @@ impl KeyframeCursorParams {
     }
 }
 
-/// The listed instances.
+/// The listed instances of an active-only job.
 struct Listed<'a> {
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
@@ -107,7 +107,7 @@ fn bind(
     group.bind(gpu, kernel)
 }
 
-/// Prepared cursors: set the time, then record.
+/// A prepared computation of cursors: set the time, then record.
 pub type KeyframeCursorJob = ParamsJob<KeyframeCursorParams>;
 
 impl KeyframeCursorJob {

@@ -6,8 +6,8 @@ use crate::animation::instance::Wrap;
 use crate::asset::keyframe::{KeyframeCursor, keyframe_cursor};
 use crate::shared::animation::clock::MAX_TURNS;
 
-/// The time inside the clip, in seconds since its start; 0 for a loop whose time is too large to resolve. It
-/// computes in the order of `wgsl/animation/clock.wgsl`; [`Wrap::inside`] is more exact for large times.
+/// Time inside the clip, in seconds since its start; 0 for a loop whose time is too large to resolve. It computes in the order
+/// of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more exact for large times.
 pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
         return 0.0;
@@ -30,8 +30,8 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     inside
 }
 
-/// The cursor of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] per instance. If the
-/// clip has fewer timelines, the kernel leaves the other cursors unchanged; here they are at the start.
+/// Cursor of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] per instance. If the clip has fewer
+/// timelines, the kernel leaves the other cursors unchanged; here they are at the start.
 pub fn cursors(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<KeyframeCursor> {
     let mut cursors = vec![KeyframeCursor::default(); instances.len() * set.timelines_a_clip()];
     cursors_into(set, instances, elapsed, &mut cursors);

@@ -21,7 +21,7 @@ impl LocalToModelPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { compacted });
         Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
@@ -33,7 +33,7 @@ impl LocalToModelPass {
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<Job, Error> {
         let binder = Binder::new(gpu, skeleton, crowd)?;
-        // Every slot is walked: these are not read.
+        // Placeholders: every slot is walked, so these are not read.
         let (words, dispatches) = (Buffer::new(gpu, "nothing", 0)?, Buffer::new(gpu, "nothing", 1)?);
         let lists =
             Lists { updated_bones: &words, first_word: 0, instances: &words, dispatches: &dispatches };
@@ -65,7 +65,7 @@ impl LocalToModelPass {
             instances: &active.instances,
             dispatches: &active.dispatches,
         };
-        // The first dispatch is over instances.
+        // The first dispatch is per instance; chain levels follow.
         let step = |(dispatch, level): (u64, &[u32])| {
             let group = binder.bind(gpu, &self.compacted, level, &lists)?;
             Ok(Step::indirect(&self.compacted, group, active.dispatches.raw(), 16 * dispatch))
@@ -79,7 +79,7 @@ impl LocalToModelPass {
 /// The instances and slots that are walked.
 struct Lists<'a> {
     updated_bones: &'a Buffer<u32>,
-    /// The word at which the updated bones begin.
+    /// First word of the updated bones.
     first_word: u32,
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,

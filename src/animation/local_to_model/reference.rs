@@ -14,8 +14,8 @@ pub fn local_to_model(skeleton: &Skeleton, locals: &[Transform]) -> Vec<Affine> 
     model_matrices
 }
 
-/// As [`local_to_model()`], for one instance after another and without allocation: there are as many local
-/// transforms and matrices per instance as bones.
+/// As [`local_to_model()`], for one instance after another and without allocation. Each instance has one local transform and
+/// one matrix per bone.
 ///
 /// # Panics
 /// If the transforms or matrices of the last instance are incomplete.
@@ -45,7 +45,7 @@ pub fn affine(transform: &Transform) -> Affine {
 
 /// The product `a · b`, which applies b first.
 pub fn product(a: &Affine, b: &Affine) -> Affine {
-    // Loops over whole rows, so that compilers vectorize them; closures took twice as long.
+    // Loops over whole rows let compilers vectorize; closures took twice as long.
     let mut product = [[0.0; 4]; 3];
     for (row, [x, y, z, moved]) in product.iter_mut().zip(a) {
         for (column, entry) in row.iter_mut().enumerate() {
@@ -56,8 +56,8 @@ pub fn product(a: &Affine, b: &Affine) -> Affine {
     product
 }
 
-/// The model matrices of one instance, for updated slots only. `updated_bones` holds one bit per slot; if a
-/// slot is set, so are all slots below it.
+/// Computes the model matrices of one instance, for updated slots only. `updated_bones` holds one bit per slot; if a slot is
+/// set, so are all slots below it.
 ///
 /// # Panics
 /// If there are fewer bits, local transforms or matrices than bones.

@@ -1,5 +1,5 @@
-//! Derives weights from a clip itself (A section 14, future work): how well each term predicts the error of
-//! freezing a bone from one key to the next.
+//! Derives the weights from a clip itself (A section 14, future work), by how well each term predicts the error of freezing a
+//! bone from one key to the next.
 
 use super::{Differences, Weights};
 use crate::InputError;
@@ -10,18 +10,17 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{Affine, Transform};
 
-/// The times at which a frozen bone is examined, as fractions of the way to the next key.
+/// Times at which a frozen bone is examined, as fractions of the way to the next key.
 const MOMENTS: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
 
 impl Weights {
-    /// Derives the weights of the first five terms from a clip, by a non-negative least squares fit of the
-    /// terms to the errors in the model's space that result from freezing each bone from each of its keys to
-    /// the next. The user's term keeps its default weight, and the fit divides the rest. A clip in which
-    /// nothing moves, or in which no term has an effect, gives the default weights.
+    /// Derives the weights of the first five terms from a clip. It freezes each bone from each of its keys to the next and
+    /// measures the errors in model space. A non-negative least squares fit of the terms to these errors gives the weights. The
+    /// user's term keeps its default weight, and the fit divides the rest. The result is the default weights if nothing moves
+    /// in the clip, or if no term has an effect.
     ///
-    /// The error is the root of the mean square, over four moments and all bones, of how far points a bone's
-    /// length
-    /// along its axes lie from where they should.
+    /// The error is a root mean square of displacements over four moments and all bones. The displaced points lie on the bone's
+    /// axes, at the bone's length from its origin.
     ///
     /// # Errors
     /// [`InputError`] for a clip of another skeleton.
@@ -29,7 +28,7 @@ impl Weights {
         let differences = Differences::new(skeleton, clip, loops)?;
         let errors = freezing_errors(skeleton, clip, &differences);
         let largest = errors.iter().copied().fold(0.0, f64::max);
-        // After the last key there is nothing to freeze.
+        // Nothing is left to freeze after the last key.
         let last = differences.keys.iter().map(|key| key.until <= key.time);
         let rows = differences.terms(skeleton).into_iter().zip(&errors).zip(last).filter(|(_, last)| !last);
         let (terms, targets): (Vec<_>, Vec<_>) =
@@ -82,7 +81,7 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
     squares.into_iter().map(|square| (square / values).sqrt()).collect()
 }
 
-/// The sum, over all bones, of the squared error that one frozen bone causes.
+/// Sum, over all bones, of the squared error that one frozen bone causes.
 fn square_error(
     skeleton: &Skeleton,
     locals: &[Transform],
@@ -121,8 +120,8 @@ pub(super) fn farthest(stale: &Affine, fresh: &Affine, length: f64) -> f64 {
     off(0).max(off(1)).max(off(2))
 }
 
-/// The `x ≥ 0` that minimizes `|rows · x − targets|`. With five unknowns, it is the best of the solutions in
-/// which some unknowns are unconstrained and the others are 0.
+/// The `x ≥ 0` that minimizes `|rows · x − targets|`. With five unknowns, all subsets can be tried: the result is the best of
+/// the solutions in which some unknowns are free and the others are 0.
 pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> [f64; 5] {
     let mut normal = [[0.0; 5]; 5];
     let mut right = [0.0; 5];
@@ -149,7 +148,7 @@ pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> 
     best
 }
 
-/// Solves the equations for a subset of the unknowns, if the solution is unique.
+/// Solves the normal equations for a subset of the unknowns; `None` if the solution is not unique.
 fn solve(normal: &[[f64; 5]; 5], right: &[f64; 5], subset: u32) -> Option<[f64; 5]> {
     let chosen: Vec<usize> = (0..5).filter(|i| subset & (1 << i) != 0).collect();
     let mut rows: Vec<Vec<f64>> =
@@ -192,7 +191,7 @@ mod tests {
         };
         let found = non_negative_least_squares(&rows, &of(&truth));
         assert!(found.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
-        // The true negative value is clamped to 0, and no other x ≥ 0 nearby is better.
+        // The true negative value is clamped to 0, and no other nearby x ≥ 0 is better.
         let targets = of(&[1.0, -0.5, 0.0, 0.3, 0.0]);
         let found = non_negative_least_squares(&rows, &targets);
         let cost = |x: &[f64; 5]| of(x).iter().zip(&targets).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
@@ -230,8 +229,7 @@ mod tests {
         Some(Keys { times, values, interpolation: Interpolation::Linear })
     }
 
-    /// Computed by hand: the middle bone moves 4 m in a second, so that it is 1, 2, 3 and 4 m off, and so is
-    /// its child.
+    /// Computed by hand: the middle bone moves 4 m in a second, so it and its child are 1, 2, 3 and 4 m off.
     #[test]
     fn the_error_of_freezing_is_the_one_computed_by_hand() {
         let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [4.0, 0.0, 0.0, 0.0]]), None, None]);
@@ -270,7 +268,7 @@ mod tests {
             let differences = Differences::new(&model.skeleton, clip, true).expect("fits");
             let terms = differences.terms(&model.skeleton);
             let errors = freezing_errors(&model.skeleton, clip, &differences);
-            // With the best scale for each.
+            // Each with its best scale.
             let misfit = |weights: &[f64]| {
                 let sums: Vec<f64> =
                     terms.iter().map(|row| row.iter().zip(weights).map(|(a, b)| a * b).sum()).collect();

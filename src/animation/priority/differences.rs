@@ -1,4 +1,4 @@
-//! How much each key differs from the next: the first five terms of priorities.
+//! Differences between each key and the next: the first five terms of priorities.
 
 use super::NOISE;
 use crate::InputError;
@@ -14,9 +14,9 @@ pub(super) struct Difference {
     pub(super) bone: u32,
     pub(super) key: u32,
     pub(super) time: f32,
-    /// The time of the next key, or its own if there is none.
+    /// Time of the next key, or the key's own time if there is none.
     pub(super) until: f32,
-    /// The change in units of the model, in radians, and in factors of the scale at rest.
+    /// Changes in units of the model, in radians, and in factors of the scale at rest.
     pub(super) change: [f64; 3],
 }
 
@@ -95,15 +95,15 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
     a.distance(b)
 }
 
-/// The angle `2·acos(min(1, |a·b|))`, computed from the chord, which is exact for small angles; the rounding of
-/// the cosine would give 0.001 rad.
+/// The angle `2·acos(min(1, |a·b|))`, computed from the chord, which is exact for small angles. Through the cosine, rounding
+/// would give 0.001 rad.
 fn angle(a: [f32; 4], b: [f32; 4]) -> f64 {
     let [a, b] = [a, b].map(|q| glam::DVec4::from(q.map(f64::from)).normalize());
     let b = if a.dot(b) < 0.0 { -b } else { b };
     4.0 * libm::asin((a.distance(b) / 2.0).min(1.0))
 }
 
-/// The diagonal of the box around all bones at rest, in units of the model.
+/// Diagonal of the box around all bones at rest, in units of the model.
 pub fn size(skeleton: &Skeleton) -> f64 {
     let model_matrices = local_to_model(skeleton, &skeleton.rest());
     let positions = model_matrices.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));

@@ -10,10 +10,10 @@ use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// The largest unevenness or shear of scales above a yaw.
+/// Largest unevenness or shear of the scales above a root whose yaw is taken.
 const UNEVEN: f64 = 1e-4;
 
-/// A quaternion with a smaller part about the vertical has no yaw; the previous one counts.
+/// Smallest twist part of a quaternion that defines a yaw. Below it, the previous yaw counts.
 const UPSIDE_DOWN: f64 = 1e-12;
 
 pub(super) fn extract(
@@ -45,7 +45,7 @@ pub(super) fn extract(
     Ok((clip.replaced(bone, translation, rotation)?, motion))
 }
 
-/// The transform from the space of the bone's parent into the model's.
+/// Transform from the space of the bone's parent to model space.
 fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, InputError> {
     let mut above = DAffine3::IDENTITY;
     let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
@@ -62,7 +62,7 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
         above = sample_bone(clip, ancestor, 0.0, RotationPath::Slerp).wide() * above;
     }
     let matrix = above.matrix3;
-    // Also refused if only rounding keeps the determinant from being zero.
+    // Refuses also determinants that only rounding keeps from being zero.
     let size = matrix.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if matrix.determinant().abs() <= 1e-9 * size.powi(3) {
         return Err(wrong_scale(skeleton, clip, bone, "must not make the bones below it flat"));
@@ -70,14 +70,14 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
     Ok(above)
 }
 
-/// Refuses the scale of the bone above `bone` that mirrors, or else of the one with the most uneven scale.
+/// Error for a bad scale above `bone`: it names the bone that mirrors, or else the one with the most uneven scale.
 fn wrong_scale(skeleton: &Skeleton, clip: &Clip, bone: usize, bound: &str) -> InputError {
     let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
     let above = std::iter::successors(parent(bone as u32), |bone| parent(*bone));
     let scales: Vec<(u32, [f32; 3])> =
         above.map(|bone| (bone, sample_bone(clip, bone as usize, 0.0, RotationPath::Slerp).scale)).collect();
     let mirrors = |scale: &[f32; 3]| scale.iter().product::<f32>() < 0.0;
-    // How much smaller the smallest factor is than the largest: 0 for a flat scale, 1 for an even one.
+    // Ratio of the smallest to the largest scale factor: 0 for a flat scale, 1 for an even one.
     let evenness = |scale: &[f32; 3]| {
         let sizes = scale.map(f32::abs);
         sizes.into_iter().fold(f32::MAX, f32::min) / sizes.into_iter().fold(f32::MIN_POSITIVE, f32::max)
@@ -99,8 +99,8 @@ fn moves(clip: &Clip, track: &Track) -> bool {
     track.keys > 1 && (bends || differ)
 }
 
-/// The translation that is taken, in the model's space since the start, and the keys of the rest. Both are
-/// linear in the values, so that every interpolation stays the same.
+/// Returns the translation that is taken, in model space since the start, and the keys of the rest. Both are linear in the
+/// values, so that every interpolation stays the same.
 fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Taken) -> (Keys, Option<Keys>) {
     let part = |is_taken: bool| f64::from(u8::from(is_taken));
     let (horizontal, vertical) = (part(taken.horizontal), part(taken.vertical));
@@ -121,7 +121,7 @@ fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Tak
     (path, moves.then_some(rest))
 }
 
-/// The yaw in radians since the start, and the keys of the remaining rotation; `None` if it never changes.
+/// Returns the yaw in radians since the start, and the keys of the remaining rotation; `None` if the yaw never changes.
 fn split_turn(
     skeleton: &Skeleton,
     clip: &Clip,
@@ -197,7 +197,7 @@ fn samples(keys: &Keys) -> Vec<(f32, [f32; 4])> {
     samples
 }
 
-/// The number of pieces for which none rotates by more than [`PIECE`].
+/// Number of pieces so that none rotates by more than [`PIECE`].
 fn pieces(before: [f32; 4], after: [f32; 4]) -> u32 {
     let cosine: f64 = before.iter().zip(after).map(|(a, b)| f64::from(*a) * f64::from(b)).sum();
     ((2.0 * cosine.abs().min(1.0).acos() / PIECE).ceil() as u32).max(1)

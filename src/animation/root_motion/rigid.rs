@@ -21,7 +21,7 @@ impl Rigid {
         Self { turn, translation: pivot + translation - DQuat::from_rotation_y(turn) * pivot }
     }
 
-    /// This motion, followed by `next` in the space that results from this one.
+    /// This motion followed by `next`, which is in the space that results from this one.
     pub fn then(self, next: Self) -> Self {
         let turned = DQuat::from_rotation_y(self.turn) * next.translation;
         Self { turn: self.turn + next.turn, translation: self.translation + turned }

@@ -14,7 +14,7 @@ impl SeenAs<[u32; 2]> for KeyframeCursor {}
 /// Samples bones.
 #[derive(Debug, Clone)]
 pub struct SamplePass {
-    // Kernels for sets without splines, and with them.
+    // One kernel for sets without splines, one for sets with splines.
     all: [Kernel; 2],
     compacted: [Kernel; 2],
     is_layered: bool,
@@ -25,7 +25,7 @@ impl SamplePass {
     /// Compiles the pipelines for crowds of one layer.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
         Self::compile(gpu, path, false)
     }
@@ -34,7 +34,7 @@ impl SamplePass {
     /// rotations are always blended along the chord.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn layered(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
         Self::compile(gpu, path, true)
     }

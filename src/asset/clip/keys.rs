@@ -4,13 +4,13 @@ use crate::InputError;
 use crate::asset::transform::{finite, unit};
 use crate::shared::animation::interpolation;
 
-/// The largest key time, in seconds: about 12 days.
+/// Largest key time, in seconds: about 12 days.
 pub const LONGEST: f32 = 1_048_576.0;
 
-/// Smaller key times count as 0; seconds.
+/// Threshold in seconds below which key times count as 0.
 const LEAST_TIME: f32 = 7.888_609e-31;
 
-/// How values between keys are interpolated.
+/// Interpolation of values between keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[repr(u32)]
 pub enum Interpolation {
@@ -18,27 +18,26 @@ pub enum Interpolation {
     Step = interpolation::INTERPOLATION_STEP,
     /// Linear interpolation; for rotations, along the shortest arc.
     Linear = interpolation::INTERPOLATION_LINEAR,
-    /// A cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized
-    /// afterwards.
+    /// Cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized afterwards.
     CubicSpline = interpolation::INTERPOLATION_SPLINE,
 }
 
 impl Interpolation {
-    /// Number of values of a key.
+    /// Number of values per key.
     pub(crate) fn values_a_key(self) -> usize {
         if self == Self::CubicSpline { 3 } else { 1 }
     }
 }
 
-/// The keys of one track, as an importer gives them.
+/// Keys of one track, as an importer provides them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keys {
-    /// Key times in seconds, not descending.
+    /// Key times in seconds, in non-descending order.
     pub times: Vec<f32>,
-    /// One value per key; in cubic splines three: in-tangent, value, out-tangent. The fourth component of
-    /// translations and scales is 0.
+    /// One value per key; in cubic splines three (in-tangent, value, out-tangent). The fourth component of translations and
+    /// scales is 0.
     pub values: Vec<[f32; 4]>,
-    /// How values between keys are interpolated.
+    /// Interpolation of values between keys.
     pub interpolation: Interpolation,
 }
 
@@ -67,7 +66,7 @@ impl Keys {
         Ok(())
     }
 
-    /// The keys in the form in which a clip stores them; the keys must be valid.
+    /// Converts valid keys to the form in which a clip stores them.
     ///
     /// # Errors
     /// [`InputError`] for tangents that exceed `f32` when they are multiplied by their seconds.
@@ -121,8 +120,7 @@ fn take_short_ways(values: &mut [[f32; 4]]) {
     }
 }
 
-/// Multiplies tangents by the seconds between their key and the adjacent key on their side, as the spline's
-/// formula needs them.
+/// Multiplies each tangent by the seconds between its key and the adjacent key on its side, as the spline's formula requires.
 fn stretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     for (key, pair) in times.windows(2).enumerate() {
         for at in [3 * key + 2, 3 * key + 3] {

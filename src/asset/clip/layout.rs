@@ -1,4 +1,4 @@
-//! Lays tracks out in the flat arrays of a clip, one after another.
+//! Places tracks in the flat arrays of a clip, one after another.
 
 use super::{Clip, Interpolation, Keys, Track};
 use crate::InputError;
@@ -9,7 +9,7 @@ pub(super) struct Layout {
     tracks: Vec<Track>,
     times: Vec<f32>,
     values: Vec<[f32; 4]>,
-    // Where lists of times lie that some track already has.
+    // Start of each list of times that an earlier track already has.
     known: std::collections::HashMap<Vec<u32>, usize>,
     last: f32,
 }
@@ -34,12 +34,12 @@ impl Layout {
         self.values.extend(keys.values);
     }
 
-    /// The clip, which lasts `duration` seconds or until the last key.
+    /// Finishes the clip. It lasts `duration` seconds or until the last key.
     ///
     /// # Errors
     /// [`InputError`] for more values than a buffer has room for.
     pub(super) fn finish(self, name: String, duration: f32) -> Result<Clip, InputError> {
-        // Shaders count the bytes of values in u32.
+        // Shaders compute byte offsets of values in u32.
         if self.values.len() > (1 << 28) - 1 {
             return Err(InputError::new("clip.values.len", self.values.len(), "must be below 2^28"));
         }

@@ -1,11 +1,11 @@
-//! Copies of clips in which some tracks have other keys.
+//! Copies of clips with replaced keys in some tracks.
 
 use super::{Clip, Keys, Layout, Part, Track};
 use crate::InputError;
 
 impl Clip {
-    /// The keys of a track as they are stored, with tangents multiplied by the seconds of their segment. A
-    /// track at rest gives no keys and one value.
+    /// Keys of a track as stored, with tangents multiplied by the seconds of their segment. A track at rest has no keys and one
+    /// value.
     pub(crate) fn stored_keys(&self, track: &Track) -> Keys {
         let interpolation = track.interpolation;
         let count = interpolation.values_a_key() * track.keys.max(1) as usize;
@@ -13,8 +13,8 @@ impl Clip {
         Keys { times: self.times_of(track).to_vec(), values: values.to_vec(), interpolation }
     }
 
-    /// The clip with other keys for the translation and rotation of one bone, where they are given. Tangents
-    /// must be multiplied by the seconds of their segment.
+    /// Copies the clip with replaced translation and rotation keys of one bone; `None` keeps the old ones. Tangents must be
+    /// multiplied by the seconds of their segment.
     ///
     /// # Errors
     /// [`InputError`] for rotations without a direction.
@@ -34,7 +34,7 @@ impl Clip {
         Self::of_stored(&self.name, self.duration, tracks)
     }
 
-    /// A clip of tracks as they are stored, three a bone; one without times is at rest, which is its value.
+    /// Builds a clip from stored tracks, three per bone. A track without times is at rest; its one value is the rest pose.
     ///
     /// # Errors
     /// [`InputError`] for more values than a buffer has room for.

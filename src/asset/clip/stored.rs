@@ -1,4 +1,4 @@
-//! Clips that were read with serde, and what is checked of them.
+//! Validation of clips read with serde.
 
 use serde::Deserialize;
 
@@ -6,7 +6,7 @@ use super::{Clip, LONGEST, Part, Track, check_times};
 use crate::InputError;
 use crate::asset::transform::{finite, unit};
 
-/// A clip that was not checked.
+/// A clip as read, before validation.
 #[derive(Deserialize)]
 #[serde(rename = "Clip")]
 pub(super) struct StoredClip {
@@ -20,14 +20,14 @@ pub(super) struct StoredClip {
 impl TryFrom<StoredClip> for Clip {
     type Error = InputError;
 
-    /// Refuses tracks that are not three a bone or reach beyond the arrays, times that descend or are out of range, values
+    /// Refuses tracks that are not three per bone or reach beyond the arrays, times that descend or are out of range, values
     /// that are not finite, and rotations without a direction.
     fn try_from(stored: StoredClip) -> Result<Self, InputError> {
         let StoredClip { name, duration, tracks, times, values } = stored;
         if !tracks.len().is_multiple_of(Part::ALL.len()) {
             return Err(InputError::new("clip.tracks.len", tracks.len(), "must be three a bone"));
         }
-        // Shaders count the bytes of values in u32.
+        // Shaders compute byte offsets of values in u32.
         if values.len() > (1 << 28) - 1 {
             return Err(InputError::new("clip.values.len", values.len(), "must be below 2^28"));
         }
@@ -46,7 +46,7 @@ impl TryFrom<StoredClip> for Clip {
     }
 }
 
-/// The time of a track's last key; 0 at rest.
+/// Checks one track. Returns the time of its last key; 0 at rest.
 fn check_track(at: usize, track: &Track, times: &[f32], values: &[[f32; 4]]) -> Result<f32, InputError> {
     let of_track = |first: u32, count: usize, all: usize, field: &str| {
         let (first, end) = (first as usize, first as usize + count);

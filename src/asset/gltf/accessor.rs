@@ -8,7 +8,7 @@ use super::document::Document;
 use super::draco::Decompressed;
 use crate::InputError;
 
-/// How an accessor's elements lie in a buffer view.
+/// Layout of an accessor's elements in a buffer view.
 #[derive(Clone, Copy)]
 struct Shape {
     component: ComponentType,
@@ -22,25 +22,25 @@ struct Shape {
 enum Kind {
     /// Floats, and normalized integers, which stand for fractions.
     Fraction,
-    /// Those, and 8- or 16-bit integers as they are (`KHR_mesh_quantization`).
+    /// Floats, normalized integers, and 8- or 16-bit integers taken as values (`KHR_mesh_quantization`).
     Quantized,
     /// Unsigned integers.
     Whole,
 }
 
-/// Makes a value of a component, whose number is given.
+/// Converts a component's number to a value.
 type Decode<T> = fn(Shape, f64) -> T;
 
-/// The elements of an accessor: in a buffer view, or in a compressed primitive.
+/// Elements of an accessor, in a buffer view or in a compressed primitive.
 pub struct Elements<'d, 'a> {
     pub document: &'d Document<'a>,
     pub accessor: Index<Accessor>,
-    /// The compressed primitive, and which of its attributes the accessor describes.
+    /// The compressed primitive, and the name of the attribute in it that the accessor describes.
     pub compressed: Option<(&'d Decompressed<'d>, String)>,
 }
 
 impl Elements<'_, '_> {
-    /// Reads them as vectors of `N` floats. Normalized integers become fractions.
+    /// Reads the elements as vectors of `N` floats. Normalized integers become fractions.
     ///
     /// # Errors
     /// [`InputError`] with the path of the fault in the file; integers that are not normalized are a fault too.
@@ -48,15 +48,15 @@ impl Elements<'_, '_> {
         self.read(Kind::Fraction, float)
     }
 
-    /// Reads them as floats, as [`Elements::vectors`].
+    /// Reads the elements as floats, as [`Elements::vectors`].
     ///
     /// # Errors
-    /// The same.
+    /// As [`Elements::vectors`].
     pub fn floats(self) -> Result<Vec<f32>, InputError> {
         Ok(self.vectors::<1>()?.into_flattened())
     }
 
-    /// Reads a vertex attribute: as [`Elements::vectors`], and also integers of 8 or 16 bits, as their values.
+    /// Reads a vertex attribute: as [`Elements::vectors`], but 8- or 16-bit integers are permitted and keep their values.
     ///
     /// # Errors
     /// [`InputError`] with the path of the fault in the file.
@@ -64,7 +64,7 @@ impl Elements<'_, '_> {
         self.read(Kind::Quantized, float)
     }
 
-    /// Reads them as vectors of `N` unsigned integers.
+    /// Reads the elements as vectors of `N` unsigned integers.
     ///
     /// # Errors
     /// [`InputError`] with the path of the fault in the file; floats and normalized integers are a fault too.
@@ -91,12 +91,12 @@ impl Elements<'_, '_> {
 }
 
 impl<'a> Document<'a> {
-    /// An accessor's elements in its buffer view.
+    /// Elements of an accessor in its buffer view.
     pub fn elements(&self, accessor: Index<Accessor>) -> Elements<'_, 'a> {
         Elements { document: self, accessor, compressed: None }
     }
 
-    /// The components of an accessor at `path`, from its buffer view or zeros, with those that a sparse one replaces.
+    /// Components of the accessor at `path`, from its buffer view or zeros, with the replacements of a sparse accessor applied.
     fn values<T: Copy + Default>(
         &self,
         path: &str,
@@ -121,7 +121,7 @@ impl<'a> Document<'a> {
     /// Charges the elements to the budget before they are read.
     fn count(&self, path: &str, accessor: &Accessor, shape: Shape) -> Result<(), InputError> {
         match accessor.buffer_view {
-            // The bytes of the view's buffer add to the budget.
+            // Reading the view adds its buffer's bytes to the budget.
             Some(view) => drop(self.view(view)?),
             None => self.budget.check_zeros(path, shape.count as u64)?,
         }
@@ -129,7 +129,7 @@ impl<'a> Document<'a> {
         self.budget.spend(path, shape.count.saturating_mul(shape.components.div_ceil(4)))
     }
 
-    /// Replaces the elements that a sparse accessor lists.
+    /// Replaces the elements listed by a sparse accessor.
     fn replace<T: Copy>(
         &self,
         path: &str,
@@ -159,7 +159,7 @@ impl<'a> Document<'a> {
         Ok(())
     }
 
-    /// The components of elements that begin at an offset in a buffer view. `path` is that of the offset's object.
+    /// Components of elements that begin at an offset in a buffer view. `path` is the path of the object with the offset.
     fn decoded<T>(
         &self,
         path: &str,
@@ -228,7 +228,7 @@ fn shape(path: &str, accessor: &Accessor, components: usize, kind: Kind) -> Resu
     Ok(Shape { component, components, count, is_normalized: accessor.normalized })
 }
 
-/// The number that the bytes of a component are.
+/// Number encoded in the bytes of a component.
 fn number(component: ComponentType, bytes: &[u8]) -> f64 {
     match (component, bytes) {
         (ComponentType::I8, [a]) => (*a as i8).into(),
@@ -237,13 +237,12 @@ fn number(component: ComponentType, bytes: &[u8]) -> f64 {
         (ComponentType::U16, [a, b]) => u16::from_le_bytes([*a, *b]).into(),
         (ComponentType::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]).into(),
         (ComponentType::F32, [a, b, c, d]) => f32::from_le_bytes([*a, *b, *c, *d]).into(),
-        // Not reached: components have the size of their type.
+        // Unreachable: the slice has the size of the component type.
         _ => f64::NAN,
     }
 }
 
-/// The value of a component: the number itself or, for normalized integers, a fraction (glTF 2.0, section
-/// 3.6.2.2).
+/// Value of a component: the number itself or, for normalized integers, a fraction (glTF 2.0, section 3.6.2.2).
 fn float(shape: Shape, number: f64) -> f32 {
     let one = match shape.component {
         ComponentType::I8 => 127.0,

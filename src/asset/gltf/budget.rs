@@ -1,42 +1,40 @@
-//! A budget that limits what a document of a given size may allocate. Accessors without a buffer view are zeros
-//! that take no bytes, and nodes, animations and textures may refer to the same bytes many times. Everything
-//! that an import allocates is charged here first, unless it lies in the document.
+//! Allocation budget of a document, in proportion to its size. Without it, small files could allocate much: accessors without a
+//! buffer view are zeros that take no bytes, and nodes, animations and textures may refer to the same bytes many times. An
+//! import charges everything that it allocates here first, unless the data lies in the document.
 
 use std::cell::Cell;
 
 use crate::InputError;
 
-/// Elements that any document may have: vectors and numbers of accessors, counted each time they are read, and
-/// data derived from them.
+/// Number of elements that any document may have. An element is a vector or number of an accessor, counted each time it is
+/// read, or data derived from it.
 const ELEMENTS: u64 = 1 << 16;
 
-/// Elements allowed per byte, for documents that refer to the same bytes repeatedly; the total is limited by
-/// [`MAX_REPEATED`].
+/// Elements allowed per byte for documents that refer to the same bytes repeatedly, up to [`MAX_REPEATED`] in total.
 const REPEATED: u64 = 128;
 
-/// The most elements of a document that refers to the same bytes repeatedly, about 300 MiB.
+/// Largest number of elements of a document that refers to the same bytes repeatedly: about 300 MiB.
 const MAX_REPEATED: u64 = 1 << 24;
 
-/// Elements allowed per byte in any case: more than a document has that refers to its bytes once.
+/// Elements allowed per byte in any case: more than a document has if it refers to its bytes once.
 const ELEMENTS_A_BYTE: u64 = 4;
 
-/// As [`ELEMENTS_A_BYTE`], for documents with compressed meshes: Draco takes a byte for a triangle and half a vertex.
+/// As [`ELEMENTS_A_BYTE`], for documents with compressed meshes: Draco needs one byte for a triangle and half a vertex.
 const ELEMENTS_A_PACKED_BYTE: u64 = 16;
 
-/// Bytes of decompressed data that count as an element, as four floats do.
+/// Number of decompressed bytes that count as one element: four floats.
 pub const BYTES_AN_ELEMENT: usize = 16;
 
-/// Texels that the images of any document may have: 64 MiB, one image of 4096².
+/// Number of texels that the images of any document may have: 64 MiB, one image of 4096².
 const TEXELS: u64 = 1 << 24;
 
 /// Texels allowed per byte, for all images together.
 const TEXELS_A_BYTE: u64 = 256;
 
-/// The most texels that a byte of PNG or JPEG can hold: deflate expands a byte to at most 1032, of 8 texels
-/// each.
+/// Largest number of texels in a byte of PNG or JPEG: deflate expands a byte to at most 1032 bytes, with 8 texels each.
 const TEXELS_A_PACKED_BYTE: u64 = 8 * 1032;
 
-/// The bytes found so far, and what has been charged to them.
+/// Bytes found so far, and the allocations charged against them.
 pub struct Budget {
     elements_a_byte: u64,
     bytes: Cell<u64>,
@@ -52,7 +50,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// For a document with compressed meshes.
+    /// Budget of a document with compressed meshes.
     pub fn of_compressed() -> Self {
         Self { elements_a_byte: ELEMENTS_A_PACKED_BYTE, ..Self::default() }
     }
@@ -78,7 +76,7 @@ impl Budget {
         Ok(())
     }
 
-    /// How many elements can still be charged.
+    /// Number of elements that can still be charged.
     pub fn left(&self) -> u64 {
         self.most().saturating_sub(self.elements.get())
     }
@@ -89,7 +87,7 @@ impl Budget {
         bytes.saturating_mul(self.elements_a_byte).max(repeated)
     }
 
-    /// Refuses more zeros than there are bytes, beyond a fixed allowance.
+    /// Refuses more zeros than the document has bytes, beyond a fixed allowance.
     ///
     /// # Errors
     /// [`InputError`] with the largest count allowed.
@@ -105,7 +103,7 @@ impl Budget {
     /// Charges the texels of an image before it is decoded; `packed` is its size in bytes.
     ///
     /// # Errors
-    /// [`InputError`] if the bytes cannot hold so many texels, or if all images together have too many.
+    /// [`InputError`] if the image has more texels than its bytes can hold, or if all images together have too many.
     pub fn spend_texels(&self, path: &str, size: [u32; 2], packed: usize) -> Result<(), InputError> {
         let texels = u64::from(size[0]) * u64::from(size[1]);
         let refused = |bound: String| {

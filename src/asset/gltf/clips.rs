@@ -1,4 +1,4 @@
-//! Reads animations: those of bones as clips, and those of morph weights as keys of a mesh.
+//! Reads animations: animations of bones become clips, and animations of morph weights become keys of a mesh.
 
 use gltf_json::accessor::Accessor;
 use gltf_json::animation::{Interpolation as GltfInterpolation, Property};
@@ -57,7 +57,7 @@ fn clip(
     Clip::new(name, &nodes.skeleton, &bones, duration)
 }
 
-/// The clips that animate the weights of a node's targets.
+/// Keys of a node's morph weights, by clip.
 pub fn weight_keys(
     document: &Document<'_>,
     node: usize,
@@ -90,9 +90,9 @@ fn twice(animation: usize, channel: usize, node: usize) -> InputError {
     InputError::new(path, node, "must not be animated by two channels")
 }
 
-/// The keys of a sampler, whose values are not read yet.
+/// Keys of a sampler, before its values are read.
 struct Sampler {
-    /// The paths of times and values.
+    /// Paths of the times and the values in the file.
     paths: [String; 2],
     times: Vec<f32>,
     values: Index<Accessor>,

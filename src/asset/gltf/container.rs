@@ -1,5 +1,5 @@
-//! Splits a GLB into its JSON and its binary chunk (glTF 2.0, chapter 4). The crate `gltf` has a reader too,
-//! but it panics on a header that states a length below 12.
+//! Splits a GLB into its JSON and its binary chunk (glTF 2.0, chapter 4). The crate `gltf` also has a reader, but it panics on
+//! a header with a length below 12.
 
 use crate::InputError;
 
@@ -13,7 +13,7 @@ const JSON: u32 = 0x4e4f_534a;
 const BINARY: u32 = 0x004e_4942;
 
 impl<'a> Container<'a> {
-    /// Splits a GLB; anything that does not begin with its magic number is taken as JSON.
+    /// Splits a GLB. Bytes that do not begin with its magic number are taken as JSON.
     pub fn new(bytes: &'a [u8]) -> Result<Self, InputError> {
         if !bytes.starts_with(b"glTF") {
             return Ok(Self { json: bytes, binary: None });

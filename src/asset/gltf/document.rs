@@ -1,4 +1,4 @@
-//! A parsed and validated document: glTF's JSON, and its buffers.
+//! A parsed and validated document: the JSON and the buffers of a glTF file.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
@@ -19,23 +19,23 @@ use super::{faults, json};
 use crate::InputError;
 use crate::asset::beside::path_below;
 
-/// A document whose indices are all in range.
+/// A document in which all indices are in range.
 pub struct Document<'a> {
     pub root: Root,
-    /// What gltf-json does not read.
+    /// Data of extensions that gltf-json does not read.
     pub extensions: Extensions,
-    /// What the document may allocate.
+    /// Allocation budget of the document.
     pub budget: Budget,
     binary: Option<&'a [u8]>,
     beside: Option<Beside<'a>>,
     buffers: Vec<OnceCell<Bytes<'a>>>,
-    /// The bytes of buffer views that are compressed, each decompressed once.
+    /// Decompressed bytes of compressed buffer views, each decompressed once.
     decompressed: Vec<OnceCell<Vec<u8>>>,
     /// External files, each read once.
     files: RefCell<HashMap<PathBuf, Rc<Vec<u8>>>>,
 }
 
-/// The bytes of a buffer: part of the document, or read from elsewhere.
+/// Bytes of a buffer: part of the document, or read from elsewhere.
 enum Bytes<'a> {
     Here(&'a [u8]),
     Elsewhere(Rc<Vec<u8>>),
@@ -57,7 +57,7 @@ impl<'a> Document<'a> {
         let value = json::parse(json)?;
         faults::check_version(&value)?;
         let extensions = Extensions::new(&value, is_bare)?;
-        // The tree is taken apart here, and read again for the value of an error.
+        // The tree is consumed below, and parsed again only to quote a value in an error.
         let again = || json::parse(json).unwrap_or_default();
         let root: Root =
             serde_path_to_error::deserialize(value).map_err(|error| faults::of_type(&again(), &error))?;
@@ -79,7 +79,7 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// The bytes of a buffer view, decompressed, and its stride.
+    /// Bytes of a buffer view, decompressed, and its stride.
     pub fn view(&self, index: Index<buffer::View>) -> Result<(&[u8], Option<usize>), InputError> {
         let at = index.value();
         let path = format!("bufferViews[{at}]");
@@ -100,7 +100,7 @@ impl<'a> Document<'a> {
         Ok((bytes, stride))
     }
 
-    /// A part of a buffer; `path` names its length in errors.
+    /// Slice of a buffer; `path` names its length in errors.
     pub fn slice(
         &self,
         path: &str,
@@ -149,7 +149,7 @@ impl<'a> Document<'a> {
         Ok(&cell.get_or_init(|| bytes).get()[..length as usize])
     }
 
-    /// The bytes of a `data:` URI, or of a file in the document's folder or below it.
+    /// Bytes of a `data:` URI, or of a file in the document's folder or below it.
     pub fn resource(&self, path: &str, uri: &str) -> Result<Rc<Vec<u8>>, InputError> {
         let shown: String = uri.chars().take(60).collect();
         let refused = |bound: String| InputError::new(path, &shown, bound);
@@ -177,14 +177,14 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Some exporters leave the padding out.
+/// Some exporters omit the padding.
 const BASE64: base64::engine::GeneralPurpose = base64::engine::GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     base64::engine::GeneralPurposeConfig::new()
         .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
 );
 
-/// Checks that the accessors of positions exist: gltf-json's validation assumes it, and panics otherwise.
+/// Checks that the accessors of positions exist. gltf-json's validation assumes it and panics otherwise.
 fn positions_exist(root: &Root) -> Result<(), InputError> {
     let meshes = root.meshes.iter().enumerate();
     for (mesh, at, primitive) in
@@ -200,13 +200,13 @@ fn positions_exist(root: &Root) -> Result<(), InputError> {
     Ok(())
 }
 
-/// The ends of paths at which gltf-json misses positions and their bounds.
+/// Path suffixes at which gltf-json reports missing positions or missing bounds of positions.
 const OF_POSITIONS: [&str; 3] =
     [".attributes[\"POSITION\"]", ".attributes[\"POSITION\"].min", ".attributes[\"POSITION\"].max"];
 
-/// Reports the first error that gltf-json finds. Some are not errors here: accessors without a buffer view, which
-/// glTF defines as zeros; primitives without positions, which are left out; positions without their bounds, which are
-/// not read; and extensions, which are checked before.
+/// Returns the first error that gltf-json finds. Some of its errors are not errors here: accessors without a buffer view, which
+/// glTF defines as zeros; primitives without positions, which are left out; positions without bounds, which are not read; and
+/// extensions, which are checked before.
 fn validate(root: &Root, document: impl FnOnce() -> Value) -> Result<(), InputError> {
     let mut first = None;
     root.validate(root, gltf_json::Path::new, &mut |path, fault| {
@@ -220,7 +220,7 @@ fn validate(root: &Root, document: impl FnOnce() -> Value) -> Result<(), InputEr
             first = Some((path, fault));
         }
     });
-    // gltf-json does not look at these.
+    // gltf-json does not validate these.
     for (animation, all) in root.animations.iter().enumerate() {
         for (at, channel) in all.channels.iter().enumerate() {
             let path = |field| format!("animations[{animation}].channels[{at}].target.{field}");

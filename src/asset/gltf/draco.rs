@@ -1,4 +1,4 @@
-//! Primitives that are compressed with Draco (`KHR_draco_mesh_compression`), decompressed by the crate draco-core.
+//! Primitives compressed with Draco (`KHR_draco_mesh_compression`), decompressed by the crate draco-core.
 
 use std::collections::HashMap;
 
@@ -12,12 +12,12 @@ use super::extensions::DRACO;
 use crate::InputError;
 use crate::asset::mesh::MAX_VERTICES;
 
-/// Where the compressed bytes of a primitive lie, and which attributes they have.
+/// Location of a primitive's compressed bytes, and the attributes in them.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Draco {
     buffer_view: u32,
-    /// For each attribute, its number within the compressed bytes.
+    /// Id of each attribute within the compressed bytes.
     attributes: HashMap<String, u32>,
 }
 
@@ -37,7 +37,7 @@ impl Draco {
     pub fn decompressed(&self, document: &Document<'_>, path: &str) -> Result<Decompressed<'_>, InputError> {
         let path = format!("{path}.extensions.{DRACO}");
         let (bytes, _) = document.view(Index::<buffer::View>::new(self.buffer_view))?;
-        // A triangle takes three elements, its indices.
+        // A triangle counts as three elements, its indices.
         let elements = document.budget.left();
         let limits = DecodeLimits::default()
             .with_max_points(MAX_VERTICES as u64)
@@ -56,12 +56,12 @@ impl Draco {
 }
 
 impl Decompressed<'_> {
-    /// The corners of the triangles.
+    /// Vertex indices of the triangles, three per triangle.
     pub fn indices(&self) -> Vec<u32> {
         self.mesh.faces().iter().flat_map(|face| face.map(|point| point.0)).collect()
     }
 
-    /// The values of an attribute, vertex by vertex; `None` if it is not compressed.
+    /// Values of an attribute, vertex by vertex; `None` if it is not compressed.
     ///
     /// # Errors
     /// [`InputError`] if the attribute does not exist, or has another number of components.

@@ -1,4 +1,4 @@
-//! Extensions: which of them a document may have, and the data of those that gltf-json does not read.
+//! Extensions: the ones that a document may have, and the data of those that gltf-json does not read.
 
 use gltf_json::extensions::texture::TextureTransform;
 use serde::Deserialize;
@@ -9,7 +9,8 @@ use super::faults;
 use super::meshopt::Meshopt;
 use crate::InputError;
 
-/// The extensions that a document may require. Lights are left out; Blender requires them wherever there are any.
+/// Extensions that a document may require. Lights are left out of the import, but Blender requires their extension wherever
+/// there are any.
 const READ: [&str; 7] = [
     DRACO,
     "EXT_meshopt_compression",
@@ -20,51 +21,51 @@ const READ: [&str; 7] = [
     "KHR_lights_punctual",
 ];
 
-/// The prefix of extensions for materials, which a document may require as well: beside colours and normal maps everything
-/// in materials is left out.
+/// Prefix of material extensions, which a document may require as well: except for colours and normal maps, materials are left
+/// out anyway.
 const OF_MATERIALS: &str = "KHR_materials_";
 
-/// Draco compression of primitives.
+/// Extension for Draco compression of primitives.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// Meshoptimizer's compression of buffer views, under both of its names. The first one that a view has counts.
+/// Extension for meshoptimizer compression of buffer views, under both of its names. If a view has both, the first counts.
 const MESHOPT: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
-/// Many copies of a node's mesh.
+/// Extension for many copies of a node's mesh.
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
-/// Textures with WebP images.
+/// Extension for textures with WebP images.
 const WEBP: &str = "EXT_texture_webp";
 
-/// Extensions with images of formats that are not read, and what to do about them. A document may require them if materials
-/// and images are not read.
+/// Extensions with images in formats that are not read, each with a remedy for the error message. A document may require them
+/// if materials and images are not read.
 const OF_IMAGES: [(&str, &str); 3] = [
     ("KHR_texture_basisu", DECOMPRESS),
     ("EXT_texture_avif", "convert its textures to PNG, as `gltf-transform png IN OUT` does"),
     ("MSFT_texture_dds", "convert its textures to PNG"),
 ];
 
-/// What to do about KTX2.
+/// Remedy for KTX2 images.
 pub const DECOMPRESS: &str = "decompress its textures, as `gltf-transform ktxdecompress IN OUT` does";
 
 /// Data of extensions that gltf-json does not read.
 pub struct Extensions {
     /// For each material, the `KHR_texture_transform` of its normal texture.
     pub normal_transforms: Vec<Option<TextureTransform>>,
-    /// For each buffer view, how it is compressed.
+    /// For each buffer view, its meshoptimizer compression.
     pub meshopt: Vec<Option<Meshopt>>,
-    /// For each mesh and each of its primitives, how it is compressed with Draco.
+    /// For each mesh and each of its primitives, its Draco compression.
     pub draco: Vec<Vec<Option<Draco>>>,
     /// For each texture, the image of `EXT_texture_webp`.
     pub webp: Vec<Option<usize>>,
-    /// For each texture, an extension with an image that is not read, and what to do about it.
+    /// For each texture, an extension with an image that is not read, and the remedy.
     pub unread_images: Vec<Option<(&'static str, &'static str)>>,
     /// For each node, whether it has many copies of its mesh.
     instanced: Vec<bool>,
 }
 
 impl Extensions {
-    /// Reads what a document has. `is_bare` means that materials and images are not needed.
+    /// Reads the extensions of a document. `is_bare` means that materials and images are not needed.
     ///
     /// # Errors
     /// [`InputError`] for extensions that are required and not read.
@@ -102,7 +103,7 @@ impl Extensions {
         self.draco.iter().flatten().any(Option::is_some) || self.meshopt.iter().any(Option::is_some)
     }
 
-    /// Refuses a node of which only one of many copies would be read.
+    /// Refuses an instanced node that would be read, because only one of its copies would be.
     pub fn check_copies(&self, is_read: &[bool]) -> Result<(), InputError> {
         match self.instanced.iter().zip(is_read).position(|(is_instanced, is_read)| *is_instanced && *is_read)
         {
@@ -125,7 +126,7 @@ fn list<'a>(value: &'a Value, name: &str) -> impl Iterator<Item = &'a Value> {
     value.get(name).and_then(Value::as_array).into_iter().flatten()
 }
 
-/// What `read` makes of each element of a list and of its path.
+/// Applies `read` to each element of a list and its path.
 fn each<'a, T>(
     value: &'a Value,
     name: &str,
@@ -134,7 +135,7 @@ fn each<'a, T>(
     list(value, name).enumerate().map(|(at, element)| read(element, &format!("{name}[{at}]"))).collect()
 }
 
-/// An extension of an object at `path`.
+/// Reads an extension of the object at `path`.
 fn extension<'a, T: Deserialize<'a>>(
     object: &'a Value,
     name: &str,
@@ -149,7 +150,7 @@ fn extension<'a, T: Deserialize<'a>>(
     })
 }
 
-/// Refuses a required extension that would change the result and that is not read.
+/// Refuses a required extension that is not read and that would change the result.
 fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
     let of_images = |name: &str| OF_IMAGES.iter().find(|(known, _)| *known == name);
     let is_read = |name: &str| {
@@ -171,7 +172,7 @@ fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
     }
 }
 
-/// An extension of a texture with an image that is not read.
+/// The extension of a texture whose image is not read, if there is one.
 fn unread_image(texture: &Value) -> Option<(&'static str, &'static str)> {
     let given = texture.get("extensions")?;
     OF_IMAGES.into_iter().find(|(name, _)| given.get(name).is_some())

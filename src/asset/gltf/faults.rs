@@ -1,4 +1,4 @@
-//! Errors of a document that gltf-json refuses: the path, the value there, and what glTF allows in its place.
+//! Errors for documents that gltf-json refuses: the path, the value there, and what glTF allows in its place.
 
 use std::fmt::Debug;
 
@@ -9,10 +9,10 @@ use serde_json::Value;
 use crate::InputError;
 use crate::error::json::{refused_value, shown};
 
-/// The version of glTF that is read, of which any minor version is.
+/// Major version of glTF that is read; any minor version is accepted.
 const MAJOR: &str = "2";
 
-/// Refuses what is no glTF, and another version than 2.
+/// Refuses documents that are not glTF, and versions other than 2.
 pub fn check_version(document: &Value) -> Result<(), InputError> {
     let version = || document.pointer("/asset/version");
     for (path, value) in [("glTF", Some(document)), ("asset", document.get("asset"))] {
@@ -33,7 +33,7 @@ pub fn check_version(document: &Value) -> Result<(), InputError> {
     Ok(())
 }
 
-/// The error of a value that has another type than glTF gives it, or that lacks a field.
+/// Error for a value of the wrong type, or with a missing field.
 pub fn of_type(document: &Value, error: &serde_path_to_error::Error<serde_json::Error>) -> InputError {
     let path = match error.path().to_string() {
         root if root == "." => String::new(),
@@ -47,7 +47,7 @@ pub fn of_type(document: &Value, error: &serde_path_to_error::Error<serde_json::
     refused_value(document, error).unwrap_or_else(|| InputError::new(path, "unreadable", message))
 }
 
-/// The error of a value of the right type.
+/// Error for an invalid value of the right type.
 pub fn of_value(document: &Value, path: &str, fault: Fault) -> InputError {
     let steps = steps(path);
     let field = steps.iter().rev().find(|step| step.parse::<usize>().is_err()).copied().unwrap_or_default();
@@ -63,7 +63,7 @@ pub fn of_value(document: &Value, path: &str, fault: Fault) -> InputError {
     InputError::new(path, value, bound)
 }
 
-/// The fields and indices of a path of gltf-json.
+/// Splits a path of gltf-json into fields and indices.
 fn steps(path: &str) -> Vec<&str> {
     let steps = path.split(['.', '[']).map(|step| step.trim_matches([']', '"']));
     steps.filter(|step| !step.is_empty()).collect()
@@ -76,7 +76,7 @@ fn value_at<'a>(document: &'a Value, steps: &[&str]) -> Option<&'a Value> {
     })
 }
 
-/// The bound of an index that its list does not have.
+/// Bound for an index beyond the end of its list.
 fn out_of_list(document: &Value, steps: &[&str], field: &str) -> String {
     let is_attribute = steps.iter().rev().nth(1) == Some(&"attributes");
     let list = match field {
@@ -99,7 +99,7 @@ fn out_of_list(document: &Value, steps: &[&str], field: &str) -> String {
     format!("must lie in the list {list}, below {count}")
 }
 
-/// The error of an attribute whose name glTF does not have; gltf-json does not tell the name.
+/// Error for an attribute whose name glTF does not define; gltf-json does not report the name.
 fn of_attribute(document: &Value, of_mesh: &[&str], path: &str) -> InputError {
     let is_known = |name: &str| {
         let set =
@@ -114,7 +114,7 @@ fn of_attribute(document: &Value, of_mesh: &[&str], path: &str) -> InputError {
     InputError::new(parent, unknown.map_or("invalid", String::as_str), bound)
 }
 
-/// The values that glTF allows in a field.
+/// Values that glTF allows in a field.
 fn known(steps: &[&str], field: &str) -> String {
     let of =
         |values: &dyn Debug| format!("must be one of {}", format!("{values:?}").trim_matches(['[', ']']));

@@ -1,19 +1,19 @@
-//! Parses a document's JSON, and rewrites what glTF permits and gltf-json rejects.
+//! Parses a document's JSON, and rewrites constructs that glTF permits and gltf-json rejects.
 
 use serde_json::{Number, Value};
 
 use crate::InputError;
 use crate::error::json::{message, place};
 
-/// The largest whole number up to which a double holds every whole number: 2⁵³.
+/// Largest number up to which a double represents every integer: 2⁵³.
 const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Parses the JSON of a document.
 ///
 /// # Errors
-/// [`InputError`] with line and column, or with the first characters of what is no JSON object.
+/// [`InputError`] with line and column or, if the text is not a JSON object, with its first characters.
 pub fn parse(json: &[u8]) -> Result<Value, InputError> {
-    // glTF lets readers skip a byte order mark.
+    // glTF lets readers ignore a byte order mark.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
     if json.trim_ascii_start().first() != Some(&b'{') {
         let begin: String = String::from_utf8_lossy(&json[..json.len().min(80)]).chars().take(16).collect();
@@ -48,7 +48,7 @@ fn list<'a>(value: &'a mut Value, name: &str) -> impl Iterator<Item = &'a mut Va
     value.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten()
 }
 
-/// Removes all `extras`, which may be any value and are not read, and writes whole numbers as integers: `1.0` is one too.
+/// Removes all `extras`, which may be any value and are not read, and writes integral numbers as integers: `1.0` is one too.
 fn rewrite(value: &mut Value) {
     match value {
         Value::Object(members) => {
@@ -65,7 +65,8 @@ fn rewrite(value: &mut Value) {
     }
 }
 
-/// The integer that a number with a fraction or an exponent stands for. `-0.0` is none, since integers have no such sign.
+/// Integer value of a number that is written with a fraction or an exponent. `None` for `-0.0`, because integers have no
+/// negative zero.
 fn whole(number: &Number) -> Option<Number> {
     let value = number.as_f64().filter(|_| number.is_f64())?;
     let is_whole =
@@ -73,12 +74,12 @@ fn whole(number: &Number) -> Option<Number> {
     is_whole.then(|| Number::from(value as i64))
 }
 
-/// Whether an attribute is one of an application (`_NAME`) or of an extension (`EXTENSION:NAME`).
+/// Whether an attribute belongs to an application (`_NAME`) or to an extension (`EXTENSION:NAME`).
 fn is_foreign(attribute: &str) -> bool {
     attribute.starts_with('_') || attribute.contains(':')
 }
 
-/// Names the node and the path of a channel that `KHR_animation_pointer` points at a node, as `/nodes/3/rotation` does.
+/// Sets the node and the path of a channel whose `KHR_animation_pointer` points at a node, such as `/nodes/3/rotation`.
 fn resolve_pointer(channel: &mut Value) {
     let target = channel.get_mut("target").and_then(Value::as_object_mut);
     let Some(target) = target.filter(|target| !target.contains_key("node")) else { return };
@@ -94,8 +95,8 @@ fn resolve_pointer(channel: &mut Value) {
     }
 }
 
-/// Whether a channel has a target node. glTF lets extensions animate other things than nodes, and readers that do not know them
-/// skip such channels.
+/// Whether a channel has a target node. Extensions may animate other things than nodes; readers that do not know them skip such
+/// channels.
 fn has_node(channel: &Value) -> bool {
     let target = channel.get("target").and_then(Value::as_object);
     target.is_none_or(|target| target.contains_key("node"))

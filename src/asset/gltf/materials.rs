@@ -1,4 +1,4 @@
-//! Reads the materials that meshes use: base colour, its texture, normal map, and alpha; decodes PNG, JPEG and WebP images.
+//! Reads the materials that meshes use: base colour with its texture, normal map, and alpha. Decodes PNG, JPEG and WebP images.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -16,7 +16,7 @@ use super::extensions::DECOMPRESS;
 use crate::InputError;
 use crate::asset::material::{Alpha, Filter, MAX_TEXELS, Material, Sampling, Texture, Wrapping};
 
-/// The materials and images read so far, each once, in the order of first use.
+/// Materials and images read so far, each once, in the order of first use.
 #[derive(Default)]
 pub struct Materials {
     pub materials: Vec<Material>,
@@ -28,12 +28,12 @@ pub struct Materials {
 }
 
 impl Materials {
-    /// For an import without materials and images.
+    /// Reader for an import without materials and images.
     pub fn unread() -> Self {
         Self { is_unread: true, ..Self::default() }
     }
 
-    /// Reads a material unless it has been read already. Returns its index in the list.
+    /// Reads a material unless it was read before. Returns its index in the list.
     pub fn read(&mut self, document: &Document<'_>, index: Index<GltfMaterial>) -> Result<usize, InputError> {
         let at = index.value();
         if let Some(known) = self.of_materials.get(&at) {
@@ -53,7 +53,8 @@ impl Materials {
         Ok(self.materials.len() - 1)
     }
 
-    /// The normal map, and its scale. A map that is not read at the same coordinates as the texture is left out.
+    /// Normal map of a material, and its scale. The map is left out if its texture coordinates differ from those of the base
+    /// colour's texture.
     fn normal(
         &mut self,
         document: &Document<'_>,
@@ -126,7 +127,8 @@ struct Base<'a> {
 }
 
 impl<'a> Base<'a> {
-    /// The colour of `KHR_materials_pbrSpecularGlossiness`, if the material has that, and of metal and roughness otherwise.
+    /// Base colour of `KHR_materials_pbrSpecularGlossiness` if the material has that extension, otherwise of
+    /// metallic-roughness.
     fn of(material: &'a GltfMaterial) -> Self {
         let glossy = material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref());
         match (glossy, &material.pbr_metallic_roughness) {
@@ -144,14 +146,14 @@ impl<'a> Base<'a> {
     }
 }
 
-/// The first bytes of KTX2.
+/// Magic number of KTX2.
 const KTX2: &[u8] = b"\xabKTX 20\xbb";
 
-/// The formats of images that are read.
+/// Image formats that are read.
 const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
 
-/// Decodes a PNG, JPEG or WebP. The content of the bytes decides the format, whatever `mimeType` says. Texels are charged to the
-/// budget; `path` names the image in errors.
+/// Decodes a PNG, JPEG or WebP. The bytes decide the format, whatever `mimeType` says. Texels are charged to the budget; `path`
+/// names the image in errors.
 pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
     let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
     if bytes.starts_with(KTX2) {
@@ -168,7 +170,7 @@ pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, In
         let bound = format!("must be at most {MAX_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
     }
-    // A few bytes of WebP can hold a large image of one colour.
+    // A few bytes of WebP can encode a large image of one colour.
     let packed = if format == ImageFormat::WebP { usize::MAX } else { bytes.len() };
     budget.spend_texels(path, [width, height], packed)?;
     Ok(reader().decode().map_err(unreadable)?.into_rgba8())
@@ -187,7 +189,7 @@ fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
     }
 }
 
-/// The sampler's settings; those that it leaves open become linear, with mip levels.
+/// Sampling of a texture. Settings that the sampler leaves open become linear, with mip levels.
 fn sampling(sampler: &Sampler) -> Sampling {
     let wrap = [sampler.wrap_s, sampler.wrap_t].map(|mode| match mode.unwrap() {
         WrappingMode::Repeat => Wrapping::Repeat,
@@ -210,30 +212,30 @@ fn sampling(sampler: &Sampler) -> Sampling {
     Sampling { wrap, magnified, minified, mips }
 }
 
-/// The texture coordinates at which a texture of a material is read, and their transform.
+/// Texture coordinates at which a texture of a material is sampled, and their transform.
 pub struct Coordinates<'a> {
-    /// n of `TEXCOORD_n`.
+    /// Index n of `TEXCOORD_n`.
     pub set: u32,
     /// The transform of `KHR_texture_transform`.
     transform: Option<&'a TextureTransform>,
 }
 
 impl<'a> Coordinates<'a> {
-    /// Those of the base colour; `None` if it has no texture.
+    /// Coordinates of the base colour's texture; `None` if there is none.
     pub fn of_color(material: &'a GltfMaterial) -> Option<Self> {
         let info = Base::of(material).texture?;
         let transform = info.extensions.as_ref().and_then(|all| all.texture_transform.as_ref());
         Some(Self::new(info.tex_coord, transform))
     }
 
-    /// Those of the normal map; `None` if there is none.
+    /// Coordinates of the normal map; `None` if there is none.
     pub fn of_normals(document: &'a Document<'_>, index: Index<GltfMaterial>) -> Option<Self> {
         let info = document.root.materials[index.value()].normal_texture.as_ref()?;
         let transform = document.extensions.normal_transforms.get(index.value()).and_then(Option::as_ref);
         Some(Self::new(info.tex_coord, transform))
     }
 
-    /// A transform may name another set.
+    /// A transform may override the set.
     fn new(set: u32, transform: Option<&'a TextureTransform>) -> Self {
         Self { set: transform.and_then(|transform| transform.tex_coord).unwrap_or(set), transform }
     }
@@ -243,7 +245,7 @@ impl<'a> Coordinates<'a> {
         self.transform.is_some()
     }
 
-    /// Whether two textures are read at the same coordinates.
+    /// Whether two textures are sampled at the same coordinates.
     fn are_same(&self, other: &Self) -> bool {
         let key = |coordinates: &Self| {
             let TextureTransform { offset, rotation, scale, .. } =

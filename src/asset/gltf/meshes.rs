@@ -1,5 +1,5 @@
-//! Reads the meshes of nodes: a mesh a primitive, with the weights of its morph targets and their keys. Primitives without
-//! positions are left out.
+//! Reads the meshes of nodes: one mesh per primitive, with its morph weights and their keys. Primitives without positions are
+//! left out.
 
 use gltf_json::mesh::Semantic;
 use gltf_json::validation::Checked;
@@ -14,11 +14,10 @@ use crate::InputError;
 use crate::asset::mesh::Mesh;
 use crate::asset::transform::finite;
 
-/// Elements charged for a primitive, whatever it contains.
+/// Elements charged per primitive, whatever it contains.
 const PRIMITIVE: usize = 32;
 
-/// Reads every primitive of the scene's nodes that have a skin, in the order of the nodes; then those of nodes
-/// without a skin.
+/// Reads every primitive of the scene's nodes: first nodes with a skin, then nodes without one, each in the order of the nodes.
 ///
 /// # Errors
 /// [`InputError`] with the path of the fault in the file, and if no primitive has positions.
@@ -76,7 +75,7 @@ pub fn meshes(
     }
 }
 
-/// The weights of a node's targets: the node's own, or its mesh's, or 0.
+/// Morph weights of a node: the node's own, or its mesh's, or 0.
 fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>, InputError> {
     let (of_node, of_mesh) = (&document.root.nodes[node], &document.root.meshes[mesh]);
     let first = of_mesh.primitives.first().and_then(|primitive| primitive.targets.as_ref());

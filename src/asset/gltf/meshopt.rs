@@ -1,4 +1,4 @@
-//! Buffer views that meshoptimizer compressed (`EXT_meshopt_compression` and `KHR_meshopt_compression`), decompressed by the
+//! Buffer views compressed by meshoptimizer (`EXT_meshopt_compression` and `KHR_meshopt_compression`), decompressed by the
 //! crate meshoptimizer-rs.
 
 use meshoptimizer_rs::codec::{
@@ -12,18 +12,18 @@ use super::budget::BYTES_AN_ELEMENT;
 use super::document::Document;
 use crate::InputError;
 
-/// Where the compressed bytes of a view lie, and what they become.
+/// Location of a view's compressed bytes, and the format of the decompressed data.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Meshopt {
-    /// The extension's name.
+    /// Name of the extension.
     #[serde(skip)]
     extension: &'static str,
     buffer: u32,
     #[serde(default)]
     byte_offset: u64,
     byte_length: u64,
-    /// Bytes of an element.
+    /// Bytes per element.
     byte_stride: usize,
     /// Number of elements.
     count: usize,
@@ -52,12 +52,12 @@ enum Filter {
 }
 
 impl Meshopt {
-    /// The same, with the name of the extension.
+    /// Returns the same data with the extension's name set.
     pub fn named(self, extension: &'static str) -> Self {
         Self { extension, ..self }
     }
 
-    /// The decompressed bytes of view `index`.
+    /// Decompressed bytes of view `index`.
     ///
     /// # Errors
     /// [`InputError`] for bytes that do not lie in the buffer, for damaged ones, and for more than the budget allows.
@@ -68,7 +68,7 @@ impl Meshopt {
             document.slice(&format!("{path}.byteLength"), buffer, self.byte_offset, self.byte_length)?;
         let size = self.count.saturating_mul(self.byte_stride);
         document.budget.spend(&format!("{path}.count"), size.div_ceil(BYTES_AN_ELEMENT))?;
-        // The crate refuses sizes and shapes that do not belong together.
+        // The crate refuses sizes and strides that contradict each other.
         self.decode(bytes).map_err(|error| {
             let value = format!("[{} bytes]", bytes.len());
             let bound =

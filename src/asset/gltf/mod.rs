@@ -1,49 +1,47 @@
-//! Import of glTF 2.0, as JSON or GLB: the default scene's nodes that meshes follow, skins, animations, and
-//! meshes.
+//! Import of glTF 2.0, as JSON or GLB: the nodes of the default scene, skins, animations, and meshes.
 //!
-//! - Only the default scene is imported: the one that the document names, or else its first; every node if the
-//!   document has no scene.
-//! - Bones are the joints of every skin that the scene's nodes use, each once, and all ancestors of those
-//!   joints: a joint's position in the scene is the product of all transforms from the root down, whether or
-//!   not a skin uses the nodes, and animations may move any of them. glTF requires such joints to lie in the
-//!   same scene. Where they lie outside, they become bones nevertheless, posed below their own root, since
-//!   vertices follow them. A skin that no node uses counts if all its joints lie in the scene.
-//! - If there is no skin, bones are the nodes that carry meshes (see below), those that an animation moves, and
-//!   all their ancestors; all of these are [joints](crate::asset::Skeleton::joints).
+//! - **Scene.** Only the default scene is imported: the one that the document names, or else its first. If the document has no
+//!   scene, every node is imported.
+//! - **Bones.** Bones are the joints of every skin that the scene's nodes use, each once, and all ancestors of those joints. A
+//!   joint's position in the scene is the product of all transforms from the root down, whether or not a skin uses the nodes,
+//!   and animations may move any of them. glTF requires such joints to lie in the same scene. Joints outside the scene become
+//!   bones nevertheless, posed below their own root, because vertices follow them. A skin that no node uses counts if all its
+//!   joints lie in the scene.
+//! - If there is no skin, bones are the nodes that carry meshes (see below), those that an animation moves, and all their
+//!   ancestors; all of these are [joints](crate::asset::Skeleton::joints).
 //! - Matrices of nodes are decomposed into translation, rotation and scale.
-//! - Accessors may be sparse, interleaved, and of normalized integers. Buffers may lie in the GLB, in `data:`
-//!   URIs, or in files beside the document.
-//! - Channels that move no node, or a node that is not a bone, are left out, but they count for the clip's
-//!   duration.
-//! - Meshes are those of the scene's nodes with a skin, one [`Mesh`](crate::asset::Mesh) per primitive, in the
-//!   order of the nodes, with vertices in the file's order. The meshes of nodes without a skin come after them,
-//!   in the same order. Each of the latter follows one bone, through a skin of its own: the lowest node, at or
-//!   above its own, that is a joint, an ancestor of joints, or animated. If there is none, it follows the root
-//!   of its tree, which never moves. Such a node becomes a bone together with all its ancestors, but not a
-//!   joint. Strips and fans become lists of triangles; points and lines are left out. So are primitives without
-//!   positions, unless there are no others: then the document is refused. Missing normals are
-//!   smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace, from the
-//!   texture coordinates of the normal texture if there is one, before any `KHR_texture_transform`. A vertex
-//!   whose corners have different tangents is repeated at the end of its primitive, one copy per tangent.
-//!   A vertex whose weights are all 0 follows the joint in its first slot, as in three.js; of more than
-//!   [`MAX_INFLUENCES`](crate::asset::influences::MAX_INFLUENCES) joints it follows the strongest.
-//! - The winding of triangles that are mirrored at rest is reversed: for a whole mesh, or triangle by triangle
-//!   in a mesh where some bones mirror and others do not; see [`Mesh::indices`](crate::asset::Mesh::indices). A
-//!   clip whose scale has another sign than at rest shows such triangles from inside.
-//! - Of materials, the import reads base colour with its texture and the normal map with its scale (PNG,
-//!   JPEG or WebP, in the GLB, in `data:` URIs or in files beside the document; any set of texture coordinates, with
-//!   `KHR_texture_transform` applied to them), samplers, alpha, and `doubleSided`. A normal map is left out if
-//!   it is not read at the same coordinates as the base colour's texture. The opacity of `BLEND` becomes a
-//!   [screen-door pattern](crate::asset::material::Alpha::Dithered), which
-//!   [`Model::blend`](crate::asset::Model::blend) turns into blending. Vertex colours, everything else in
-//!   materials, and materials that no mesh uses are left out.
+//! - Accessors may be sparse, interleaved, and of normalized integers. Buffers may lie in the GLB, in `data:` URIs, or in files
+//!   beside the document.
+//! - Channels that move no node, or a node that is not a bone, are left out, but they count for the clip's duration.
+//! - **Meshes.** Each primitive becomes one [`Mesh`](crate::asset::Mesh), with vertices in the file's order. Meshes of nodes
+//!   with a skin come first, in the order of the nodes; meshes of nodes without a skin follow in the same order.
+//! - A mesh without a skin follows one bone, through a skin of its own. The bone is the lowest node, at or above the mesh's
+//!   node, that is a joint, an ancestor of joints, or animated. If there is none, it is the root of the tree, which never
+//!   moves. Such a node becomes a bone together with all its ancestors, but not a joint.
+//! - Strips and fans become lists of triangles; points and lines are left out. Primitives without positions are left out too;
+//!   if there are no others, the document is refused.
+//! - Missing normals become smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace.
+//!   It uses the texture coordinates of the normal texture if there is one, before any `KHR_texture_transform`. A vertex whose
+//!   corners have different tangents is repeated at the end of its primitive, one copy per tangent.
+//! - A vertex whose weights are all 0 follows the joint in its first slot, as in three.js. A vertex with more than
+//!   [`MAX_INFLUENCES`](crate::asset::influences::MAX_INFLUENCES) joints follows the strongest of them.
+//! - The winding of triangles that are mirrored at rest is reversed: for a whole mesh, or triangle by triangle in a mesh where
+//!   some bones mirror and others do not; see [`Mesh::indices`](crate::asset::Mesh::indices). A clip whose scale has another
+//!   sign than at rest shows such triangles from inside.
+//! - **Materials.** The import reads base colour with its texture, the normal map with its scale, samplers, alpha, and
+//!   `doubleSided`. Images may be PNG, JPEG or WebP, in the GLB, in `data:` URIs or in files beside the document. Textures may
+//!   use any set of texture coordinates; `KHR_texture_transform` is applied to them. A normal map is left out if it is not read
+//!   at the same coordinates as the base colour's texture. The opacity of `BLEND` becomes a [screen-door
+//!   pattern](crate::asset::material::Alpha::Dithered), which [`Model::blend`](crate::asset::Model::blend) turns into blending.
+//!   Vertex colours, everything else in materials, and materials that no mesh uses are left out.
 //!
 //! `extras` may be any value. Integers may be written with a fraction of 0 or an exponent.
 //!
 //! # Extensions
 //!
-//! A document may require those of the first table but `KHR_animation_pointer`, `KHR_lights_punctual`, and every
-//! `KHR_materials_*`. If it requires another one, it is refused by the extension's name. Of those that it has:
+//! A document may require the extensions of the first table except `KHR_animation_pointer`, and also `KHR_lights_punctual` and
+//! every `KHR_materials_*`. A document that requires another extension is refused; the error names the extension. Extensions
+//! that a document uses are treated as follows:
 //!
 //! | read | |
 //! |---|---|
@@ -69,15 +67,18 @@
 //! | `MSFT_lod` | the finest level is read |
 //! | `EXT_mesh_features`, `EXT_structural_metadata`, and others that add data to meshes | |
 //!
-//! [`Model::from_file_bare`](crate::asset::Model::from_file_bare) ignores those that concern materials and images.
+//! [`Model::from_file_bare`](crate::asset::Model::from_file_bare) ignores extensions that concern materials and images.
 //!
-//! Every error names the fault with its path in the file (`accessors[3].count`). No file causes a panic, or an
-//! allocation that its bytes do not account for: counts are checked against the bytes present. Data that takes
-//! no bytes has limits of its own. An accessor without a buffer view has at most 65,536 elements, or one for
-//! each byte of the document and its buffers. Data that is read repeatedly (meshes of several nodes, keys of
-//! several channels) has at most 128 elements per byte up to 16 million, or 4 per byte, 16 if meshes are compressed.
-//! Images have at most 256
-//! texels per byte, or 16 million, and 8192 in width and height.
+//! # Limits
+//!
+//! Every error names the fault with its path in the file (`accessors[3].count`). No file causes a panic. No file causes an
+//! allocation out of proportion to its bytes: counts are checked against the bytes present. Data that takes no bytes has limits
+//! of its own:
+//!
+//! - An accessor without a buffer view has at most 65,536 elements, or one for each byte of the document and its buffers.
+//! - Data that is read repeatedly (meshes of several nodes, keys of several channels) has at most 128 elements per byte up to
+//!   16 million, or 4 per byte, 16 if meshes are compressed.
+//! - Images have at most 256 texels per byte, or 16 million, and 8192 in width and height.
 
 mod accessor;
 pub(super) mod budget;
@@ -106,7 +107,7 @@ use crate::InputError;
 use document::Document;
 use materials::Materials;
 
-/// Reads a file by its path relative to the folder of another file.
+/// Callback that reads a file, given its path relative to the folder of another file.
 pub type Beside<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
 
 impl Model {
@@ -121,8 +122,8 @@ impl Model {
         }
     }
 
-    /// Reads glTF from memory, and its external buffers and images through `beside`, which gets their paths relative to
-    /// the document's folder. It works without a file system.
+    /// Reads glTF from memory. `beside` reads external buffers and images, given their paths relative to the document's folder.
+    /// It works without a file system.
     ///
     /// # Errors
     /// [`InputError`] with the path in the file.

@@ -1,4 +1,4 @@
-//! Reads nodes and skins: the skeleton, and a skin for every mesh that has none.
+//! Reads nodes and skins: the skeleton, and a skin for every mesh without one.
 
 use gltf_json::Root;
 use gltf_json::animation::Property;
@@ -59,12 +59,12 @@ impl Nodes {
         Ok(Self { skeleton, skins, skinned, rigid, bones })
     }
 
-    /// How many of [`Nodes::skins`], from the first on, are the document's.
+    /// Number of leading entries of [`Nodes::skins`] that come from the document.
     pub fn own_skins(&self) -> usize {
         self.skins.len() - self.rigid.len()
     }
 
-    /// The bone of a node, if the node is a bone.
+    /// Bone of a node, if the node is a bone.
     pub fn bone(&self, node: usize) -> Option<usize> {
         self.bones.get(node).copied().flatten().map(|bone| bone as usize)
     }
@@ -75,7 +75,7 @@ pub fn node_name(root: &Root, node: usize) -> String {
     root.nodes[node].name.clone().unwrap_or_else(|| format!("node_{node}"))
 }
 
-/// The skins of the scene's nodes, and the unused ones whose joints all lie in the scene.
+/// Skins used by the scene's nodes, and unused ones whose joints all lie in the scene.
 fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
     let (mut here, mut anywhere) = (vec![false; root.skins.len()], vec![false; root.skins.len()]);
     for (node, skin) in root.nodes.iter().enumerate().filter_map(|(at, node)| Some((at, node.skin?.value())))
@@ -87,7 +87,7 @@ fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
     (0..root.skins.len()).filter(|skin| here[*skin] || !anywhere[*skin] && lies_here(*skin)).collect()
 }
 
-/// The joints of these skins as nodes, each once.
+/// Joints of these skins as node indices, each once.
 fn joints(root: &Root, skins: &[usize]) -> Result<Vec<usize>, InputError> {
     let mut seen = vec![false; root.nodes.len()];
     let mut joints = Vec::new();
@@ -112,7 +112,7 @@ fn joints(root: &Root, skins: &[usize]) -> Result<Vec<usize>, InputError> {
     Ok(joints)
 }
 
-/// For each node, whether an animation moves, rotates or scales it.
+/// For each node, whether an animation translates, rotates or scales it.
 fn animated(root: &Root) -> Vec<bool> {
     let mut animated = vec![false; root.nodes.len()];
     for channel in root.animations.iter().flat_map(|animation| &animation.channels) {
@@ -124,7 +124,7 @@ fn animated(root: &Root) -> Vec<bool> {
     animated
 }
 
-/// The scene's nodes with a mesh and one of these skins, each with the index of its skin in `skins`.
+/// Nodes of the scene with a mesh and one of these skins, each with the index of its skin in `skins`.
 fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
     let mut place = vec![None; root.skins.len()];
     skins.iter().enumerate().for_each(|(at, skin)| place[*skin] = Some(at));
@@ -145,7 +145,7 @@ fn order(nodes: &[Node], scene: &Scene, wanted: &[usize]) -> Vec<usize> {
     order
 }
 
-/// The skeleton of the nodes in `order`. If there are no skins, all bones are joints.
+/// Skeleton of the nodes in `order`. If there are no skins, all bones are joints.
 fn skeleton(
     root: &Root,
     scene: &Scene,

@@ -19,8 +19,8 @@ use crate::asset::morph::{MorphDelta, MorphTarget};
 use crate::asset::skeleton::Skin;
 use crate::asset::tangents::Mesh as Surface;
 
-/// Elements charged per vertex for data that the file may lack and the import adds: normal, tangent, texture
-/// coordinates and influence.
+/// Elements charged per vertex for data that the import adds where the file lacks it: normal, tangent, texture coordinates and
+/// influence.
 const LACKING: usize = 4;
 
 /// A primitive, with its path in the file.
@@ -37,8 +37,8 @@ pub(super) struct Reader<'a, 'd> {
 }
 
 impl<'d> Reader<'_, 'd> {
-    /// The primitive as a mesh of skin 0 without a name, a material and weights, for a `skin` with its bones and
-    /// as many morph `targets` as the mesh's first primitive has.
+    /// Reads the primitive as a mesh of skin 0, without name, material and weights. `skin` has the bones that it may follow.
+    /// `targets` is the number of morph targets of the mesh's first primitive, which all primitives must have.
     pub(super) fn mesh(&self, skin: &Skin, targets: usize) -> Result<Mesh, InputError> {
         let path = self.named("POSITION");
         let Some(positions) = self.elements(&Semantic::Positions) else {
@@ -77,8 +77,7 @@ impl<'d> Reader<'_, 'd> {
         Ok(mesh)
     }
 
-    /// The file's tangents, if the file also has the normals and texture coordinates that belong to them;
-    /// otherwise those of MikkTSpace.
+    /// Tangents of the file if it also has the matching normals and texture coordinates; otherwise those of MikkTSpace.
     fn tangents(
         &self,
         positions: &[[f32; 3]],
@@ -106,8 +105,8 @@ impl<'d> Reader<'_, 'd> {
         self.primitive.material.map(|material| &self.document.root.materials[material.value()])
     }
 
-    /// The coordinates of the base colour's texture, which must exist, or of the normal map if there is no such
-    /// texture; without either the first set, if there is one.
+    /// Texture coordinates of the mesh: those of the base colour's texture, which must exist, or of the normal map if there is
+    /// no such texture. Without either, the first set, if there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(texture) = self.coordinates_of_material() else {
             return self.attribute::<2>(&Semantic::TexCoords(0), vertices);
@@ -122,15 +121,15 @@ impl<'d> Reader<'_, 'd> {
         Ok(Some(uv))
     }
 
-    /// Where the material's textures are read.
+    /// Coordinates at which the material's textures are sampled.
     fn coordinates_of_material(&self) -> Option<Coordinates<'_>> {
         let index = self.primitive.material.filter(|_| !self.is_bare)?;
         let of_color = Coordinates::of_color(&self.document.root.materials[index.value()]);
         of_color.or_else(|| Coordinates::of_normals(self.document, index))
     }
 
-    /// The coordinates along which tangents run, untransformed, if they differ from the mesh's: those of the
-    /// normal texture, or those of the base colour's texture if that has a transform.
+    /// Untransformed texture coordinates along which tangents run, if they differ from the mesh's: those of the normal texture,
+    /// or those of the base colour's texture if that has a transform.
     fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(index) = self.primitive.material.filter(|_| !self.is_bare) else { return Ok(None) };
         let of_mesh = self.coordinates_of_material();
@@ -155,7 +154,7 @@ impl<'d> Reader<'_, 'd> {
         Some(Elements { document: self.document, accessor, compressed })
     }
 
-    /// An attribute with one value per vertex, in range, or `None` if the primitive lacks it.
+    /// Attribute with one value per vertex, in range; `None` if the primitive lacks it.
     fn attribute<const N: usize>(
         &self,
         semantic: &Semantic,
@@ -165,8 +164,7 @@ impl<'d> Reader<'_, 'd> {
         one_a_vertex(&self.named(&semantic.to_string()), elements.attributes()?, vertices).map(Some)
     }
 
-    /// Unit normals: the file's. If the file has none, or one without length, they are computed from the
-    /// triangles.
+    /// Unit normals of the file. If the file has none, or one without length, they are computed from the triangles.
     fn normals(&self, positions: &[[f32; 3]], indices: &[u32]) -> Result<Vec<[f32; 3]>, InputError> {
         let Some(given) = self.attribute::<3>(&Semantic::Normals, positions.len())? else {
             return Ok(smooth_normals(positions, indices));
@@ -213,11 +211,11 @@ impl<'d> Reader<'_, 'd> {
             (None, None) => (0..vertices as u32).collect(),
         };
         check_indices(&format!("{}.indices", self.path), &indices, vertices)?;
-        // Draco has triangles, whatever the mode is without compression.
+        // Draco data is always a triangle list, whatever the primitive's mode says.
         let mode = if self.decompressed.is_some() { Mode::Triangles } else { self.primitive.mode.unwrap() };
-        // Strips and fans have one triangle per index.
+        // Strips and fans have about one triangle per index, so three indices are charged for each.
         self.document.budget.spend(&self.path, 3 * indices.len())?;
-        // Strips are joined by triangles without area.
+        // Strips are joined by degenerate triangles.
         let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
         let corners = |at: usize| [indices[at], indices[at + 1], indices[at + 2]];
         let windows = 0..indices.len().saturating_sub(2);
@@ -267,7 +265,7 @@ impl<'d> Reader<'_, 'd> {
     }
 }
 
-/// Refuses values that are out of range or not one for each vertex.
+/// Refuses values that are out of range, and lists that are not one value per vertex.
 fn one_a_vertex<const N: usize>(
     path: &str,
     values: Vec<[f32; N]>,
@@ -282,16 +280,16 @@ fn check_count(path: &str, count: usize, vertices: usize) -> Result<(), InputErr
     InputError::check_same(format!("{path}.count"), count, vertices, "one a vertex")
 }
 
-/// Leaves the strongest influences of a vertex that has more than [`MAX_INFLUENCES`].
+/// Keeps the strongest influences of a vertex that has more than [`MAX_INFLUENCES`].
 fn strongest(all: &mut Vec<Influence>) {
     if all.iter().filter(|influence| influence.weight != 0.0).count() > MAX_INFLUENCES {
-        // Weights that are not numbers come first, so that they are refused.
+        // NaN weights sort first, so that they are kept and refused later.
         all.sort_by(|a, b| b.weight.abs().total_cmp(&a.weight.abs()));
         all.truncate(MAX_INFLUENCES);
     }
 }
 
-/// Converts between glTF's handedness and this crate's: glTF's bitangent points up in the image.
+/// Converts a tangent between glTF's handedness and this crate's: glTF's bitangent points up in the image.
 pub(super) fn flipped([x, y, z, w]: [f32; 4]) -> [f32; 4] {
     [x, y, z, if w < 0.0 { 1.0 } else { -1.0 }]
 }

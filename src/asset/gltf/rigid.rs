@@ -1,4 +1,4 @@
-//! Meshes without a skin: each follows, as a whole, the lowest node at or above its own that may move.
+//! Meshes without a skin. Each follows, as a whole, the lowest node at or above its own that may move.
 
 use glam::DMat4;
 use gltf_json::Root;
@@ -11,14 +11,14 @@ use crate::asset::skeleton::inverse_bind;
 /// A node with a mesh and no skin.
 pub struct Rigid {
     pub node: usize,
-    /// The node that it follows: itself or an ancestor. This node must be a bone.
+    /// Node that the mesh follows: its own or an ancestor. It must be a bone.
     pub anchor: usize,
-    /// The matrix from the mesh's space into the anchor's, column-major.
+    /// Matrix from the mesh's space to the anchor's, column-major.
     pub bind: [f32; 16],
 }
 
-/// All such nodes of the scene, in the order of the nodes. An anchor is a joint, an ancestor of joints, or an
-/// animated node; otherwise it is the root of the tree.
+/// All nodes of the scene with a mesh and no skin, in the order of the nodes. An anchor is a joint, an ancestor of joints, or
+/// an animated node; otherwise it is the root of the tree.
 pub fn rigid(
     root: &Root,
     scene: &Scene,
@@ -37,11 +37,11 @@ pub fn rigid(
     nodes.into_iter().map(|node| followed.rigid(node)).collect()
 }
 
-/// For each node, its anchor and the matrix from the node's space into the anchor's.
+/// For each node, its anchor and the matrix from the node's space to the anchor's.
 struct Followed(Vec<Option<(usize, DMat4)>>);
 
 impl Followed {
-    /// For the nodes in `wanted`, which contains all their ancestors.
+    /// Finds the anchors of the nodes in `wanted`, which must contain all their ancestors.
     fn new(
         root: &Root,
         scene: &Scene,
@@ -71,8 +71,7 @@ impl Followed {
     }
 }
 
-/// The matrix of a node as the file has it, sheared or not, or the product of its translation, rotation and
-/// scale.
+/// Local matrix of a node: the file's, sheared or not, or the product of its translation, rotation and scale.
 fn local(root: &Root, node: usize) -> Result<DMat4, InputError> {
     if let Some(matrix) = &root.nodes[node].matrix {
         inverse_bind(&format!("nodes[{node}].matrix"), matrix)?;

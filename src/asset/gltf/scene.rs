@@ -1,4 +1,4 @@
-//! The scene: which nodes are imported, and the trees that nodes form (glTF 2.0, section 3.5.2).
+//! The scene: the nodes that are imported, and the trees that nodes form (glTF 2.0, section 3.5.2).
 
 use gltf_json::Root;
 use gltf_json::scene::Node;
@@ -7,14 +7,14 @@ use crate::InputError;
 
 /// The nodes of the default scene.
 pub struct Scene {
-    /// The parent of each node of the document; none of a node that the scene lists as a root.
+    /// Parent of each node of the document; `None` for a node that the scene lists as a root.
     pub parents: Vec<Option<usize>>,
     /// For each node of the document, whether it lies in the scene.
     pub contains: Vec<bool>,
 }
 
 impl Scene {
-    /// The scene that the document names, or else its first; all nodes if it has none.
+    /// The scene that the document names, or else its first. If the document has no scene, all nodes.
     ///
     /// # Errors
     /// [`InputError`] for nodes that do not form trees, and for a scene whose root node has a parent in the scene.
@@ -32,7 +32,7 @@ impl Scene {
         let roots: Vec<usize> = scene.nodes.iter().map(|node| node.value()).collect();
         let contains = below(&root.nodes, &roots);
         for (at, node) in roots.iter().enumerate() {
-            // Some exporters list the child of a node that no scene has, as if that did not exist; so does three.js.
+            // Some exporters list as a root the child of a node that is in no scene. Such a parent is ignored, as in three.js.
             if parents[*node].take().is_some_and(|parent| contains[parent]) {
                 let bound = "must be a root, and no node's child";
                 return Err(InputError::new(format!("scenes[{default}].nodes[{at}]"), node, bound));
@@ -53,7 +53,7 @@ impl Scene {
         marked
     }
 
-    /// The children of a node, without roots of the scene.
+    /// Children of a node, except roots of the scene.
     pub fn children<'a>(
         &'a self,
         nodes: &'a [Node],
@@ -64,7 +64,7 @@ impl Scene {
     }
 }
 
-/// The parent of each node. Refuses a node with two parents.
+/// Finds the parent of each node. Refuses a node with two parents.
 fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
     let mut parents = vec![None; nodes.len()];
     for (parent, node) in nodes.iter().enumerate() {

@@ -1,6 +1,5 @@
-//! Tangents of vertices that have none, computed by MikkTSpace, as glTF 2.0 requires in section 3.7.2.1. Where
-//! the corners of a vertex have different tangents, for example where texture coordinates are mirrored, each
-//! tangent gets a vertex of its own.
+//! Tangents for vertices without any, computed by MikkTSpace, as glTF 2.0 requires in section 3.7.2.1. If the corners of a
+//! vertex have different tangents, for example where texture coordinates are mirrored, each tangent gets a vertex of its own.
 
 use std::collections::HashMap;
 
@@ -10,22 +9,22 @@ use crate::InputError;
 use crate::asset::mesh::Mesh;
 use crate::asset::tangents::{Mesh as Surface, tangents};
 
-/// The largest number of triangles around a vertex for which MikkTSpace is used: its time grows with the square
-/// of that number, and it visits the triangles by recursion. Surfaces with more get the tangents that
+/// Largest number of triangles around a vertex for which MikkTSpace is used. Its time grows with the square of that number, and
+/// it visits the triangles by recursion. Surfaces with more triangles around a vertex get the tangents that
 /// [`crate::surface::tangent`] solves.
 const MAX_AROUND: u32 = 1024;
 
-/// Tangents of vertices, some of which are new copies.
+/// Tangents of vertices, including new copies of vertices.
 pub struct Tangents {
     /// Tangents in this crate's handedness: one per vertex, then one per copy.
     pub tangents: Vec<[f32; 4]>,
     /// Three indices per triangle, into the vertices followed by the copies.
     pub indices: Vec<u32>,
-    /// For each copy, the vertex that it repeats in everything but the tangent.
+    /// For each copy, the vertex that it repeats in all but the tangent.
     pub copied: Vec<u32>,
 }
 
-/// One tangent per vertex, without copies, as the solver computes them; used where MikkTSpace cannot be.
+/// One tangent per vertex from the solver, without copies. It is the fallback where MikkTSpace cannot be used.
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
@@ -34,8 +33,7 @@ pub fn solved(surface: &Surface<'_>) -> Result<Tangents, InputError> {
     Ok(Tangents { tangents: tangents(surface)?, indices, copied: Vec::new() })
 }
 
-/// The tangents of MikkTSpace. Vertices that belong to no triangle with an area in space and in texture
-/// space get solved tangents.
+/// Tangents by MikkTSpace. A vertex gets a solved tangent if none of its triangles has an area in space and in texture space.
 ///
 /// # Errors
 /// As [`solved`].
@@ -80,11 +78,10 @@ impl Tangents {
     }
 }
 
-/// The triangles with three different corners. Others would slow MikkTSpace down and would not change the
-/// result.
+/// Triangles with three different corners. Others would slow MikkTSpace down without changing the result.
 struct Faces<'a> {
     surface: &'a Surface<'a>,
-    /// Where each triangle begins in the indices.
+    /// Start of each triangle in the indices.
     first: Vec<usize>,
     /// One tangent per corner.
     tangents: Vec<Option<[f32; 4]>>,
@@ -102,7 +99,7 @@ impl<'a> Faces<'a> {
         Self { surface, first, tangents }
     }
 
-    /// The indices of their corners in the index list.
+    /// Indices of the triangles' corners in the index list.
     fn corners(&self) -> impl Iterator<Item = usize> {
         self.first.iter().flat_map(|first| *first..first + 3)
     }
@@ -111,7 +108,7 @@ impl<'a> Faces<'a> {
         self.surface.indices[self.first[face] + corner] as usize
     }
 
-    /// Whether too many triangles meet at some point.
+    /// Whether too many triangles meet at some vertex.
     fn is_crowded(&self) -> bool {
         let Surface { positions, normals, uv, indices } = self.surface;
         let mut around: HashMap<_, u32> = HashMap::new();
@@ -125,7 +122,7 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// Bit patterns that are equal for equal values: −0 and +0 have the same.
+/// Bit patterns that are equal for equal values: −0 and +0 give the same.
 fn bits<const N: usize>(vector: [f32; N]) -> [u32; N] {
     one_zero(vector).map(f32::to_bits)
 }
@@ -134,7 +131,7 @@ fn one_zero<const N: usize>(vector: [f32; N]) -> [f32; N] {
     vector.map(|number| number + 0.0)
 }
 
-/// Mathematical functions that are the same on every machine.
+/// Mathematical functions with the same results on every machine.
 struct Libm;
 
 impl Ops for Libm {
@@ -169,10 +166,9 @@ impl Geometry<Libm> for Faces<'_> {
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
-        // MikkTSpace's bitangent runs along v, which points down the image, as this crate's does; glTF's points
-        // up.
+        // The bitangents of MikkTSpace and of this crate run along v, which points down the image; glTF's points up.
         let tangent = space.map(|space| space.tangent_encoded());
-        // `None` if no triangle around the vertex has an area, or if numbers were too large or small.
+        // No usable tangent if no triangle around the vertex has an area, or if numbers were too large or small.
         let length = |[x, y, z, _]: &[f32; 4]| x * x + y * y + z * z;
         self.tangents[3 * face + corner] =
             tangent.filter(|tangent| (length(tangent) - 1.0).abs() < 1e-3).map(one_zero);

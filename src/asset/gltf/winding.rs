@@ -1,18 +1,17 @@
-//! Winding: triangles that are mirrored at rest are reversed, so that they are counter-clockwise seen from
-//! outside wherever the mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4). For a
-//! skinned mesh, whose own node has no effect, it is that of each joint's global transform times its inverse
-//! bind matrix.
+//! Winding: reverses triangles that are mirrored at rest, so that they are counter-clockwise seen from outside wherever the
+//! mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4). For a skinned mesh, the determinant is that of
+//! each joint's global transform times its inverse bind matrix, because the mesh's own node has no effect.
 
 use glam::DMat4;
 
 use crate::asset::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
 
-/// For each bone, whether its global transform at rest is mirrored. A singular one counts as not mirrored.
+/// For each bone, whether its global transform at rest is mirrored. A singular transform counts as not mirrored.
 pub fn mirrored(skeleton: &Skeleton) -> Vec<bool> {
     let mut mirrored: Vec<bool> = Vec::with_capacity(skeleton.len());
     for bone in skeleton.bones() {
-        // Signs are multiplied one by one: the product of many scales could overflow or underflow.
+        // Only signs are multiplied: the product of many scales could overflow or underflow.
         let is_turned = bone.rest.scale.iter().filter(|scale| **scale < 0.0).count() % 2 == 1;
         mirrored.push(is_turned != bone.parent.is_some_and(|parent| mirrored[parent as usize]));
     }
@@ -28,9 +27,9 @@ pub fn mirrors(mirrored: &[bool], skin: &Skin) -> Vec<bool> {
     if all.contains(&true) { all } else { Vec::new() }
 }
 
-/// Reverses the triangles whose three corners follow mirrored bones with more than half of their weight.
+/// Reverses triangles whose three corners each follow mirrored bones with more than half of their weight.
 pub fn turn_mirrored(mesh: &mut Mesh, mirrors: &[bool]) {
-    // Meshes of a skin without mirrored bones are skipped: files may have many meshes with large skins.
+    // Early exit for skins without mirrored bones: files may have many meshes with large skins.
     if mirrors.is_empty() {
         return;
     }

@@ -72,7 +72,7 @@ impl Mesh {
 
     fn validate_partners(&self) -> Result<(), InputError> {
         let vertices = self.vertices();
-        // Without levels they mean nothing.
+        // Partners have no meaning without levels.
         if self.partners.is_empty() || self.levels.is_empty() {
             return Ok(());
         }
@@ -87,7 +87,7 @@ impl Mesh {
                 return Err(InputError::new(format!("mesh.partners[{vertex}]"), partner, bound));
             };
             let own = coarsest[vertex as usize];
-            // A chain of partners thus ends.
+            // This makes every chain of partners end.
             if !(partner == &vertex
                 || *level > own
                 || *level == own && self.partners[*partner as usize] == *partner)
@@ -99,7 +99,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// For each vertex, whether the triangles use it.
+    /// For each vertex, whether the triangles of `indices` use it.
     fn used(&self, indices: &[u32]) -> Vec<bool> {
         let mut used = vec![false; self.vertices()];
         indices.iter().for_each(|vertex| used[*vertex as usize] = true);

@@ -1,4 +1,4 @@
-//! Models that were read with serde, and what is checked of them.
+//! Validation of models read with serde.
 
 use image::RgbaImage;
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use super::Model;
 use crate::InputError;
 use crate::asset::{Clip, Material, Mesh, Skeleton, Skin};
 
-/// A model whose parts are not known to match.
+/// A model as read; its parts may not match.
 #[derive(Deserialize)]
 #[serde(rename = "Model")]
 pub(super) struct StoredModel {
@@ -24,7 +24,7 @@ pub(super) struct StoredModel {
 impl TryFrom<StoredModel> for Model {
     type Error = InputError;
 
-    /// Refuses skins, clips and meshes that do not match each other or the skeleton, and materials that are not there.
+    /// Refuses skins, clips and meshes that do not match each other or the skeleton, and missing materials.
     fn try_from(stored: StoredModel) -> Result<Self, InputError> {
         let StoredModel { skeleton, skins, clips, meshes, skinned, materials, images } = stored;
         let model = Self { skeleton, skins, clips, meshes, skinned, materials, images };
@@ -49,7 +49,7 @@ impl TryFrom<StoredModel> for Model {
     }
 }
 
-/// Images as their sizes and texels.
+/// Serializes images as their sizes and texels.
 pub(super) mod images {
     use image::RgbaImage;
     use serde::de::Error as _;
@@ -83,7 +83,7 @@ pub(super) mod images {
         let image = |(at, stored): (usize, Stored)| {
             let Stored { width, height, texels } = stored;
             let wanted = 4 * u64::from(width) * u64::from(height);
-            // Texels beyond the last row would be kept.
+            // Without this check, texels beyond the last row would be kept.
             if texels.len() as u64 != wanted {
                 let value = texels.len();
                 return Err(D::Error::custom(format!(

@@ -4,24 +4,23 @@ use super::maps::Map;
 use super::statements::{Statement, Statements};
 use crate::InputError;
 
-/// A material as a library has it.
+/// A material as its library states it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Entry {
-    /// The folder of the library, for the images that it names.
+    /// Folder of the library; images are found relative to it.
     pub folder: std::path::PathBuf,
-    /// The name.
     pub name: String,
-    /// `Kd`, encoded as sRGB.
+    /// Diffuse colour (`Kd`), encoded as sRGB.
     pub color: [f64; 3],
-    /// `d`, or 1 − `Tr`.
+    /// Opacity: `d`, or 1 − `Tr`.
     pub opacity: f64,
-    /// `map_Kd`.
+    /// Colour map (`map_Kd`).
     pub color_map: Option<Map>,
-    /// `map_d`.
+    /// Opacity map (`map_d`).
     pub opacity_map: Option<Map>,
-    /// `norm`.
+    /// Normal map (`norm`).
     pub normal_map: Option<Map>,
-    /// `map_Bump` or `bump`.
+    /// Bump map (`map_Bump` or `bump`).
     pub bump_map: Option<Map>,
 }
 
@@ -61,7 +60,7 @@ impl Entry {
     }
 }
 
-/// The numbers of a statement, each from 0 to 1. One number stands for all of them.
+/// Numbers of a statement, each from 0 to 1. A single number stands for all of them.
 fn fractions<const N: usize>(statement: &Statement<'_>, file: &str) -> Result<[f64; N], InputError> {
     let numbers: Option<Vec<f64>> = (statement.words().filter(|word| *word != "-halo"))
         .take(N)

@@ -1,4 +1,4 @@
-//! The map statements of material libraries: options, and the name of an image.
+//! Map statements of material libraries: options, and the name of an image.
 
 use std::path::PathBuf;
 
@@ -6,26 +6,26 @@ use super::statements::Statement;
 use crate::InputError;
 use crate::asset::beside::path_below;
 
-/// An image that a material names.
+/// An image reference of a material.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Map {
-    /// The image's name as the file has it.
+    /// Name of the image as the file states it.
     pub name: String,
-    /// The image's path relative to the library.
+    /// Path of the image relative to the library.
     pub path: PathBuf,
-    /// What is added to texture coordinates, v up, after they are scaled.
+    /// Offset added to texture coordinates, v up, after scaling.
     pub offset: [f64; 2],
-    /// The factors of texture coordinates.
+    /// Scale of texture coordinates.
     pub scale: [f64; 2],
-    /// Whether the texels at the edge lie beyond it, and not the image again.
+    /// Whether the image is clamped to its edge instead of repeated.
     pub is_clamped: bool,
-    /// The factor of bumps.
+    /// Bump multiplier.
     pub bump: f32,
-    /// The line, for errors.
+    /// Location in the file, for errors.
     pub at: InputError,
 }
 
-/// The number of words after options that have no use here.
+/// Options that are ignored, with the number of words that follow each.
 const SKIPPED: [(&str, usize); 8] = [
     ("-blendu", 1),
     ("-blendv", 1),
@@ -81,12 +81,12 @@ impl Map {
     }
 }
 
-/// A path as MTL files have it, in which backslashes separate folders, too.
+/// Path in the form of MTL files, where backslashes separate folders, too.
 pub(super) fn slashes(path: &str) -> String {
     path.replace('\\', "/")
 }
 
-/// The rest of a statement, word by word.
+/// Remaining words of a statement.
 struct Words<'a>(&'a str);
 
 impl<'a> Words<'a> {
@@ -97,7 +97,7 @@ impl<'a> Words<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// Reads up to three numbers, at least one; what there is no number for stays. `None` without a finite number.
+    /// Reads one to three finite numbers; the remaining entries keep their values. `None` if there is no number.
     fn numbers(&mut self, to: &mut [f64]) -> Option<()> {
         for at in 0..3 {
             let before = self.0;

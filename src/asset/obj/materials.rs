@@ -1,4 +1,4 @@
-//! Materials of OBJ models: what their libraries say, with images.
+//! Materials of OBJ models, from their libraries, with images.
 
 use std::collections::HashMap;
 use std::io::ErrorKind;
@@ -17,7 +17,7 @@ use crate::asset::gltf::materials::decode;
 use crate::asset::material::{Alpha, Material, Sampling, Texture, Wrapping};
 use crate::asset::mesh::COORDINATE_LIMIT;
 
-/// The materials of the libraries that a model names. Those that it uses are read, with their images, each once.
+/// Materials of the libraries that a model names. Those that the model uses are read with their images, each once.
 pub(super) struct Materials<'a> {
     beside: Option<Beside<'a>>,
     budget: Budget,
@@ -27,12 +27,12 @@ pub(super) struct Materials<'a> {
     pub materials: Vec<Material>,
     /// Images, the top row first.
     pub images: Vec<RgbaImage>,
-    /// For each material, the map whose offset and scale change texture coordinates, if there is one.
+    /// For each material, the map whose offset and scale apply to texture coordinates, if there is one.
     moves: Vec<Option<Map>>,
 }
 
 impl<'a> Materials<'a> {
-    /// Reads libraries; each is given as its line and the text after `mtllib`.
+    /// Reads libraries, each given by its line and the text after `mtllib`.
     ///
     /// # Errors
     /// [`InputError`] for a library that exists and cannot be read.
@@ -48,7 +48,7 @@ impl<'a> Materials<'a> {
             moves: Vec::new(),
         };
         for (line, text) in libraries {
-            // A statement has several names, or one with spaces.
+            // A statement may have several names, or one name with spaces.
             if !found.library(*line, text)? && text.contains(char::is_whitespace) {
                 for name in text.split_whitespace() {
                     found.library(*line, name)?;
@@ -58,7 +58,7 @@ impl<'a> Materials<'a> {
         Ok(found)
     }
 
-    /// Reads a library; false if there is none of this name. The first material of a name counts.
+    /// Reads a library; false if there is none of this name. If a material's name repeats, the first counts.
     fn library(&mut self, line: usize, name: &str) -> Result<bool, InputError> {
         let Some(beside) = self.beside else { return Ok(false) };
         let refused = |bound: String| {
@@ -80,7 +80,7 @@ impl<'a> Materials<'a> {
         Ok(true)
     }
 
-    /// Reads a material unless it has been read already: its index in the list; `None` if no library has it.
+    /// Reads a material unless it was read before. Returns its index in the list; `None` if no library has it.
     ///
     /// # Errors
     /// [`InputError`] with the line, for an image that cannot be read.
@@ -102,7 +102,7 @@ impl<'a> Materials<'a> {
         Ok(Some(self.materials.len() - 1))
     }
 
-    /// Changes texture coordinates, v down, to those at which a material's images are read.
+    /// Transforms texture coordinates, v down, to those at which a material's images are sampled.
     ///
     /// # Errors
     /// [`InputError`] with the line of the material's map, for coordinates that leave the range.
@@ -122,7 +122,7 @@ impl<'a> Materials<'a> {
         Ok(())
     }
 
-    /// The image of the colour with the opacity of its own map, and whether it has one.
+    /// Colour texture combined with the opacity map, and whether there is an opacity map.
     fn texture(&mut self, entry: &Entry) -> Result<(Option<Texture>, bool), InputError> {
         let (color, opacity) = (&entry.color_map, &entry.opacity_map);
         let Some(first) = color.as_ref().or(opacity.as_ref()) else { return Ok((None, false)) };
@@ -193,14 +193,14 @@ fn sampling(map: &Map) -> Sampling {
     Sampling { wrap: [wrap; 2], ..Sampling::default() }
 }
 
-/// The image without transparency, which is `map_d`'s alone.
+/// Removes transparency from an image: only `map_d` sets it.
 fn opaque(mut image: RgbaImage) -> RgbaImage {
     image.pixels_mut().for_each(|texel| texel[3] = u8::MAX);
     image
 }
 
-/// Takes alpha from an image of opacities: its own alpha if it has any, otherwise its brightness. It gets the size of the
-/// image that it is for.
+/// Sets an image's alpha from an opacity image: the opacity image's own alpha if it has any, otherwise its brightness. The
+/// opacity image is resized to fit.
 fn set_opacity(image: &mut RgbaImage, mut opacity: RgbaImage) {
     if opacity.dimensions() != image.dimensions() {
         opacity = resize(&opacity, image.width(), image.height(), FilterType::Triangle);
@@ -212,7 +212,7 @@ fn set_opacity(image: &mut RgbaImage, mut opacity: RgbaImage) {
     }
 }
 
-/// A channel in sRGB, from 0 to 1, as linear light, in double precision: what is written is read back unchanged.
+/// Converts an sRGB channel, 0 to 1, to linear light. Double precision lets written values be read back unchanged.
 pub(super) fn linear(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
@@ -221,7 +221,7 @@ pub(super) fn linear(encoded: f64) -> f64 {
 pub(super) fn encoded(linear: f64) -> f64 {
     match linear {
         _ if linear <= 0.040_45 / 12.92 => 12.92 * linear,
-        // Without rounding.
+        // Exact, without rounding.
         1.0 => 1.0,
         _ => 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055,
     }

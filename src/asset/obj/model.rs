@@ -1,4 +1,4 @@
-//! Makes a model of what an OBJ file contains: a mesh for each object, group and material.
+//! Builds a model from the contents of an OBJ file: one mesh for each object, group and material.
 
 use std::collections::HashMap;
 
@@ -15,10 +15,10 @@ use crate::asset::skeleton::{Bone, Skeleton, Skin};
 use crate::asset::tangents::Mesh as Surface;
 use crate::asset::{Influences, Model, Transform};
 
-/// The most meshes of a file.
+/// Largest number of meshes of a file.
 const MAX_MESHES: usize = 1 << 16;
 
-/// The name of the bone of faces without object and group.
+/// Name of the bone of faces without object and group.
 const UNNAMED: &str = "mesh";
 
 /// Reads a model; `beside` reads its libraries and images. Without it, there are no materials, and no vertex is repeated for
@@ -69,7 +69,7 @@ pub(super) fn import(bytes: &[u8], beside: Option<Beside<'_>>) -> Result<Model, 
 struct Triangles {
     /// Three corners each.
     corners: Vec<Corner>,
-    /// For each face, the number of corners before its triangles; then the number of all.
+    /// For each face, the number of corners before its triangles; one more entry with the total.
     first: Vec<usize>,
 }
 
@@ -107,10 +107,10 @@ fn position(parsed: &Parsed, corner: &Corner) -> DVec3 {
     DVec3::from(parsed.positions[corner[0] as usize].map(f64::from))
 }
 
-/// The normals of corners: the file's, with length 1, or those that it lacks.
+/// Normals of corners: the file's, with length 1, or computed ones where the file lacks them.
 struct Normals {
     given: Vec<Option<[f32; 3]>>,
-    /// For each position, the smooth normal of the faces that lack some.
+    /// For each position, the smooth normal of adjacent faces that lack normals.
     smooth: Vec<[f32; 3]>,
 }
 
@@ -133,8 +133,8 @@ impl Normals {
     }
 }
 
-/// The mesh of corners, three a triangle, without name, skin, material and tangents. Corners that name the same position,
-/// texture coordinates and normal are one vertex; vertices have the order of these numbers.
+/// Builds a mesh from corners, three per triangle, without name, skin, material and tangents. Corners with the same indices of
+/// position, texture coordinates and normal share one vertex; vertices are sorted by these indices.
 fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, InputError> {
     let mut vertices = corners.to_vec();
     vertices.sort_unstable();
@@ -155,7 +155,7 @@ fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, 
     })
 }
 
-/// The mesh with tangents; `is_bare` keeps its number of vertices.
+/// Adds tangents to a mesh; with `is_bare`, the number of vertices stays the same.
 fn with_tangents(mut mesh: Mesh, is_bare: bool) -> Result<Mesh, InputError> {
     let Mesh { positions, normals, uv, indices, .. } = &mesh;
     let surface = Surface { positions, normals, uv, indices };
@@ -170,7 +170,7 @@ fn with_tangents(mut mesh: Mesh, is_bare: bool) -> Result<Mesh, InputError> {
     Ok(mesh)
 }
 
-/// Bones for objects and groups, with a skin each.
+/// Bones for objects and groups, with one skin each.
 #[derive(Default)]
 struct Nodes {
     bones: Vec<Bone>,
@@ -181,7 +181,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// The name and the skin of the next mesh of an object and a group.
+    /// Name and skin of the next mesh of an object and a group.
     fn mesh(&mut self, owner: &Owner) -> (String, usize) {
         let node = self.node(&owner.object, &owner.group);
         self.meshes[node] += 1;

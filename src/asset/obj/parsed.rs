@@ -7,13 +7,13 @@ use super::statements::{Statement, Statements};
 use crate::InputError;
 use crate::asset::mesh::COORDINATE_LIMIT;
 
-/// Stands for texture coordinates or a normal that a corner does not have.
+/// Marks missing texture coordinates or a missing normal of a corner.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A corner of a face: the numbers of its position, texture coordinates and normal, counted from 0.
+/// A corner of a face: the indices of its position, texture coordinates and normal, counted from 0.
 pub(super) type Corner = [u32; 3];
 
-/// To what a face belongs.
+/// The object, group and material to which a face belongs.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub(super) struct Owner {
     /// The object, if one is named.
@@ -24,25 +24,25 @@ pub(super) struct Owner {
     pub material: Option<String>,
 }
 
-/// What a file contains.
+/// Parsed geometry of a file.
 #[derive(Default)]
 pub(super) struct Parsed {
     pub positions: Vec<[f32; 3]>,
-    /// v down the image.
+    /// Texture coordinates, v down the image.
     pub uv: Vec<[f32; 2]>,
-    /// As in the file, of any length.
+    /// Normals as in the file, of any length.
     pub normals: Vec<[f32; 3]>,
     /// The corners of each face, at least three.
     pub faces: Vec<Vec<Corner>>,
     /// The line of each face.
     pub lines: Vec<usize>,
-    /// Runs of faces with one owner: the number of the first face, and the owner.
+    /// Runs of faces with one owner: the index of the first face, and the owner.
     runs: Vec<(usize, Owner)>,
-    /// The material libraries that the file names, each in a statement.
+    /// Material libraries that the file names, with the line of each statement.
     pub libraries: Vec<(usize, String)>,
 }
 
-/// The bound of a face whose corners cannot be read.
+/// Error text for a face whose corners cannot be read.
 const CORNERS: &str =
     "must have three or more corners, all like 1, all like 1/1, all like 1//1 or all like 1/1/1";
 
@@ -62,7 +62,7 @@ impl Parsed {
                 "vn" => parsed.normals.push(vector(&statement)?),
                 "vt" => parsed.uv.push(coordinates(&statement)?),
                 "f" | "fo" => parsed.add_face(&statement, &owner)?,
-                // A group lies in the object that it follows.
+                // A group belongs to the object before it.
                 "o" => (owner.object, owner.group) = (name(), None),
                 "g" => owner.group = name(),
                 "usemtl" => owner.material = name(),
@@ -77,7 +77,7 @@ impl Parsed {
         Ok(parsed)
     }
 
-    /// Adds a face to the last run, or to a new one if that has another owner.
+    /// Adds a face to the last run, or to a new one if the owner differs.
     fn add_face(&mut self, statement: &Statement<'_>, owner: &Owner) -> Result<(), InputError> {
         let corners: Result<Vec<Corner>, &str> = statement.words().map(|word| self.corner(word)).collect();
         let corners = corners.map_err(|bound| statement.refused(None, bound))?;
@@ -93,9 +93,9 @@ impl Parsed {
         Ok(())
     }
 
-    /// The numbers of a corner; otherwise what it must be.
+    /// Parses the indices of a corner. The error says what the word must be.
     fn corner(&self, word: &str) -> Result<Corner, &'static str> {
-        // Some exporters end corners without a normal with a slash.
+        // Some exporters end a corner without a normal with a slash.
         let parts: Vec<&str> = word.trim_end_matches('/').split('/').collect();
         let [v, vt, vn] = [self.positions.len(), self.uv.len(), self.normals.len()];
         match parts[..] {
@@ -123,7 +123,8 @@ impl Parsed {
     }
 }
 
-/// A number that counts from 1, or backwards from −1, as one of `count` that counts from 0; otherwise what it must be.
+/// Converts an index that counts from 1, or backwards from −1, to one below `count` that counts from 0. The error says what the
+/// word must be.
 fn number(word: &str, count: usize) -> Result<u32, &'static str> {
     let given: i64 = word.parse().map_err(|_| CORNERS)?;
     let at = if given < 0 { given + count as i64 } else { given - 1 };
@@ -131,15 +132,15 @@ fn number(word: &str, count: usize) -> Result<u32, &'static str> {
     if (0..count as i64).contains(&at) { Ok(at as u32) } else { Err(bound) }
 }
 
-/// Three numbers. Weights and colours of positions, which may follow, are left out.
+/// Reads three numbers. Weights and colours of positions, which may follow, are ignored.
 fn vector(statement: &Statement<'_>) -> Result<[f32; 3], InputError> {
     let numbers: Option<Vec<f32>> = statement.words().take(3).map(|word| word.parse().ok()).collect();
     let vector = numbers.and_then(|numbers| numbers.try_into().ok());
     in_range(statement, vector.ok_or_else(|| statement.refused(None, "must have three numbers"))?)
 }
 
-/// Texture coordinates. v is turned over in double precision, before it is rounded to `f32`, so that what this crate writes is
-/// read back unchanged.
+/// Reads texture coordinates. v is flipped in double precision before rounding to `f32`, so that files written by this crate
+/// are read back unchanged.
 fn coordinates(statement: &Statement<'_>) -> Result<[f32; 2], InputError> {
     let mut words = statement.words();
     let u = words.next().and_then(|word| word.parse().ok());

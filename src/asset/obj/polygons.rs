@@ -1,14 +1,14 @@
-//! Divides polygons into triangles: fans where they are convex, and ear clipping elsewhere (Meisters, "Polygons Have
-//! Ears", 1975). Every corner stays, also where it lies on a straight line between its neighbours, so that polygons
-//! that share an edge still share all of its points.
+//! Divides polygons into triangles: fans if they are convex, and ear clipping otherwise (Meisters, "Polygons Have Ears", 1975).
+//! Every corner stays, even on a straight line between its neighbours, so that polygons that share an edge still share all of
+//! its points.
 
 use glam::{DVec2, DVec3};
 
-/// The most corners of a polygon that is not convex: the time of ear clipping grows with the square of their number.
+/// Largest number of corners of a concave polygon: the time of ear clipping grows with the square of their number.
 pub(super) const MAX_CONCAVE: usize = 4096;
 
-/// The triangles of a polygon, three places in the list of its corners each; as many as it has corners, less two. They
-/// turn as the polygon does. `None` for a polygon that is not convex and has too many corners.
+/// Triangles of a polygon, each as three indices into its corners; there are two fewer triangles than corners. They have the
+/// polygon's orientation. `None` for a concave polygon with too many corners.
 pub(super) fn triangles(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     let count = corners.len();
     let fan = || (1..count.saturating_sub(1)).map(|at| [0, at, at + 1]).collect();
@@ -21,16 +21,17 @@ pub(super) fn triangles(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     if least > 0.0 {
         return Some(fan());
     }
-    // A fan of a convex polygon with straight angles has triangles without area, which are kept out if that takes no time.
+    // A fan of a convex polygon with straight angles has degenerate triangles. Ear clipping avoids them where it is cheap.
     match count <= MAX_CONCAVE {
         true => Some(clipped(&flat)),
         false => (least == 0.0).then(fan),
     }
 }
 
-/// The polygon on the plane of two axes on which it is largest, turned so that it is counter-clockwise.
+/// Projects the polygon onto the axis-aligned plane where it is largest, and makes it counter-clockwise.
 fn projected(corners: &[DVec3]) -> Vec<DVec2> {
-    // Twice the area of the projection on each plane (Newell). Differences keep large coordinates from cancelling.
+    // Twice the area of the projection on each plane (Newell). Differences to the first corner avoid cancellation at large
+    // coordinates.
     let from = corners[0];
     let edges = corners.windows(2).map(|pair| (pair[0] - from).cross(pair[1] - from));
     let normal: DVec3 = edges.sum();
@@ -46,13 +47,13 @@ fn projected(corners: &[DVec3]) -> Vec<DVec2> {
     corners.iter().map(|corner| turned(keep(*corner - from))).collect()
 }
 
-/// Twice the area of a triangle, positive if it is counter-clockwise.
+/// Twice the signed area of a triangle, positive if it is counter-clockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Cuts ears off: corners that turn left and whose triangle contains no other corner. Where rounding or a polygon that
-/// crosses itself leaves none, any corner is cut off.
+/// Cuts ears off: corners that turn left and whose triangle contains no other corner. If there is none, because of rounding or
+/// a self-intersecting polygon, any corner is cut off.
 fn clipped(flat: &[DVec2]) -> Vec<[usize; 3]> {
     let mut left: Vec<usize> = (0..flat.len()).collect();
     let mut triangles = Vec::with_capacity(flat.len() - 2);
@@ -67,7 +68,7 @@ fn clipped(flat: &[DVec2]) -> Vec<[usize; 3]> {
         }
         triangles.push(ear);
         left.remove(at);
-        // The corner before has changed, too. Steps of two give triangles that are less thin than a fan's.
+        // The previous corner has changed, too. Steps of two give triangles that are less thin than a fan's.
         (at, tried) = ((at + 1) % left.len(), 0);
     }
     triangles.push([left[0], left[1], left[2]]);
@@ -80,7 +81,7 @@ fn is_ear(flat: &[DVec2], left: &[usize], ear: [usize; 3]) -> bool {
         return false;
     }
     let is_inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
-    // Copies of the ear's corners, as at bridges to holes, do not count.
+    // Duplicates of the ear's corners, as at bridges to holes, do not count.
     let is_corner = |p: DVec2| p == a || p == b || p == c;
     !left.iter().map(|corner| flat[*corner]).any(|p| is_inside(p) && !is_corner(p))
 }
@@ -89,7 +90,7 @@ fn is_ear(flat: &[DVec2], left: &[usize], ear: [usize; 3]) -> bool {
 mod tests {
     use super::*;
 
-    /// The area of a polygon's triangles in the plane z = 0, each of which must turn as the polygon does.
+    /// Area covered by a polygon's triangles in the plane z = 0; each triangle must have the polygon's orientation.
     fn covered(corners: &[[f64; 2]]) -> f64 {
         let corners: Vec<DVec3> = corners.iter().map(|[x, y]| DVec3::new(*x, *y, 7.0)).collect();
         let triangles = triangles(&corners).expect("small");
@@ -104,7 +105,7 @@ mod tests {
     #[test]
     fn polygons_are_covered_once() {
         assert_eq!(covered(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), 2.0);
-        // An arrowhead, begun at every corner: a fan from three of them leaves it.
+        // An arrowhead, started at every corner: fans from three of its corners leave it.
         let arrow = [[0.0, 0.0], [2.0, 3.0], [0.0, 2.0], [-2.0, 3.0]];
         for turn in 0..4 {
             let mut arrow = arrow;

@@ -4,12 +4,12 @@ use std::borrow::Cow;
 
 use crate::InputError;
 
-/// A statement: a line, or several that are joined by backslashes at their ends.
+/// A statement: one line, or several lines joined by backslashes at their ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Statement<'a> {
     /// The number of its first line, counted from 1.
     pub line: usize,
-    /// Its text, without surrounding space.
+    /// Text of the statement, without surrounding space.
     text: Cow<'a, str>,
 }
 
@@ -19,7 +19,7 @@ impl Statement<'_> {
         self.text.split(char::is_whitespace).next().unwrap_or_default()
     }
 
-    /// What follows the keyword, without surrounding space.
+    /// Text after the keyword, without surrounding space.
     pub fn rest(&self) -> &str {
         self.text[self.keyword().len()..].trim_start()
     }
@@ -44,8 +44,8 @@ impl Statement<'_> {
     }
 }
 
-/// The statements of a file, without empty lines and comments. Bytes that are not UTF-8 become replacement characters:
-/// they occur in names and comments.
+/// Statements of a file, without empty lines and comments. Bytes that are not UTF-8, as occur in names and comments, become
+/// replacement characters.
 pub(super) struct Statements<'a> {
     left: &'a [u8],
     line: usize,
@@ -56,7 +56,7 @@ impl<'a> Statements<'a> {
         Self { left: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), line: 0 }
     }
 
-    /// The next line without its end; ends are those of any system.
+    /// Next line without its line ending, of any system.
     fn next_line(&mut self) -> Option<&'a [u8]> {
         if self.left.is_empty() {
             return None;
@@ -81,7 +81,7 @@ impl<'a> Iterator for Statements<'a> {
         loop {
             let mut text = String::from_utf8_lossy(self.next_line()?);
             let line = self.line;
-            // Comments end with their line, also where it ends in a path of folders.
+            // A comment ends with its line, even if its last character is a backslash, as in a path.
             while text.ends_with('\\') && !text.trim_start().starts_with('#') {
                 let Some(more) = self.next_line() else { break };
                 text = format!("{} {}", text.trim_end_matches('\\'), String::from_utf8_lossy(more)).into();

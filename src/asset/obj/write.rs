@@ -1,4 +1,4 @@
-//! Writes Wavefront OBJ, and the material library and images of a model.
+//! Writes a model as Wavefront OBJ, with its material library and images.
 
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -10,27 +10,27 @@ use crate::asset::images::png;
 use crate::asset::material::{Alpha, Material, Texture, Wrapping};
 use crate::asset::{Mesh, Model};
 
-/// What becomes an object of a file: vertices, and triangles that count them from 0.
+/// Source of an object of the file: vertices, and triangles with indices from 0.
 pub(crate) struct Object<'a, P, T> {
-    /// Without one, the triangles belong to the object before. Whitespace becomes `_`: a space would end the name, a line
-    /// the object.
+    /// Name of the object. Without one, the triangles belong to the previous object. Whitespace becomes `_`, because a space
+    /// would end the name and a line break the statement.
     pub name: Option<&'a str>,
-    /// The name of the material, in a library that was named before.
+    /// Name of the material, in a library that was named before.
     pub material: Option<&'a str>,
-    /// Where each vertex is.
+    /// Position of each vertex.
     pub positions: P,
     /// Texture coordinates of each vertex, v down the image.
     pub uv: &'a [[f32; 2]],
     /// The normal of each vertex, or none at all.
     pub normals: &'a [[f32; 3]],
-    /// Corners, counter-clockwise seen from outside.
+    /// Triangles, counter-clockwise seen from outside.
     pub triangles: T,
 }
 
-/// Writes objects into one file, one after the other. Numbers have every digit that their type needs.
+/// Writes objects into one file, one after the other. Numbers have all the digits that their type needs.
 pub(crate) struct ObjWriter<W> {
     out: W,
-    /// The number of the next vertex; the file's first is 1.
+    /// Number of the next vertex; the first in the file is 1.
     next: u64,
 }
 
@@ -39,7 +39,7 @@ impl<W: Write> ObjWriter<W> {
         Self { out, next: 1 }
     }
 
-    /// A line that readers skip.
+    /// Writes a comment line.
     pub fn comment(&mut self, text: impl Display) -> io::Result<()> {
         writeln!(self.out, "# {text}")
     }
@@ -49,7 +49,7 @@ impl<W: Write> ObjWriter<W> {
         writeln!(self.out, "mtllib {name}")
     }
 
-    /// An object with as many texture coordinates as positions.
+    /// Writes an object with as many texture coordinates as positions.
     pub fn object<N: Display>(
         &mut self,
         object: Object<'_, impl IntoIterator<Item = [N; 3]>, impl IntoIterator<Item = [u32; 3]>>,
@@ -83,8 +83,8 @@ impl<W: Write> ObjWriter<W> {
     }
 }
 
-/// A texture coordinate that points down, as OBJ has it: from the bottom. 1 − v has as many digits as a reader needs that
-/// subtracts it from 1 in double precision.
+/// A v coordinate that points down, printed as OBJ's v from the bottom. 1 − v gets enough digits for a reader that subtracts it
+/// from 1 in double precision.
 struct Upwards(f32);
 
 impl Display for Upwards {
@@ -99,24 +99,25 @@ impl Display for Upwards {
 
 fn word(name: &str) -> String {
     let word: String = name.chars().map(|c| if c.is_whitespace() { '_' } else { c }).collect();
-    // A name that begins a comment would be none.
+    // A name starting with `#` would be read as a comment.
     if word.is_empty() || word.starts_with('#') { format!("_{word}") } else { word }
 }
 
 impl Model {
-    /// The model as Wavefront OBJ: the files' names and bytes, first `{name}.obj`, then, if meshes have materials, the library
-    /// `{name}.mtl` and its images as PNG.
+    /// Writes the model as Wavefront OBJ. Returns names and bytes of files: first `{name}.obj`, then, if meshes have materials,
+    /// the library `{name}.mtl` and its images as PNG.
     ///
-    /// Each mesh is an object of its name, with positions, normals and texture coordinates as they are, in the space of its
-    /// own: take the model [at rest](crate::skinning::at_rest()) if it has a skeleton. [`Model::from_obj`] reads equal numbers
-    /// back: positions, normals and triangles to the bit, texture coordinates too where v is 0 or above 2⁻²⁹, and otherwise
-    /// within 2⁻⁵³. Colours, opacity, textures and normal maps are written. Skins, clips, morph targets, levels of detail,
-    /// tangents, the sides from which triangles are visible, filters, and the limit of [`Alpha::Mask`] are not: OBJ has
-    /// no words for them.
+    /// Each mesh becomes an object of its name, with positions, normals and texture coordinates unchanged, in the mesh's own
+    /// space. If the model has a skeleton, take it [at rest](crate::skinning::at_rest()) first. Colours, opacity, textures and
+    /// normal maps are written. OBJ cannot express skins, clips, morph targets, levels of detail, tangents, the sides from
+    /// which triangles are visible, filters, and the limit of [`Alpha::Mask`]; these are not written.
+    ///
+    /// [`Model::from_obj`] reads equal numbers back: positions, normals and triangles to the bit. Texture coordinates are equal
+    /// to the bit if v is 0 or above 2⁻²⁹, and otherwise within 2⁻⁵³.
     ///
     /// # Errors
-    /// [`InputError`] for a name that is not a plain file name, for a mesh or a material that is not valid, and for images
-    /// that PNG cannot hold.
+    /// [`InputError`] for a name that is not a plain file name, for a mesh or a material that is not valid, and for images that
+    /// PNG cannot hold.
     pub fn to_obj(&self, name: &str) -> Result<Vec<(String, Vec<u8>)>, InputError> {
         if name.is_empty()
             || name.contains(|c: char| c.is_whitespace() || c.is_control() || "/\\:#".contains(c))
@@ -166,7 +167,7 @@ fn object<'a>(
 #[derive(Default)]
 struct Library {
     text: String,
-    /// The name of each material that meshes use.
+    /// Name of each material that meshes use.
     names: HashMap<usize, String>,
     /// A name that no material has.
     none: String,
@@ -205,14 +206,15 @@ impl Library {
         Ok(library)
     }
 
-    /// The name of a mesh's material. A mesh without one must end the material before it, by a name that the library lacks.
+    /// Material name of a mesh. A mesh without a material must end the previous material, so it names one that the library
+    /// lacks.
     fn material(&self, mesh: &Mesh) -> Option<&str> {
         let named = mesh.material.and_then(|material| self.names.get(&material));
         named.or_else(|| (!self.names.is_empty()).then_some(&self.none)).map(String::as_str)
     }
 }
 
-/// The statements of a material, with the files of its texture and its normal map.
+/// Statements of a material, with the file names of its texture and normal map.
 fn entry(name: &str, material: &Material, texture: Option<String>, normal: Option<String>) -> String {
     let [red, green, blue] = [0, 1, 2].map(|channel: usize| encoded(material.color[channel].into()));
     let mut text = format!("newmtl {name}\nKd {red} {green} {blue}\n");

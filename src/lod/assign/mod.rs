@@ -1,7 +1,8 @@
-//! What gates and skinning leave out of the instances of a character, given how far the views of a frame let them be off.
+//! Assigns the allowed displacement of each character instance to bone gates and skinning, as levels, bones and
+//! influences that they may leave out.
 //!
-//! [`select`](super::select) gives the displacement that is allowed, in the model's units. Fractions of it go to levels of
-//! detail of the mesh, to bones that are not sampled, and to influences that fade; together they must not exceed 1, because
+//! [`select`](super::select) gives the allowed displacement, in the model's units. Fractions of it go to mesh levels of
+//! detail, to bones that are not sampled, and to influences that fade. The fractions add up to at most 1, because
 //! displacements add up. An instance that no view sees is neither sampled nor skinned.
 
 #[cfg(feature = "gpu")]
@@ -20,7 +21,7 @@ impl AssignParams {
     /// Checks the ranges.
     ///
     /// # Errors
-    /// [`InputError`] that names the field; for fractions that add up to more than 1, `params.influence_fraction`.
+    /// [`InputError`] that names the field; `params.influence_fraction` for fractions that add up to more than 1.
     pub fn validate(&self) -> Result<(), InputError> {
         let errors: Vec<f32> = self.errors.iter().flat_map(|errors| errors.to_array()).collect();
         check_levels("params", self.levels, &errors, true)?;

@@ -5,7 +5,7 @@ use crate::Error;
 use crate::gpu::bindings::lod::assign as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 
-/// What an assignment reads and writes.
+/// The buffers that an assignment reads and writes.
 #[doc(inline)]
 pub use bindings::Buffers as AssignBuffers;
 
@@ -24,10 +24,10 @@ impl AssignPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the assignment to at most `instances` instances; [`AssignParams::instances`] says how many there are.
+    /// Prepares the assignment for at most `instances` instances; [`AssignParams::instances`] is the actual count.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that hold less; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers that hold fewer instances; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

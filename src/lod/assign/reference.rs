@@ -6,8 +6,8 @@ use crate::lod::object::level_within;
 use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
 use crate::skinning::instance_lod::InstanceLod;
 
-/// What gates and skinning use of an instance, from the displacement that it is allowed in the model's units, which is
-/// negative if no view sees it. If it carries a mesh, no bone may be off.
+/// The gate's and the skinning's level of detail for an instance. `allowed` is its allowed displacement in the model's
+/// units, negative if no view sees it. With `carries`, the instance carries a mesh, and no bone may be off.
 pub fn assign(params: &AssignParams, allowed: f32, carries: bool) -> (Lod, InstanceLod) {
     if allowed < 0.0 {
         return (Lod { sampling: Sampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
@@ -23,12 +23,12 @@ pub fn assign(params: &AssignParams, allowed: f32, carries: bool) -> (Lod, Insta
     (lod, instance_lod)
 }
 
-/// The displacement of bones, in units of the gate's table.
+/// The allowed displacement of bones, in units of the gate's table.
 pub fn units(params: &AssignParams, allowed: f32) -> f32 {
     params.bone_fraction * allowed / params.unit
 }
 
-/// How far influences may fade, in steps.
+/// The allowed fade of influences, in steps.
 pub fn fade_steps(params: &AssignParams, allowed: f32) -> f32 {
     if params.stray <= 0.0 {
         return FADE_STEPS;

@@ -1,13 +1,15 @@
-//! Placements of meshes that are attached to bones: in each view, a mesh follows the bone of a character as the frame posed it.
+//! Placements of meshes that are attached to bones: in each view, a mesh follows a character's bone in the frame's
+//! pose.
 //!
-//! [`select`](super::select) runs before the bones of a frame are known. An attached instance is therefore selected by its
-//! character's placement and a sphere that holds the mesh wherever the bone may be, and this operation replaces the rows that the
-//! selection wrote by the product of the character's placement, the bone's model matrix and the mesh's offset. Where no
-//! view of the frame sees the character, its bones are not posed, and the mesh becomes a point.
+//! [`select`](super::select) runs before the bones of a frame are known. It therefore selects an attached instance by
+//! its character's placement and by a sphere that holds the mesh for every pose of the bone. This operation then
+//! replaces the rows that the selection wrote by the product of the character's placement, the bone's model matrix and
+//! the mesh's offset. If no view of the frame sees the character, its bones are not posed, and the mesh becomes a
+//! point.
 //!
-//! If the scene keeps its last frame, the operation also keeps the product of bone and offset, of the frame and of the one
-//! before, and writes the transform that the mesh had then. A mesh whose character was not seen then, or that was attached
-//! since, counts as if its bone had been where it is.
+//! If the scene keeps its last frame, the operation also keeps the product of bone and offset for two frames, and
+//! writes the mesh's transform in the last frame. If the mesh was attached since, or its character was not seen then,
+//! the bone counts as static.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -18,8 +20,10 @@ pub use pass::{AttachBuffers, AttachPass};
 
 pub use crate::shared::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 
-/// The largest difference allowed between an entry of a row and the reference, on any device, relative to the same entry of
-/// the product of the three transforms with all their entries' absolute values. With ε = 2⁻²³, to which every
-/// operation may round on a device, an entry of the placement's axes carries 7ε; each of the two products multiplies (ε), adds
-/// twice (2ε), and adds the translation (ε): 15ε, and half of that on the host: 2.7e-6, rounded up.
+/// Parity bound for an entry of a row on any device: 3e-6, relative to the same entry of the product of the three
+/// transforms with the absolute values of all their entries.
+///
+/// Every operation on a device may round to ε = 2⁻²³. An entry of the placement's axes carries 7ε. Each of the two
+/// products multiplies (ε), adds twice (2ε), and adds the translation (ε). Their sum is 15ε, and half of it again on
+/// the host: 2.7e-6, rounded up.
 pub const ATTACH_BOUND: f32 = 3e-6;

@@ -5,7 +5,7 @@ use crate::Error;
 use crate::gpu::bindings::lod::attach as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 
-/// What attaching reads and writes.
+/// The buffers that attaching reads and writes.
 #[doc(inline)]
 pub use bindings::Buffers as AttachBuffers;
 
@@ -24,11 +24,11 @@ impl AttachPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the placements of as many meshes as `attachments` has room for, in one view. Record it behind the
-    /// selection of the view and the model matrices of the character.
+    /// Prepares the placements of the meshes in one view, one for each element of `attachments`. Record it after the
+    /// view's selection and the character's model matrices.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for `allowed`, placements, last instances or kept bones of fewer elements than there are;
+    /// [`InputError`](crate::InputError) for `allowed`, placements, last instances or kept bones with too few elements;
     /// [`GpuError`].
     pub fn prepare(
         &self,

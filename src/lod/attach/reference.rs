@@ -9,17 +9,19 @@ use crate::lod::SceneInstance;
 /// The product of a mesh's bone and its offset.
 ///
 /// # Panics
-/// For an attachment to a bone that is not there.
+/// For an attachment to a bone that does not exist.
 pub fn local(params: &AttachParams, attachment: &Attachment, model_matrices: &[Affine]) -> Affine {
     let bone = &model_matrices[(attachment.character * params.bones + attachment.bone) as usize];
     product(bone, &attachment.offset)
 }
 
-/// The placement of an attached mesh: the transform from its space to the corner of a cell. `instances` are those of the scene,
-/// `allowed` what the views of the frame allow each of them, and `local` the product of bone and offset.
+/// The placement of an attached mesh: the transform from its space to the corner of a cell.
+///
+/// `instances` are the scene's instances, `allowed` the displacement that the frame's views allow each of them, and
+/// `local` the product of bone and offset.
 ///
 /// # Panics
-/// For an attachment to an instance that is not there.
+/// For an attachment to an instance that does not exist.
 pub fn attached(
     params: &AttachParams,
     attachment: &Attachment,
@@ -37,8 +39,8 @@ pub fn attached(
     product(&placement, local)
 }
 
-/// The product of bone and offset in the last frame, as far as it is known: what was kept of it, or else `local`, that of this
-/// frame. `kept` are the two of the attachment.
+/// The product of bone and offset in the last frame, if it was kept; else this frame's, `local`. `kept` are the two
+/// kept products of the attachment.
 pub fn last_local(
     params: &AttachParams,
     attachment: &Attachment,
@@ -52,7 +54,7 @@ pub fn last_local(
     }
 }
 
-/// The product `a · b`, which applies b first.
+/// The product `a · b`, which applies `b` first.
 pub fn product(a: &Affine, b: &Affine) -> Affine {
     a.map(|[x, y, z, moved]| {
         let entry = |at: usize| x * b[0][at] + y * b[1][at] + z * b[2][at];

@@ -6,24 +6,24 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw};
 use crate::shared::lod::list::{ListParams, PLACE, RUNS, SUM};
 
-/// What the lists are made from, and where they go.
+/// Buffers of the list kernel.
 #[derive(Debug, Clone, Copy)]
 pub struct ListBuffers<'a> {
     /// The objects. Their lists and draws must lie inside `lists` and `arguments`.
     pub objects: &'a Buffer<LodObject>,
-    /// The index of the object that each block of 64 instances belongs to, [`NO_OBJECT`](crate::lod::NO_OBJECT) for none.
+    /// For each block of 64 instances the index of its object, or [`NO_OBJECT`](crate::lod::NO_OBJECT).
     pub block_objects: &'a Buffer<u32>,
-    /// One for each instance: 0 if it is not seen, else 1 + its list.
+    /// Decision per instance: 0 if it is not seen, else 1 + its list.
     pub decisions: &'a Buffer<u32>,
-    /// [`OBJECT_LISTS`] for each block: how many of its instances are in each list. Overwritten.
+    /// In: instance count per block and list, [`OBJECT_LISTS`] for each block. Overwritten.
     pub counts: &'a Buffer<u32>,
-    /// Written: indices of instances, relative to the object's first one, at [`LodObject::list_begin`].
+    /// Out: instance indices relative to the object's first one, from [`LodObject::list_begin`] on.
     pub lists: &'a Buffer<u32>,
-    /// The draws of all objects ([`LodObject::draw`]), of which the numbers of instances are written.
+    /// The draws of all objects ([`LodObject::draw`]). Only their instance counts are written.
     pub arguments: &'a Buffer<SceneDraw>,
 }
 
-/// Lists instances.
+/// Writes the instance lists of a view and the instance counts of its draws.
 #[derive(Debug, Clone)]
 pub struct ListPass {
     sum: Kernel,
@@ -43,7 +43,7 @@ impl ListPass {
     /// Prepares the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers with fewer of them; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers with fewer objects or blocks; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

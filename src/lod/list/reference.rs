@@ -3,7 +3,7 @@
 use crate::lod::{LodObject, OBJECT_LISTS};
 use crate::shared::lod::object::{decision_list, decision_morph, list_entry_word};
 
-/// The lists of an object from the decisions of its instances: list entries, ascending by instance.
+/// The list entries of an object from its instances' decisions, ascending by instance.
 ///
 /// # Panics
 /// If the object's instances are not all in `decisions`.
@@ -17,8 +17,7 @@ pub fn lists(object: &LodObject, decisions: &[u32]) -> [Vec<u32>; OBJECT_LISTS a
     lists
 }
 
-/// For each block and list, the number of instances in the blocks before it, from the numbers of instances of the blocks
-/// of one object.
+/// Exclusive prefix sums over the blocks of one object, per list, from the counts per block.
 pub fn before_blocks(counts: &[u32]) -> Vec<u32> {
     let mut sums = [0; OBJECT_LISTS as usize];
     let mut before = Vec::with_capacity(counts.len());
@@ -43,7 +42,7 @@ mod tests {
         assert_eq!(lists[1], (0..20).map(|at| 3 * at + 1).collect::<Vec<u32>>());
         assert_eq!(lists.iter().map(Vec::len).sum::<usize>(), 60);
         assert!(lists[8].is_empty(), "another object's instances");
-        // A level that has moved by 5 of 511 steps.
+        // A level that has morphed by 5 of 511 steps.
         decisions[67] |= (2 | 5 << 3) << 8;
         assert_eq!(super::lists(&object, &decisions)[0][1], 3 | (2 | 5 << 3) << 20);
     }

@@ -1,11 +1,15 @@
-//! Which instances of a scene a view sees, with which level of detail, and how far they may be off.
+//! Selection: which instances of a scene a view sees, at which level of detail, and how far they may be off.
 //!
-//! An instance is seen if it exists, if its object is shown, if its visibility mask shares a bit with the view's, if it
-//! casts shadows where the view asks for that, and if its bounding sphere reaches into the view volume. Each of the view's
-//! cameras allows a displacement ([`LodCamera::allows`](super::LodCamera::allows)); the smallest of them, divided by the instance's largest scale,
-//! is what the model may be off in its own units. Of the object's levels the view draws the coarsest whose error is within
-//! its fraction of that. Merged over the views of a frame, it also limits what gates and skinning may leave out
-//! ([`assign`](super::assign)), since poses are the same for all views.
+//! A view sees an instance if all of these hold:
+//! - the instance exists and its object is shown;
+//! - its visibility mask shares a bit with the view's;
+//! - it casts shadows, if the view asks for casters only;
+//! - its bounding sphere reaches into the view volume.
+//!
+//! Each of the view's cameras allows a displacement ([`LodCamera::allows`](super::LodCamera::allows)). The smallest of
+//! them, divided by the instance's largest scale, is the allowed displacement in the model's units. The view draws the
+//! object's coarsest level whose error is within the mesh fraction of it. The minimum over the views of a frame also
+//! limits gates and skinning ([`assign`](super::assign)), because all views share one pose.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -38,7 +42,7 @@ impl SelectView {
         }
     }
 
-    /// The cameras that count.
+    /// The cameras in use: the first `camera_count`.
     pub fn cameras(&self) -> &[LodCamera] {
         &self.cameras[..(self.camera_count.clamp(1, VIEW_CAMERAS)) as usize]
     }

@@ -5,11 +5,11 @@ use crate::gpu::bindings::lod::select as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel};
 use crate::lod::BLOCK;
 
-/// What a selection reads and writes.
+/// The buffers that a selection reads and writes.
 #[doc(inline)]
 pub use bindings::Buffers as SelectBuffers;
 
-/// Selects instances.
+/// Selects the instances that a view sees, and their levels of detail.
 #[derive(Debug, Clone)]
 pub struct SelectPass {
     kernel: Kernel,
@@ -24,7 +24,7 @@ impl SelectPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the selection of the instances of as many blocks as `block_objects` has.
+    /// Prepares the selection of all instances, [`BLOCK`](crate::lod::BLOCK) for each element of `block_objects`.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`].

@@ -15,7 +15,7 @@ use crate::shared::lod::object::{decision_list, object_flags_shown};
 use crate::shared::lod::select::{MAX_METRIC, UNSEEN_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
 
-/// What a view makes of an instance that it sees.
+/// A view's decision for one visible instance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selected {
     /// The decision word ([`decision`]).
@@ -26,8 +26,8 @@ pub struct Selected {
     pub placement: Affine,
 }
 
-/// The bounding sphere of an instance, relative to the corner of a cell: center and radius. The radius includes what
-/// rounding may do to the center.
+/// The bounding sphere of an instance, relative to the corner of a cell: center and radius. The radius includes the
+/// center's rounding error.
 pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
     let ([x, y, z], at, scale) = (instance.axes(), instance.position(cell), instance.largest_scale());
     let [cx, cy, cz, radius] = instance.bounding_sphere;
@@ -35,7 +35,7 @@ pub fn placed_sphere(instance: &SceneInstance, cell: IVec3) -> (Vec3, f32) {
     (x * cx + y * cy + z * cz + at, radius * scale + rounding)
 }
 
-/// Whether a view may see an instance at all, wherever it is.
+/// Whether flags and masks let a view see an instance, regardless of its position.
 pub fn is_shown(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> bool {
     let is_alive = object_flags_shown(object.flags) != 0 && instance.flags & INSTANCE_ALIVE != 0;
     let casts = view.casters == 0 || instance.flags & INSTANCE_CASTS != 0;
@@ -51,14 +51,14 @@ pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
     view.planes.iter().map(depth).fold(MAX_ALLOWED, f32::min)
 }
 
-/// Whether a view may see a sphere, which is a thousandth larger than it must be, so that rounding on the device does not
-/// show it where it is not expected.
+/// Whether a view may see a sphere, with a margin of a thousandth of its radius. A device that rounds differently then
+/// shows no instance that the host did not expect.
 #[cfg(feature = "gpu")]
 pub(crate) fn nearly_seen(view: &SelectView, center: Vec3, radius: f32) -> bool {
     depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius
 }
 
-/// What a view makes of an instance; `None` if it does not see it.
+/// A view's decision for an instance; `None` if the view does not see it.
 pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> Option<Selected> {
     let (center, radius) = placed_sphere(instance, view.cell);
     if !is_shown(view, object, instance) || depth_inside(view, center, radius) < 0.0 {
@@ -76,8 +76,8 @@ pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -
     Some(Selected { decision: decision(object, instance.is_mirrored(), metric), allowed, placement })
 }
 
-/// The displacement that is allowed an instance after another view of the frame. `before` is what the views before it
-/// allow, `None` for the first one.
+/// The allowed displacement of an instance after one more view of the frame. `before` is the value after the earlier
+/// views, `None` for the first view.
 pub fn merged(before: Option<f32>, selected: Option<&Selected>) -> f32 {
     match (before.filter(|before| *before >= 0.0), selected) {
         (Some(before), Some(selected)) => before.min(selected.allowed),
@@ -87,7 +87,7 @@ pub fn merged(before: Option<f32>, selected: Option<&Selected>) -> f32 {
     }
 }
 
-/// The number of instances of each block in each list, from the decisions of all instances.
+/// Instance counts per block and list, from the decisions of all instances.
 pub fn counts(decisions: &[u32]) -> Vec<u32> {
     let mut counts = Vec::with_capacity(decisions.len() / 4);
     for block in decisions.chunks(BLOCK as usize) {

@@ -1,9 +1,8 @@
-//! The draws of single instances, for what is drawn instance by instance in an order that the host chooses: transparent
-//! surfaces from back to front.
+//! Draws of single instances in an order that the host chooses: transparent surfaces from back to front.
 //!
-//! The host knows no level of detail and no visibility, so each part of each such instance has a draw of its own, which the
-//! device fills from [`select`](super::select)'s decision: of nothing if the view does not see the instance. Each draw has a
-//! list of its own with one entry, as those of [`list`](super::list), which also tells how far the level has moved.
+//! The host knows neither level of detail nor visibility. So each part of each such instance has its own draw, which
+//! the device fills from [`select`](super::select)'s decision; it draws nothing if the view does not see the instance.
+//! Each draw has its own list with one entry, as in [`list`](super::list), which includes the morph.
 
 #[cfg(feature = "gpu")]
 mod pass;

@@ -5,7 +5,7 @@ use crate::gpu::bindings::lod::sorted as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::lod::sorted::SortedParams;
 
-/// What the draws of single instances are made from, and where they go.
+/// Buffers of the kernel that writes sorted draws.
 #[doc(inline)]
 pub use bindings::Buffers as SortedBuffers;
 
@@ -24,10 +24,10 @@ impl SortedPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the draws of the first `count` of the sorted. Record it after [`select`](crate::lod::select).
+    /// Prepares the first `count` sorted draws. Record it after [`select`](crate::lod::select).
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers with fewer; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers with fewer draws; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, buffers: SortedBuffers<'_>, count: u32) -> Result<Job, Error> {
         let uniform = Uniform::new(gpu, "single", &SortedParams { count })?;
         let lengths = bindings::Lengths { sorted: count as usize };

@@ -4,7 +4,7 @@ use super::SortedDraw;
 use crate::lod::SceneDraw;
 use crate::shared::lod::object::{decision_list, decision_morph, list_entry_word};
 
-/// The draw of each of `sorted`, from the decisions of all instances and the draws of all lists.
+/// The draw arguments of each of `sorted`, from the decisions of all instances and the draws of all lists.
 ///
 /// # Panics
 /// For an instance without a decision, and a decision without a draw.
@@ -21,7 +21,7 @@ pub fn draws(sorted: &[SortedDraw], decisions: &[u32], arguments: &[SceneDraw]) 
     sorted.iter().map(draw).collect()
 }
 
-/// The entry of the list of each of `sorted`, from the decisions of all instances.
+/// The list entry of each of `sorted`, from the decisions of all instances.
 ///
 /// # Panics
 /// For an instance without a decision.

@@ -1,9 +1,9 @@
-//! The hash of a level: what it is, to the bit.
+//! Hash of a level's bits.
 
 use crate::asset::Mesh;
 use crate::hash::sha256;
 
-/// The SHA-256 of the attributes of the first `vertices` vertices and of a level's triangles.
+/// SHA-256 of the attributes of the first `vertices` vertices and of a level's triangles.
 pub(super) fn hash(mesh: &Mesh, level: u32, vertices: u32) -> String {
     let count = vertices as usize;
     let mut words = vec![vertices, mesh.triangles(level).len() as u32];

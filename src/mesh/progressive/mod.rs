@@ -1,15 +1,15 @@
-//! Progressive meshes: a mesh and its coarser levels in one order of vertices, so that a level is the first vertices and a
-//! list of triangles, and the difference between two levels is a run of vertices and a [`IndexPatch`] of the list (B section 3.2,
-//! after Hoppe, "Progressive Meshes", SIGGRAPH 1996).
+//! Progressive meshes: a mesh and its coarser levels with vertices in one common order (B section 3.2, after Hoppe,
+//! "Progressive Meshes", SIGGRAPH 1996). A level is a prefix of the vertices and a list of triangles. The difference between
+//! two levels is a run of vertices and an [`IndexPatch`] of the list.
 //!
-//! Vertices come in the order of the coarsest level that has them. Within a level they are sorted by the bones that they
-//! follow, so that clusters of vertices follow few bones, and otherwise by the time at which they collapsed, the last one
-//! first. Triangles keep the mesh's order at every level.
+//! Vertices are sorted by the coarsest level that has them. Within a level they are sorted by the bones that they follow, so
+//! that clusters of vertices follow few bones, and then by the time at which they collapsed, the last one first. Triangles keep
+//! the mesh's order at every level.
 //!
-//! Every vertex knows its *partner*, which takes its place in the first level that lacks it. [`ProgressiveMesh::morphed`]
-//! moves the vertices of a level towards their partners (A section 7.5; Hoppe's geomorph): all the way, the level looks like
-//! the next coarser one, and its list of triangles with partners in its corners is that level's, with triangles without area
-//! in between.
+//! Every vertex has a *partner*, which takes its place in the first level that lacks it. [`ProgressiveMesh::morphed`] moves the
+//! vertices of a level towards their partners (A section 7.5; Hoppe's geomorph). At the end of the motion, the level looks like
+//! the next coarser one. Its triangles with partners in their corners are then the triangles of that level, mixed with
+//! degenerate triangles.
 
 mod level_hash;
 mod order;
@@ -32,8 +32,8 @@ use stored::Stored;
 
 /// A mesh with its levels of detail; level 0 is the finest.
 ///
-/// It is stored with serde: floats as their bits, so that every format keeps them. What is read is checked completely, the
-/// hashes of all levels included.
+/// serde stores it with floats as their bits, so that every format keeps them. Deserialization checks everything, including the
+/// hashes of all levels.
 ///
 /// ```
 /// use relievo::ops::mesh::progressive::Chosen;
@@ -59,20 +59,20 @@ use stored::Stored;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Stored", into = "Stored")]
 pub struct ProgressiveMesh {
-    /// In the order of this module, with levels and partners.
+    /// The mesh in this module's vertex order, with levels and partners.
     mesh: Mesh,
     sources: Vec<u32>,
-    /// For each level, the number of its vertices.
+    /// Number of vertices of each level.
     vertices: Vec<u32>,
-    /// For each level but the coarsest, what it adds to the next coarser one.
+    /// For each level but the coarsest, its difference to the next coarser one.
     patches: Vec<IndexPatch>,
-    /// For each level.
+    /// Hash of each level.
     hashes: Vec<String>,
 }
 
 impl ProgressiveMesh {
-    /// The levels of a mesh after some of the collapses of one recorded sequence, which was made from the mesh's own
-    /// triangles. `chosen` are the levels 1, 2 …; the mesh's own levels and partners do not matter.
+    /// Builds levels from a recorded sequence of collapses, which must have been made from the mesh's own triangles. `chosen`
+    /// has the levels 1, 2 …; the mesh's own levels and partners are ignored.
     ///
     /// # Errors
     /// [`InputError`] as [`Mesh::validate`], for a sequence of another mesh, for more than 15 levels or levels that do not
@@ -82,9 +82,9 @@ impl ProgressiveMesh {
         Self::ordered(&mesh, &times)
     }
 
-    /// The levels that a mesh has, with its partners ([`Mesh::levels`], [`Mesh::partners`]), such as those of
-    /// [`add_levels`](crate::skinning::levels::add_levels). Vertices that follow the same bones keep the mesh's order within
-    /// a level.
+    /// Builds it from the levels and partners of a mesh ([`Mesh::levels`], [`Mesh::partners`]), such as those of
+    /// [`add_levels`](crate::skinning::levels::add_levels). Vertices that follow the same bones keep the mesh's order within a
+    /// level.
     ///
     /// # Errors
     /// [`InputError`] as [`Mesh::validate`], for a mesh with levels and without partners, and for a level whose triangles are
@@ -97,13 +97,13 @@ impl ProgressiveMesh {
         Self::ordered(mesh, &[])
     }
 
-    /// `times` has for each vertex the number of its collapse; empty if that is not known.
+    /// Sorts the vertices of a mesh. `times` has the number of each vertex's collapse; empty if unknown.
     fn ordered(mesh: &Mesh, times: &[u32]) -> Result<Self, InputError> {
         let sources = order::order(mesh, times);
         Self::assembled(order::permuted(mesh, &sources)?, sources)
     }
 
-    /// From a mesh that is in order already.
+    /// Builds it from a mesh whose vertices are sorted already.
     fn assembled(mesh: Mesh, sources: Vec<u32>) -> Result<Self, InputError> {
         let coarsest = mesh.coarsest_levels();
         if let Some(at) = coarsest.windows(2).position(|pair| pair[0] < pair[1]) {
@@ -128,25 +128,25 @@ impl ProgressiveMesh {
         Ok(Self { mesh, sources, vertices, patches, hashes })
     }
 
-    /// Number of levels, level 0 included: 1 to 16.
+    /// Number of levels, including level 0: 1 to 16.
     pub fn levels(&self) -> usize {
         self.vertices.len()
     }
 
-    /// The mesh with its vertices in order, to be drawn: its levels are those of this, and it has partners.
+    /// The mesh to draw, with sorted vertices, all levels, and partners.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// For each vertex, its index in the mesh from which this was made.
+    /// For each vertex, its index in the source mesh.
     pub fn sources(&self) -> &[u32] {
         &self.sources
     }
 
-    /// The number of vertices of a level: it has the first ones.
+    /// Number of vertices of a level; they are the first ones of the mesh.
     ///
     /// # Panics
-    /// If there is no such level, as all functions that take one and give no `Result`.
+    /// If there is no such level. So do all functions that take a level and do not return a `Result`.
     pub fn vertices(&self, level: usize) -> usize {
         self.vertices[level] as usize
     }
@@ -157,18 +157,18 @@ impl ProgressiveMesh {
         self.mesh.triangles(level as u32)
     }
 
-    /// The error of a level, in the unit of the one that made it; 0 for level 0.
+    /// Error of a level, in the unit of its source; 0 for level 0.
     pub fn error(&self, level: usize) -> f32 {
         level.checked_sub(1).map_or(0.0, |before| self.mesh.levels[before].error)
     }
 
-    /// The SHA-256 of a level, as 64 hexadecimal digits: of all attributes of its vertices, and of its triangles. Two levels
-    /// with the same hash are the same to the bit.
+    /// SHA-256 of a level, as 64 hexadecimal digits. It covers all attributes of the level's vertices, and its triangles. Two
+    /// levels with the same hash are equal to the bit.
     pub fn hash(&self, level: usize) -> &str {
         &self.hashes[level]
     }
 
-    /// What a level adds to the next coarser one.
+    /// Difference between a level and the next coarser one.
     pub fn patch(&self, level: usize) -> &IndexPatch {
         &self.patches[level]
     }
@@ -196,18 +196,18 @@ impl ProgressiveMesh {
         self.patches.get(level).ok_or_else(|| InputError::new("level", level, bound()))
     }
 
-    /// For each vertex of a level, the vertex of the next coarser level towards which it moves; a vertex that this level has
-    /// too, and all of the coarsest level, stay.
+    /// Partner of each vertex of a level in the next coarser level. Vertices that the coarser level has too, and all vertices
+    /// of the coarsest level, are their own partners.
     pub fn partners(&self, level: usize) -> Vec<u32> {
         let kept = self.vertices.get(level + 1).copied().unwrap_or(u32::MAX);
         let partner = |vertex: u32| if vertex < kept { vertex } else { self.mesh.partners[vertex as usize] };
         (0..self.vertices[level]).map(partner).collect()
     }
 
-    /// The values of a level's vertices on the way to the next coarser one: `a · (1 − t) + b · t` for a vertex with the value
-    /// a and a partner with b. `values` are positions in any pose, normals or texture coordinates, at least one for each
-    /// vertex of the level. At t = 0 they are the level's, and at 1 those of partners, to the bit (but for the sign of 0).
-    /// Influences are not blended: positions move after they are skinned.
+    /// Interpolates values of a level's vertices towards the next coarser level: `a · (1 − t) + b · t` for a vertex with value
+    /// a and a partner with value b. `values` are positions in any pose, normals or texture coordinates, at least one per
+    /// vertex of the level. At t = 0 the result equals the level's values, and at t = 1 those of partners, to the bit (except
+    /// for the sign of 0). Influences are not blended: positions move after skinning.
     ///
     /// # Errors
     /// [`InputError`] for a factor t outside of 0..=1, and for too few values.
@@ -229,10 +229,10 @@ impl ProgressiveMesh {
         Ok(values.iter().zip(&self.partners(level)).map(between).collect())
     }
 
-    /// Reads what serde_json wrote.
+    /// Reads JSON written by serde_json.
     ///
     /// # Errors
-    /// [`InputError`] for what is no JSON, with the place; for another [`VERSION`]; and for values that contradict each other.
+    /// [`InputError`] for invalid JSON, with the place; for another [`VERSION`]; and for values that contradict each other.
     pub fn from_json(json: &[u8]) -> Result<Self, InputError> {
         let mut reader = serde_json::Deserializer::from_slice(json);
         let stored: Stored = serde_path_to_error::deserialize(&mut reader).map_err(|error| {

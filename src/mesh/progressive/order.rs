@@ -1,12 +1,12 @@
-//! The order of vertices in which levels are prefixes, and meshes in another order.
+//! The vertex order that makes levels prefixes, and meshes permuted into it.
 
 use std::cmp::Reverse;
 
 use crate::InputError;
 use crate::asset::{Influences, Mesh, MeshLevel, MorphTarget};
 
-/// The vertices, those of coarse levels first, then by strongest bone, by number of influences, by the other bones, by the
-/// time of their collapse, the last one first, and by index. `times` may be empty.
+/// Sorts the vertices: those of coarse levels first, then by strongest bone, by number of influences, by the other bones, by
+/// the time of their collapse (last one first), and by index. `times` may be empty.
 pub(super) fn order(mesh: &Mesh, times: &[u32]) -> Vec<u32> {
     let coarsest = mesh.coarsest_levels();
     let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
@@ -19,7 +19,7 @@ pub(super) fn order(mesh: &Mesh, times: &[u32]) -> Vec<u32> {
     order
 }
 
-/// A mesh whose vertices lie in another order: for each place, the vertex there.
+/// Permutes the vertices of a mesh; `order` has the old index for each new place.
 pub(super) fn permuted(mesh: &Mesh, order: &[u32]) -> Result<Mesh, InputError> {
     let mut place = vec![0; order.len()];
     (0..).zip(order).for_each(|(at, vertex)| place[*vertex as usize] = at);

@@ -1,22 +1,21 @@
-//! Partners of vertices: where a vertex goes in the first level that lacks it.
+//! Partners of vertices: the vertex that takes a vertex's place in the first level that lacks it.
 
 use std::collections::HashMap;
 
-/// What became of a level's vertices.
+/// A level, with the replacements of the previous level's vertices.
 pub(crate) struct Became<'a> {
-    /// The triangles of the level, three indices each.
+    /// Triangles of the level, three indices each.
     pub indices: &'a [u32],
-    /// For each vertex of the level before, the vertex into which it has collapsed.
+    /// For each vertex of the previous level, the vertex into which it has collapsed.
     pub remap: &'a [u32],
 }
 
-/// The partner of each vertex ([`Mesh::partners`](crate::asset::Mesh::partners)), from the levels 1, 2 …; `finest` are the
-/// triangles of level 0. `place` gives the mesh of a vertex, and the place at which it lies, the same number for all vertices
-/// there.
+/// Partner of each vertex ([`Mesh::partners`](crate::asset::Mesh::partners)), from the levels 1, 2 …; `finest` are the
+/// triangles of level 0. `place` gives the mesh of a vertex, and its place: the same number for all vertices at one position.
 ///
-/// A vertex whose triangles vanish may have collapsed into one without triangles at that level, or into one of another mesh.
-/// Another vertex of its own mesh at that place then serves, since places are all that counts for triangles without area. If
-/// there is none, one vertex serves for all that go to that place.
+/// If a vertex's triangles vanish, it may have collapsed into a vertex without triangles at that level, or into a vertex of
+/// another mesh. Its partner is then another vertex of its own mesh at that place. This is valid because degenerate triangles
+/// depend on positions only. If there is none, one vertex becomes the partner of all that go to that place.
 pub(crate) fn partners(
     finest: &[u32],
     levels: &[Became<'_>],
@@ -37,7 +36,7 @@ pub(crate) fn partners(
             *first = (*first).min(*vertex);
         }
         let gone = || finer.iter().copied().filter(|vertex| !here[*vertex as usize]);
-        // Of those that serve for others, one that lies there already comes first.
+        // Prefer a stand-in that already lies at the place.
         for is_there in [true, false] {
             for vertex in gone().filter(|vertex| !is_kept(target(*vertex), *vertex)) {
                 if !is_there || key(vertex) == place(vertex) {

@@ -1,4 +1,4 @@
-//! The difference between the triangles of a level and those of the next coarser one.
+//! Difference between the triangles of a level and those of the next coarser one.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::InputError;
 
-/// What a level adds to the next coarser one: vertices, triangles, and corners that move from a vertex's partner to the
+/// Difference from the next coarser level: vertices and triangles to add, and corners that move from a vertex's partner to the
 /// vertex itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -18,24 +18,24 @@ pub struct IndexPatch {
 }
 
 impl IndexPatch {
-    /// The run of vertices that the level adds.
+    /// Range of vertices that the level adds.
     pub fn vertices(&self) -> Range<u32> {
         self.first..self.end
     }
 
-    /// The triangles that the level adds, ascending: the number of each in the level's list, and its corners.
+    /// Triangles that the level adds, in ascending order: each triangle's index in the level's list, and its corners.
     pub fn added(&self) -> &[[u32; 4]] {
         &self.added
     }
 
-    /// The corners of other triangles that change, ascending: the place in the level's list of indices, and the vertex there.
+    /// Changed corners of other triangles, in ascending order: the position in the level's index list, and the vertex there.
     /// The coarser level has that vertex's partner in the corner.
     pub fn corners(&self) -> &[[u32; 2]] {
         &self.corners
     }
 
-    /// The patch between the lists of a level and of the next coarser one, which lacks the vertices of `run`; `None` if the
-    /// coarser list is not the other with partners in its corners and some triangles left out.
+    /// Builds the patch between the lists of a level and of the next coarser one, which lacks the vertices of `run`. `None`
+    /// unless replacing corners by partners and dropping some triangles turns the finer list into the coarser one.
     pub(super) fn between([fine, coarse]: [&[u32]; 2], run: Range<u32>, partners: &[u32]) -> Option<Self> {
         let mut patch = Self { first: run.start, end: run.end, added: Vec::new(), corners: Vec::new() };
         let mut left = coarse.as_chunks::<3>().0.iter().peekable();
@@ -53,7 +53,7 @@ impl IndexPatch {
         left.next().is_none().then_some(patch)
     }
 
-    /// The triangles of the level, from those of the coarser one.
+    /// Triangles of the level, from those of the coarser one.
     pub(super) fn applied(&self, coarse: &[u32], partners: &[u32]) -> Result<Vec<u32>, InputError> {
         if !coarse.len().is_multiple_of(3) {
             return Err(InputError::new("triangles.len", coarse.len(), "must be a multiple of 3"));
@@ -84,7 +84,7 @@ impl IndexPatch {
         Ok(fine)
     }
 
-    /// The triangles of the coarser level, from those of the level.
+    /// Triangles of the coarser level, from those of the level.
     pub(super) fn undone(&self, fine: &[u32], partners: &[u32]) -> Result<Vec<u32>, InputError> {
         let mut moved = fine.to_vec();
         for (at, [place, vertex]) in self.corners.iter().enumerate() {

@@ -6,16 +6,17 @@ use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::{Mesh, MeshLevel};
 use crate::mesh::simplify::Simplified;
 
-/// A level that is taken from a sequence of collapses.
+/// A level to take from a sequence of collapses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chosen {
-    /// How many collapses, from the first one on, make the level; at least one more than for the level before.
+    /// Number of leading collapses that make the level; at least one more than for the level before.
     pub collapses: usize,
-    /// The error of the level, finite and at least that of the level before.
+    /// Error of the level, finite and at least that of the level before.
     pub error: f32,
 }
 
-/// The mesh with these levels and their partners, and for each vertex the number of its collapse, `u32::MAX` if it stays.
+/// Returns the mesh with these levels and their partners, and the number of each vertex's collapse; `u32::MAX` for a vertex
+/// that stays.
 pub(super) fn levelled(
     mesh: &Mesh,
     simplified: &Simplified,
@@ -43,7 +44,7 @@ pub(super) fn levelled(
     Ok((mesh, times(simplified)))
 }
 
-/// For each level, the vertex into which each vertex has collapsed.
+/// For each level, the replacement of each vertex.
 fn remaps(mesh: &Mesh, simplified: &Simplified, chosen: &[Chosen]) -> Result<Vec<Vec<u32>>, InputError> {
     mesh.validate_alone()?;
     let vertices = simplified.remap(0).len();

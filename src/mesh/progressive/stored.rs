@@ -1,4 +1,4 @@
-//! Progressive meshes as they are stored.
+//! Stored form of progressive meshes.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,10 +7,10 @@ use crate::InputError;
 use crate::asset::morph::MorphDelta;
 use crate::asset::{Influence, Influences, Interpolation, Mesh, MeshLevel, MorphTarget, WeightKeys};
 
-/// The version of the stored form, which is written and read.
+/// Version of the stored form.
 pub const VERSION: u32 = 1;
 
-/// Floats are stored as their bits. The triangles are those of the coarsest level.
+/// The stored form. Floats are stored as their bits. The triangles are those of the coarsest level.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Stored {
@@ -24,7 +24,7 @@ pub(super) struct Stored {
     normals: Vec<[u32; 3]>,
     tangents: Vec<[u32; 4]>,
     uv: Vec<[u32; 2]>,
-    /// For each vertex, bones and weights.
+    /// Bones and weights of each vertex.
     influences: Vec<Vec<[u32; 2]>>,
     targets: Vec<StoredTarget>,
     weights: Vec<u32>,
@@ -32,7 +32,7 @@ pub(super) struct Stored {
     partners: Vec<u32>,
     triangles: Vec<u32>,
     levels: Vec<StoredLevel>,
-    /// From level 0 on.
+    /// Patches from level 0 on.
     patches: Vec<IndexPatch>,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Stored {
 #[serde(deny_unknown_fields)]
 struct StoredTarget {
     vertices: Vec<u32>,
-    /// Position, normal and tangent.
+    /// Deltas of position, normal and tangent.
     deltas: Vec<[[u32; 3]; 3]>,
 }
 
@@ -141,7 +141,7 @@ impl TryFrom<Stored> for ProgressiveMesh {
 }
 
 impl Stored {
-    /// The triangles of all levels, from level 0 on.
+    /// Triangles of all levels, from level 0 on.
     fn lists(&self) -> Result<Vec<Vec<u32>>, InputError> {
         if self.levels.is_empty() || self.patches.len() != self.levels.len() - 1 {
             let bound = format!("must be {}, one less than levels", self.levels.len().saturating_sub(1));
@@ -163,7 +163,7 @@ impl Stored {
         Ok(lists)
     }
 
-    /// The mesh, and for each vertex its source.
+    /// The mesh, and the source of each vertex.
     fn mesh(self, lists: Vec<Vec<u32>>) -> Result<(Mesh, Vec<u32>), InputError> {
         let of_vertex = |all: Vec<[u32; 2]>| {
             all.into_iter().map(|[bone, weight]| Influence { bone, weight: f32::from_bits(weight) }).collect()
@@ -244,7 +244,7 @@ impl StoredKeys {
     }
 }
 
-/// Refuses what is not each number below `vertices` once.
+/// Checks that `sources` is a permutation of the numbers below `vertices`.
 fn check_sources(sources: &[u32], vertices: usize) -> Result<(), InputError> {
     InputError::check_len("sources", sources.len(), vertices, "a vertex")?;
     let mut seen = vec![false; vertices];

@@ -1,11 +1,11 @@
-//! The cost of changes in attributes (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance
-//! Attributes", Visualization 1999): on each triangle an attribute is a linear function of position.
+//! Cost of changes in attributes (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance Attributes", Visualization
+//! 1999): on each triangle an attribute is a linear function of position.
 //!
-//! Weights are areas, and the sums are not divided by them, as those of positions are: a wrong normal disturbs by the
-//! area that it shades (so does meshoptimizer). A mean would count it in the smallest triangle as much as in the largest.
+//! Weights are areas. Unlike the sums of positions, these sums are not divided by their weights: a wrong normal disturbs by the
+//! area that it shades (meshoptimizer does the same). A mean would count it in the smallest triangle as much as in the largest.
 //!
-//! Sums are in f32, which is half of what has to be read. Where attributes are linear over a flat surface, the cost is
-//! then not quite 0: its root is up to 3 · 10⁻⁴ of what the change in attributes itself would count.
+//! Sums are in f32, which halves the memory traffic. If attributes are linear over a flat surface, the cost is then not quite
+//! 0: its root is up to 3 · 10⁻⁴ of the cost of the attribute change itself.
 
 use glam::{DVec3, Vec3, Vec4};
 
@@ -14,28 +14,28 @@ use super::points::Points;
 use super::quadric::Quadric;
 use super::turned::normal;
 
-/// Number of vectors of a vertex beside one for each attribute.
+/// Number of vectors in a record besides one per attribute.
 const HEAD: usize = 3;
 
-/// For each vertex, the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
-/// the attribute, k its accumulated constant difference, and d and s are the differences in position and
-/// attribute from the vertex.
+/// Attribute error of each vertex: the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
+/// the attribute, k its accumulated constant difference, and d and s are the differences in position and attribute from the
+/// vertex.
 pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
-    /// For each vertex a record: the quadric dᵀ A d + 2 b·d + c of the part without s, as (A's xx, xy, xz, yy), (yz, zz,
-    /// c, sum of weights), (b, 0); and for each attribute the weighted sums of g and of k.
+    /// One record per vertex. It has the quadric dᵀ A d + 2 b·d + c of the part without s, as (A's xx, xy, xz, yy), (yz, zz, c,
+    /// sum of weights), (b, 0). Then, for each attribute, it has the weighted sums of g and of k.
     records: Vec<Vec4>,
 }
 
-/// What the costs of replacing a vertex depend on.
+/// Data that determines the cost of replacing a vertex.
 pub(crate) struct Own<'a> {
     head: [Vec4; HEAD],
     sums: &'a [Vec4],
     values: &'a [f32],
 }
 
-/// The sum of several vertices at one place.
+/// Sum of several vertices at one place.
 #[derive(Default)]
 pub(crate) struct Joint<'a> {
     record: Vec<Vec4>,
@@ -49,7 +49,7 @@ impl<'a> Own<'a> {
         Self { head: [head[0], head[1], head[2]], sums, values }
     }
 
-    /// The sum of the mean of a point's quadric and of the part of this one that does not depend on the replacement's
+    /// Sum of two quadrics: the mean of a point's quadric, and the part of this one that does not depend on the replacement's
     /// attributes.
     #[inline]
     pub(crate) fn with(&self, shape: &Quadric) -> Quadric {
@@ -58,7 +58,7 @@ impl<'a> Own<'a> {
         shape.mean_plus(a, b.truncate(), second.z)
     }
 
-    /// The part of the cost that depends on the attributes of the replacement, which is `d` away.
+    /// Part of the cost that depends on the replacement's attributes; the replacement is at the offset `d`.
     #[inline]
     pub(crate) fn change(&self, values: &[f32], d: Vec3) -> f32 {
         let (mut sum, mut squares) = (Vec4::ZERO, 0.0);
@@ -77,7 +77,7 @@ impl<'a> Own<'a> {
         squares * self.head[1].w - 2.0 * at(sum, d)
     }
 
-    /// Half the gradient of the part without the replacement's attributes.
+    /// Half the gradient of the part that does not depend on the replacement's attributes.
     #[inline]
     fn slope(&self, d: Vec3) -> Vec3 {
         let [first, second, b] = self.head;
@@ -89,7 +89,7 @@ impl<'a> Own<'a> {
         Vec3::new(x + b.x, y + b.y, z + b.z)
     }
 
-    /// The cost of a replacement that is `d` away.
+    /// Cost of a replacement at the offset `d`.
     #[inline]
     fn cost(&self, values: &[f32], d: Vec3) -> f32 {
         let [_, second, b] = self.head;
@@ -99,10 +99,10 @@ impl<'a> Own<'a> {
     }
 }
 
-/// g·d + k.
+/// Evaluates g·d + k.
 #[inline]
 fn at(sum: Vec4, d: Vec3) -> f32 {
-    // In this order on every machine.
+    // This order of operations is the same on every machine.
     let [x, y, z, k] = (sum * d.extend(1.0)).to_array();
     x + y + z + k
 }
@@ -128,7 +128,7 @@ impl<'a> Attributes<'a> {
         &mut self.records[vertex as usize * len..][..len]
     }
 
-    /// Adds a triangle; `normal` has twice the triangle's area as its length.
+    /// Adds a triangle; the length of `normal` is twice the triangle's area.
     fn add_triangle(&mut self, vertices: [u32; 3], positions: [DVec3; 3], normal: DVec3) {
         let [first, second] = [positions[1] - positions[0], positions[2] - positions[0]];
         let (square, weight) = (normal.length_squared(), normal.length() * 0.5);
@@ -156,32 +156,32 @@ impl<'a> Attributes<'a> {
         }
     }
 
-    /// The cost of replacing `vertex` by `target`, which is `d` away.
+    /// Cost of replacing `vertex` by `target`, at the offset `d`.
     pub(crate) fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
         f64::from(self.of(vertex).cost(self.values_of(target), d.as_vec3()))
     }
 
-    /// The attributes of a vertex, in no unit.
+    /// Attributes of a vertex, unscaled.
     #[inline]
     pub(crate) fn values_of(&self, vertex: u32) -> &'a [f32] {
         &self.values[vertex as usize * self.stride..][..self.stride]
     }
 
-    /// A number that depends on the first and last sum of a vertex.
+    /// Reads the first and last sum of a vertex, to prefetch them; the returned number only keeps the reads alive.
     #[inline]
     pub(crate) fn touch(&self, vertex: u32) -> u32 {
         let own = self.of(vertex);
         own.head[0].x.to_bits() ^ own.sums.last().map_or(0, |last| last.w.to_bits())
     }
 
-    /// What the costs of replacing a vertex depend on.
+    /// Data that determines the cost of replacing a vertex.
     #[inline]
     pub(crate) fn of(&self, vertex: u32) -> Own<'_> {
         let len = HEAD + self.stride;
         Own::new(&self.records[vertex as usize * len..][..len], self.values_of(vertex))
     }
 
-    /// What it costs if the triangles of these vertices vanish: their area times the variance of their attributes.
+    /// Cost of removing the triangles of these vertices: their area times the variance of their attributes.
     pub(crate) fn lost<I: Iterator<Item = u32>>(&self, vertices: impl Fn() -> I) -> f64 {
         let weight = |vertex: u32| f64::from(self.of(vertex).head[1].w);
         let weights: f64 = vertices().map(weight).sum();
@@ -191,11 +191,11 @@ impl<'a> Attributes<'a> {
             let mean = vertices().map(|vertex| weight(vertex) * value(vertex)).sum::<f64>() / weights;
             variance += vertices().map(|vertex| weight(vertex) * (value(vertex) - mean).powi(2)).sum::<f64>();
         }
-        // Each triangle counts at three vertices.
+        // Each triangle is counted at three vertices.
         if weights > 0.0 { variance / 3.0 } else { 0.0 }
     }
 
-    /// Replaces `vertex` by `target`, which is `d` away.
+    /// Replaces `vertex` by `target`, at the offset `d`.
     pub(crate) fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
         let len = HEAD + self.stride;
         let (own, values) = (self.values_of(vertex), self.values_of(target));
@@ -204,7 +204,7 @@ impl<'a> Attributes<'a> {
         add_moved(to, &Own::new(from, own), values, d.as_vec3());
     }
 
-    /// The sum of several vertices at one place, as if they were one vertex with the attributes of the first.
+    /// Sums several vertices at one place, as if they were one vertex with the attributes of the first.
     pub(crate) fn join(&self, vertices: impl IntoIterator<Item = u32>, joint: &mut Joint<'a>) {
         joint.record.clear();
         joint.record.resize(HEAD + self.stride, Vec4::ZERO);
@@ -216,13 +216,13 @@ impl<'a> Attributes<'a> {
         }
     }
 
-    /// As [`Self::cost`], of several vertices at once.
+    /// As [`Self::cost`], for several vertices at once.
     pub(crate) fn joint_cost(&self, joint: &Joint<'a>, target: u32, d: DVec3) -> f64 {
         f64::from(Own::new(&joint.record, joint.values).cost(self.values_of(target), d.as_vec3()))
     }
 }
 
-/// Adds a vertex, replaced by one with these attributes that is `d` away, to the record of that one.
+/// Adds a vertex to the record of its replacement, which has these attributes and is at the offset `d`.
 fn add_moved(record: &mut [Vec4], own: &Own<'_>, values: &[f32], d: Vec3) {
     let ([first, mut second, _], mut slope) = (own.head, own.slope(d).extend(0.0));
     let sums = own.sums.iter().zip(&mut record[HEAD..]);
@@ -255,8 +255,8 @@ mod tests {
             Surface { poses: &[positions.to_vec()], indices: &indices, attributes: &values, stride: 2 };
         let mut attributes = Attributes::new(&surface, &points);
         let value = |vertex: u32, attribute: usize| f64::from(values[vertex as usize * 2 + attribute]);
-        // The difference between each attribute's plane through a triangle's corners and the attribute at a
-        // vertex, on the plane or off it.
+        // Difference between the attribute at a vertex and the attribute's linear function on a triangle, for vertices on and
+        // off the plane.
         let off = |triangle: usize, to: u32| -> f64 {
             let corners = [0, 1, 2].map(|at| indices[triangle * 3 + at]);
             let [a, b, c] = corners.map(position);
@@ -283,7 +283,7 @@ mod tests {
         assert!(close(cost, 2.0 * off(2, 2)), "{cost}");
     }
 
-    /// Vertices at one place cost together what they cost one by one.
+    /// Vertices at one place cost together the sum of their single costs.
     #[test]
     fn several_vertices_are_replaced_at_once() {
         let turn = |at: f32| [at.cos(), at.sin(), 0.1 * at];

@@ -1,4 +1,4 @@
-//! The distance of new edges from the surface before a collapse.
+//! Distance of new edges from the surface before a collapse.
 
 use glam::DVec3;
 
@@ -7,12 +7,12 @@ use crate::mesh::nearest::precise_nearest_on_triangle;
 use super::points::Points;
 use super::topology::Topology;
 
-/// The largest number of triangles around a point whose new edges are measured: the time grows with the square of it.
+/// Largest number of triangles around a point whose new edges are measured: the time grows with the square of it.
 const MOST: usize = 16;
 
-/// The largest squared distance, in any pose, between the middle of a new edge and the triangles of the point before the
-/// collapse; `least` if that is larger. An edge can bridge a recess while its point stays near the planes of its triangles.
-/// Left out are new edges on borders, and points with more than [`MOST`] triangles.
+/// Largest squared distance, in any pose, between the middle of a new edge and the point's triangles before the collapse; at
+/// least `least`. An edge can bridge a recess while its point stays near the planes of its triangles. New edges on borders, and
+/// points with more than [`MOST`] triangles, are skipped.
 pub(crate) fn bridged(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], least: f64) -> f64 {
     let mut worst = least;
     let ring = topology.ring(point);
@@ -51,7 +51,7 @@ mod tests {
     use super::super::turned::deviation;
     use super::*;
 
-    /// Four triangles around a point at the bottom of a valley, whose two ends lie `depth` lower.
+    /// Four triangles around a point at the bottom of a valley. The valley's two ends lie `depth` lower.
     #[test]
     fn edges_across_a_valley_are_off_by_their_middle() {
         let valley = |depth: f32| {
@@ -71,7 +71,7 @@ mod tests {
         let (across, planes) = off(&[valley(1.0)], 1, 0.0);
         is(across, 0.5_f64.sqrt());
         assert!(planes.is_some_and(|off| off < 0.45), "{planes:?}");
-        // Along the bottom nothing is bridged.
+        // Along the bottom, the new edges bridge nothing.
         is(off(&[valley(0.0)], 2, 0.0).0, 0.0);
         is(off(&[valley(0.0)], 2, 0.25).0, 0.25);
         // The worst of several poses.

@@ -1,4 +1,4 @@
-//! The cost function of Melax (B equation 3.1).
+//! Cost function of Melax (B equation 3.1).
 
 use glam::DVec3;
 
@@ -6,8 +6,8 @@ use super::points::Points;
 use super::topology::Topology;
 use super::turned::normal;
 
-/// The square of the cost, so that costs are ordered and rooted as those of quadrics are; the largest over the
-/// poses.
+/// Square of the cost, largest over the poses. It is squared because quadric costs are, so that both are ordered and rooted
+/// alike.
 pub(crate) fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
@@ -27,8 +27,8 @@ pub(crate) fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32
     worst
 }
 
-/// Whether the normals of two points, each the sum of the normals of its triangles, are more than 90° apart in
-/// the first pose.
+/// Whether the normals of two points are more than 90° apart in the first pose. A point's normal is the sum of its triangles'
+/// normals.
 pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
     let sum = |point| -> DVec3 {
         let ring = topology.ring(point).iter();
@@ -38,7 +38,7 @@ pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bo
     a.dot(b) < 0.0
 }
 
-/// The unit normal of a triangle in a pose; 0 for a triangle without area.
+/// Unit normal of a triangle in a pose; 0 for a triangle without area.
 fn unit_normal(points: &Points, corners: [u32; 3], pose: usize) -> DVec3 {
     normal(corners.map(|corner| points.position(corner, pose)))
         .map_or(DVec3::ZERO, |normal| normal / normal.length())
@@ -54,8 +54,8 @@ mod tests {
         (points, topology)
     }
 
-    /// A floor of four squares meets a wall of four: a point on the edge between them moves along the edge at
-    /// no cost, and away from it at half the length, because the other side's triangles are turned by 90°.
+    /// A floor of four squares meets a wall of four. A point on the edge between them moves along the edge at no cost. Away
+    /// from the edge it costs half the length, because the other side's triangles are turned by 90°.
     #[test]
     fn edges_are_kept() {
         let mut positions = Vec::new();

@@ -1,10 +1,10 @@
-//! The neighbours into which a point may collapse, and the vertex that each of its wedges would become.
+//! Neighbours into which a point may collapse, and the vertex that each of its wedges would become.
 
 use super::marks::Marks;
 use super::points::Points;
 use super::topology::{Kind, Topology};
 
-/// The vertices that may replace a wedge: none, one or two.
+/// Vertices that may replace a wedge: none, one or two.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Remap {
     vertices: [u32; 2],
@@ -36,7 +36,7 @@ impl IntoIterator for Remap {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Neighbor {
     pub point: u32,
-    /// Number of these triangles, and the wedges of the first two of them.
+    /// Number of triangles at the edge, and the wedges of the first two.
     triangles: u32,
     meets: [Meet; 2],
 }
@@ -46,7 +46,7 @@ impl Neighbor {
         &self.meets[..self.triangles.min(2) as usize]
     }
 
-    /// The neighbour's vertex, if triangles at the edge have only one.
+    /// The neighbour's vertex, if all triangles at the edge use the same one.
     pub(crate) fn only_target(&self) -> Option<u32> {
         let first = self.meets[0].other;
         self.meets().iter().all(|meet| meet.other == first).then_some(first)
@@ -64,7 +64,7 @@ struct Meet {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Wedge {
     pub vertex: u32,
-    /// Number of its sheet: wedges that are split at this point only, and adjacent, are in one sheet.
+    /// Index of the wedge's sheet. Adjacent wedges that are split at this point only are in one sheet.
     sheet: u32,
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct Neighbors {
     all: Vec<Neighbor>,
     wedges: Vec<Wedge>,
     sheets: usize,
-    /// The vertices of each neighbour that triangles use, and the neighbour; where seams may be crossed.
+    /// Vertices of each neighbour that triangles use, with the neighbour; only if seams may be crossed.
     beyond: Vec<[u32; 2]>,
 }
 
@@ -126,8 +126,7 @@ impl Neighbors {
         }
     }
 
-    /// Lists each wedge once. Wedges are in one sheet if their triangles meet in an edge that has a single
-    /// vertex at its far end.
+    /// Lists each wedge once. Two wedges are in one sheet if their triangles share an edge with a single vertex at its far end.
     fn find_sheets(&mut self, topology: &Topology, points: &Points, point: u32, vertices: &mut Marks) {
         self.wedges.clear();
         vertices.clear();
@@ -164,8 +163,8 @@ impl Neighbors {
         }
     }
 
-    /// Keeps the neighbours into which the point may collapse: for a point on a border, those along the border;
-    /// and every sheet must meet the neighbour.
+    /// Keeps the neighbours into which the point may collapse: a border point only along the border, and only neighbours that
+    /// every sheet meets.
     fn keep_allowed(&mut self, topology: &Topology, point: u32) {
         let sheets = self.sheets;
         self.all.retain(|neighbor| {
@@ -193,7 +192,7 @@ impl Neighbors {
         &self.wedges
     }
 
-    /// Vertices of a neighbour that are of one chart with `target`, a vertex of it, in ascending order; where seams may be
+    /// Vertices of a neighbour on the same chart as `target`, one of its vertices, in ascending order; only if seams may be
     /// crossed.
     pub(crate) fn beyond<'a>(
         &'a self,
@@ -207,8 +206,8 @@ impl Neighbors {
         all.filter(move |vertex| points.chart(*vertex) == points.chart(target))
     }
 
-    /// The vertices that may replace a wedge: those with which it shares an edge, or else those with which the
-    /// other wedges of its sheet do.
+    /// Vertices that may replace a wedge: those with which it shares an edge, or else those with which the other wedges of its
+    /// sheet share one.
     pub(crate) fn remap(&self, neighbor: &Neighbor, wedge: &Wedge) -> Remap {
         let mut remap = Remap::default();
         let own = neighbor.meets().iter().filter(|meet| meet.own.vertex == wedge.vertex);

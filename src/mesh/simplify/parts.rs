@@ -1,5 +1,5 @@
-//! Parts: points that triangles connect. A part vanishes as a whole where the others are so near that the next collapse
-//! would cost more.
+//! Parts: points connected by triangles. A part vanishes as a whole if its distance to the other parts costs less than the next
+//! collapse.
 
 mod tree;
 
@@ -13,23 +13,23 @@ use super::topology::Topology;
 use crate::mesh::nearest::precise_nearest_on_triangle;
 use tree::Tree;
 
-/// How much the square of the distance between a part and the others counts: a part vanishes for half of the distance, so that it
-/// goes a little before collapses that move the surface as far.
+/// Weight of the squared distance between a part and the others. A part thus costs half of the distance, so that it vanishes a
+/// little before collapses that move the surface as far.
 const FACTOR: f64 = 0.25;
 
-/// A part is not measured before a collapse costs this share of its radius: its own collapses mostly cost less, and a part
-/// of few triangles is measured fast.
+/// Fraction of a part's radius that a collapse must cost before the part is measured. Its own collapses mostly cost less, and a
+/// part of few triangles is measured fast.
 const FIRST: f64 = 0.25;
 
-/// Points that triangles connect.
+/// Points connected by triangles.
 struct Part {
-    /// Those that have not collapsed when they were last asked for.
+    /// Points that had not collapsed at the last update.
     points: Vec<u32>,
-    /// Points of parts that have vanished, which are nearest to this one.
+    /// Points of vanished parts that are nearest to this part.
     heritage: Vec<u32>,
-    /// The box around all its points, in each pose.
+    /// Bounding box of all points, in each pose.
     boxes: Vec<[DVec3; 2]>,
-    /// The round in which `points` was brought up to date.
+    /// Round of the last update of `points`.
     updated: u64,
 }
 
@@ -37,15 +37,15 @@ struct Part {
 #[derive(Default)]
 pub(crate) struct Parts {
     all: Vec<Part>,
-    /// One for each pose.
+    /// One tree per pose.
     trees: Vec<Tree>,
-    /// The bits of a cost and its part: at least as much as it would cost if that part vanished.
+    /// Queue of a cost's bits and its part. The cost is a lower bound on what vanishing of the part would cost.
     waiting: BinaryHeap<Reverse<(u32, u32)>>,
     /// Number of measured parts.
     round: u64,
-    /// The points of the part that is measured, each with the part that is nearest, or near enough.
+    /// Points of the part being measured, each with the part that is nearest, or near enough.
     heirs: Vec<[u32; 2]>,
-    /// What a search is still to visit.
+    /// Stack of nodes that a search has still to visit.
     open: Vec<(f64, u32)>,
 }
 
@@ -68,8 +68,8 @@ impl Parts {
         Self { trees, all, waiting, round: 0, heirs: Vec::new(), open: Vec::new() }
     }
 
-    /// Takes the part whose vanishing costs least, if that is no more than this: its points that have not collapsed, and
-    /// the cost. `more` is what the loss of a part costs beside its distance from the others.
+    /// Takes the part whose vanishing costs least, if the cost is at most `most`. Returns its points that have not collapsed,
+    /// and the cost. `more` computes the cost of a part's loss besides its distance from the others.
     pub(crate) fn take(
         &mut self,
         points: &Points,
@@ -89,7 +89,7 @@ impl Parts {
             let own = std::mem::take(&mut self.all[part as usize].points);
             let heritage = std::mem::take(&mut self.all[part as usize].heritage);
             let more = more(&own);
-            // Twice the distance that would do: if that is passed, the part need not be measured again soon.
+            // Twice the sufficient distance: a part beyond it need not be measured again soon.
             let enough = (f64::from(most) - more).max(0.0) * 4.0 / FACTOR;
             let cost = (self.distance(points, topology, [&own, &heritage], enough) * FACTOR + more) as f32;
             let cost = queued.max(cost);
@@ -111,8 +111,8 @@ impl Parts {
         }
     }
 
-    /// The square of the largest distance of these points from all parts that have any of their own, in any pose; infinite
-    /// if no part has. Where it is more than `enough`, something between the two.
+    /// Squared largest distance from these points to all parts that still have points, in any pose; infinite if no part has. If
+    /// it is more than `enough`, the result may be any value between the two.
     fn distance(&mut self, points: &Points, topology: &mut Topology, own: [&[u32]; 2], enough: f64) -> f64 {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
@@ -123,7 +123,7 @@ impl Parts {
                 let known = hint.map_or(f64::INFINITY, |part| {
                     self.nearest_in(points, topology, part, (pose, from), f64::INFINITY)
                 });
-                // Nearer than another point is from the parts: that decides nothing.
+                // This point is nearer to the parts than an earlier one, so it does not change the maximum.
                 if known > worst {
                     let (nearest, part) = self.nearest(points, topology, (pose, from), (known, hint));
                     (worst, hint) = (worst.max(nearest), part);
@@ -137,8 +137,7 @@ impl Parts {
         worst
     }
 
-    /// The square of the distance from the nearest triangle of those parts that have points, and its part; `known` is one
-    /// of them.
+    /// Squared distance to the nearest triangle of the parts that have points, and its part. `known` is one of these parts.
     fn nearest(
         &mut self,
         points: &Points,
@@ -158,7 +157,7 @@ impl Parts {
         (best, of)
     }
 
-    /// The square of the distance from a part, if it is below `best`.
+    /// Squared distance to a part, if it is below `best`.
     fn nearest_in(
         &mut self,
         points: &Points,
@@ -177,7 +176,7 @@ impl Parts {
             for &[next, last] in topology.ring(point) {
                 if point < next && point < last {
                     let corners = [point, next, last].map(|point| points.position(point, pose));
-                    // Most triangles have a box that is further than the nearest so far.
+                    // Most triangles have a box that is further away than the nearest so far.
                     if around(corners, from) < nearest {
                         let on = precise_nearest_on_triangle(from, corners);
                         nearest = nearest.min(on.distance_squared(from));
@@ -188,7 +187,7 @@ impl Parts {
         nearest
     }
 
-    /// Drops the points of a part that have collapsed, and brings the others up to date, once a round.
+    /// Drops collapsed points of a part, and refreshes the others, once per round.
     fn update(&mut self, topology: &mut Topology, part: u32) {
         let Part { points, updated, .. } = &mut self.all[part as usize];
         if std::mem::replace(updated, self.round) != self.round {
@@ -198,7 +197,7 @@ impl Parts {
     }
 }
 
-/// The points of each part that has triangles.
+/// Points of each part that has triangles.
 fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
     let mut is_known = vec![false; count];
     let mut parts = Vec::new();
@@ -209,7 +208,7 @@ fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
         is_known[first as usize] = true;
         let (mut part, mut at) = (vec![first], 0);
         while let Some(point) = part.get(at) {
-            // Around a triangle, each point comes next to another.
+            // Each triangle lists its points in a cycle, so following `next` alone reaches all of them.
             for &[next, _] in topology.ring(*point) {
                 if !std::mem::replace(&mut is_known[next as usize], true) {
                     part.push(next);
@@ -222,13 +221,13 @@ fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
     parts
 }
 
-/// The square of the distance of a place from the box around a triangle.
+/// Squared distance from a place to the bounding box of a triangle.
 #[inline]
 fn around([a, b, c]: [DVec3; 3], from: DVec3) -> f64 {
     from.clamp(a.min(b).min(c), a.max(b).max(c)).distance_squared(from)
 }
 
-/// The box around the points of a part, in each pose.
+/// Bounding box of a part's points, in each pose.
 fn boxes(points: &Points, part: &[u32]) -> Vec<[DVec3; 2]> {
     let in_pose = |pose: usize| {
         let positions = || part.iter().map(|point| points.position(*point, pose));

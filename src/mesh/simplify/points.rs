@@ -7,23 +7,24 @@ use crate::asset::tangents::Adjacency;
 /// Vertices grouped by their positions in all poses. Points are numbered in the order of their first vertices.
 pub(crate) struct Points {
     of: Vec<u32>,
-    /// For each point, the range of its vertices in `wedges`.
+    /// Range of each point's vertices in `wedges`.
     ranges: Vec<[u32; 2]>,
     wedges: Vec<u32>,
     poses: usize,
-    /// Positions times `scale`, point by point, each in all poses.
+    /// Positions times `scale`, point by point, each point in all poses.
     positions: Vec<[f32; 3]>,
     scale: f64,
-    /// The largest edge of the box around any pose, times `scale`.
+    /// Largest edge of the bounding box of any pose, times `scale`.
     extent: f64,
     are_vertices: bool,
-    /// The rigid body of each point, or [`NO_BODY`]; empty if there are none.
+    /// Rigid body of each point, or [`NO_BODY`]; empty if there are none.
     bodies: Vec<u32>,
-    /// For each vertex, the first one at its point that differs from it in nothing that holds seams; empty if that is itself.
+    /// Chart of each vertex: the first vertex at its point from which no seam separates it. Empty if that is always the vertex
+    /// itself.
     charts: Vec<u32>,
 }
 
-/// The body of a vertex or point that belongs to none.
+/// Body of a vertex or point that belongs to no rigid body.
 pub(crate) const NO_BODY: u32 = u32::MAX;
 
 impl Points {
@@ -53,7 +54,7 @@ impl Points {
         }
     }
 
-    /// The same points, where only the numbers of `attributes` from number `first` of each vertex on hold seams.
+    /// Returns the points with charts: only the attributes from index `first` of each vertex on hold seams.
     pub(crate) fn on_charts(mut self, attributes: &[f32], stride: usize, first: usize) -> Self {
         // Adding 0 turns −0 into +0.
         let held = |vertex: u32| {
@@ -68,20 +69,20 @@ impl Points {
         self
     }
 
-    /// What two vertices of a point have in common if no seam is between them.
+    /// Chart of a vertex. Two vertices of a point have the same chart if no seam is between them.
     #[inline]
     pub(crate) fn chart(&self, vertex: u32) -> u32 {
         self.charts.get(vertex as usize).copied().unwrap_or(vertex)
     }
 
-    /// Whether several vertices of a point may belong to one chart.
+    /// Whether several vertices of a point may be on one chart.
     #[inline]
     pub(crate) fn has_charts(&self) -> bool {
         !self.charts.is_empty()
     }
 
-    /// The same points on rigid bodies: `bodies` has the body of each vertex, or [`NO_BODY`]. Vertices of one body have the
-    /// same distances from each other in every pose.
+    /// Returns the points with rigid bodies. `bodies` has the body of each vertex, or [`NO_BODY`]. Vertices of one body have
+    /// the same distances from each other in every pose.
     pub(crate) fn on_bodies(mut self, bodies: &[u32]) -> Self {
         let of_point = |point: u32| {
             let mut wedges = self.wedges(point).iter().map(|vertex| bodies[*vertex as usize]);
@@ -92,13 +93,13 @@ impl Points {
         self
     }
 
-    /// The rigid body of a point, or [`NO_BODY`].
+    /// Rigid body of a point, or [`NO_BODY`].
     #[inline]
     pub(crate) fn body(&self, point: u32) -> u32 {
         self.bodies.get(point as usize).copied().unwrap_or(NO_BODY)
     }
 
-    /// The rigid body that some points share, or [`NO_BODY`].
+    /// Rigid body that all of the points share, or [`NO_BODY`].
     #[inline]
     pub(crate) fn common_body(&self, points: &[u32]) -> u32 {
         match points {
@@ -110,7 +111,7 @@ impl Points {
         }
     }
 
-    /// Number of poses, from the first on, that show all distances between things on two bodies: one on a single body.
+    /// Number of leading poses that show all distances between two bodies: one if they are the same body.
     #[inline]
     pub(crate) fn poses_between(&self, body: u32, other: u32) -> usize {
         if body == other && body != NO_BODY { 1 } else { self.poses }
@@ -125,39 +126,39 @@ impl Points {
         self.poses
     }
 
-    /// The point of a vertex.
+    /// Point of a vertex.
     pub(crate) fn of(&self, vertex: u32) -> u32 {
         self.of[vertex as usize]
     }
 
-    /// The vertices of a point, in ascending order.
+    /// Vertices of a point, in ascending order.
     pub(crate) fn wedges(&self, point: u32) -> &[u32] {
         let [start, end] = self.ranges[point as usize];
         &self.wedges[start as usize..end as usize]
     }
 
-    /// What positions are multiplied by: with it the mesh is between 1 and 2 units large.
+    /// Factor of positions. It brings the mesh to a size between 1 and 2 units.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The largest edge of the box around any pose, in units of 1 / `scale`: between 1 and 2, or 0.
+    /// Largest edge of the bounding box of any pose, in units of 1 / `scale`: between 1 and 2, or 0.
     pub(crate) fn extent(&self) -> f64 {
         self.extent
     }
 
-    /// A number that depends on the position of a point.
+    /// Reads the position of a point, to prefetch it; the returned number only keeps the read alive.
     #[inline]
     pub(crate) fn touch(&self, point: u32) -> u32 {
         self.positions[point as usize * self.poses][0].to_bits()
     }
 
-    /// Whether every vertex has a position of its own, so that the mesh has no seams.
+    /// Whether every vertex has its own position. The mesh then has no seams.
     pub(crate) fn are_vertices(&self) -> bool {
         self.are_vertices
     }
 
-    /// The vertex of a point that has just one.
+    /// Vertex of a point that has only one.
     #[inline]
     pub(crate) fn only_wedge(&self, point: u32) -> Option<u32> {
         if self.are_vertices {
@@ -167,26 +168,26 @@ impl Points {
         (end == start + 1).then(|| self.wedges[start as usize])
     }
 
-    /// The position in units of 1 / `scale`.
+    /// Position of a point in units of 1 / `scale`.
     #[inline]
     pub(crate) fn position(&self, point: u32, pose: usize) -> DVec3 {
         let [x, y, z] = self.positions[point as usize * self.poses + pose];
         DVec3::new(f64::from(x), f64::from(y), f64::from(z))
     }
 
-    /// The point of each vertex.
+    /// Point of each vertex.
     pub(crate) fn into_of(self) -> Vec<u32> {
         self.of
     }
 }
 
-/// The point of each vertex.
+/// Point of each vertex.
 fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     // Adding 0 turns −0 into +0.
     let bits = |pose: &[[f32; 3]], vertex: usize| pose[vertex].map(|x| (x + 0.0).to_bits());
     let same = |a: usize, b: usize| poses.iter().all(|pose| bits(pose, a) == bits(pose, b));
     let vertices = poses[0].len();
-    // Open addressing: each slot has the first vertex at a position, and at most half of them are taken.
+    // Open addressing: each slot has the first vertex at a position. At most half of the slots are taken.
     let slots = (2 * vertices).next_power_of_two();
     let mut firsts = vec![u32::MAX; slots];
     let mut of = Vec::with_capacity(vertices);
@@ -207,7 +208,7 @@ fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     of
 }
 
-/// Spreads positions over the slots of a table (multipliers and shifts of MurmurHash2, Austin Appleby, public domain).
+/// Hashes a position for the table (multipliers and shifts of MurmurHash2, Austin Appleby, public domain).
 fn hash(words: [u32; 3]) -> u32 {
     const MIX: u32 = 0x5bd1_e995;
     let mixed = words.iter().fold(0_u32, |hash, word| {
@@ -218,7 +219,7 @@ fn hash(words: [u32; 3]) -> u32 {
     mixed ^ (mixed >> 15)
 }
 
-/// The largest edge of the box around any pose.
+/// Largest edge of the bounding box of any pose.
 fn extent(poses: &[Vec<[f32; 3]>]) -> f64 {
     let mut largest = 0.0_f64;
     for pose in poses {
@@ -235,7 +236,7 @@ fn extent(poses: &[Vec<[f32; 3]>]) -> f64 {
     largest
 }
 
-/// The power of two that brings a length to between 1 and 2: multiplying by it rounds nothing.
+/// Power of two that scales a length to between 1 and 2. Multiplying by it rounds nothing.
 fn scale(largest: f64) -> f64 {
     if largest <= 0.0 {
         return 1.0;

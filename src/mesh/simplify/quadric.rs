@@ -2,16 +2,14 @@
 
 use glam::DVec3;
 
-/// The weighted sum of squares of linear functions, evaluated at the offset d from an origin: `dᵀ A d + 2 b·d +
-/// c`.
+/// A weighted sum of squares of linear functions, at the offset d from an origin: `dᵀ A d + 2 b·d + c`.
 ///
-/// The origin is the position of the point that owns the quadric. The planes of that point's triangles pass
-/// through it, so that the numbers stay small wherever the mesh lies. The quadric is in f64 because costs are
-/// squares: a rounding error of 2⁻⁵² is 10⁻⁸ of an edge, where f32 would leave 2 · 10⁻⁴ and would find a cost
-/// on flat ground.
+/// The origin is the position of the point that owns the quadric. The planes of that point's triangles pass through it, so that
+/// the numbers stay small wherever the mesh lies. The quadric is in f64 because costs are squares: a rounding error of 2⁻⁵² is
+/// 10⁻⁸ of an edge. f32 would leave 2 · 10⁻⁴ and would find a cost on flat ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Quadric {
-    /// The upper triangle of A: xx, xy, xz, yy, yz, zz.
+    /// Upper triangle of A: xx, xy, xz, yy, yz, zz.
     a: [f64; 6],
     b: DVec3,
     c: f64,
@@ -19,8 +17,8 @@ pub(crate) struct Quadric {
 }
 
 impl Quadric {
-    /// The quadric `weight × (gradient · d)²`: the squared distance from a plane through the origin if
-    /// `gradient` is a unit vector.
+    /// The quadric `weight × (gradient · d)²`. If `gradient` is a unit vector, this is the squared distance from a plane
+    /// through the origin.
     pub(crate) fn linear(gradient: DVec3, weight: f64) -> Self {
         let DVec3 { x, y, z } = gradient;
         let a = [x * x, x * y, x * z, y * y, y * z, z * z].map(|product| product * weight);
@@ -63,7 +61,7 @@ impl Quadric {
         ad + self.b
     }
 
-    /// The value at the offset d, clamped to 0 from below.
+    /// Value at the offset d, clamped to 0 from below.
     #[inline]
     pub(crate) fn at(&self, d: DVec3) -> f64 {
         let [xx, xy, xz, yy, yz, zz] = self.a;
@@ -73,7 +71,7 @@ impl Quadric {
         (x * d.x + y * d.y + z * d.z + self.c).max(0.0)
     }
 
-    /// The sum of this quadric divided by its weight and another one about the same origin, without weight.
+    /// Sum of this quadric divided by its weight and another one about the same origin, which has no weight.
     #[inline]
     pub(crate) fn mean_plus(&self, mut a: [f64; 6], b: DVec3, c: f64) -> Self {
         let factor = self.inverse_weight();
@@ -83,19 +81,19 @@ impl Quadric {
         Self { a, b: self.b * factor + b, c: self.c * factor + c, weight: 0.0 }
     }
 
-    /// A number that depends on the quadric's first and last words.
+    /// Reads the quadric's first and last words, to prefetch them; the returned number only keeps the reads alive.
     #[inline]
     pub(crate) fn touch(&self) -> u64 {
         self.a[0].to_bits() ^ self.weight.to_bits()
     }
 
-    /// One over the weight; 0 for no weight.
+    /// Reciprocal of the weight; 0 for no weight.
     #[inline]
     pub(crate) fn inverse_weight(&self) -> f64 {
         if self.weight > 0.0 { 1.0 / self.weight } else { 0.0 }
     }
 
-    /// The same quadric about another origin, at the offset d.
+    /// The quadric about another origin, at the offset d.
     pub(crate) fn moved(&self, d: DVec3) -> Self {
         Self { a: self.a, b: self.slope(d), c: self.at(d), weight: self.weight }
     }

@@ -1,4 +1,4 @@
-//! The quadric cost: the quadrics of every point in each pose, and of every vertex's attributes.
+//! The quadric cost: quadrics of every point in each pose, and of every vertex's attributes.
 
 use super::Surface;
 use super::attributes::{Attributes, Joint};
@@ -8,27 +8,27 @@ use super::quadric::Quadric;
 use super::topology::{Kind, Topology};
 use super::turned::normal;
 
-/// How much more the planes across edges of borders count than those of triangles: an edge has one triangle there, and two
-/// elsewhere. A single spot of a border that is off is seen by its distance from the border (`deviation`); with five times as
-/// much, models with many borders keep points on these that they need elsewhere.
+/// Weight of planes across border edges, relative to those of triangles: a border edge has one triangle instead of two. A
+/// single spot off the border is detected by its distance from the border (`deviation`). With a factor five times as large,
+/// models with many borders keep points there that they need elsewhere.
 const BORDER: f64 = 2.0;
 
-/// As [`BORDER`], of each of the two triangles at an edge of a seam. The surface goes on there: a seam only holds its way.
-/// With more of it, models of many hard-edged parts are further off.
+/// As [`BORDER`], for each of the two triangles at a seam edge. The surface continues there, so a seam only has to hold its
+/// course. With a larger factor, models of many hard-edged parts have larger errors.
 const SEAM: f64 = 0.25;
 
-/// Number of wedges of a point from which on the attributes of all are summed once, and not for each neighbour. The pole of a
-/// sphere has a wedge for each neighbour.
+/// Number of a point's wedges from which on their attributes are summed once, not for each neighbour. The pole of a sphere has
+/// a wedge for each neighbour.
 const JOINED: usize = 8;
 
 /// The quadrics of a mesh.
 pub(crate) struct Quadrics<'a> {
     /// Quadrics of positions, point by point, each in all poses.
     shape: Vec<Quadric>,
-    /// The rigid body on which all planes of a point lie, or [`NO_BODY`].
+    /// Rigid body on which all planes of a point lie, or [`NO_BODY`].
     bodies: Vec<u32>,
     attributes: Option<Attributes<'a>>,
-    /// The wedges of the point that was joined last.
+    /// Sum of the wedges of the point that was joined last.
     joint: Joint<'a>,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Quadrics<'a> {
         self.attributes.is_some()
     }
 
-    /// The mean squared distance of a point's planes from its neighbour, in the worst pose.
+    /// Mean squared distance of a point's planes from its neighbour, in the worst pose.
     #[inline]
     pub(crate) fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
         let mut worst = 0.0_f64;
@@ -67,8 +67,8 @@ impl<'a> Quadrics<'a> {
         worst
     }
 
-    /// The cheapest of the collapses of a point with one vertex, and its target; the lower target if costs are equal.
-    /// `None` if the point has no neighbour, or if attributes count and a neighbour has several vertices.
+    /// Cheapest collapse of a point with one vertex, and its target; the lower target if costs are equal. `None` if the point
+    /// has no neighbour, or if attributes count and a neighbour has several vertices.
     #[inline]
     pub(crate) fn cheapest(
         &self,
@@ -102,7 +102,7 @@ impl<'a> Quadrics<'a> {
         best.found()
     }
 
-    /// As [`Self::cheapest`], in several poses.
+    /// As [`Self::cheapest`], for several poses.
     fn cheapest_in_all(
         &self,
         points: &Points,
@@ -124,7 +124,7 @@ impl<'a> Quadrics<'a> {
         best.found()
     }
 
-    /// A number that depends on what is stored of a point and of its first vertex.
+    /// Reads the data of a point and of its first vertex, to prefetch it; the returned number only keeps the reads alive.
     #[inline]
     pub(crate) fn touch(&self, points: &Points, point: u32) -> u32 {
         let quadric = self.shape[point as usize * points.poses()].touch() as u32;
@@ -141,8 +141,8 @@ impl<'a> Quadrics<'a> {
         }
     }
 
-    /// The sum of squared differences in attributes, by area, if a point collapses and each of its wedges is replaced by the
-    /// cheapest vertex allowed; or a part of it that is above `most`.
+    /// Sum of squared differences in attributes, weighted by area, if a point collapses and each of its wedges is replaced by
+    /// the cheapest allowed vertex. If the sum exceeds `most`, any part of it that does may be returned.
     pub(crate) fn attribute_cost(
         &self,
         points: &Points,
@@ -159,7 +159,7 @@ impl<'a> Quadrics<'a> {
             }
             for wedge in neighbors.wedges() {
                 sum += self.target(points, neighbors, point, neighbor, wedge).1;
-                // Rounding to f32 makes no number that is larger than another one smaller than it.
+                // Comparing before rounding is safe: rounding to f32 is monotonic.
                 if sum > most {
                     break;
                 }
@@ -168,7 +168,7 @@ impl<'a> Quadrics<'a> {
         sum
     }
 
-    /// The cheapest replacement of a wedge, and its cost in attributes.
+    /// Cheapest replacement of a wedge, and its attribute cost.
     pub(crate) fn target(
         &self,
         points: &Points,
@@ -181,18 +181,18 @@ impl<'a> Quadrics<'a> {
         let cost = |target| self.attributes.as_ref().map_or(0.0, |all| all.cost(wedge.vertex, target, d));
         let near = neighbors.remap(neighbor, wedge).into_iter().map(|target| (target, cost(target)));
         let near = near.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0));
-        // Of one chart, by vertex: the first of equally cheap ones.
+        // Vertices of one chart in ascending order, so that the first of equally cheap ones is taken.
         let beyond = neighbors.beyond(points, neighbor, near.0).map(|target| (target, cost(target)));
         beyond.fold(near, |best, other| if other.1 < best.1 { other } else { best })
     }
 
-    /// What the attributes of these points cost if their triangles vanish.
+    /// Attribute cost of removing the triangles of these points.
     pub(crate) fn lost(&self, points: &Points, part: &[u32]) -> f64 {
         let vertices = || part.iter().flat_map(|point| points.wedges(*point)).copied();
         self.attributes.as_ref().map_or(0.0, |attributes| attributes.lost(vertices))
     }
 
-    /// Merges a point into its neighbour, and its wedges into the vertices that `moved` names.
+    /// Merges a point into its neighbour, and its wedges into their replacements in `moved`.
     pub(crate) fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for pose in 0..points.poses() {
             let d = points.position(neighbor, pose) - points.position(point, pose);
@@ -210,13 +210,13 @@ impl<'a> Quadrics<'a> {
     }
 }
 
-/// Whether all wedges of a point become the same vertex wherever a neighbour has one, and are so many that their sum is
-/// worth while.
+/// Whether all wedges of a point become the same vertex wherever a neighbour has one, and are so many that summing them once
+/// pays off.
 fn is_joined(points: &Points, neighbors: &Neighbors) -> bool {
     neighbors.wedges().len() >= JOINED && !neighbors.is_split() && !points.has_charts()
 }
 
-/// The cheapest collapse of several.
+/// The cheapest collapse so far.
 struct Cheapest {
     cost: f32,
     neighbor: u32,
@@ -242,9 +242,9 @@ impl Cheapest {
     }
 }
 
-/// Adds a triangle's plane to each corner, weighted by the square root of the area, and for each held edge the plane
-/// across it to both ends, weighted by the edge's length. The planes of held edges do not count in the weight by which sums are divided; otherwise the ends
-/// of borders would seem closer to their triangles than they are.
+/// Adds a triangle's plane to each corner, weighted by the square root of the area. For each held edge, adds the plane across
+/// it to both ends, weighted by the edge's length. The planes of held edges do not count in the weight by which sums are
+/// divided; otherwise the ends of borders would seem closer to their triangles than they are.
 fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, vertices: [u32; 3]) {
     let of = [points.of(vertices[0]), points.of(vertices[1]), points.of(vertices[2])];
     // The triangle has no area in any pose.
@@ -276,8 +276,8 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, ver
     }
 }
 
-/// How much the plane across the edge between the first two of a triangle's points counts, if the edge is on a border, or
-/// on a seam: the triangle on its other side has different wedges at both ends. `ends` are the triangle's vertices there.
+/// Weight of the plane across the edge between a triangle's first two points, if the edge is on a border or on a seam. On a
+/// seam, the triangle on the other side has different wedges at both ends. `ends` are this triangle's vertices there.
 fn hold(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -> Option<f64> {
     let [from, to, across] = of;
     let is_inside = |point: u32| topology.kind(point) == Kind::Interior && points.only_wedge(point).is_some();

@@ -1,6 +1,5 @@
-//! The queue of points, by the cost of each point's best collapse: four buckets for each octave of squared costs, so that
-//! putting and taking are a step each. Costs whose buckets are the same count as equal, and are taken in the order in
-//! which they were put.
+//! A bucket queue of points, by the cost of each point's best collapse. There are four buckets per octave of squared costs;
+//! putting and taking are one step each. Costs in the same bucket count as equal, and are taken in insertion order.
 
 /// The best collapse of a point: the neighbour, and the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -8,29 +7,29 @@ pub(crate) struct Best {
     pub neighbor: u32,
     /// The squared cost; at least 0.
     pub cost: f32,
-    /// As much of the cost as is known before it is measured.
+    /// Known part of the cost before it is measured.
     pub base: f32,
     /// Whether a cheaper collapse exists that is not legal at the moment.
     pub is_second: bool,
-    /// Whether the cost has its other part, as long as the point's triangles do not change.
+    /// Whether the cost includes the measured part, which is valid as long as the point's triangles do not change.
     pub is_measured: bool,
 }
 
 /// Bits of a cost that choose its bucket: eight of the exponent, two of the mantissa.
 const BITS: u32 = 10;
 const BUCKETS: usize = 1 << BITS;
-/// Number of points of which [`Queue::ahead`] tells at once.
+/// Number of points that [`Queue::ahead`] returns at once.
 const AHEAD: usize = 16;
-/// The bucket of a point that is in none.
+/// Marks a point that is in no bucket.
 const NONE: u16 = u16::MAX;
 
-/// What the queue knows of a point.
+/// State of one point in the queue.
 #[derive(Debug, Clone, Copy)]
 struct State {
     neighbor: u32,
     cost: f32,
     base: f32,
-    /// The bucket that has the point's valid entry. Entries elsewhere are stale, and dropped when they are reached.
+    /// Bucket with the point's valid entry. Entries elsewhere are stale, and are dropped when they are reached.
     bucket: u16,
     is_second: bool,
     is_measured: bool,
@@ -40,18 +39,18 @@ struct State {
 pub(crate) struct Queue {
     states: Vec<State>,
     buckets: Vec<Vec<u32>>,
-    /// For each bucket, the number of entries that were taken.
+    /// Number of entries taken from each bucket.
     taken: Vec<u32>,
-    /// A bit for each bucket that may have entries.
+    /// One bit per bucket, set if the bucket may have entries.
     filled: [u64; BUCKETS / 64],
-    /// No bucket in words of `filled` before this one has entries.
+    /// Index of the first word of `filled` whose buckets may have entries.
     first: usize,
-    /// What costs are multiplied by, so that meshes of any size have the same buckets.
+    /// Factor of costs. It gives meshes of any size the same buckets.
     unit: f32,
 }
 
 impl Queue {
-    /// A queue of this many points, without collapses, of a mesh of this size.
+    /// A queue for `points` points without collapses. `extent` is the size of the mesh.
     pub(crate) fn new(points: usize, extent: f64) -> Self {
         let unit = if extent > 0.0 { (1.0 / (extent * extent)) as f32 } else { 1.0 };
         let state =
@@ -60,7 +59,7 @@ impl Queue {
         Self { states: vec![state; points], buckets, taken, filled: [0; BUCKETS / 64], first: 0, unit }
     }
 
-    /// The neighbour into which a point would collapse, as it was set last.
+    /// The neighbour into which a point would collapse, as last set.
     #[inline]
     pub(crate) fn neighbor(&self, point: u32) -> u32 {
         self.states[point as usize].neighbor
@@ -89,7 +88,7 @@ impl Queue {
         self.first = self.first.min(word);
     }
 
-    /// Every few points, those that are likely to be next; none in between.
+    /// Points that are likely to be next, returned once every few points; empty in between.
     #[inline]
     pub(crate) fn ahead(&self) -> &[u32] {
         let Some(word) = self.filled.get(self.first).filter(|word| **word != 0) else { return &[] };
@@ -102,13 +101,13 @@ impl Queue {
         &entries[taken..entries.len().min(taken + AHEAD)]
     }
 
-    /// Whether a collapse is in a later bucket than another.
+    /// Whether a collapse is in a later bucket than another one.
     #[inline]
     pub(crate) fn is_later(&self, best: &Best, than: &Best) -> bool {
         self.bucket_of(best.cost) > self.bucket_of(than.cost)
     }
 
-    /// Takes the next point out.
+    /// Takes the next point.
     pub(crate) fn pop(&mut self) -> Option<(u32, Best)> {
         loop {
             while *self.filled.get(self.first)? == 0 {
@@ -134,7 +133,7 @@ impl Queue {
         }
     }
 
-    /// The bits of non-negative floats have the order of the floats.
+    /// Bucket of a cost. It uses the bits directly, because the bits of non-negative floats are ordered as the floats are.
     #[inline]
     fn bucket_of(&self, cost: f32) -> u16 {
         ((cost * self.unit).to_bits() >> (31 - BITS)) as u16

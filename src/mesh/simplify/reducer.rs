@@ -1,4 +1,4 @@
-//! The main loop of simplification: one collapse after the other.
+//! Main loop of simplification: one collapse after the other.
 
 mod search;
 #[cfg(test)]
@@ -16,27 +16,27 @@ use super::topology::{Change, Kind, Topology};
 use super::tracked_samples::TrackedSamples;
 use super::{Collapse, Cost, Options, Seams, Simplified, Stopped, Surface};
 
-/// The state of a mesh that is being simplified.
+/// State of a mesh during simplification.
 struct Reducer<'a> {
     points: Points,
     topology: Topology,
     cost: Cost,
-    /// Only for [`Cost::Quadric`].
+    /// Quadrics, for [`Cost::Quadric`] only.
     quadrics: Option<Quadrics<'a>>,
-    /// Only where distances are limited.
+    /// Samples, only if distances are limited.
     tracked_samples: Option<TrackedSamples>,
     neighbors: Neighbors,
-    /// The parts that may vanish.
+    /// Parts that may vanish.
     parts: Parts,
-    /// Points for which a cheaper collapse than the queue's may become legal when triangles around them change.
+    /// Points with a collapse cheaper than the queued one that may become legal when triangles around them change.
     watched: Vec<bool>,
     /// Marks for points, and for vertices.
     marks: [Marks; 2],
-    /// The points whose triangles the last collapse changed.
+    /// Points whose triangles the last collapse changed.
     changed: Vec<u32>,
-    /// The point whose collapses were listed last, if nothing has collapsed since.
+    /// Point whose collapses were listed last, if nothing has collapsed since.
     listed: Option<u32>,
-    /// For that point, the cost of each collapse in ascending order, as bits, with the neighbour.
+    /// Costs of the listed point's collapses in ascending order, as bits, each with the neighbour.
     costs: Vec<(u32, u32)>,
 }
 
@@ -170,7 +170,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Takes a part that may vanish for no more than this.
+    /// Takes a part that may vanish at a cost of at most `most`.
     fn take_part(&mut self, most: f32) -> Option<(Vec<u32>, f32)> {
         let Self { parts, points, topology, quadrics, .. } = self;
         let lost = |part: &[u32]| quadrics.as_ref().map_or(0.0, |quadrics| quadrics.lost(points, part));
@@ -194,7 +194,7 @@ impl<'a> Reducer<'a> {
         queue
     }
 
-    /// Finds the best collapse of a point anew.
+    /// Recomputes the best collapse of a point, and queues it.
     fn set(&mut self, queue: &mut Queue, point: u32) {
         self.topology.refresh(point);
         self.topology.take_change(point);
@@ -209,13 +209,13 @@ impl<'a> Reducer<'a> {
         queue.set(point, best);
     }
 
-    /// Whether costs are measured before it is a point's turn. Beside attributes nearly every cost grows by that, and its
-    /// point would have two turns.
+    /// Whether costs are measured before a point's turn. With attributes, measuring raises nearly every cost, so that each
+    /// point would be queued twice.
     fn is_measured_early(&self) -> bool {
         self.quadrics.as_ref().is_some_and(Quadrics::has_attributes)
     }
 
-    /// The cheapest legal collapse, up to the width of the queue's buckets.
+    /// Cheapest legal collapse, up to the width of the queue's buckets.
     fn next(&mut self, queue: &mut Queue) -> Option<(u32, Best)> {
         loop {
             self.fetch(queue);
@@ -238,7 +238,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// The best collapse of a point, all of whose triangles are up to date: what the queue has, or what is found anew.
+    /// Best collapse of a point whose triangles are all up to date: the queued one, or a new one.
     fn latest(&mut self, point: u32, queued: Best) -> Option<Best> {
         let change = self.topology.take_change(point);
         if self.is_outdated(point, &queued, change) {
@@ -250,14 +250,14 @@ impl<'a> Reducer<'a> {
         Some(Best { is_measured, ..queued })
     }
 
-    /// The cheapest collapse of a point that is legal, where the cheapest of all is not.
+    /// Cheapest legal collapse of a point whose cheapest collapse is illegal.
     fn find_second(&mut self, point: u32) -> Option<Best> {
         self.watched[point as usize] = true;
         self.find_legal(point)
     }
 
-    /// Whether the best collapse of a point, all of whose triangles are up to date, must be found anew. Where it is not
-    /// merged into, its other costs have not changed, and a new neighbour is hardly ever cheaper than the best old one.
+    /// Whether the best collapse of a point must be recomputed; all of its triangles are up to date. Unless another point was
+    /// merged into it, its other costs have not changed. A new neighbour is hardly ever cheaper than the best old one.
     fn is_outdated(&self, point: u32, best: &Best, change: Change) -> bool {
         match change {
             Change::None => false,
@@ -268,8 +268,8 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Reads what the next few points need, so that the processor waits for all of it at once: points that follow each
-    /// other in cost lie anywhere. Each round of reads tells where the next one is.
+    /// Prefetches the data of the next few points, so that the processor waits for all of it at once: points with consecutive
+    /// costs are scattered in memory. Each round of reads yields the addresses for the next round.
     fn fetch(&self, queue: &Queue) {
         let (mut read, ahead) = (0, queue.ahead());
         let quadric = |point: u32| match &self.quadrics {
@@ -309,10 +309,10 @@ impl<'a> Reducer<'a> {
         self.changed = changed;
     }
 
-    /// Reconsiders the neighbours of changed points. Normals of points have changed, and so have the triangles
-    /// to which samples may be assigned; a collapse of a neighbour that was refused before may be legal now.
-    /// For points whose own triangles are unchanged, nothing else can become legal: their triangles turn as
-    /// before, and the set of points that neighbour both ends of an edge can only grow.
+    /// Reconsiders the neighbours of changed points. Their normals have changed, and so have the triangles to which samples may
+    /// be assigned. A refused collapse of a neighbour may now be legal. For points whose own triangles are unchanged, nothing
+    /// else can become legal: their triangles turn as before, and the set of points that neighbour both ends of an edge can
+    /// only grow.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
         changed.iter().for_each(|point| self.topology.refresh(*point));
@@ -338,7 +338,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Lists the vertices of a point that belong to triangles, each with the one that is to replace it.
+    /// Lists the vertices of a point that belong to triangles, each with its replacement.
     fn replace(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         if let [Some(vertex), Some(target)] = [point, neighbor].map(|point| self.points.only_wedge(point)) {
             moved.push([vertex, target]);
@@ -355,8 +355,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Merges a point into its neighbour: all its vertices, including those that no longer belong to a
-    /// triangle.
+    /// Merges a point into its neighbour with all its vertices, including those that no longer belong to a triangle.
     fn collapse(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         self.listed = None;
         let start = moved.len();

@@ -1,4 +1,4 @@
-//! The connectivity of the mesh: the triangles around each point.
+//! Connectivity of the mesh: the triangles around each point.
 
 mod change;
 mod link;
@@ -21,7 +21,7 @@ pub(crate) struct RingTriangle {
     pub last: Corner,
 }
 
-/// The largest number of triangles around a point that may be removed.
+/// Largest number of triangles around a point that may be removed.
 const MAX_RING: usize = 1024;
 
 /// The kind of a point's neighbourhood.
@@ -31,26 +31,26 @@ pub(crate) enum Kind {
     Interior,
     /// Triangles form a fan from one border edge to another.
     Border,
-    /// The point has no triangle, or any other neighbourhood: it is never removed.
+    /// The point has no triangle, or any other neighbourhood. It is never removed.
     Locked,
 }
 
-/// What has changed at a point.
+/// Change of a point's triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Change {
     None,
-    /// Points around it have collapsed.
+    /// Points around this one have collapsed.
     Around,
-    /// A point was merged into it.
+    /// A point was merged into this one.
     Merged,
 }
 
-/// Where the triangles of a point are.
+/// Location of a point's triangles.
 #[derive(Debug, Clone, Copy, Default)]
 struct Span {
     start: usize,
     len: u32,
-    /// Number of triangles for which there is room.
+    /// Capacity in triangles.
     room: u32,
 }
 
@@ -60,8 +60,8 @@ impl Span {
     }
 }
 
-/// Whether following triangles from one to the next visits all of them, and comes back. If so, no step leads to where an
-/// earlier one led, and nothing else can be around the point.
+/// Whether following triangles from one to the next visits all of them and returns to the start. If so, no two steps lead to
+/// the same neighbour, and nothing else can be around the point.
 fn is_round(ring: &[[u32; 2]]) -> bool {
     let Some([first, _]) = ring.first().filter(|_| ring.len() <= MAX_RING) else { return false };
     let mut at = *first;
@@ -75,32 +75,32 @@ fn is_round(ring: &[[u32; 2]]) -> bool {
     false
 }
 
-/// The triangles that have three different points. All others count as removed.
+/// Triangles with three different points. All others count as removed.
 ///
-/// A collapse changes the lists of its two points alone. The lists of the points around them keep naming the point that
-/// is gone, until [`Self::refresh`] brings them up to date: most are not read before they have changed several times.
+/// A collapse changes only the lists of its two points. The lists of surrounding points keep naming the removed point until
+/// [`Self::refresh`] updates them: most lists change several times before they are read.
 pub(crate) struct Topology {
-    /// Triangles as their points see them: the other two points, in the triangle's order.
+    /// Triangles as seen from their points: the other two points, in the triangle's order.
     rings: Vec<[u32; 2]>,
-    /// For each entry of `rings`, the number of the triangle; empty if numbers do not matter.
+    /// Triangle number of each entry of `rings`; empty if numbers are not needed.
     numbers: Vec<u32>,
     spans: Vec<Span>,
-    /// For each point, the point into which it has collapsed; itself as long as it is there.
+    /// Replacement of each point; the point itself if it has not collapsed.
     remap: Vec<u32>,
-    /// Whether a point around a point has collapsed since its triangles were brought up to date.
+    /// Whether a neighbour of the point has collapsed since its triangles were last refreshed.
     touched: Vec<bool>,
-    /// What has changed at a point since [`Self::take_change`].
+    /// Changes of each point since [`Self::take_change`].
     changes: Vec<Change>,
-    /// The corners of each triangle; empty if numbers do not matter.
+    /// Corners of each triangle; empty if numbers are not needed.
     corners: Vec<[Corner; 3]>,
     kinds: Vec<Kind>,
     triangles: usize,
-    /// The triangles of the point that collapses.
+    /// Triangles of the collapsing point.
     scratch: Vec<([u32; 2], u32)>,
 }
 
 impl Topology {
-    /// Triangles are numbered if `is_numbered`, or if several vertices share a position.
+    /// Builds the connectivity. Triangles are numbered if `is_numbered`, or if several vertices share a position.
     pub(crate) fn new(points: &Points, indices: &[u32], is_numbered: bool) -> Self {
         let is_numbered = is_numbered || !points.are_vertices();
         let triangle =
@@ -147,14 +147,14 @@ impl Topology {
         topology
     }
 
-    /// The kind of a point. It is manifold if each neighbour begins at most one of its triangles and ends at
-    /// most one, and if following the triangles from one to the next visits all of them.
+    /// Kind of a point. A point is manifold if two conditions hold: each neighbour begins at most one of its triangles and ends
+    /// at most one, and following the triangles from one to the next visits all of them.
     fn kind_of(&self, point: u32) -> Kind {
         let ring = self.ring(point);
         if is_round(ring) {
             return Kind::Interior;
         }
-        // Other code searches rings, so that very long ones are left alone.
+        // Very long rings are locked, because other code searches rings linearly.
         let Some(some) = ring.first().filter(|_| ring.len() <= MAX_RING) else { return Kind::Locked };
         let is_unique = |at: usize| {
             let [next, last] = ring[at];
@@ -190,7 +190,7 @@ impl Topology {
         self.kinds[point as usize]
     }
 
-    /// What has changed at a point since this was asked for the last time.
+    /// Returns the changes of a point since the last call, and resets them.
     #[inline]
     pub(crate) fn take_change(&mut self, point: u32) -> Change {
         std::mem::replace(&mut self.changes[point as usize], Change::None)
@@ -202,14 +202,14 @@ impl Topology {
         self.remap[point as usize] != point
     }
 
-    /// The triangles of a point: the other two points of each, in the triangle's order.
+    /// Triangles of a point: the other two points of each, in the triangle's order.
     #[inline]
     pub(crate) fn ring(&self, point: u32) -> &[[u32; 2]] {
         &self.rings[self.spans[point as usize].range()]
     }
 
-    /// Number of poses, from the first on, that show all distances between the triangles of the first point, before and after
-    /// it collapses into the second.
+    /// Number of leading poses that show all distances between the first point's triangles before and after it collapses into
+    /// the second.
     #[inline]
     pub(crate) fn poses_around(&self, points: &Points, both: [u32; 2]) -> usize {
         let body = points.common_body(&both);
@@ -217,7 +217,7 @@ impl Topology {
         if is_rigid { points.poses_between(body, body) } else { points.poses() }
     }
 
-    /// The two neighbours of a point on a border that lie on that border.
+    /// The two neighbours of a border point on that border.
     pub(crate) fn along_border(&self, point: u32) -> Option<[u32; 2]> {
         if self.kind(point) != Kind::Border {
             return None;
@@ -228,18 +228,18 @@ impl Topology {
         Some([*first, *last])
     }
 
-    /// The numbers of the triangles of a point, if they matter.
+    /// Numbers of a point's triangles, if triangles are numbered.
     pub(crate) fn around(&self, point: u32) -> &[u32] {
         self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()
     }
 
-    /// A number that depends on where the triangles of a point are.
+    /// Reads the location of a point's triangles, to prefetch it; the returned number only keeps the read alive.
     #[inline]
     pub(crate) fn touch_span(&self, point: u32) -> u32 {
         self.spans[point as usize].len
     }
 
-    /// A number that depends on the triangles of a point.
+    /// Reads the triangles of a point, to prefetch them; the returned number only keeps the read alive.
     #[inline]
     pub(crate) fn touch(&self, point: u32) -> u32 {
         let span = self.spans[point as usize];
@@ -248,7 +248,7 @@ impl Topology {
         first ^ last
     }
 
-    /// The triangles of a point with their corners. Where triangles are not numbered, vertices are points.
+    /// Triangles of a point with their corners. If triangles are not numbered, vertices are points.
     pub(crate) fn one_ring(&self, point: u32) -> impl Iterator<Item = RingTriangle> + '_ {
         let numbers = self.around(point);
         self.ring(point).iter().enumerate().map(move |(at, others)| {

@@ -1,5 +1,5 @@
-//! Measured distances between the mesh and its simplification, in both directions, sampled at the mesh's points
-//! and at the midpoints of edges and triangles.
+//! Measured distances between the mesh and its simplification, in both directions. Samples are the mesh's points and the
+//! midpoints of edges and triangles.
 
 use glam::Vec3;
 
@@ -7,41 +7,40 @@ use super::points::Points;
 use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
-/// Number of samples of a point that are tested first.
+/// Number of a point's samples that are tested first.
 const WITNESSES: usize = 4;
 
-/// No sample, or no triangle.
+/// Marks a missing sample or triangle.
 const NONE: u32 = u32::MAX;
 
-/// Samples of the mesh, each assigned to a remaining triangle that is within the limit of it in every pose.
+/// Samples of the mesh. Each is assigned to a remaining triangle that is within the limit of it in every pose.
 pub(crate) struct TrackedSamples {
-    /// For each triangle, the samples assigned to it: numbers of removed points, and beyond those, numbers of
-    /// midpoints.
+    /// Samples assigned to each triangle: numbers of removed points, followed by numbers of midpoints.
     samples: Vec<Vec<u32>>,
-    /// For each sample, the triangle to which it is assigned.
+    /// Triangle to which each sample is assigned.
     homes: Vec<u32>,
-    /// For each point, the samples that forbade its collapses last: most are tested again and again, and one sample is
-    /// mostly enough.
+    /// For each point, the samples that last forbade its collapses. Most collapses are tested repeatedly, and one sample is
+    /// mostly enough to refuse.
     witnesses: Vec<[u32; WITNESSES]>,
     middles: Middles,
-    /// The square of the largest distance allowed, in the unit of points' positions.
+    /// Square of the largest allowed distance, in the unit of points' positions.
     most: f32,
     verdicts: Verdicts,
-    /// The collapse that was tested last, if it keeps within the limit.
+    /// Last tested collapse, if it keeps within the limit.
     looked_at: Option<[u32; 2]>,
-    /// For that collapse: the triangles that would exist afterwards, the changed ones first.
+    /// Triangles after that collapse, the changed ones first.
     faces: Vec<Face>,
-    /// For that collapse: the number of triangles that it changes.
+    /// Number of triangles that the collapse changes.
     changed: usize,
-    /// For that collapse: midpoints on the triangles of the mesh that the changed ones may lie on.
+    /// Midpoints on those triangles of the mesh that may lie below the changed triangles.
     below: Vec<u32>,
 }
 
-/// Results of tests. A result holds until a triangle around one of the two points changes, or gets or loses a sample.
+/// Cached results of tests. A result holds until a triangle around one of the two points changes, or gains or loses a sample.
 struct Verdicts {
-    /// For each point, the results of its tests.
+    /// Results of each point's tests.
     of: Vec<Vec<Verdict>>,
-    /// For each point, the number of collapses after which a triangle around it has changed last.
+    /// For each point, the number of collapses at the last change of a triangle around it.
     changed: Vec<u32>,
     /// Number of collapses so far.
     collapses: u32,
@@ -52,7 +51,7 @@ struct Verdict {
     neighbor: u32,
     /// Number of collapses before the test.
     collapses: u32,
-    /// The square of a limit that is needed at least; 0 if the collapse has passed the test.
+    /// Lower bound on the square of the required limit; 0 if the collapse has passed the test.
     needed: f32,
 }
 
@@ -61,7 +60,7 @@ impl Verdicts {
         Self { of: vec![Vec::new(); points], changed: vec![0; points], collapses: 0 }
     }
 
-    /// Whether a collapse passes within a limit, whose square is `most`. `None` if it must be tested.
+    /// Whether a collapse passes within the limit whose square is `most`. `None` if it must be tested.
     fn get(&self, [point, neighbor]: [u32; 2], most: f32) -> Option<bool> {
         let changed = self.changed[point as usize].max(self.changed[neighbor as usize]);
         let mut of = self.of[point as usize].iter();
@@ -85,11 +84,11 @@ impl Verdicts {
     }
 }
 
-/// The midpoints of the mesh's edges and triangles.
+/// Midpoints of the mesh's edges and triangles.
 struct Middles {
     /// Positions, one midpoint after the other, each in all poses.
     positions: Vec<Vec3>,
-    /// For each midpoint, a triangle of the mesh on which it lies.
+    /// For each midpoint, a triangle of the mesh that contains it.
     triangles: Vec<Face>,
 }
 
@@ -97,9 +96,9 @@ struct Middles {
 #[derive(Clone, Copy)]
 struct Corners {
     points: [u32; 3],
-    /// The rigid body of all of them, or [`NO_BODY`](super::points::NO_BODY).
+    /// Rigid body of all three corners, or [`NO_BODY`](super::points::NO_BODY).
     body: u32,
-    /// Their positions in the first pose.
+    /// Positions of the corners in the first pose.
     first: [Vec3; 3],
 }
 
@@ -111,7 +110,8 @@ impl Corners {
     }
 }
 
-/// The square of the largest distance of a triangle from a sample in any pose; more than `most` if it is larger than that.
+/// Squared largest distance between a triangle and a sample over all poses. If it exceeds `most`, the result is any value above
+/// `most`.
 #[inline]
 fn off(points: &Points, corners: &Corners, sample: &Place<impl Fn(usize) -> Vec3>, most: f32) -> f32 {
     let mut largest = nearest_on_triangle(sample.first, corners.first).distance_squared(sample.first);
@@ -126,7 +126,7 @@ fn off(points: &Points, corners: &Corners, sample: &Place<impl Fn(usize) -> Vec3
     largest
 }
 
-/// The square of the smallest distance of some triangles from a sample; of each its largest in any pose.
+/// Squared distance from a sample to the nearest of some triangles. The distance to a triangle is the largest over all poses.
 fn nearest_off<'a>(
     points: &Points,
     sample: &Place<impl Fn(usize) -> Vec3>,
@@ -135,23 +135,23 @@ fn nearest_off<'a>(
     faces.fold(f32::INFINITY, |least, face| least.min(off(points, &face.corners, sample, least)))
 }
 
-/// A triangle, and what tells that it is far from a position.
+/// A triangle, with bounds that quickly show that it is far from a position.
 #[derive(Clone, Copy)]
 struct Face {
     number: u32,
     corners: Corners,
-    /// The middle of a sphere around it in the first pose, and the radius.
+    /// Centre and radius of a bounding sphere in the first pose.
     middle: Vec3,
     radius: f32,
-    /// Its unit normal in the first pose; 0 if it is nearly a line.
+    /// Unit normal in the first pose; 0 if the triangle is nearly a line.
     normal: Vec3,
-    /// How far rounding may move the distances from plane and sphere.
+    /// Bound on rounding errors of the distances to plane and sphere.
     rounding: f32,
 }
 
 impl Face {
     fn new(points: &Points, number: u32, corners: [u32; 3]) -> Self {
-        /// The square of the sine of the angle below which a triangle's normal is not exact enough.
+        /// Squared sine of the angle below which a triangle's normal is too inexact.
         const LEAST: f32 = 1e-4;
         let corners = Corners::new(points, corners);
         let [a, b, c] = corners.first;
@@ -168,12 +168,12 @@ impl Face {
             middle,
             radius,
             normal: if is_exact { normal.normalize_or_zero() } else { Vec3::ZERO },
-            // Positions are within ±2 mostly; the normal is off by 2⁻²⁴ over the sine, for each unit of length.
+            // Positions are mostly within ±2. The normal is off by 2⁻²⁴ over the sine, per unit of length.
             rounding: 1e-6 * (middle.abs().max_element() + 2.0) + 4e-5 * radius,
         }
     }
 
-    /// Whether all of it is surely further than `limit` from a position in the first pose.
+    /// Whether the whole triangle is certainly further than `limit` from a position in the first pose.
     #[inline]
     fn is_far(&self, position: Vec3, limit: f32) -> bool {
         let (from, limit) = (position - self.middle, limit + self.rounding);
@@ -181,7 +181,7 @@ impl Face {
         from.dot(self.normal).abs() > limit || from.length_squared() > reach * reach
     }
 
-    /// Whether it is within a limit, whose square is `most`, of a sample in all poses.
+    /// Whether the triangle is within a limit of a sample in all poses; `most` is the square of the limit.
     #[inline]
     fn is_near(
         &self,
@@ -193,13 +193,13 @@ impl Face {
     }
 }
 
-/// Where a sample is.
+/// Location of a sample.
 struct Place<F> {
-    /// Its rigid body, or [`NO_BODY`](super::points::NO_BODY).
+    /// Rigid body, or [`NO_BODY`](super::points::NO_BODY).
     body: u32,
-    /// Its position in the first pose.
+    /// Position in the first pose.
     first: Vec3,
-    /// Its position in a pose.
+    /// Returns the position in a pose.
     at: F,
 }
 
@@ -217,7 +217,7 @@ impl TrackedSamples {
         for point in 0..points.len() as u32 {
             for ring in topology.one_ring(point) {
                 let corners = [point, ring.next.point, ring.last.point];
-                // The edge's other triangle has it in the opposite direction, unless the edge is on a border.
+                // Unless it is on a border, the edge's other triangle lists it in the opposite direction.
                 let is_border = || !topology.one_ring(point).any(|other| other.last.point == corners[1]);
                 let is_first = corners.iter().all(|other| point <= *other);
                 let edge = (point < corners[1] || is_border()).then_some(&corners[..2]);
@@ -246,14 +246,14 @@ impl TrackedSamples {
         }
     }
 
-    /// Sets the largest distance that is allowed from now on, in the unit of points' positions.
+    /// Sets the largest allowed distance from now on, in the unit of points' positions.
     pub(crate) fn set_most(&mut self, distance: f32) {
         self.most = distance * distance;
     }
 
-    /// Tests the collapse of a point into its neighbour. It passes if the point and all samples on the
-    /// triangles that change find a triangle within the limit among those that the two points have afterwards,
-    /// and if the midpoints of the changed triangles and of their edges lie within the limit of the mesh.
+    /// Tests the collapse of a point into its neighbour. It passes if two conditions hold. The point, and all samples on the
+    /// changed triangles, must be within the limit of one of the triangles that the two points have afterwards. The midpoints
+    /// of the changed triangles and of their edges must be within the limit of the mesh.
     pub(crate) fn keeps_near(
         &mut self,
         topology: &Topology,
@@ -273,8 +273,8 @@ impl TrackedSamples {
         needed == 0.0
     }
 
-    /// As [`Self::keeps_near`], if the point itself passes: the square of a limit that is needed at least, or 0 if the
-    /// collapse passes.
+    /// As [`Self::keeps_near`], for a collapse whose point itself passes. Returns a lower bound on the square of the required
+    /// limit, or 0 if the collapse passes.
     fn needed_by_all(&mut self, topology: &Topology, points: &Points, both: [u32; 2]) -> f32 {
         let [point, neighbor] = both;
         self.looked_at = None;
@@ -315,8 +315,8 @@ impl TrackedSamples {
         0.0
     }
 
-    /// The square of a distance of the point that collapses from the triangles that would exist afterwards: the smallest, or
-    /// any that is within the limit. Most refused collapses fail here, so that triangles are not listed before.
+    /// Squared distance from the collapsing point to the triangles after the collapse: the smallest, or any that is within the
+    /// limit. Most refused collapses fail here, so that triangles are listed only afterwards.
     fn needed_by_point(&self, topology: &Topology, points: &Points, [point, neighbor]: [u32; 2]) -> f32 {
         let place = self.place(points, point);
         let mut least = f32::INFINITY;
@@ -332,12 +332,12 @@ impl TrackedSamples {
         least
     }
 
-    /// The square of the distance of a sample from the triangles after a collapse.
+    /// Squared distance from a sample to the triangles after a collapse.
     fn needed(&self, points: &Points, sample: u32) -> f32 {
         nearest_off(points, &self.place(points, sample), self.faces.iter())
     }
 
-    /// Lists the triangles that would exist after a collapse.
+    /// Lists the triangles after a collapse.
     fn list_faces(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
         self.faces.clear();
         for (around, other) in [(point, neighbor), (neighbor, point)] {
@@ -358,7 +358,7 @@ impl TrackedSamples {
         for triangle in both.iter().flat_map(|point| topology.around(*point)) {
             for sample in &self.samples[*triangle as usize] {
                 let Some(middle) = (*sample as usize).checked_sub(points.len()) else { continue };
-                // The midpoints of a triangle and of its edges mostly follow each other.
+                // Midpoints of a triangle and of its edges are mostly consecutive.
                 let of = self.middles.triangles[middle].number;
                 if of != last {
                     self.below.push(middle as u32);
@@ -368,8 +368,8 @@ impl TrackedSamples {
         }
     }
 
-    /// A triangle of the mesh, as a place in the list of those below, that is within the limit of the midpoint of some
-    /// points in all poses: `likely`, or else the first one. If there is none, the square of the smallest distance.
+    /// Triangle of the mesh that is within the limit of the midpoint of some points in all poses, as an index into the list of
+    /// triangles below: `likely`, or else the first one. If there is none, the error is the square of the smallest distance.
     fn behind(&self, points: &Points, ends: &[u32], likely: usize) -> Result<usize, f32> {
         let place = Place::new(points.common_body(ends), |pose| middle(points, ends, pose));
         let limits = [self.most.sqrt(), self.most];
@@ -382,7 +382,7 @@ impl TrackedSamples {
         near.ok_or_else(|| nearest_off(points, &place, self.below.iter().map(face)))
     }
 
-    /// Where a sample is.
+    /// Location of a sample.
     fn place(&self, points: &Points, sample: u32) -> Place<impl Fn(usize) -> Vec3> {
         let middle = (sample as usize).checked_sub(points.len());
         let body = middle.map_or_else(|| points.body(sample), |at| self.middles.triangles[at].corners.body);
@@ -392,7 +392,7 @@ impl TrackedSamples {
         })
     }
 
-    /// A triangle that is within the limit of a sample in all poses, as a place in the list of those after a collapse:
+    /// Triangle that is within the limit of a sample in all poses, as an index into the list of triangles after a collapse:
     /// `likely`, or else the first one.
     fn near(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
         let (place, limits) = (self.place(points, sample), [self.most.sqrt(), self.most]);
@@ -403,8 +403,8 @@ impl TrackedSamples {
         self.faces.iter().position(is_near)
     }
 
-    /// The triangle whose largest distance from the sample in any pose is smallest, if that is within the limit, as a place
-    /// in the list of those after a collapse. `likely` is looked at first, so that most others are seen to be further away.
+    /// Triangle whose largest distance from the sample over all poses is smallest, if that is within the limit, as an index
+    /// into the list of triangles after a collapse. `likely` is tested first, so that most others can be rejected quickly.
     fn nearest(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
         let place = self.place(points, sample);
         let off = |face: &Face, most| off(points, &face.corners, &place, most);
@@ -425,7 +425,7 @@ impl TrackedSamples {
 
     /// Records a collapse that keeps within the limit. Call it before the collapse happens.
     pub(crate) fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
-        // Other collapses may have been tested in between.
+        // Other collapses may have been tested in between, so the lists may be stale.
         if self.looked_at.take() != Some([point, neighbor]) {
             self.list_faces(topology, points, point, neighbor);
         }
@@ -486,7 +486,7 @@ mod tests {
         indices.chunks_exact(3).flat_map(of).collect()
     }
 
-    /// The largest distance between samples of one surface and the other, in both directions and in all poses.
+    /// Largest distance between samples of one surface and the other, in both directions and in all poses.
     fn off(poses: &[Vec<[f32; 3]>], mesh: &[u32], level: &[u32]) -> f32 {
         let one_way = |pose: &Vec<[f32; 3]>, from: &[u32], to: &[u32]| {
             let distance = |position: Vec3| {
@@ -522,7 +522,7 @@ mod tests {
             last = triangles.len();
         }
         assert!(6 * last < indices.len(), "{last} indices left");
-        // Quadrics alone leave more triangles when they first reach this distance.
+        // Quadrics alone leave more triangles at this distance.
         let plain = simplify(&surface, &Options::default()).expect("valid");
         assert!(plain.collapses().iter().all(|collapse| collapse.distance == f32::INFINITY));
         let within = |count| off(&poses, &indices, &level(&plain, count)) <= 0.02;
@@ -532,7 +532,7 @@ mod tests {
         assert!(5 * level(&plain, far).len() > 6 * near, "{} and {near}", level(&plain, far).len());
     }
 
-    /// What is called far is further than the limit, also from slivers and from afar.
+    /// Triangles reported as far are further than the limit, also slivers and distant ones.
     #[test]
     fn far_triangles_are_far() {
         let (mut far, mut all) = (0, 0);

@@ -1,20 +1,20 @@
-//! Normals of triangles, and the test whether a collapse flips one (A section 4.1).
+//! Normals of triangles, and the test for collapses that flip a triangle (A section 4.1).
 
 use glam::DVec3;
 
 use super::points::Points;
 use super::topology::Topology;
 
-/// The squared sine of the angle between two edges up to which a triangle counts as having no area. Coordinates
-/// are rounded to 2⁻²⁴ of their size, so that smaller angles are noise.
+/// Squared sine of the angle between two edges up to which a triangle counts as having no area. Coordinates are rounded to 2⁻²⁴
+/// of their size, so that smaller angles are noise.
 const NO_AREA: f64 = 1e-12;
 
 /// A triangle without area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Flat;
 
-/// The normal of a triangle: its length is twice the area, and the corners are counter-clockwise seen from the
-/// side to which it points.
+/// Normal of a triangle. Its length is twice the area, and the corners are counter-clockwise seen from the side to which it
+/// points.
 #[inline]
 pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
     let edges = [b - a, c - a];
@@ -22,20 +22,20 @@ pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
     if is_flat(normal.length_squared(), edges) { Err(Flat) } else { Ok(normal) }
 }
 
-/// Whether a triangle has no area: `square` is that of its normal, which is the cross product of two edges.
+/// Whether a triangle has no area. `square` is the squared length of the cross product of its two edges.
 #[inline]
 fn is_flat(square: f64, [first, second]: [DVec3; 2]) -> bool {
     square <= NO_AREA * first.length_squared() * second.length_squared()
 }
 
-/// The square of the cosine of the largest angle by which a triangle's normal may turn: 75.5°, as meshoptimizer has it. Up
-/// to 90° no triangle would turn around at once, but several collapses in a row could turn one.
+/// Squared cosine of the largest angle by which a triangle's normal may turn: 75.5°, as in meshoptimizer. A limit of 90° would
+/// prevent flips by one collapse, but several collapses in a row could flip a triangle.
 const LEAST: f64 = 0.0625;
 
-/// The square of the largest distance of a point from the planes of its triangles after a collapse, and from the border if it
-/// is on one, in any pose. `None` if the collapse turns a triangle by more than 75°, or takes its area away, in any pose.
-/// Triangles that have no area before may turn. The search begins with the triangle number `first` of the point, and sets
-/// `first` to the triangle that turns: that one mostly turns for the next neighbour as well.
+/// Squared largest distance, over all poses, between a point and the planes of its triangles after a collapse; for a border
+/// point, also between the point and the border. `None` if the collapse turns a triangle by more than 75°, or takes its area
+/// away, in any pose. Triangles without area before may turn. The search begins with the point's triangle number `first`, and
+/// sets `first` to the triangle that turns, because it mostly turns for the next neighbour as well.
 pub(crate) fn deviation(
     topology: &Topology,
     points: &Points,
@@ -43,7 +43,7 @@ pub(crate) fn deviation(
     first: &mut usize,
 ) -> Option<f64> {
     let mut worst = 0.0_f64;
-    // The neighbour to which the new edge of the border leads.
+    // The neighbour at the other end of the new border edge.
     let border =
         topology.along_border(point).map(|[first, last]| if first == neighbor { last } else { first });
     for pose in 0..topology.poses_around(points, [point, neighbor]) {
@@ -81,7 +81,7 @@ pub(crate) fn deviation(
     Some(worst)
 }
 
-/// The square of the distance of a place from a segment.
+/// Squared distance from a place to a segment.
 fn square_from_segment(from: DVec3, [start, end]: [DVec3; 2]) -> f64 {
     let (edge, to) = (end - start, from - start);
     let square = edge.length_squared();
@@ -93,7 +93,7 @@ fn square_from_segment(from: DVec3, [start, end]: [DVec3; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A flat fan around a point on a border: the planes do not see that the border moves.
+    /// A flat fan around a border point: the planes do not detect that the border moves.
     #[test]
     fn points_on_borders_are_off_by_their_distance_from_the_border() {
         let at = |x: f32, y: f32| [x, y, 0.0];

@@ -1,4 +1,4 @@
-//! Formats of targets are checked, and what pipelines write of them.
+//! Checks of target formats, and the attachments that pipelines write.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Whether a renderer can draw what it is given.
+//! Checks before drawing.
 
 use super::{Renderer, is_in};
 use crate::InputError;
@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::scene::drawable::{DrawnObject, DrawnView};
 use crate::scene::specialization::Specialization;
 
-/// What to do about an object for which pipelines are missing.
+/// The remedy for missing pipelines.
 const PREPARE: &str = "must be compiled for this renderer: call Renderer::prepare after an object or a SunShadow was added, and \
                        after Scene::set_material or Scene::set_transition changed the object";
 
@@ -22,7 +22,7 @@ impl Renderer {
         }
     }
 
-    /// Whether the caller's texts declare names of their own each, which stand beside each other in a shader.
+    /// Checks that the caller's texts declare distinct names, because one shader contains all of them.
     pub(super) fn check_names(&self, part: &Specialization) -> Result<(), InputError> {
         let kind = ("the kind", part.program().declared());
         let output = self.format.output().map(|output| ("the output", output.declared()));

@@ -1,4 +1,4 @@
-//! The pipelines of a renderer, by what they are compiled from.
+//! The pipelines of a renderer, by their sources.
 
 use std::borrow::Cow;
 
@@ -12,30 +12,30 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::{OwnDepth, Program, Specialization};
 use crate::scene::wgsl::entries::fragment_entry;
 
-/// A pipeline of a renderer, as it is looked up: for a part in a layer.
+/// The key of a pipeline: a part in a layer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
     layer: Layer,
     part: Specialization,
-    /// Whether triangles seen from outside run clockwise on the screen.
+    /// Whether front-facing triangles run clockwise on the screen.
     is_flipped: bool,
-    /// Whether surfaces are looked up in the map of a sun's shadow.
+    /// Whether shading looks up the sun's shadow map.
     is_shadowed: bool,
 }
 
 impl PipelineKey {
-    /// The key of a part that no sun shadows.
+    /// The key of a part without a sun's shadow.
     pub fn new(layer: Layer, part: &Specialization, is_flipped: bool) -> Self {
         let is_flipped = is_flipped && !part.state().double_sided;
         Self { layer, part: part.clone(), is_flipped, is_shadowed: false }
     }
 
-    /// The same in the shadow of a sun, if its layer is shaded, or without.
+    /// This key with a sun's shadow, if `is_shadowed` and the layer is shaded; else without.
     pub fn shadowed(self, is_shadowed: bool) -> Self {
         Self { is_shadowed: is_shadowed && self.layer.is_shaded(), ..self }
     }
 
-    /// What the pipeline is compiled from, for a format; `casts` for maps of shadows, where both sides of triangles stop light.
+    /// The pipeline's source for a target format. `casts`: for shadow maps, where both sides of triangles stop light.
     pub fn source(&self, format: &TargetFormat, casts: bool) -> PipelineSource {
         let (layer, state) = (self.layer, self.part.state());
         let own_depth = match state.own_depth {
@@ -63,7 +63,7 @@ impl PipelineKey {
             // A pipeline without a fragment stage fits no pass with colours.
             fragment: (!is_plain_depth || !format.color.is_empty()).then_some(entry),
             constants: constants.into_iter().map(|(name, value)| (name, value.to_bits())).collect(),
-            // Triangles seen from outside run counter-clockwise, unless they are flipped.
+            // Front faces run counter-clockwise, unless flipped.
             cull: match (state.double_sided || casts, self.is_flipped) {
                 (true, _) => None,
                 (false, false) => Some(wgpu::Face::Back),
@@ -73,25 +73,25 @@ impl PipelineKey {
     }
 }
 
-/// What a pipeline is compiled from, besides what a renderer has once.
+/// The part of a pipeline's source that differs between the pipelines of one renderer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineSource {
     layer: Layer,
     program: Program,
-    /// The entry points; no fragment stage where depth alone is written and nothing is left out.
+    /// Entry points. There is no fragment stage where only depth is written and nothing is cut out.
     vertex: String,
     fragment: Option<String>,
-    /// Override constants, with the bits of their values.
+    /// Override constants, as the bits of their values.
     constants: Vec<(&'static str, u64)>,
-    /// The faces that are left out.
+    /// The culled faces.
     cull: Option<wgpu::Face>,
 }
 
 impl PipelineSource {
-    /// Compiles the pipeline, with the caller's shading if there is any.
+    /// Compiles the pipeline, with the caller's shading if there is one.
     ///
     /// # Errors
-    /// What the driver's compiler reports, and what the device does not allow of the format.
+    /// Driver compiler errors, and limits of the device that the format exceeds.
     pub fn compiled(
         &self,
         gpu: &Gpu,
@@ -153,7 +153,7 @@ impl PipelineSource {
     }
 }
 
-/// The one vertex buffer: for each instance of a draw, its index in the object.
+/// The only vertex buffer: for each instance of a draw, its index in the object.
 const INSTANCES: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<u32>() as u64,
     step_mode: wgpu::VertexStepMode::Instance,

@@ -1,4 +1,4 @@
-//! A renderer on another device, after its own was lost.
+//! Rebuilding a renderer on another device after its device was lost.
 
 use super::{Renderer, Shading};
 use crate::gpu::Gpu;
@@ -12,12 +12,12 @@ impl Rebuild for Renderer {
 }
 
 impl Renderer {
-    /// Compiles its pipelines again on another device, after its own was lost; the scene is rebuilt there too
-    /// ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
+    /// Compiles the renderer's pipelines again on another device, after its own was lost. The scene must be rebuilt on
+    /// that device too ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
-    /// [`InputError`] for the caller's shading with a bind group layout, which the lost device takes with it
-    /// ([`Renderer::rebuild_with_layout`]). What the driver's compiler reports. In either case the renderer is as it was.
+    /// [`InputError`] for the caller's shading with a bind group layout, because the layout was lost with the device
+    /// ([`Renderer::rebuild_with_layout`]). Errors of the driver's compiler. In either case the renderer is unchanged.
     pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
         if self.shading.as_ref().is_some_and(|shading| shading.layout.is_some()) {
             let bound = "must be given again, of the new device: Renderer::rebuild_with_layout";
@@ -30,7 +30,8 @@ impl Renderer {
     /// ([`Renderer::with_shading`]).
     ///
     /// # Errors
-    /// As [`Renderer::with_shading`] for the layout; [`InputError`] for a renderer without the caller's shading. The renderer is as it was.
+    /// As [`Renderer::with_shading`] for the layout; [`InputError`] for a renderer without the caller's shading. The
+    /// renderer is unchanged then.
     pub fn rebuild_with_layout(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Result<(), Error> {
         let Some(shading) = &self.shading else {
             return Err(InputError::new("shading", "none", "must be there where a layout is given").into());

@@ -1,7 +1,7 @@
-//! What a renderer records into: a render pass or a render bundle.
+//! The encoders that a renderer records into: a render pass or a render bundle.
 
-/// A render pass, or the encoder of a render bundle. Render passes do not borrow what is drawn, so that passes without a
-/// lifetime ([`wgpu::RenderPass::forget_lifetime`]) will do.
+/// A render pass, or the encoder of a render bundle. A render pass does not borrow the drawn resources, so passes
+/// without a lifetime ([`wgpu::RenderPass::forget_lifetime`]) work too.
 pub trait ScenePass<'a>: sealed::Sealed {
     /// Sets the pipeline of the next draws.
     fn set_pipeline(&mut self, pipeline: &'a wgpu::RenderPipeline);
@@ -9,14 +9,14 @@ pub trait ScenePass<'a>: sealed::Sealed {
     fn set_bind_group(&mut self, index: u32, group: &'a wgpu::BindGroup);
     /// Sets a vertex buffer of the next draws.
     fn set_vertex_buffer(&mut self, slot: u32, buffer: wgpu::BufferSlice<'a>);
-    /// Sets the index buffer of the next draws, of `u32`.
+    /// Sets the index buffer of the next draws, with `u32` indices.
     fn set_index_buffer(&mut self, buffer: wgpu::BufferSlice<'a>);
-    /// Draws with arguments from a buffer.
+    /// Draws indexed, with arguments from a buffer.
     fn draw_indexed_indirect(&mut self, arguments: &'a wgpu::Buffer, offset: u64);
 }
 
 mod sealed {
-    /// Keeps others from implementing the trait.
+    /// Keeps other crates from implementing [`ScenePass`](super::ScenePass).
     pub trait Sealed {}
     impl Sealed for wgpu::RenderPass<'_> {}
     impl Sealed for wgpu::RenderBundleEncoder<'_> {}

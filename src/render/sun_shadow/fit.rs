@@ -1,35 +1,37 @@
-//! Where the map of a sun's shadow lies: around a sphere that holds what cameras show, at whole texels of a grid that stands
-//! still in the world. `docs/shadows.md` says why.
+//! Placement of the sun's shadow map: around a sphere that holds what the cameras show, at whole texels of a grid that
+//! is fixed in the world. `docs/shadows.md` explains the choice.
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 
 use crate::InputError;
 use crate::scene::{Camera, Depth, Placement};
 
-/// Casters reach up to this many radii from the middle of the map towards the light.
+/// Casters count up to this many map radii from the map's center towards the light.
 const REACH: f64 = 7.0;
 
-/// The part of the map's radius along which shadows fade (`SHADOW_FADE` of `wgsl/render/scene_shadow.wgsl`), and some texels.
+/// Fraction of the map's radius over which shadows fade (`SHADOW_FADE` of `wgsl/render/scene_shadow.wgsl`), plus some
+/// texels.
 const FADE: f64 = 0.07;
 
-/// The radius takes this many values in each octave, so that small changes of the projection, such as jitter, leave it as it is.
+/// Number of radii per octave. Rounding to them keeps the radius constant under small changes of the projection, such
+/// as jitter.
 const STEPS: f64 = 8.0;
 
-/// Halvings of the interval in which the middle of a sphere is sought.
+/// Iterations of the search for the center of a sphere.
 const HALVINGS: usize = 48;
 
-/// The corners of what a camera shows up to a distance.
+/// The eight corners of a camera's view volume up to a distance.
 #[derive(Debug, Clone)]
 pub(super) struct Frustum {
-    /// In the camera's space, so that they are the same to the bit wherever the camera is: four on the near plane, four where
-    /// it ends.
+    /// In the camera's space, so that they do not depend on its position, to the bit: four on the near plane, four at
+    /// the end.
     corners: [[DVec3; 4]; 2],
     /// From the camera's space into the world.
     world_from_view: DMat4,
 }
 
 impl Frustum {
-    /// Up to `range` units ahead of the camera, or to its far plane.
+    /// The view volume up to `range` units ahead of the camera, or to its far plane if that is nearer.
     ///
     /// # Errors
     /// [`InputError`] for a range that ends before the near plane.
@@ -41,18 +43,18 @@ impl Frustum {
         };
         let [near, far] = if camera.depth == Depth::Reversed { [1.0, 0.0] } else { [0.0, 1.0] };
         let ahead = (place(0.0, 0.0, 0.5) - place(0.0, 0.0, near)).normalize_or(DVec3::NEG_Z);
-        // Off-axis cameras look along the normal of the near plane all the same.
+        // Off-axis cameras too look along the normal of the near plane.
         let plane = (place(1.0, 0.0, near) - place(0.0, 0.0, near))
             .cross(place(0.0, 1.0, near) - place(0.0, 0.0, near))
             .normalize_or(ahead);
         let plane = if plane.dot(ahead) < 0.0 { -plane } else { plane };
         let begin = plane.dot(place(0.0, 0.0, near));
         if range <= begin {
-            // The caller gave f32.
+            // The caller passed f32.
             let bound = format!("must be beyond the near plane, {} units ahead of the camera", begin as f32);
             return Err(InputError::new("range", range as f32, bound));
         }
-        // An infinite far plane gives what is infinite, or no number.
+        // For an infinite far plane, `end` is infinite or NaN.
         let end = plane.dot(place(0.0, 0.0, far));
         let end = if end > begin { end.min(range) } else { range };
         let near = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(|[x, y]| {
@@ -67,7 +69,7 @@ impl Frustum {
     }
 }
 
-/// The sun's camera, and the world units that a texel covers.
+/// The sun's camera and its texel size.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit {
     pub camera: Camera,
@@ -75,7 +77,7 @@ pub(super) struct Fit {
 }
 
 impl Fit {
-    /// Around what cameras show, at least one of them, for a light from this direction, in a map of `size` texels.
+    /// Fits a map of `size` texels around the view volumes, at least one, for a light from `direction`.
     pub fn new(frusta: &[Frustum], direction: Vec3, size: u32) -> Self {
         let (middle, radius) = sphere(frusta);
         let steps = (STEPS * libm::log2(radius / (1.0 - FADE))).ceil() / STEPS;
@@ -87,11 +89,11 @@ impl Fit {
     }
 }
 
-/// The sun's camera around a place, given along the axes, with which the map's middle lies there.
+/// The sun's camera, with the map centered at `middle`. `middle` is in the coordinates of `axes`.
 fn camera(axes: DMat3, middle: DVec3, radius: f64, size: u32) -> Camera {
     let edge = f64::from(Placement::CELL);
     let cell = (axes * middle / edge).floor();
-    // The eye is as far towards the light as casters are.
+    // The eye lies at the casters' distance limit.
     let eye = middle + DVec3::Z * (REACH * radius) - axes.transpose() * (cell * edge);
     let view = DMat4::from_translation(-eye) * DMat4::from_mat3(axes.transpose());
     let far = (REACH + 1.0) * radius;
@@ -102,7 +104,7 @@ fn camera(axes: DMat3, middle: DVec3, radius: f64, size: u32) -> Camera {
         Vec4::W,
     );
     Camera {
-        // Conversion saturates.
+        // Casts saturate.
         cell: cell.to_array().map(|axis| axis as i32),
         view_from_cell: view.as_mat4(),
         clip_from_view,
@@ -119,8 +121,8 @@ fn axes(direction: Vec3) -> DMat3 {
     DMat3::from_cols(right, towards.cross(right), towards)
 }
 
-/// The middle in the world and the radius of a sphere around all corners. Its middle lies between the middles of the near and of
-/// the far ones, where it is smallest.
+/// The center in the world and the radius of a sphere around all corners. The center is the point between the centers
+/// of the near and the far corners where the radius is smallest.
 fn sphere(frusta: &[Frustum]) -> (DVec3, f64) {
     let first = frusta[0].world_from_view;
     let view_from_world = first.inverse();
@@ -138,7 +140,7 @@ fn sphere(frusta: &[Frustum]) -> (DVec3, f64) {
         let farthest = near.iter().chain(&far).map(|corner| corner.distance_squared(middle));
         farthest.fold(0.0, f64::max).sqrt()
     };
-    // The radius is a convex function.
+    // The radius is a convex function of the position between them.
     let [mut low, mut high] = [0.0, 1.0];
     for _ in 0..HALVINGS {
         let [a, b] = [1.0 / 3.0, 2.0 / 3.0].map(|part| low + part * (high - low));
@@ -164,7 +166,7 @@ mod tests {
         Fit::new(&frusta, SUN, 512)
     }
 
-    /// Where a place in the world lies in the map, in texels.
+    /// The position of a world point in the map, in texels.
     fn texels(fit: &Fit, place: DVec3) -> DVec3 {
         let cell = Placement::corner(fit.camera.cell);
         let clip = fit.camera.clip_from_view.as_dmat4() * fit.camera.view_from_cell.as_dmat4();
@@ -197,7 +199,7 @@ mod tests {
         }
     }
 
-    /// While the camera turns and moves, near the origin and far from it, places keep their part of a texel.
+    /// World points keep their sub-texel position while the camera turns and moves, near the origin and far from it.
     #[test]
     fn the_map_moves_by_whole_texels() {
         for far in [0, 3906] {
@@ -214,7 +216,7 @@ mod tests {
                 let fit = fitted(&[moved(eye(from, to))], 40.0);
                 assert_eq!(fit.texel.to_bits(), first.texel.to_bits());
                 let by = texels(&fit, place) - before;
-                // f32 matrices of coordinates of some hundred units.
+                // Rounding of f32 matrices at coordinates of a few hundred units.
                 let off = (by - by.round()).truncate().abs().max_element();
                 assert!(off < 0.01, "{off} texels after {at} steps, {far} cells away");
                 steps += usize::from(by.truncate().abs().max_element() > 0.5);

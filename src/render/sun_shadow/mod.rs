@@ -1,5 +1,5 @@
-//! The shadow of the sun: a map of depths as the sun sees what casts (Williams 1978), fitted to what views show, in which the
-//! crate's shading and the caller's look surfaces up.
+//! The sun's shadow map (Williams 1978): depths as the sun sees the casters, fitted to what views show. The crate's and
+//! the caller's shading look it up.
 
 mod fit;
 
@@ -12,22 +12,24 @@ use crate::scene::{Camera, Quality, Rebuild, Scene, View, ViewShadow};
 use crate::{Error, InputError};
 use fit::{Fit, Frustum};
 
-/// The least number of texels along an edge of the map.
+/// The smallest number of texels along an edge of the map.
 const LEAST_SIZE: u32 = 16;
 
-/// The shadow of a scene's light in views of the scene: a map, its camera, and what draws it.
+/// A shadow map for a scene's light: the map, its camera, and its renderer.
 ///
-/// The map has the depth of what the light reaches first. In every frame, [`SunShadow::fit`] places it around what views show
-/// up to a distance, and [`SunShadow::draw`] draws it. What casts is all that casts ([`Scene::set_casts_shadow`]) and shares a
-/// bit with [`SunShadow::set_mask`]'s, also outside of what the views show, up to three times as far from it towards the light
-/// as the map is wide. Triangles stop light from both sides, reliefs with their own depth, and cut-out surfaces where they are
-/// opaque; blended ones cast no shadow. All receive it: in the crate's shading, and as `Surface.sunlit` in the caller's
+/// The map holds the depth of the first caster that the light meets. In every frame, [`SunShadow::fit`] places it
+/// around what the views show up to a distance, and [`SunShadow::draw`] draws it.
+///
+/// Casters are all instances that cast ([`Scene::set_casts_shadow`]) and share a bit with [`SunShadow::set_mask`]'s
+/// mask. They count also outside of the views, up to three map widths from them towards the light. Triangles stop light
+/// from both sides, reliefs with their own depth, and cut-out surfaces where they are opaque. Blended surfaces cast no
+/// shadow. All surfaces receive it: in the crate's shading, and as `Surface.sunlit` in the caller's
 /// ([`Renderer::with_shading`]).
 ///
-/// A texel covers 1/`size` of the width of the map, about 1.8 `range` / `size` for a field of view of 0.8. Shadows are as
-/// sharp as two of them, and what is nearer to a surface than three of them may not shade it. They stay where they are while
-/// the camera moves and turns, since the map moves by whole texels; they move with the light, and where the field of view or
-/// `range` changes much. `docs/shadows.md` has the derivation.
+/// A texel covers 1/`size` of the map's width, about 1.8 `range` / `size` for a field of view of 0.8. Shadow edges are
+/// about two texels wide. A caster closer than three texels to a surface may not shade it. Shadows are stable while the
+/// camera moves and turns, because the map moves by whole texels. They shift when the light moves, and when the field
+/// of view or `range` changes much. `docs/shadows.md` has the derivation.
 ///
 /// # Examples
 ///
@@ -64,11 +66,11 @@ pub struct SunShadow {
 }
 
 impl SunShadow {
-    /// A map of `size` × `size` texels (2048, say), and the pipelines for what the scene has. From now on all renderers of the
-    /// scene look surfaces up: prepare them afterwards.
+    /// A map of `size` × `size` texels (2048, say), and pipelines for the scene's objects. From now on all renderers of
+    /// the scene look up the shadow: prepare them afterwards.
     ///
     /// # Errors
-    /// [`InputError`] for a size below 16 or above the device's limit of textures; what the driver's compiler reports.
+    /// [`InputError`] for a size below 16 or above the device's limit of textures; errors of the driver's compiler.
     pub fn new(scene: &mut Scene, size: u32) -> Result<Self, Error> {
         let gpu = scene.gpu().clone();
         let most = gpu.device().limits().max_texture_dimension_2d;
@@ -86,7 +88,7 @@ impl SunShadow {
         Ok(Self { size, map, renderer, view })
     }
 
-    /// As [`SunShadow::new`], but completes once the device has told its errors ([`Gpu::check_async`]).
+    /// As [`SunShadow::new`], but completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
     /// As [`SunShadow::new`].
@@ -96,7 +98,7 @@ impl SunShadow {
         Ok(shadow)
     }
 
-    /// Compiles the pipelines that are not there yet, after objects were added to the scene ([`Renderer::prepare`]).
+    /// Compiles the missing pipelines after objects were added to the scene ([`Renderer::prepare`]).
     ///
     /// # Errors
     /// As [`Renderer::prepare`].
@@ -104,7 +106,7 @@ impl SunShadow {
         self.renderer.prepare(scene)
     }
 
-    /// As [`SunShadow::prepare`], but completes once the device has told its errors.
+    /// As [`SunShadow::prepare`], but completes once the device has reported its errors.
     ///
     /// # Errors
     /// As [`Renderer::prepare`].
@@ -112,21 +114,22 @@ impl SunShadow {
         self.renderer.prepare_async(scene).await
     }
 
-    /// Lets only instances cast whose visibility mask ([`Scene::set_visibility_mask`]) shares a bit with `mask`; all that cast at
-    /// first.
+    /// Restricts casters to instances whose visibility mask ([`Scene::set_visibility_mask`]) shares a bit with `mask`.
+    /// At first all instances that cast do.
     pub fn set_mask(&mut self, mask: u16) {
         self.view.set_mask(mask);
     }
 
-    /// Places the map around what these views show up to `range` units ahead of their cameras, and lets them show it. Call it
-    /// in each frame after cameras and light were set, and before [`Scene::record`]. A view that shows the same everywhere, as a
-    /// minimap does, may be left out; [`View::clear_shadow`] takes the shadow from a view again.
+    /// Places the map around what these views show up to `range` units ahead of their cameras, and makes the views use
+    /// it.
     ///
-    /// Beyond `range` shadows end somewhere, fading. Levels of detail of what casts are those that the views decide.
+    /// Call it in each frame after cameras and light were set, and before [`Scene::record`]. A view with a constant
+    /// picture, such as a minimap, may be left out. [`View::clear_shadow`] removes the shadow from a view. Shadows fade
+    /// out at some distance beyond `range`. The levels of detail of casters are those that the views decide.
     ///
     /// # Errors
-    /// [`InputError`] for no view or more than four, views of another scene or without a camera, and a `range` that is not
-    /// finite or not beyond a camera's near plane. Nothing changes then.
+    /// [`InputError`] for no view or more than four, views of another scene or without a camera, and a `range` that is
+    /// not finite or not beyond a camera's near plane. Nothing changes then.
     pub fn fit(&mut self, scene: &Scene, views: &mut [&mut View], range: f32) -> Result<(), InputError> {
         self.view.check(scene, "shadow")?;
         if !(range > 0.0 && range.is_finite()) {
@@ -154,25 +157,25 @@ impl SunShadow {
         Ok(())
     }
 
-    /// The view of the light, which [`Scene::record`] takes beside those that it was fitted to.
+    /// The light's view. Pass it to [`Scene::record`] together with the views that the map was fitted to.
     pub fn view(&mut self) -> &mut View {
         &mut self.view
     }
 
-    /// The camera of the light, parallel and with forward depth, after the first [`SunShadow::fit`].
+    /// The light's camera, orthographic with forward depth. `None` before the first [`SunShadow::fit`].
     pub fn camera(&self) -> Option<&Camera> {
         self.view.camera()
     }
 
-    /// The map, `Depth32Float`, for shaders of the caller's own. It stays the same until the shadow is rebuilt.
+    /// The map, `Depth32Float`, for the caller's own shaders. It stays the same until the shadow is rebuilt.
     pub fn map(&self) -> &wgpu::TextureView {
         &self.map
     }
 
-    /// Draws the map, in a pass of its own. Call it after [`Scene::record`], and before the passes that draw the views.
+    /// Draws the map in a pass of its own. Call it after [`Scene::record`] and before the passes that draw the views.
     ///
     /// # Errors
-    /// As [`Renderer::draw`] for the view of the light; [`InputError`] for an encoder of another [`wgpu::Instance`].
+    /// As [`Renderer::draw`] for the light's view; [`InputError`] for an encoder of another [`wgpu::Instance`].
     pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) -> Result<(), InputError> {
         self.view.check(scene, "shadow")?;
         scene.gpu().check_encoder(encoder)?;
@@ -198,7 +201,7 @@ impl SunShadow {
     }
 
     /// Creates everything anew after the device was lost and the scene was rebuilt on another one
-    /// ([`Scene::rebuild_async`]). Rebuild the views as well ([`View::rebuild`]), and fit it to them again.
+    /// ([`Scene::rebuild_async`]). Rebuild the views too ([`View::rebuild`]), and fit the map to them again.
     ///
     /// # Errors
     /// As [`View::rebuild`] and [`Renderer::rebuild`]; [`GpuError`].

@@ -1,4 +1,4 @@
-//! The lists of attached meshes on the device: one for each chunk of a character that carries some.
+//! Lists of attached meshes on the device, one per chunk of a character that carries any.
 
 use std::collections::BTreeMap;
 
@@ -12,38 +12,38 @@ use crate::scene::handles::{InstanceId, ObjectId, Slots};
 use crate::scene::layout::Layout;
 use crate::scene::object::Object;
 
-/// The meshes of a character on the device.
+/// The attached meshes of one chunk, on the device.
 #[derive(Debug)]
 pub(in crate::scene) struct List {
     pub params: Uniform<AttachParams>,
     pub attachments: Buffer<Attachment>,
-    /// Where bones had taken the meshes.
+    /// Earlier bone transforms of the meshes, for velocities.
     pub kept: Buffer<KeptBone>,
-    /// The keys of the entries that are not free.
+    /// Attachment key per entry; `None` for a free entry.
     keys: Vec<Option<u32>>,
-    /// The value of `params` but for the frame.
+    /// Last value of `params`, except for the frame.
     value: AttachParams,
 }
 
 impl Attachments {
-    /// The lists of chunks of characters, by slot and generation of the object and number of the chunk.
+    /// The lists, each with slot and generation of the character's object and the number of its chunk.
     pub fn lists(&self) -> impl Iterator<Item = (([u32; 2], usize), &List)> {
         self.lists.iter().map(|(key, list)| (*key, list))
     }
 
-    /// Forgets all lists: their device is lost.
+    /// Drops all lists, because their device is lost.
     pub fn forget_device(&mut self) {
         self.lists.clear();
         self.written = None;
         self.version += 1;
     }
 
-    /// Lets nothing count of what was before the next frame.
+    /// Makes the next frame ignore the motion history.
     pub fn start_afresh(&mut self) {
         self.starts_afresh = true;
     }
 
-    /// Writes the lists anew, if attachments or the layout have changed, and the number of the frame, if the last one is kept.
+    /// Rewrites the lists if attachments or the layout changed. With motion history, also writes the frame number.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
@@ -127,8 +127,8 @@ impl Attachments {
 }
 
 impl List {
-    /// All entries up to the last one that is not free: attachments stay where they are, so that what is kept of them stays
-    /// theirs, and new ones take the first that are free. There is room for all.
+    /// The entries, up to the last one in use. Known attachments keep their entries, so that their history stays theirs.
+    /// New ones take the first free entries. There is room for all.
     fn arranged(&mut self, attachments: &[Attachment]) -> Vec<Attachment> {
         let known = |key: Option<u32>| {
             let found = attachments.binary_search_by_key(&key?, |attachment| attachment.key).ok()?;
@@ -146,10 +146,10 @@ impl List {
     }
 }
 
-/// An entry that is free.
+/// A free entry.
 const FREE: Attachment = Attachment { mesh: NO_MESH, character: 0, bone: 0, key: 0, offset: AFFINE_IDENTITY };
 
-/// An attachment as kernels see it, with the chunk of the character in which it is listed.
+/// An attachment in device format, with the character's chunk whose list holds it.
 fn on_device(
     objects: &Slots<Object>,
     mesh: InstanceId,
@@ -170,7 +170,7 @@ fn on_device(
     Some((([index, generation], chunk), attachment))
 }
 
-/// The index in the scene of the first instance of a character's chunk, and the number of the character's bones.
+/// Scene index of the first instance in a character's chunk, and the number of bones.
 fn first_of(objects: &Slots<Object>, object: [u32; 2], chunk: usize) -> Option<[u32; 2]> {
     let object = objects.get(object)?;
     let bones = object.character()?.model().skeleton.len() as u32;

@@ -1,4 +1,4 @@
-//! Meshes that are attached to bones of characters.
+//! Attaching meshes to bones of characters.
 
 mod lists;
 
@@ -19,70 +19,71 @@ use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use lists::List;
 
-/// A character, its clip, whether layers are above it, a bone, and the bits of the sphere that the bone carries.
+/// Key of a bone path: character, clip, whether layers are blended over it, bone, and the bits of the carried sphere.
 type PathKey = (ObjectId, (u32, bool), usize, [u32; 4]);
 
-/// The meshes that are attached.
+/// All attached meshes.
 #[derive(Debug, Default)]
 pub(super) struct Attachments {
     all: HashMap<InstanceId, Attached>,
-    /// The meshes that each character carries.
+    /// Attached meshes of each character.
     carried: HashMap<InstanceId, Vec<InstanceId>>,
-    /// Where bones go.
+    /// Cached bone paths.
     paths: HashMap<PathKey, BonePath>,
-    /// The list of each chunk of a character that carries a mesh, or has carried one, by slot and generation of the object.
+    /// List of each chunk that carries a mesh or has carried one. The key is slot and generation of the object, and the
+    /// chunk.
     lists: BTreeMap<([u32; 2], usize), List>,
-    /// Counts the times at which a list was allocated: jobs that were prepared for another number are out of date.
+    /// Number of list allocations. Jobs prepared for another number are outdated.
     pub version: u64,
-    /// The layout for which the lists were written; `None` if attachments have changed since.
+    /// Version of the layout that the lists were written for; `None` if attachments have changed since.
     written: Option<u64>,
     /// Number of attachments ever made.
     made: u32,
-    /// Whether nothing counts of what was before the next frame.
+    /// Whether the next frame ignores the motion history.
     starts_afresh: bool,
 }
 
-/// A mesh that is attached.
+/// An attached mesh.
 #[derive(Debug, Clone, Copy)]
 struct Attached {
     character: InstanceId,
     bone: usize,
-    /// From the mesh's space to the bone's.
+    /// The transform from mesh space to bone space.
     offset: Transform,
-    /// A sphere around the mesh in the bone's space.
+    /// A sphere around the mesh in bone space.
     sphere: BoundingSphere,
-    /// Where the mesh stands when it is detached.
+    /// The mesh's placement once it is detached.
     own: Placement,
     /// Its number among all attachments ever made.
     key: u32,
 }
 
 impl Scene {
-    /// Attaches a mesh to a bone of a character, given by its name or its index in digits: from the next frame on, the mesh follows the
-    /// bone as each frame poses it, with `offset` from the mesh's space to the bone's. Nothing of that passes through the host.
-    /// A mesh that is attached already changes to the new bone.
+    /// Attaches a mesh to a bone of a character. The bone is given by its name or its index in digits. From the next frame
+    /// on, the mesh follows the bone in each frame's pose, with `offset` from mesh space to bone space. No pose passes
+    /// through the host. If the mesh is already attached, it changes to the new bone.
     ///
-    /// The offset is in the bone's space, so the scales of the character and of its bones act on it: on a character in
-    /// centimetres that is placed with a scale of 0.01, a translation of 1 is a centimetre, and a mesh in metres is a hundredth
-    /// as large. [`InstancePose::offset_of_world_units`](crate::scene::InstancePose::offset_of_world_units) turns an offset in
-    /// world units into one of the bone's space: `scene.pose(character)?.offset_of_world_units(bone, offset)?`.
+    /// The offset is in bone space, so the scales of the character and its bones apply to it. Take a character modelled in
+    /// centimetres and placed with a scale of 0.01: a translation of 1 is a centimetre, and a mesh in metres is a hundredth
+    /// of its size. [`InstancePose::offset_of_world_units`](crate::scene::InstancePose::offset_of_world_units) converts an
+    /// offset in world units to bone space: `scene.pose(character)?.offset_of_world_units(bone, offset)?`.
     ///
-    /// In views, the mesh is selected together with its character, by a sphere that holds both wherever the clip takes the bone,
-    /// and takes a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. The bones of a character
-    /// that carries a mesh are sampled in every frame in which it is seen, so that the mesh is at its place but for
-    /// rounding. [`Scene::world_from_model`] tells where it stands. Where no view of a frame sees the character (it is hidden, or
-    /// masks leave it out), the mesh is not drawn either. Despawning the character detaches the mesh.
+    /// Views select the mesh together with its character. They use a sphere that holds both wherever the clip takes the
+    /// bone, and a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. While a character carries
+    /// a mesh, its bones are sampled in every frame that sees it, so the mesh is in place except for rounding.
+    /// [`Scene::world_from_model`] returns its transform. If no view of a frame sees the character, because it is hidden or
+    /// masked out, the mesh is not drawn either. Despawning the character detaches the mesh.
     ///
-    /// [`Layer::Velocity`](crate::render::Layer::Velocity) shows it moving with its bone, and in the frame in which it is
-    /// attached from where it stood. When it changes to another bone, when its character was not seen in the last frame, or
-    /// when more meshes are attached to characters of the object than ever before, it moves for one frame with its character
-    /// alone; when it is detached, it does not move.
+    /// In [`Layer::Velocity`](crate::render::Layer::Velocity) the mesh moves with its bone. In the frame in which it is
+    /// attached, it moves from its previous place. For one frame it moves with its character alone in three cases: it
+    /// changes to another bone, its character was not seen in the last frame, or the object's characters carry more meshes
+    /// than ever before. When it is detached, it does not move.
     ///
-    /// It takes sampling each clip that the character plays, once for each bone.
+    /// The call samples each clip that the character plays, once per bone.
     ///
     /// # Errors
-    /// [`InputError`] for instances that do not exist any more, for a mesh or a character that is none, for a bone that the
-    /// model does not have, and for an offset that is not finite, has no rotation, or scales by 0.
+    /// [`InputError`] for instances that do not exist any more, for a mesh or a character that is not one, for a bone that
+    /// the model does not have, and for an offset that is not finite, has no rotation, or scales by 0.
     pub fn attach(
         &mut self,
         mesh: InstanceId,
@@ -114,11 +115,11 @@ impl Scene {
         self.carry(character)
     }
 
-    /// Detaches a mesh: it stands where its placement says ([`Scene::placement`]), which is where it stood before it was
-    /// attached, or where [`Scene::move_to`] has moved it since.
+    /// Detaches a mesh. It returns to its own placement ([`Scene::placement`]): the one from before it was attached, or the
+    /// last one set by [`Scene::move_to`] since.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, or that is not attached.
+    /// [`InputError`] for an instance that does not exist any more or is not attached.
     pub fn detach(&mut self, mesh: InstanceId) -> Result<(), InputError> {
         self.object_of(mesh).map_err(|error| renamed(error, "mesh"))?;
         let Some(Attached { character, own, .. }) = self.release(mesh) else {
@@ -134,7 +135,7 @@ impl Scene {
         self.carry(character)
     }
 
-    /// The character and the bone to which a mesh is attached, if it is.
+    /// The character and the bone index that a mesh is attached to; `None` if it is not attached.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -143,18 +144,18 @@ impl Scene {
         Ok(self.attachments.all.get(&mesh).map(|attached| (attached.character, attached.bone)))
     }
 
-    /// Where an attached mesh stands when it is detached.
+    /// An attached mesh's placement once it is detached.
     pub(super) fn detached_placement(&self, mesh: InstanceId) -> Option<Placement> {
         self.attachments.all.get(&mesh).map(|attached| attached.own)
     }
 
-    /// Sets where a mesh stands when it is detached. Returns whether it is attached.
+    /// Sets an attached mesh's placement once it is detached. Returns whether the mesh is attached.
     pub(super) fn move_detached(&mut self, mesh: InstanceId, placement: Placement) -> bool {
         let attached = self.attachments.all.get_mut(&mesh);
         attached.map(|attached| attached.own = placement).is_some()
     }
 
-    /// Takes leave of an instance that goes: what it carries is detached, and it is carried no longer.
+    /// Removes the attachments of an instance that is despawned, as character and as mesh.
     pub(super) fn let_go(&mut self, instance: InstanceId) -> Result<(), InputError> {
         for mesh in self.attachments.carried.get(&instance).cloned().unwrap_or_default() {
             self.detach(mesh)?;
@@ -165,7 +166,7 @@ impl Scene {
         }
     }
 
-    /// Forgets an attachment, if there is one.
+    /// Removes an attachment, if there is one.
     fn release(&mut self, mesh: InstanceId) -> Option<Attached> {
         let attached = self.attachments.all.remove(&mesh)?;
         if let Some(carried) = self.attachments.carried.get_mut(&attached.character) {
@@ -175,7 +176,8 @@ impl Scene {
         Some(attached)
     }
 
-    /// Lets a character and what it carries be selected together, after either of them, its placement or its clip has changed.
+    /// Makes views select a character and its meshes together. Call it after the character, a mesh, a placement or a clip
+    /// has changed.
     pub(super) fn carry(&mut self, character: InstanceId) -> Result<(), InputError> {
         let Some(meshes) = self.attachments.carried.get(&character).cloned() else { return Ok(()) };
         let ObjectId { index, generation, .. } = character.object;
@@ -209,7 +211,7 @@ impl Scene {
         Ok(())
     }
 
-    /// The transform of an attached mesh to the world, relative to the corner of a cell, in the pose of the time of the scene.
+    /// An attached mesh's transform to world axes, relative to a cell's corner, in the pose at the scene's time.
     pub(super) fn attached_placed(
         &self,
         mesh: InstanceId,
@@ -224,8 +226,8 @@ impl Scene {
     }
 }
 
-/// Lets a mesh be selected as its character is: with its placement and its sphere, and a scale that says by how much bone and
-/// offset enlarge the mesh at most, and whether they mirror it.
+/// Makes views select a mesh like its character, with the character's placement and sphere. The scale includes the largest
+/// enlargement of the mesh by bone and offset; x is negated if they mirror the mesh.
 fn follow(mesh: &mut SceneInstance, leader: &SceneInstance, path: &BonePath, offset: &Transform) {
     let largest = offset.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
     let enlarged = (path.stretch * largest).max(1e-6);

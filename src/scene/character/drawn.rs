@@ -1,4 +1,4 @@
-//! What is drawn of a character: its meshes from the pages of each chunk of instances.
+//! Drawables of a character: its meshes, drawn from the pages of each chunk of instances.
 
 use super::{Character, Runtime};
 use crate::Error;
@@ -11,7 +11,7 @@ use crate::scene::material::Looks;
 use crate::scene::mesh::{self, MeshDrawable};
 
 impl Character {
-    /// Binds the pages of all chunks, after some were replaced.
+    /// Binds the pages of all chunks again, after some were replaced.
     pub(super) fn rebind(
         &self,
         gpu: &Gpu,
@@ -28,8 +28,8 @@ impl Character {
         Ok(())
     }
 
-    /// The chunks of its instances. What is drawn of them differs in the pages; the first of `known` has the meshes and
-    /// materials.
+    /// The chunks of its instances. Their drawables differ only in the pages; meshes and materials come from the first of
+    /// `known`.
     pub(super) fn chunks(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -48,7 +48,7 @@ impl Character {
         runtimes.iter().map(chunk).collect()
     }
 
-    /// All chunks, with these materials.
+    /// All chunks, with the given materials.
     pub fn chunks_of_looks(
         &self,
         gpu: &Gpu,
@@ -59,7 +59,7 @@ impl Character {
         Self::chunks(gpu, layouts, &[first], &self.runtimes)
     }
 
-    /// The first chunk: each mesh, from the vertices of each instance.
+    /// The first chunk: every mesh, drawn from vertices per instance.
     pub(super) fn first_chunk(
         &self,
         gpu: &Gpu,

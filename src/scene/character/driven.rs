@@ -11,34 +11,34 @@ use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::scene::poses::PoseBuffers;
 use crate::{Error, InputError};
 
-/// What the caller drives.
+/// The driven bones of a character.
 #[derive(Debug, Default)]
 pub(super) struct Driven {
-    /// The bones of each instance.
+    /// Driven bones per instance.
     bones: BTreeMap<u32, Vec<u32>>,
-    /// Counts the changes of `bones`.
+    /// Number of changes to `bones`.
     version: u64,
-    /// Instances whose pose is no longer what the gate knows of it.
+    /// Instances whose poses differ from the gate's records.
     strange: Vec<u32>,
-    /// The local transforms of bones that the host wrote in the last frame, by instance and bone.
+    /// Local transforms that the host wrote in the last frame, by instance and bone.
     pub(super) written: BTreeMap<u32, BTreeMap<usize, Transform>>,
 }
 
 impl Character {
-    /// Sets the bones of an instance that the caller drives.
+    /// Sets the driven bones of an instance.
     pub fn drive(&mut self, index: u32, bones: Vec<u32>) {
         let before = if bones.is_empty() {
             self.driven.bones.remove(&index)
         } else {
             self.driven.bones.insert(index, bones)
         };
-        // What was driven before is sampled afresh.
+        // Bones that are no longer driven must be sampled afresh.
         self.driven.strange.extend(before.map(|_| index));
         self.driven.written.remove(&index);
         self.driven.version += 1;
     }
 
-    /// Takes down the local transform that the host writes to a bone in this frame.
+    /// Records the local transform that the host writes to a bone in this frame.
     ///
     /// # Errors
     /// [`InputError`] for a bone that is not driven.
@@ -51,29 +51,29 @@ impl Character {
         Ok(())
     }
 
-    /// Forgets what the host wrote in the last frame.
+    /// Drops the host's writes of the last frame.
     pub fn forget_written(&mut self) {
         self.driven.written.clear();
     }
 
-    /// Whether the host wrote bones of an instance in the last frame.
+    /// Whether the host wrote to bones of this instance in the last frame.
     pub fn is_written(&self, index: u32) -> bool {
         self.driven.written.contains_key(&index)
     }
 
-    /// Number of bones that the caller drives, of all instances.
+    /// Number of driven bones of all instances.
     pub fn driven_bones(&self) -> usize {
         self.driven.bones.values().map(Vec::len).sum()
     }
 
-    /// Ends what the caller drives of an instance that goes.
+    /// Ends driving for an instance that is despawned.
     pub fn let_go(&mut self, index: u32) {
         if self.driven.bones.contains_key(&index) {
             self.drive(index, Vec::new());
         }
     }
 
-    /// Prepares what is driven, unless it is prepared.
+    /// Prepares the jobs for driven bones, unless they are up to date.
     pub fn fit_driven(&mut self, gpu: &Gpu, staged: &mut Staged) -> Result<(), Error> {
         let Driven { bones, version, strange, .. } = &mut self.driven;
         for index in strange.drain(..).map(|index| index as usize) {
@@ -97,7 +97,7 @@ impl Character {
         Ok(())
     }
 
-    /// The buffers in which the pose of an instance lies.
+    /// The buffers that hold an instance's pose.
     pub fn pose_buffers(&self, index: u32) -> Option<PoseBuffers<'_>> {
         let index = index as usize;
         let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;

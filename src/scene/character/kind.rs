@@ -1,4 +1,4 @@
-//! A character as what an object is.
+//! Characters as a kind of object.
 
 use std::any::Any;
 
@@ -79,12 +79,12 @@ impl ObjectKind for Character {
         self.keeps_last = keeps;
     }
 
-    /// Fades end that have reached their weight.
+    /// Ends fades that have reached their target weight.
     fn settle(&mut self, now: f64) -> Vec<u32> {
         self.end_fades(now)
     }
 
-    /// Pages for the vertices of what is seen. Where memory ends, levels of detail are coarser.
+    /// Allocates pages for visible vertices. If memory is short, levels of detail become coarser.
     fn provide(
         &mut self,
         gpu: &Gpu,
@@ -125,12 +125,12 @@ impl ObjectKind for Character {
         self.posed_surfaces(index, now)
     }
 
-    /// A box around a ball for each bone.
+    /// A box around one ball per bone.
     fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
         Ok(Some(self.bounds(&self.pose(instance.index, instance.now)?, instance.place)))
     }
 
-    /// Bones that were written may leave the sphere of the clip.
+    /// Written bones may leave the sphere of the clip.
     fn may_leave_sphere(&self, index: u32) -> bool {
         self.is_written(index)
     }

@@ -1,4 +1,4 @@
-//! Layers of animation above the base of a character, and what blends of clips can reach.
+//! Animation layers above a character's base, and bounds for blends of clips.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ use crate::skinning::bounding_sphere::{BoundingSphere, MARGIN, middle_of, poses}
 /// A layer of a character.
 #[derive(Debug)]
 pub(super) struct CharacterLayer {
-    /// A value for each bone; `None` stands for 1 on all.
+    /// Weight factor per bone; `None` = 1 for all bones.
     pub mask: Option<Vec<f32>>,
     pub plays: Vec<Playing>,
     pub weights: Vec<Weight>,
@@ -30,19 +30,19 @@ pub(super) struct CharacterLayer {
     fading: BTreeSet<u32>,
 }
 
-/// The weight of a layer for an instance, which may change over time.
+/// An instance's weight of a layer, which may change over time.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Weight {
     from: f32,
     to: f32,
     start: f64,
     seconds: f64,
-    /// Whether the base takes over what the layer plays, once the weight is reached.
+    /// Whether the base takes over the layer's clip at the end.
     hands_over: bool,
 }
 
 impl Weight {
-    /// The weight at a time of the scene.
+    /// The weight at scene time `now`.
     pub fn at(&self, now: f64) -> f32 {
         if self.is_reached(now) {
             return self.to;
@@ -61,7 +61,7 @@ impl Weight {
 }
 
 impl CharacterLayer {
-    /// Layers with these masks that nobody plays, for so many instances.
+    /// Unused layers with these masks, for `capacity` instances.
     pub fn of_masks(
         model: &Model,
         masks: &[LayerMask<'_>],
@@ -86,7 +86,7 @@ impl CharacterLayer {
         masks.iter().map(|of| Ok(layer(mask(of)?))).collect()
     }
 
-    /// Makes room for so many instances; all of them are written anew.
+    /// Makes room for `capacity` instances, all of which must be uploaded again.
     pub fn resize(&mut self, capacity: usize) {
         self.plays.resize(capacity, Playing::REST);
         self.weights.resize(capacity, Weight::default());
@@ -102,7 +102,7 @@ impl CharacterLayer {
 }
 
 impl Character {
-    /// Lets an instance play a clip on a layer.
+    /// Plays a clip on a layer of an instance.
     pub fn play_on(&mut self, index: u32, layer: usize, play: &Play<'_>) -> Result<(), InputError> {
         play.validate()?;
         let clip = self.clip(play.clip)? as u32;
@@ -112,7 +112,7 @@ impl Character {
         Ok(())
     }
 
-    /// Lets the weight of a layer become `to` in so many seconds from now on; then the base may take over.
+    /// Changes a layer's weight to `to` over `seconds` from now on. Afterwards the base may take over.
     pub fn fade(
         &mut self,
         index: u32,
@@ -147,19 +147,19 @@ impl Character {
         })
     }
 
-    /// Gives an instance that comes or goes layers that nobody plays.
+    /// Resets the layers of an instance that is spawned or despawned.
     pub fn clear_layers(&mut self, index: u32) {
         for layer in &mut self.layers {
             layer.set(index, Weight::default());
         }
     }
 
-    /// Whether a layer may be heard over the base.
+    /// Whether any layer may have a weight above 0.
     pub fn is_blended(&self, index: u32) -> bool {
         self.layers.iter().any(|layer| layer.weights[index as usize].is_heard())
     }
 
-    /// Ends fades that have reached their weight at a time of the scene. Returns the instances whose base has changed.
+    /// Ends fades that have reached their target weight by scene time `now`. Returns the instances whose base changed.
     pub(super) fn end_fades(&mut self, now: f64) -> Vec<u32> {
         let mut changed = Vec::new();
         for layer in &mut self.layers {
@@ -183,7 +183,7 @@ impl Character {
         changed
     }
 
-    /// Stages what instances play on layers, and their weights.
+    /// Stages the clips that instances play on layers, and their weights.
     pub(super) fn stage_layers(&mut self, staged: &mut Staged, now: f64) -> Result<(), crate::Error> {
         let (count, clips) = (self.plays.len(), &self.merged.model.clips);
         let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
@@ -208,19 +208,19 @@ impl Character {
     }
 }
 
-/// How far bones get in any blend of a model's clips.
+/// Bounds of bone positions in any blend of a model's clips.
 #[derive(Debug, Clone)]
 pub(super) struct Reach {
     center: Vec3,
     radius: f32,
-    /// For each bone the largest distance of its origin from the center, and the largest factor of a length.
+    /// Per bone: largest distance of its origin from the center, and largest stretch of a length.
     bones: Vec<(f32, f32)>,
 }
 
 impl Reach {
-    /// Of a model whose vertices are so far from the bones that they follow. Roots stay in the box around their places in all
-    /// clips, since blends of places lie between them. The other bones are at most as far from their parents as
-    /// in any clip, in whichever direction.
+    /// Bounds of a model; `radii` are the distances of vertices from the bones they follow. A root stays in the box of its
+    /// positions in all clips, because blends lie between them. Any other bone is at most as far from its parent as in any
+    /// clip, in any direction.
     pub fn new(model: &Model, radii: &[Option<f32>]) -> Self {
         let skeleton = &model.skeleton;
         let mut lengths = vec![[0.0_f32; 2]; skeleton.len()];
@@ -255,7 +255,7 @@ impl Reach {
         BoundingSphere { center: self.center, radius: self.radius }
     }
 
-    /// A sphere around a sphere that a bone carries, and the largest factor by which the bone enlarges a length.
+    /// A sphere around a sphere that a bone carries, and the bone's largest stretch of a length.
     pub fn of_bone(&self, bone: usize, carried: &BoundingSphere) -> (BoundingSphere, f32) {
         let (reach, stretch) = self.bones[bone];
         let radius = MARGIN * (reach + stretch * (carried.center.length() + carried.radius));
@@ -263,7 +263,7 @@ impl Reach {
     }
 }
 
-/// The pose of a model's bones with layers above a clip: each with its time, weight and mask.
+/// The pose of a model's bones, with layers over a clip. Each layer has a time, weight and mask.
 pub(super) fn layered_pose<'a>(
     model: &Model,
     (clip, seconds): (usize, f32),
@@ -303,7 +303,7 @@ mod tests {
         assert!(weight.is_heard() && !Weight::default().is_heard() && Weight::default().is_reached(0.0));
     }
 
-    /// Blends of all clips, masked or not, stay within reach, and so does what a bone carries.
+    /// Blends of all clips, masked or not, stay within the bounds, and so do spheres that bones carry.
     #[test]
     fn blends_stay_within_reach() {
         let model = crate::samples::creature().expect("valid");

@@ -1,4 +1,4 @@
-//! What a frame left of a character on the device, read back for measurements.
+//! A character's device data after a frame, read back for measurements.
 
 use super::Character;
 use crate::Error;
@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::skinning::vertex::Vertex;
 
 impl Character {
-    /// The model matrices of all bones of all instances as the last frame left them, and the number of bones.
+    /// The model matrices of all bones of all instances after the last frame, and the number of bones.
     pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
         let bones = self.merged.model.skeleton.len();
         let mut all = Vec::with_capacity(bones * self.plays.len());
@@ -19,7 +19,7 @@ impl Character {
         Ok((all, bones))
     }
 
-    /// The skinned vertices of some instances: for each, in the order of `indices`, mesh by mesh.
+    /// The skinned vertices of some instances: per instance, in the order of `indices`, mesh by mesh.
     pub fn skinned(&self, gpu: &Gpu, indices: &[u32]) -> Result<Vec<Vec<Vec<Option<Vertex>>>>, Error> {
         let mut all: Vec<Vec<Vec<Option<Vertex>>>> = vec![Vec::new(); indices.len()];
         for runtime in &self.runtimes {

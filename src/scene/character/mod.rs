@@ -34,37 +34,37 @@ use runtime::{Runtime, Shared};
 #[derive(Debug)]
 pub(super) struct Character {
     merged: Merged,
-    /// Metres of the model per unit of the gate's table.
+    /// Metres of the model per unit of the gate's motion table.
     unit: f32,
-    /// The displacement of vertices per step of the fade of influences.
+    /// Displacement of vertices per step of the influence fade.
     stray: f32,
-    /// For each bone, the largest distance of a vertex that follows it, in the bone's space; `None` if none does.
+    /// Bone radius per bone: the largest distance of a vertex that follows it, in bone space; `None` if no vertex does.
     radii: Vec<Option<f32>>,
-    /// A sphere around each clip.
+    /// Bounding sphere per clip.
     spheres: Vec<BoundingSphere>,
     plays: Vec<Playing>,
     changed: Changed,
-    /// The time of the scene from which the device counts.
+    /// Scene time that the device's `f32` times are relative to.
     epoch: f64,
-    /// Whether last positions are kept.
+    /// Whether previous positions are kept.
     keeps_last: bool,
     driven: Driven,
     layers: Vec<CharacterLayer>,
-    /// How far bones get in blends; `None` if there are no layers.
+    /// Bounds of bones in blends; `None` without layers.
     reach: Option<Reach>,
-    /// The motion that was taken out of each clip.
+    /// Root motion extracted from each clip.
     motions: Option<Vec<RootMotion>>,
     shared: Shared,
-    /// One for each chunk of instances, in ascending order.
+    /// One per chunk of instances, in ascending order.
     runtimes: Vec<Runtime>,
-    /// What was replaced since the last frame.
+    /// Resources replaced since the last frame.
     replaced: Replaced,
-    /// Whether memory has ended: then chunks are not divided.
+    /// Whether memory has ended. Chunks are not divided then.
     is_memory_short: bool,
 }
 
 impl Character {
-    /// Prepares a model that has clips, with room for `capacity` instances.
+    /// Prepares a model with clips, with room for `capacity` instances.
     pub fn new(
         gpu: &Gpu,
         mut merged: Merged,
@@ -120,7 +120,7 @@ impl Character {
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
         self.layers.iter_mut().for_each(|layer| layer.resize(capacity));
-        // As in a scene that was made anew, whose starts are rounded alike.
+        // A new scene starts at 0 too; equal epochs round start times alike.
         self.epoch = 0.0;
     }
 
@@ -134,10 +134,10 @@ impl Character {
         mesh::errors(&self.merged)
     }
 
-    /// Prepares the assignment of levels for a layout, unless it is prepared.
+    /// Prepares the jobs that assign levels in a layout, unless they are up to date.
     fn fit_levels(&mut self, gpu: &Gpu, fitted: &Fitted<'_>) -> Result<(), Error> {
         let mut errors = fitted.thresholds.to_vec();
-        // Level 0 has no error that counts.
+        // The error of level 0 does not count.
         errors[0] = 0.0;
         for (runtime, chunk) in self.runtimes.iter_mut().zip(fitted.chunks) {
             let params = AssignParams {

@@ -1,4 +1,4 @@
-//! What the instances of a character play.
+//! Clips that the instances of a character play.
 
 use std::ops::Range;
 
@@ -11,11 +11,11 @@ use crate::scene::playing::Playing;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 
-/// The time in seconds after which starts are counted from a later moment, because `f32` seconds lose precision.
+/// Seconds after which the epoch moves, because `f32` start times lose precision.
 const EPOCH: f64 = 128.0;
 
 impl Character {
-    /// Sets what an instance plays, and returns a sphere around it.
+    /// Sets the clip that an instance plays. Returns a sphere around it.
     pub fn play(&mut self, index: u32, play: &Play<'_>) -> Result<BoundingSphere, InputError> {
         play.validate()?;
         let clip = self.clip(play.clip)?;
@@ -25,7 +25,7 @@ impl Character {
         Ok(self.sphere_as_played(index))
     }
 
-    /// Sets that an instance plays the first clip, and returns a sphere around it.
+    /// Resets an instance to the first clip. Returns a sphere around it.
     pub fn play_first(&mut self, index: u32) -> BoundingSphere {
         self.plays[index as usize] = Playing::REST;
         self.changed.add(index, self.plays.len());
@@ -42,7 +42,7 @@ impl Character {
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
     }
 
-    /// Stages the time, and what instances play.
+    /// Stages the time, and the clips that instances play.
     pub(super) fn stage_played(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
         if (now - self.epoch).abs() > EPOCH {
             self.epoch = now;

@@ -1,4 +1,4 @@
-//! What the host knows of a character: its clips and bones, and how an instance is posed at a time.
+//! A character on the host: its clips and bones, and poses of its instances.
 
 use glam::{DAffine3, DVec3};
 
@@ -29,7 +29,7 @@ impl Character {
         bone_of(&self.merged.model, name_or_index)
     }
 
-    /// The motion that was taken out of the clip of an instance's base between two times of the scene.
+    /// The root motion of an instance between two scene times.
     pub fn root_motion(&self, index: u32, from: f64, to: f64) -> Result<Transform, InputError> {
         let Some(motions) = &self.motions else {
             let bound = "must be of a character that was added with options.root_motion";
@@ -40,7 +40,7 @@ impl Character {
         motions[clip as usize].delta(&instance, from - start, to - start)
     }
 
-    /// The model matrices of a chunk, to be bound.
+    /// The model matrices of a chunk, for binding.
     pub fn matrices(&self, chunk: usize) -> Option<&ModelMatrices> {
         self.runtimes.get(chunk).map(|runtime| runtime.frame.model_matrices())
     }
@@ -50,7 +50,7 @@ impl Character {
         &self.merged.model
     }
 
-    /// A sphere around an instance as it plays.
+    /// A sphere around an instance with its present clip and layers.
     pub fn sphere_as_played(&self, index: u32) -> BoundingSphere {
         match &self.reach {
             Some(reach) if self.is_blended(index) => reach.sphere(),
@@ -58,7 +58,7 @@ impl Character {
         }
     }
 
-    /// Where a bone of an instance carries a sphere, as it plays.
+    /// The path on which a bone of an instance carries a sphere, with its present clip and layers.
     pub fn path_of(&self, index: u32, bone: usize, carried: &BoundingSphere) -> BonePath {
         let path = BonePath::new(&self.merged.model, self.plays[index as usize].clip as usize, bone, carried);
         match &self.reach {
@@ -70,12 +70,12 @@ impl Character {
         }
     }
 
-    /// What `path_of` depends on besides bone and sphere.
+    /// The inputs of `path_of` besides bone and sphere.
     pub fn path_key(&self, index: u32) -> (u32, bool) {
         (self.plays[index as usize].clip, self.is_blended(index))
     }
 
-    /// The model matrices of the chunk in which an instance lies, and the index of the instance in the chunk.
+    /// The model matrices of the chunk that holds an instance, and the instance's index in the chunk.
     pub fn model_matrices(&self, index: u32) -> Option<(CharacterMatrices<'_>, usize)> {
         let index = index as usize;
         let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;
@@ -84,7 +84,7 @@ impl Character {
         Some((matrices, index - runtime.slots.start))
     }
 
-    /// The clip that an instance plays, and the time in it at a time of the scene.
+    /// The clip that an instance plays, and the position in it at scene time `now`.
     pub fn clip_time(&self, index: u32, now: f64) -> Result<ClipTime, InputError> {
         self.time_of(&self.plays[index as usize], now)
     }
@@ -95,7 +95,7 @@ impl Character {
         Ok(ClipTime { clip: play.clip as usize, seconds })
     }
 
-    /// The pose of an instance at a time of the scene, with the bones that were written in the last frame.
+    /// An instance's pose at scene time `now`, including the bones written in the last frame.
     pub fn pose(&self, index: u32, now: f64) -> Result<Pose, InputError> {
         let mut pose = self.sampled(index, now)?;
         if let Some(written) = self.driven.written.get(&index) {
@@ -105,7 +105,7 @@ impl Character {
         Ok(pose)
     }
 
-    /// The pose of an instance at a time of the scene as its clip and its layers have it.
+    /// An instance's pose at scene time `now`, from its clip and layers.
     pub fn sampled(&self, index: u32, now: f64) -> Result<Pose, InputError> {
         let ClipTime { clip, seconds } = self.clip_time(index, now)?;
         let above = self.layers.iter().map(|layer| {
@@ -117,8 +117,8 @@ impl Character {
         Ok(layered_pose(&self.merged.model, (clip, seconds), above.into_iter()))
     }
 
-    /// The corners of a box around a posed instance, along the axes of the space into which `placed` leads. Everything that a
-    /// bone moves lies in a sphere around its origin, which its matrix turns into an ellipsoid.
+    /// The corners of a box around a posed instance, along the axes of the target space of `placed`. Every point that
+    /// follows a bone lies in a sphere around the bone's origin, which the bone's matrix turns into an ellipsoid.
     pub fn bounds(&self, pose: &Pose, placed: DAffine3) -> [DVec3; 2] {
         let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
         for (matrix, radius) in pose.model_matrices.iter().zip(&self.radii) {
@@ -132,7 +132,7 @@ impl Character {
         [low, high]
     }
 
-    /// The surface of a posed instance at a time of the scene, in full detail.
+    /// The surface of a posed instance in full detail, at scene time `now`.
     pub(super) fn posed_surfaces(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
         let (ClipTime { clip, seconds }, pose) = (self.clip_time(index, now)?, self.pose(index, now)?);
         let model = &self.merged.model;
@@ -146,8 +146,8 @@ impl Character {
         Ok(model.meshes.iter().enumerate().map(of_mesh).collect())
     }
 
-    /// For each chunk the arguments of the dispatches that sample bones and, for each mesh, skin clusters: the fourth word of
-    /// each is their number.
+    /// The dispatch arguments of each chunk: those that sample bones and, per mesh, those that skin clusters. The fourth
+    /// word of each is the number of bones or clusters.
     pub fn counters(&self) -> impl Iterator<Item = &Buffer<u32>> {
         self.runtimes.iter().flat_map(|runtime| {
             let clusters = runtime.skins.iter().map(PagedSkin::dispatched);
@@ -155,7 +155,7 @@ impl Character {
         })
     }
 
-    /// The number of meshes, and the number of chunks.
+    /// The numbers of meshes and of chunks.
     pub fn counted(&self) -> [usize; 2] {
         [self.merged.model.meshes.len(), self.runtimes.len()]
     }

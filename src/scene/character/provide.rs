@@ -1,4 +1,4 @@
-//! Pages for what the views of a frame see of a character.
+//! Pages for the instances of a character that a frame's views see.
 
 use std::ops::Range;
 
@@ -12,20 +12,20 @@ use super::Character;
 use super::runtime::{Runtime, is_out_of_memory};
 
 impl Character {
-    /// Provides the pages that the views of a frame need. A chunk whose pages would exceed a binding is divided; where
-    /// memory ends, levels of detail must be coarser.
+    /// Allocates the pages that a frame's views need. A chunk whose pages would exceed a binding is divided. If memory is
+    /// short, the result has an LOD bias above 1.
     pub(super) fn provide_pages(&mut self, gpu: &Gpu, seen: &SeenBy<'_>) -> Result<Provided, Error> {
         let SeenBy { views, object, instances } = *seen;
         let lod_bias = match self.runtimes.iter().all(Runtime::is_full) {
             true => 1.0,
             false => self.provide_seen(gpu, &Seen::new(views, object, instances))?,
         };
-        // After an error it says what was replaced before.
+        // If an error occurred, `replaced` still holds the earlier replacements.
         let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);
         Ok(Provided { lod_bias, replaced })
     }
 
-    /// Provides pages for what is seen; the factor by which levels of detail must be coarser.
+    /// Allocates pages for visible instances. Returns the LOD bias.
     fn provide_seen(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<f32, Error> {
         self.divide(gpu, seen)?;
         loop {
@@ -45,7 +45,7 @@ impl Character {
         }
     }
 
-    /// Divides the chunks that need more pages than a binding holds.
+    /// Divides chunks that need more pages than a binding holds.
     fn divide(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<(), Error> {
         if self.is_memory_short {
             return Ok(());
@@ -61,7 +61,7 @@ impl Character {
                     .map(|part| Runtime::all(gpu, model, &self.shared, part, self.keeps_last));
                 let parts = parts.collect::<Result<Vec<_>, Error>>();
                 if is_out_of_memory(&parts) {
-                    // Another attempt in each frame would cost more than it gains.
+                    // Retrying in every frame would cost more than it gains.
                     self.is_memory_short = true;
                     return Ok(());
                 }

@@ -1,4 +1,4 @@
-//! What lies on the device for a chunk of a character's instances.
+//! Device data of a chunk of a character's instances.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -21,19 +21,19 @@ use crate::skinning::clusters::Clusters;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::paged::PagedSkin;
 
-/// What all chunks share.
+/// Data shared by all chunks.
 #[derive(Debug)]
 pub(in crate::scene) struct Shared {
     pub set: ClipSet,
     pub gate: Gate,
-    /// The mask of each layer above the base.
+    /// Mask of each layer above the base.
     masks: Vec<Option<Vec<f32>>>,
     clips: ClipBuffers,
     meshes: Vec<(MeshBuffers, Arc<Clusters>)>,
 }
 
 impl Shared {
-    /// Uploads the clips and meshes of a model, with masks of layers above the base.
+    /// Uploads a model's clips and meshes, with the masks of layers above the base.
     pub fn new(
         gpu: &Gpu,
         model: &Model,
@@ -59,20 +59,20 @@ impl Shared {
 /// A chunk of instances on the device.
 #[derive(Debug)]
 pub(in crate::scene) struct Runtime {
-    /// The indices in the object of its instances.
+    /// Indices of its instances within the object.
     pub slots: Range<usize>,
     pub crowd: Crowd,
     pub frame: GatedFrame,
     pub skins: Vec<PagedSkin>,
-    /// One for each of `skins`.
+    /// Paging per skin.
     pub paging: Vec<Paging>,
     pub weights: Vec<MorphWeightsJob>,
     pub assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
-    /// Adds driven bones to those that the gate chose, and lists all of them; `None` if nothing is driven.
+    /// Adds driven bones to the gate's choice, and lists all of them; `None` without driven bones.
     pub driven: Option<(Job, CompactJob)>,
-    /// The number of the driven bones for which it was prepared.
+    /// The version of the driven bones that `driven` was prepared for.
     pub driven_version: u64,
-    /// The layout for which `assign` was prepared.
+    /// The layout version that `assign` was prepared for.
     version: u64,
 }
 
@@ -138,12 +138,12 @@ impl Runtime {
         Ok(Self { slots, crowd, frame, skins, paging, weights, assign, driven, driven_version, version })
     }
 
-    /// Whether its pages are enough for all instances in full detail.
+    /// Whether the pages suffice for all instances in full detail.
     pub fn is_full(&self) -> bool {
         self.skins.iter().zip(&self.paging).all(|(skin, paging)| paging.is_full(skin.pages().pages()))
     }
 
-    /// Prepares the assignment of levels for a layout, unless it is prepared.
+    /// Prepares the jobs that assign levels in a layout, unless they are up to date.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
@@ -171,8 +171,8 @@ impl Runtime {
         Ok(())
     }
 
-    /// Provides so many pages for each mesh. Returns whether pages were replaced, and whether memory ended before: then its
-    /// [`Paging::most`] says how many there may be.
+    /// Allocates `needed` pages per mesh. Returns whether pages were replaced, and whether memory ended first. In that case
+    /// [`Paging::most`] holds the number of pages that there is memory for.
     pub fn provide(&mut self, gpu: &Gpu, needed: &[u32]) -> Result<[bool; 2], Error> {
         let (mut is_replaced, mut is_short) = (false, false);
         for ((skin, paging), needed) in self.skins.iter_mut().zip(&mut self.paging).zip(needed) {
@@ -216,7 +216,7 @@ impl Runtime {
     }
 }
 
-/// Whether there was no memory left.
+/// Whether the error is a lack of memory.
 pub(super) fn is_out_of_memory<T>(result: &Result<T, Error>) -> bool {
     matches!(result, Err(Error::Gpu(GpuError::OutOfMemory { .. })))
 }

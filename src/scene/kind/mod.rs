@@ -1,7 +1,7 @@
-//! Kinds of objects that the caller adds: grass, particles, imposters, whatever the library does not know.
+//! Caller-defined kinds of objects, such as grass, particles or imposters.
 //!
-//! A kind is a type that implements [`Kind`] and one WGSL text ([`KindProgram`]). The scene selects its instances as it selects
-//! all others (views, culling, levels of detail, masks), and renderers draw it in every layer. `examples/kind/` is one.
+//! A kind is a type that implements [`Kind`], and one WGSL text ([`KindProgram`]). The scene selects its instances like all
+//! others (views, culling, levels of detail, masks), and renderers draw it in every layer. See `examples/kind/`.
 
 mod own;
 
@@ -17,48 +17,48 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 pub(in crate::scene) use own::OwnKind;
 
-/// A kind of object: what the instances of one object share, on the host and on the device.
+/// A kind of object: the data that all instances of one object share, on the host and on the device.
 ///
-/// [`Scene::add_kind`](crate::scene::Scene::add_kind) adds an object of it, [`Scene::spawn`](crate::scene::Scene::spawn) its
-/// instances. What these functions return must stay the same while the scene has the object.
+/// [`Scene::add_kind`](crate::scene::Scene::add_kind) adds an object of a kind, and
+/// [`Scene::spawn`](crate::scene::Scene::spawn) its instances. The getters must return the same values as long as the scene
+/// holds the object.
 pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
     /// The shader.
     fn program(&self) -> &KindProgram;
 
-    /// The triangles of all levels and parts, as `u32` indices of vertices: counter-clockwise seen from outside. The buffer has
-    /// the usage `INDEX`.
+    /// The triangles of all levels and parts, as `u32` vertex indices, counter-clockwise seen from outside. The buffer
+    /// needs the usage `INDEX`.
     fn indices(&self) -> &wgpu::Buffer;
 
-    /// The parts, at least one. Each takes a draw for each level.
+    /// The parts, at least one. Each takes one draw per level of detail.
     fn parts(&self) -> &[KindPart];
 
-    /// The error of each level of detail in the model's units: 0 for the first, ascending, at most 8. A view draws the coarsest
-    /// level whose error [`Quality::pixels`](crate::scene::Quality) allows.
+    /// The error of each level of detail in the model's units, ascending from 0; at most 8 levels. A view draws the
+    /// coarsest level whose error is within [`Quality::pixels`](crate::scene::Quality).
     fn errors(&self) -> &[f32] {
         &[0.0]
     }
 
-    /// A sphere around everything that an instance draws, in the model's space. Views do not draw instances whose spheres they
-    /// do not see.
+    /// A sphere, in model space, around everything that an instance draws. Views cull instances by it.
     fn bounding_sphere(&self) -> BoundingSphere;
 
-    /// Writes what has changed since the last frame; [`Scene::record`](crate::scene::Scene::record) calls it.
+    /// Writes the changes since the last frame. [`Scene::record`](crate::scene::Scene::record) calls it.
     ///
     /// # Errors
-    /// Those of [`KindUploads::write`], and the kind's own. The frame is not recorded then.
+    /// Those of [`KindUploads::write`], and the kind's own. The frame is then not recorded.
     fn upload(&mut self, frame: &KindFrame, uploads: &mut KindUploads<'_>) -> Result<(), Error> {
         let _ = (frame, uploads);
         Ok(())
     }
 
-    /// The same kind on another device, after its own was lost ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
+    /// Creates the same kind on another device, after its own was lost ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
-    /// [`crate::gpu::GpuError`], and the kind's own. The scene stays as it was then.
+    /// [`crate::gpu::GpuError`], and the kind's own. The scene then stays unchanged.
     fn rebuild(&self, gpu: &Gpu) -> Result<Box<dyn Kind>, Error>;
 
-    /// Where a ray hits an instance first, for [`Scene::pick`](crate::scene::Scene::pick). The default is the bounding sphere, from
-    /// outside.
+    /// The first hit of an instance by a ray, for [`Scene::pick`](crate::scene::Scene::pick). By default, the bounding
+    /// sphere is hit from outside.
     fn hit(&self, ray: &KindRay) -> Option<KindHit> {
         let sphere = self.bounding_sphere();
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
@@ -66,57 +66,58 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
         let (a, b) = (ray.direction.length_squared(), from.dot(ray.direction));
         let inside = b * b - a * (from.length_squared() - radius * radius);
         let distance = (-b - inside.sqrt()) / a;
-        // False for a ray that misses, whose root is NaN.
+        // A ray that misses has a NaN root, for which this is false.
         (distance >= 0.0).then(|| KindHit { distance, normal: from + distance * ray.direction })
     }
 }
 
-/// A part of a kind: triangles with resources and pipelines of their own.
+/// A part of a kind: triangles with their own resources and pipelines.
 #[derive(Debug, Clone)]
 pub struct KindPart {
-    /// Bind group 2: [`KindProgram::bind`].
+    /// Bind group 2, from [`KindProgram::bind`].
     pub group: wgpu::BindGroup,
-    /// For each level of detail, the range of [`Kind::indices`] that is drawn; it may be empty.
+    /// Range of [`Kind::indices`] to draw, per level of detail. A range may be empty.
     pub levels: Vec<Range<u32>>,
-    /// Whether pixels with `Surface.alpha` below `Surface.cutoff`, 0 unless it is set, are discarded.
+    /// Whether pixels with `Surface.alpha` below `Surface.cutoff` are discarded. The cutoff is 0 unless the shader sets it.
     pub cut_out: bool,
-    /// Whether it is drawn in [`Layer::Transparent`](crate::render::Layer::Transparent) alone, blended by `Surface.alpha`.
+    /// Whether the part is drawn only in [`Layer::Transparent`](crate::render::Layer::Transparent), blended by
+    /// `Surface.alpha`.
     pub blended: bool,
-    /// Whether its depth is `Surface.depth` and not that of the triangles.
+    /// Whether the part writes `Surface.depth` instead of the depth of its triangles.
     pub own_depth: bool,
-    /// Whether both sides of its triangles are seen.
+    /// Whether both sides of the triangles are visible.
     pub double_sided: bool,
 }
 
 impl KindPart {
-    /// An opaque part, seen from outside.
+    /// An opaque, single-sided part.
     pub fn new(group: wgpu::BindGroup, levels: Vec<Range<u32>>) -> Self {
         Self { group, levels, cut_out: false, blended: false, own_depth: false, double_sided: false }
     }
 }
 
-/// The frame for which a kind writes.
+/// Times of the frame for which a kind uploads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KindFrame {
-    /// The time of the scene in seconds ([`Scene::time`](crate::scene::Scene::time)).
+    /// The scene's time in seconds ([`Scene::time`](crate::scene::Scene::time)).
     pub seconds: f64,
-    /// The same in the last frame, for velocities.
+    /// The scene's time in the last frame, for velocities.
     pub last_seconds: f64,
-    /// True if the kind must write everything again: in its first frame, after it grew, and after the scene started afresh
+    /// Whether the kind must write everything again: in its first frame, after it grew, and after the scene started afresh
     /// ([`Scene::refresh`](crate::scene::Scene::refresh), a dropped encoder, another device).
     pub is_fresh: bool,
 }
 
-/// Takes the writes of a kind for a frame. They are recorded at the start of the frame in its encoder: each frame sees its own
-/// values, also if several are submitted at once.
+/// Collects a kind's buffer writes for a frame. They are recorded at the start of the frame in its encoder. Each frame
+/// therefore sees its own values, even if several frames are submitted at once.
 #[derive(Debug)]
 pub struct KindUploads<'a>(pub(in crate::scene) &'a mut Staged);
 
 impl KindUploads<'_> {
-    /// Writes bytes into a buffer with the usage `COPY_DST`, from `offset` on.
+    /// Writes `bytes` into a buffer, from byte `offset` on. The buffer needs the usage `COPY_DST`.
     ///
     /// # Errors
-    /// [`InputError`] for a buffer without that usage, for an offset or a length that is no multiple of 4, and for bytes that reach
+    /// [`InputError`] for a buffer without that usage, for an offset or a length that is not a multiple of 4, and for bytes
     /// beyond the buffer's end.
     pub fn write(&mut self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) -> Result<(), Error> {
         let length = bytes.len() as u64;
@@ -137,17 +138,17 @@ impl KindUploads<'_> {
     }
 }
 
-/// A ray in the model's space of an instance.
+/// A ray in an instance's model space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KindRay {
-    /// Where it begins.
+    /// The start of the ray.
     pub origin: DVec3,
-    /// One world unit along the ray, in the model's space.
+    /// The vector of one world unit along the ray, in model space.
     pub direction: DVec3,
 }
 
 impl KindRay {
-    /// Where it hits a triangle, from either side; `None` if it does not.
+    /// The hit of a triangle, from either side; `None` if the ray misses it.
     pub fn triangle(&self, corners: [DVec3; 3]) -> Option<KindHit> {
         let [a, b, c] = corners;
         let distance = distance_to(corners.map(|corner| corner - self.origin), self.direction)?;
@@ -155,11 +156,11 @@ impl KindRay {
     }
 }
 
-/// Where a ray hits an instance.
+/// A ray's hit of an instance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KindHit {
-    /// The distance along the ray, in world units: the point is `origin + distance * direction`.
+    /// The distance along the ray in world units. The hit point is `origin + distance * direction`.
     pub distance: f64,
-    /// The outward normal in the model's space, of any length but 0.
+    /// The outward normal in model space, of any length but 0.
     pub normal: DVec3,
 }

@@ -1,4 +1,4 @@
-//! A kind of the caller's as the scene keeps it.
+//! A caller-defined kind, as the scene stores it.
 
 use std::any::Any;
 
@@ -19,19 +19,19 @@ use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_instances::SceneObject;
 use crate::{Error, InputError};
 
-/// The most draws of an object.
+/// Largest number of draws of an object.
 const MAX_DRAWS: usize = 64;
 
-/// A kind of the caller's.
+/// A caller-defined kind.
 #[derive(Debug)]
 pub(in crate::scene) struct OwnKind {
     pub kind: Box<dyn Kind>,
-    /// True if the kind must write everything again.
+    /// Whether the kind must write everything again.
     pub is_fresh: bool,
 }
 
 impl OwnKind {
-    /// A kind of which nothing is written yet.
+    /// A kind with nothing uploaded yet.
     ///
     /// # Errors
     /// [`InputError`] for errors, parts or a sphere out of bounds.
@@ -43,7 +43,7 @@ impl OwnKind {
     /// The same kind on another device.
     ///
     /// # Errors
-    /// [`InputError`] for a kind with other levels, parts or another sphere; those of [`Kind::rebuild`].
+    /// [`InputError`] for a kind whose levels, parts or sphere differ; those of [`Kind::rebuild`].
     pub fn rebuilt(&self, gpu: &Gpu) -> Result<Self, Error> {
         let fresh = Self::new(self.kind.rebuild(gpu)?)?;
         let levels =
@@ -61,7 +61,7 @@ impl OwnKind {
         }
     }
 
-    /// How it is drawn.
+    /// Drawables and draws of the kind.
     ///
     /// # Errors
     /// [`InputError`] for a buffer or a group of another device; [`GpuError`].
@@ -149,19 +149,19 @@ impl ObjectKind for OwnKind {
     }
 }
 
-/// An object of a kind of the caller's.
+/// A drawable of a caller-defined kind.
 #[derive(Debug, Clone)]
 struct OwnDrawable {
     object: Uniform<SceneObject>,
     /// Bind group 1.
     group: Group,
     indices: wgpu::Buffer,
-    /// Its parts, each with bind group 2.
+    /// Each part's pipeline specialization and bind group 2.
     parts: Vec<(Specialization, Group)>,
 }
 
 impl OwnDrawable {
-    /// Binds what the scene knows of an object.
+    /// Binds the scene's uniform of an object.
     fn new(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -196,7 +196,7 @@ impl Drawable for OwnDrawable {
     }
 }
 
-/// Refuses a buffer and groups of another device.
+/// Refuses an index buffer or groups of another device.
 fn check_device(gpu: &Gpu, kind: &dyn Kind) -> Result<(), Error> {
     let (indices, format) = (kind.indices(), wgpu::IndexFormat::Uint32);
     check_taken(gpu, "kind.indices", |encoder| encoder.set_index_buffer(indices.slice(..), format))?;
@@ -206,7 +206,7 @@ fn check_device(gpu: &Gpu, kind: &dyn Kind) -> Result<(), Error> {
     })
 }
 
-/// Refuses what is recorded if it is of another device: a render bundle takes nothing of that.
+/// Refuses a resource of another device. wgpu reports it when a render bundle takes it.
 fn check_taken<'a>(
     gpu: &'a Gpu,
     path: &str,
@@ -248,7 +248,7 @@ fn check(kind: &dyn Kind) -> Result<(), InputError> {
         }
     }
     let sphere = kind.bounding_sphere();
-    // The comparison is false for NaN.
+    // A NaN radius fails this comparison.
     if !(sphere.radius >= 0.0 && sphere.radius.is_finite() && sphere.center.is_finite()) {
         let value = format!("{} around {}", sphere.radius, sphere.center);
         let bound = "must be finite, with a radius of at least 0";

@@ -1,4 +1,4 @@
-//! The materials and images of an object, on the host: what may be changed, and to what.
+//! Host copies of an object's materials and images, and checks of changes to them.
 
 use image::RgbaImage;
 
@@ -8,7 +8,7 @@ use crate::asset::material::{Alpha, Material};
 use crate::gpu::Gpu;
 use crate::{InputError, error};
 
-/// The materials of an object with their images.
+/// Materials of an object, with their images.
 #[derive(Debug)]
 pub(crate) struct Looks {
     pub materials: Vec<Material>,
@@ -19,7 +19,7 @@ impl Looks {
     /// No materials and no images.
     pub const NONE: Self = Self { materials: Vec::new(), images: Vec::new() };
 
-    /// Takes those of a model.
+    /// Takes the materials and images out of a model.
     pub fn taken(model: &mut Model) -> Self {
         Self { materials: std::mem::take(&mut model.materials), images: std::mem::take(&mut model.images) }
     }
@@ -38,7 +38,7 @@ impl Looks {
         })
     }
 
-    /// Checks all materials, as those of the argument `model`.
+    /// Checks all materials. Errors name them below `model`.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -47,7 +47,7 @@ impl Looks {
         all.try_for_each(|(at, material)| self.check(&format!("model.materials[{at}]"), material))
     }
 
-    /// Checks a material that is to be drawn with these images. `path` names it in errors.
+    /// Checks a material against these images. `path` names it in errors.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -77,10 +77,11 @@ impl Looks {
         Ok(())
     }
 
-    /// Replaces an image, or adds one behind the last. Returns the image that was there.
+    /// Replaces an image, or appends one. Returns the previous image.
     ///
     /// # Errors
-    /// [`InputError`] for an image without texels or beyond the device's limit, and for an index beyond that.
+    /// [`InputError`] for an image without texels or beyond the device's limit, and for an index above the number of
+    /// images.
     pub fn set_image(
         &mut self,
         gpu: &Gpu,

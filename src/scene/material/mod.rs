@@ -1,5 +1,4 @@
-//! Materials of the parts of meshes, on the device: a table that vertices index, and the textures of the table in layers
-//! of one array.
+//! Materials of a mesh's parts on the device: a table that vertices index, and texture arrays with one layer per image.
 
 mod looks;
 mod relief;
@@ -18,33 +17,33 @@ use crate::{Error, InputError};
 pub(crate) use textures::check_image;
 use textures::{Texels, texture_array};
 
-/// The materials of the triangles that share a pipeline and samplers.
+/// Materials of the triangles that share a pipeline and samplers.
 #[derive(Debug, Clone)]
 pub(crate) struct PartMaterials {
     /// Bind group 2 of `render/scene_mesh`.
     pub group: Group,
-    /// Whether one of them has a normal map.
+    /// Whether any material has a normal map.
     pub normal_mapped: bool,
-    /// Whether alpha decides which pixels of one of them are drawn.
+    /// Whether alpha decides which pixels are drawn, for any material.
     pub cut_out: bool,
-    /// Whether one of them shows a texture.
+    /// Whether any material has a texture.
     pub textured: bool,
-    /// The material of each entry of the table.
+    /// Material per table entry.
     materials: Vec<Option<usize>>,
     entries: Buffer<SceneMaterial>,
     colors: Layers,
     normals: Layers,
-    /// Of colours and of normal maps.
+    /// Samplings of colours and of normal maps.
     samplings: [Sampling; 2],
 }
 
-/// A texture of a material.
+/// A texture slot of a material.
 type TextureOf = fn(&Material) -> Option<Texture>;
 
 impl PartMaterials {
-    /// Uploads a table with an entry for each of `materials`, indices of the object's materials; an entry without a material
-    /// is opaque and white. Colours are filtered by the first of `samplings`, normal maps by the second. The images become
-    /// layers of two arrays, whose size is that of the widest and of the highest image; smaller images are enlarged.
+    /// Uploads a table with an entry for each of `materials`, which are indices of the object's materials. An entry without
+    /// a material is opaque white. The first of `samplings` filters colours, the second normal maps. The images become
+    /// layers of two arrays, as wide as the widest and as high as the highest image; smaller images are enlarged.
     ///
     /// # Errors
     /// [`InputError`] for a material or an image that the object does not have; [`crate::gpu::GpuError`], also for more
@@ -87,7 +86,7 @@ impl PartMaterials {
         Ok(all.with_kinds(&table))
     }
 
-    /// The same with what a table says of pipelines.
+    /// The same, with the flags for pipelines that a table implies.
     fn with_kinds(self, table: &[SceneMaterial]) -> Self {
         Self {
             normal_mapped: table.iter().any(|entry| entry.normal_layer != NO_LAYER),
@@ -97,21 +96,21 @@ impl PartMaterials {
         }
     }
 
-    /// Whether one of them is the object's material with this index.
+    /// Whether a table entry is the object's material with this index.
     pub fn has(&self, material: usize) -> bool {
         self.materials.contains(&Some(material))
     }
 
-    /// Whether one of them shows an image.
+    /// Whether a material shows this image.
     pub fn shows(&self, image: usize) -> bool {
         self.colors.images.contains(&image) || self.normals.images.contains(&image)
     }
 
-    /// The same with the materials and images that `looks` has now. If no image is new to them, only the table changes; else,
-    /// or if `anew`, everything is uploaded again.
+    /// The same, with the present materials and images of `looks`. Only the table changes if every image is in the arrays
+    /// already. Otherwise, or if `anew`, everything is uploaded again.
     ///
     /// # Errors
-    /// As [`PartMaterials::new`].
+    /// As for [`PartMaterials::new`].
     pub fn changed(
         &self,
         (gpu, layouts): (&Gpu, &SceneLayouts),
@@ -129,16 +128,16 @@ impl PartMaterials {
         Ok(Changed { materials: self.clone().with_kinds(&table), table: Some(table) })
     }
 
-    /// How colours and normal maps are filtered.
+    /// Samplings of colours and of normal maps.
     pub fn samplings(&self) -> [Sampling; 2] {
         self.samplings
     }
 
-    /// How colours and normal maps are filtered after the material with this index has replaced an old one: as before, or as
-    /// it says if no other has a texture.
+    /// Samplings of colours and of normal maps after the material with this index has replaced an old one. They stay
+    /// unchanged unless no other material has a texture; then the new material decides.
     ///
     /// # Errors
-    /// [`InputError`] for another sampling than that of other materials.
+    /// [`InputError`] for a sampling that differs from the other materials'.
     pub fn samplings_with(
         &self,
         looks: &Looks,
@@ -166,16 +165,16 @@ impl PartMaterials {
     }
 }
 
-/// What becomes of the materials of a part.
+/// New materials of a part.
 #[derive(Debug)]
 pub(crate) struct Changed {
     pub materials: PartMaterials,
-    /// The entries of the table, if the buffers stay.
+    /// The new table, if the buffers stay; else `None`.
     table: Option<Vec<SceneMaterial>>,
 }
 
 impl Changed {
-    /// Stages what is new in buffers that stay.
+    /// Stages the new table into the existing buffers.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -187,7 +186,7 @@ impl Changed {
     }
 }
 
-/// The table of a part; images that it lacks are added to the layers.
+/// The table of a part. Missing images are appended to the layers.
 fn table(
     looks: &Looks,
     materials: &[Option<usize>],
@@ -201,7 +200,7 @@ fn table(
     materials.iter().map(entry).collect()
 }
 
-/// The material of meshes that have none.
+/// The material of meshes without one.
 const WHITE: SceneMaterial = SceneMaterial {
     color: [1.0; 4],
     cutoff: CUTOFF_OPAQUE,
@@ -210,14 +209,14 @@ const WHITE: SceneMaterial = SceneMaterial {
     normal_scale: 1.0,
 };
 
-/// Images of an object that share an array, in the order of their layers.
+/// Indices of the object's images that share an array, in the order of their layers.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Layers {
     images: Vec<usize>,
 }
 
 impl Layers {
-    /// The layer of an image, which is added if it is new.
+    /// The layer of an image, which is appended if it is new.
     fn layer(&mut self, image: usize) -> u32 {
         let known = self.images.iter().position(|known| *known == image);
         let layer = known.unwrap_or_else(|| {
@@ -228,7 +227,7 @@ impl Layers {
     }
 }
 
-/// The table's entry of a material.
+/// A material's table entry.
 fn entry(
     looks: &Looks,
     index: usize,

@@ -1,4 +1,4 @@
-//! The relief of a part of a static mesh, on the device.
+//! The relief of a static mesh's part, on the device.
 
 use crate::gpu::bindings::render::scene_relief::Group2;
 use crate::gpu::{Gpu, Group, Uniform};
@@ -14,7 +14,7 @@ use crate::{Error, InputError};
 pub(crate) struct ReliefMaterial {
     /// Bind group 2 of `render/scene_relief`.
     pub group: Group,
-    /// What pipelines are compiled for.
+    /// Options that pipelines are compiled for.
     pub options: ReliefOptions,
 }
 
@@ -23,21 +23,21 @@ pub(crate) struct ReliefMaterial {
 pub(crate) struct ReliefLook {
     /// Depth, plane and the width of shadows; the light is the scene's.
     pub material: Material,
-    /// How rays are marched.
+    /// Ray marching.
     pub march: March,
-    /// The mesh's range of uv: lower and upper end.
+    /// The mesh's uv range: lower and upper corner.
     pub range: [[f32; 2]; 2],
-    /// The length of a uv unit in the model's units, > 0.
+    /// Model units per uv unit, > 0.
     pub world: f32,
-    /// The factor of the albedo: linear red, green and blue.
+    /// Factor of the albedo: linear red, green and blue.
     pub color: [f32; 3],
 }
 
 impl ReliefMaterial {
-    /// Binds the maps of a relief, each with its own sampler.
+    /// Binds a relief's maps, each with its own sampler.
     ///
     /// # Errors
-    /// [`InputError`] for arguments out of range or that do not match each other; [`crate::gpu::GpuError`].
+    /// [`InputError`] for arguments that are out of range or do not match each other; [`crate::gpu::GpuError`].
     pub fn new(
         gpu: &Gpu,
         layouts: &SceneLayouts,

@@ -1,4 +1,4 @@
-//! Images of a model as layers of one texture array.
+//! A model's images as layers of one texture array.
 
 use std::borrow::Cow;
 
@@ -9,10 +9,10 @@ use crate::gpu::{Gpu, GpuError};
 use crate::surface::mips::Mips;
 use crate::{Error, InputError, srgb};
 
-/// The most texels of an array's finest level, 256 MiB: the images of larger ones are halved.
+/// Largest number of texels of an array's finest level (256 MiB). Images of larger arrays are halved.
 const MAX_TEXELS: u64 = 1 << 26;
 
-/// What texels are.
+/// Meaning of texels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Texels {
     /// sRGB colours and linear alpha.
@@ -21,7 +21,7 @@ pub(super) enum Texels {
     Normal,
 }
 
-/// Uploads some of `all` images, a layer each, with mip levels if `has_mips`. Without images there is one layer of one texel,
+/// Uploads some of `all` images, one layer each, with mip levels if `has_mips`. Without images, the array is one texel,
 /// white or flat.
 ///
 /// # Errors
@@ -63,7 +63,7 @@ pub(super) fn texture_array(
 }
 
 impl Texels {
-    /// The texel that changes nothing.
+    /// The neutral texel.
     fn flat(self) -> [u8; 4] {
         match self {
             Self::Color => [255; 4],
@@ -81,7 +81,7 @@ impl Texels {
     }
 }
 
-/// Checks that an image has texels, and no more along an edge than a texture of the device. `path` names it in errors.
+/// Checks that an image has texels, and fits the device's texture size. `path` names it in errors.
 ///
 /// # Errors
 /// [`InputError`] with its width and height.
@@ -95,7 +95,7 @@ pub(crate) fn check_image(gpu: &Gpu, path: &str, image: &RgbaImage) -> Result<()
     Err(InputError::new(path, format!("{width} × {height}"), bound))
 }
 
-/// The size that all layers get: the largest width and the largest height, halved until they fit [`MAX_TEXELS`].
+/// The common size of all layers: the largest width and the largest height, halved until all layers fit [`MAX_TEXELS`].
 fn common_size(images: &[&RgbaImage]) -> [u32; 2] {
     let largest = |edge: fn(&RgbaImage) -> u32| images.iter().map(|image| edge(image)).max().unwrap_or(1);
     let mut size = [largest(RgbaImage::width), largest(RgbaImage::height)];
@@ -106,7 +106,7 @@ fn common_size(images: &[&RgbaImage]) -> [u32; 2] {
     size
 }
 
-/// The image at another size, filtered in linear light; unchanged if it has that size.
+/// The image resized, filtered in linear light; unchanged if it has that size already.
 fn resized(image: &RgbaImage, [width, height]: [u32; 2], texels: Texels) -> Cow<'_, RgbaImage> {
     if image.dimensions() == (width, height) {
         return Cow::Borrowed(image);
@@ -166,7 +166,7 @@ mod tests {
         let (wide, high, tiny) = (image(64, 2), image(4, 32), image(1, 1));
         assert_eq!(common_size(&[&wide, &high, &tiny]), [64, 32]);
         assert_eq!(common_size(&[&tiny]), [1, 1]);
-        // Nine layers of 64 Mi texels in all have room for 2^22 each, of which 4096 × 4096 are four times too many.
+        // 64 Mi texels leave each of nine layers 2^22 after halving; 4096 × 4096 are four times that.
         let large = image(4096, 4096);
         assert_eq!(common_size(&[&large; 9]), [2048, 2048]);
     }

@@ -1,4 +1,4 @@
-//! Meshes at rest as what an object is.
+//! Static meshes as a kind of object.
 
 use super::drawn;
 use crate::InputError;
@@ -10,7 +10,7 @@ use crate::scene::object_kind::{Making, ObjectKind, OnDevice};
 use crate::scene::ray::Surface;
 use crate::skinning::merged::Merged;
 
-/// The meshes of a model at rest, merged, without their images.
+/// A model's merged meshes at rest, without images.
 #[derive(Debug)]
 pub(in crate::scene) struct MeshAtRest(pub Merged);
 

@@ -12,35 +12,35 @@ use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::Vertex;
 
-/// The buffers of a mesh.
+/// Device buffers of a mesh.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshGeometry {
-    /// Where its instances lie.
+    /// Range of its instances.
     pub object: Uniform<SceneObject>,
-    /// Where its vertices lie.
+    /// Layout of its vertices.
     pub params: Uniform<MeshParams>,
-    /// Vertices in the model's space: of the mesh, or in pages of each instance.
+    /// Vertices in model space: shared by all instances, or in pages per instance.
     pub vertices: Buffer<Vertex>,
-    /// Where last positions begin in `vertices`, in pairs of floats; 0 if there are none.
+    /// Offset of previous positions in `vertices`, in pairs of floats; 0 = none.
     pub last: u32,
-    /// The page of each cluster of each instance; any buffer if vertices do not lie in pages.
+    /// Page per cluster and instance. Any buffer if vertices are not in pages.
     pub page_table: Buffer<u32>,
     /// Texture coordinates, one pair per vertex of the mesh.
     pub uv: Buffer<[f32; 2]>,
-    /// For each vertex of the mesh, the index of its material in its part's table; then from `partners` on its partner.
+    /// Index per vertex into its part's material table, followed from `partners` on by the vertex's partner.
     pub material_of: Buffer<u32>,
-    /// Where partners begin in `material_of`; 0 if there are none, so that levels cannot move into each other.
+    /// Offset of partners in `material_of`; 0 = none, so that levels cannot geomorph.
     pub partners: u32,
-    /// Triangles, level by level, and in each level part by part.
+    /// Triangle indices, level by level, and part by part in each level.
     pub indices: Buffer<u32>,
 }
 
-/// A mesh on the device, in parts that share a pipeline.
+/// A mesh on the device, in parts with one pipeline each.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshDrawable {
-    /// Its buffers.
+    /// The buffers.
     pub geometry: MeshGeometry,
-    /// Number of clusters if vertices lie in pages, else 0.
+    /// Number of clusters if vertices are in pages, else 0.
     pub clusters: u32,
     /// Its parts, in the order of their draws.
     pub parts: Vec<MeshPart>,
@@ -49,7 +49,7 @@ pub(crate) struct MeshDrawable {
 }
 
 impl MeshDrawable {
-    /// Binds buffers. When one of them is replaced, bind all anew.
+    /// Binds the buffers. If one of them is replaced, all must be bound again.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -71,12 +71,12 @@ impl MeshDrawable {
         Ok(Self { group: group.bind(gpu, &layouts.mesh)?, geometry, clusters, parts })
     }
 
-    /// Where its vertices lie.
+    /// Layout of the vertices.
     fn params(&self) -> MeshParams {
         MeshParams { clusters: self.clusters, last: self.geometry.last, partners: self.geometry.partners }
     }
 
-    /// The same mesh, whose vertices lie in other pages.
+    /// The same mesh with its vertices in other pages.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -91,7 +91,7 @@ impl MeshDrawable {
         Self::new(gpu, layouts, geometry, self.clusters, self.parts.clone())
     }
 
-    /// The same mesh for other instances, whose vertices lie in pages of their own.
+    /// The same mesh for other instances, with vertices in their own pages.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -135,7 +135,7 @@ impl Drawable for MeshDrawable {
     }
 }
 
-/// The triangles of a mesh that share a pipeline, textures and a sampler.
+/// Triangles of a mesh that share a pipeline, textures and a sampler.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshPart {
     faces: Faces,
@@ -144,23 +144,23 @@ pub(crate) struct MeshPart {
     specialization: Specialization,
 }
 
-/// How the triangles of a part are seen.
+/// Blending and visible sides of a part's triangles.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Faces {
-    /// Whether they are blended with what is behind them, in a layer of its own.
+    /// Whether they are blended, in a layer of their own.
     pub blended: bool,
-    /// Whether both of their sides are seen.
+    /// Whether both sides are visible.
     pub double_sided: bool,
 }
 
 impl MeshPart {
-    /// A part whose levels of detail do not move into each other.
+    /// A part whose levels of detail do not geomorph.
     pub fn new(faces: Faces, materials: MeshMaterials) -> Self {
         let specialization = materials.specialization(faces, false);
         Self { faces, morphed: false, materials, specialization }
     }
 
-    /// Sets whether levels of detail move into each other.
+    /// Sets whether levels of detail geomorph.
     pub fn set_morphed(&mut self, morphed: bool) {
         self.morphed = morphed;
         self.specialization = self.materials.specialization(self.faces, morphed);
@@ -172,7 +172,7 @@ impl MeshPart {
         self.materials = materials;
     }
 
-    /// What it looks like.
+    /// The materials.
     pub fn materials(&self) -> &MeshMaterials {
         &self.materials
     }
@@ -183,7 +183,7 @@ impl MeshPart {
     }
 }
 
-/// What a part of a mesh looks like.
+/// Materials of a mesh's part.
 #[derive(Debug, Clone)]
 pub(crate) enum MeshMaterials {
     /// Colours, textures and normal maps.

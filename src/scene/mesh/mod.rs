@@ -1,4 +1,4 @@
-//! Meshes of objects on the device: those of a model at rest, and those of a character, which its bones move.
+//! Meshes of objects on the device: static ones, and those of characters, which bones move.
 
 mod at_rest;
 mod drawable;
@@ -23,7 +23,7 @@ use crate::{Error, InputError};
 pub(super) use at_rest::MeshAtRest;
 pub(crate) use drawable::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 
-/// What an object is drawn from: how, and for each part the draws of all lists.
+/// Drawables of an object, and the draws of all lists per part.
 pub(super) type Drawn = (Vec<Box<dyn Drawable>>, Vec<SceneDraw>);
 
 /// A model's meshes at rest, merged, with a sphere around them.
@@ -31,7 +31,7 @@ pub fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputEr
     check(model)?;
     let mut rest = at_rest(model).map_err(|error| error.below("model"))?;
     if model.clips.is_empty() {
-        // The levels were made for this pose. Vertices and their order are the same.
+        // Levels were made for this pose, and vertices keep their order.
         for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
             mesh.levels.clone_from(&from.levels);
             mesh.partners.clone_from(&from.partners);
@@ -49,7 +49,7 @@ pub fn moving_merged(model: &Model) -> Result<Merged, InputError> {
     merged(model, OBJECT_LEVELS as usize)
 }
 
-/// Uploads meshes that all instances share, in pieces where one binding cannot hold a mesh.
+/// Uploads meshes that all instances share. Meshes that exceed a binding are split into pieces.
 pub(super) fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -76,7 +76,7 @@ pub(super) fn drawn(
     Ok((drawables, draws))
 }
 
-/// Checks that one binding of the device holds the vertices of a merged mesh, and another its triangles.
+/// Checks that a merged mesh's vertices fit one binding of the device, and its triangles another.
 pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
     let indices = indices_of_levels(mesh);
     let all = [
@@ -86,7 +86,7 @@ pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
     all.into_iter().try_for_each(|(path, count, bytes)| within_binding(gpu, path, count, bytes))
 }
 
-/// Checks that one binding of the device holds so many elements of so many bytes.
+/// Checks that `count` elements of `bytes` bytes each fit one binding of the device.
 pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) -> Result<(), InputError> {
     let most = gpu.max_binding() / bytes as u64;
     if count as u64 <= most {
@@ -96,10 +96,10 @@ pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) 
     Err(InputError::new(path, count, bound))
 }
 
-/// Checks that a model has triangles, and each of its meshes with its skin and its material.
+/// Checks that a model has triangles, and that each mesh is valid with its skin and material.
 ///
 /// # Errors
-/// [`InputError`] with the number of the mesh or the skin (`model.meshes[2].indices[1]`).
+/// [`InputError`] with the index of the mesh or the skin (`model.meshes[2].indices[1]`).
 fn check(model: &Model) -> Result<(), InputError> {
     for mesh in 0..model.meshes.len() {
         model
@@ -113,13 +113,12 @@ fn check(model: &Model) -> Result<(), InputError> {
     Ok(())
 }
 
-/// The errors of all levels, the mesh itself included.
+/// Error per level, the full mesh included.
 pub(super) fn errors(merged: &Merged) -> Vec<f32> {
     std::iter::once(0.0).chain(merged.errors.iter().copied()).collect()
 }
 
-/// The draws of the parts of a merged mesh: for each part and level two, for instances that are not mirrored and for those
-/// that are.
+/// The draws of a merged mesh's parts: two per part and level, for instances that are not mirrored and for mirrored ones.
 pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) -> Vec<SceneDraw> {
     let of_part = |part: &Part| {
         let draw = |list: u32| {
@@ -133,11 +132,11 @@ pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) ->
     merged.parts.iter().filter(|part| part.mesh == mesh).flat_map(of_part).collect()
 }
 
-/// A draw of nothing.
+/// An empty draw.
 pub(super) const NOTHING: SceneDraw =
     SceneDraw { index_count: 0, instance_count: 0, first_index: 0, base_vertex: 0, first_instance: 0 };
 
-/// A merged mesh, to be drawn from its own vertices, or from those in pages.
+/// The drawable of a merged mesh, with its own vertices or with those in pages.
 pub(super) fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
     (merged, looks): (&Merged, &Looks),
@@ -180,8 +179,8 @@ pub(super) fn drawable(
     Ok(MeshDrawable::new(gpu, layouts, geometry, count, parts)?)
 }
 
-/// For each slot, that of the vertex's partner and the coarsest level of the object that has the vertex; none if the mesh has no
-/// levels or no partners.
+/// Per slot: the slot of the vertex's partner, and the coarsest level of the object that has the vertex. Empty if the mesh
+/// has no levels or no partners.
 fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
     if mesh.levels.is_empty() || mesh.partners.is_empty() {
         return Vec::new();
@@ -194,18 +193,18 @@ fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
     clusters.order.iter().map(word).collect()
 }
 
-/// For each vertex of a merged mesh, the coarsest level of the object that has it; `errors` are those of the object's levels.
+/// Per vertex of a merged mesh: the coarsest level of the object that has it. `errors` are the object's.
 pub fn coarsest_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
     let own = own_levels(mesh, errors);
     let of_object = |coarsest: u32| own.iter().rposition(|level| *level <= coarsest).unwrap_or(0) as u32;
     mesh.coarsest_levels().into_iter().map(of_object).collect()
 }
 
-/// For each vertex, the part whose triangles use it.
+/// Per vertex: the part whose triangles use it.
 fn parts_of_vertices(mesh: &Mesh, parts: &[&Part]) -> Vec<usize> {
     let mut part_of = vec![0; mesh.vertices()];
     for (at, part) in parts.iter().enumerate() {
-        // At level 0, which has all vertices, or at the one level at which a piece is drawn.
+        // The first range that is not empty is level 0, which has all vertices, or a piece's only level.
         let Some(range) = part.indices.iter().find(|range| !range.is_empty()).cloned() else { continue };
         for vertex in &mesh.indices[range.start as usize..range.end as usize] {
             part_of[*vertex as usize] = at;
@@ -214,7 +213,7 @@ fn parts_of_vertices(mesh: &Mesh, parts: &[&Part]) -> Vec<usize> {
     part_of
 }
 
-/// The index of a material in a table, which it joins if it is not there.
+/// A material's index in a table, which is extended if needed.
 fn entry(table: &mut Vec<Option<usize>>, material: Option<usize>) -> u32 {
     let known = table.iter().position(|other| *other == material);
     known.unwrap_or_else(|| {

@@ -1,4 +1,4 @@
-//! What an object has on a device: made larger, made afresh, or made on another one.
+//! Device resources of an object: growing them, restarting, and moving to another device.
 
 use super::{MAX_CAPACITY, Object};
 use crate::gpu::Gpu;
@@ -9,7 +9,7 @@ use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::{Error, InputError};
 
 impl Object {
-    /// Makes room for twice as many instances. If it fails, nothing has changed.
+    /// Doubles the room for instances. Changes nothing if it fails.
     pub(in crate::scene) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         let capacity = self.instances.capacity();
         if capacity >= MAX_CAPACITY {
@@ -22,19 +22,19 @@ impl Object {
         Ok(())
     }
 
-    /// Lets everything start afresh.
+    /// Makes everything start afresh.
     pub(in crate::scene) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         self.kind.renew(gpu, layouts, self.instances.capacity(), &mut self.chunks)?;
         self.instances.change_all();
         Ok(())
     }
 
-    /// Everything on another device.
+    /// Creates the object's resources on another device.
     pub(in crate::scene) async fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
         self.kind.made_on(gpu, layouts, self.looks.as_ref(), self.instances.capacity()).await
     }
 
-    /// Takes everything on another device. Everything starts afresh.
+    /// Takes resources made on another device. Everything starts afresh.
     pub(in crate::scene) fn adopt(&mut self, on_device: OnDevice) {
         let OnDevice { chunks, other } = on_device;
         self.kind.adopt(other);
@@ -46,17 +46,17 @@ impl Object {
         self.instances.change_all();
     }
 
-    /// Sets the sphere of an instance that plays something else.
+    /// Updates the sphere of an instance after its clip or layers changed.
     pub(in crate::scene) fn bound_again(&mut self, index: u32) {
         if let Some(sphere) = self.kind.sphere_of(index) {
             self.instances.change(index, |instance| instances::bound(instance, &sphere));
         }
     }
 
-    /// Ends what has reached its end by a time of the scene.
+    /// Finishes fades that end by scene time `now`.
     pub(in crate::scene) fn settle(&mut self, now: f64) {
         for index in self.kind.settle(now) {
-            // What carries a mesh keeps the larger sphere until it plays something else.
+            // A character that carries a mesh keeps the larger sphere until it plays something else.
             if self.instances.all()[index as usize].flags & INSTANCE_CARRIES == 0 {
                 self.bound_again(index);
             }

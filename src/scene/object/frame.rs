@@ -1,4 +1,4 @@
-//! What objects do in a frame: provide what is seen, lie in buffers, and stage what has changed.
+//! An object's work in a frame: allocating memory for visible instances, its place in buffers, and staging of changes.
 
 use std::sync::Arc;
 
@@ -18,8 +18,8 @@ use crate::shared::lod::object::{LodObject, OBJECT_LISTS};
 use crate::shared::render::scene_instances::SceneObject;
 
 impl Object {
-    /// Provides what the views of a frame need. Where memory ends, levels of detail are coarser. Returns whether the chunks are
-    /// others than before.
+    /// Allocates the memory that a frame's views need. If memory is short, levels of detail become coarser. Returns whether
+    /// the chunks changed.
     pub(in crate::scene) fn provide(
         &mut self,
         gpu: &Gpu,
@@ -60,7 +60,7 @@ impl Object {
         self.kind.stage(staged, frame, now)
     }
 
-    /// Prepares what depends on the layout.
+    /// Prepares everything that depends on the layout.
     pub(in crate::scene) fn fit(
         &mut self,
         gpu: &Gpu,
@@ -95,7 +95,7 @@ impl Object {
     }
 }
 
-/// Stages a run of an object's instances, from the one with index `at` on.
+/// Stages consecutive instances of an object, from index `at` on.
 fn stage_instances(
     (staged, to): (&mut Staged, &Buffer<SceneInstance>),
     chunks: &[Chunk],
@@ -110,15 +110,15 @@ fn stage_instances(
     Ok(())
 }
 
-/// Stages where the instances and vertices of a chunk of an object lie.
+/// Stages the ranges of a chunk's instances and vertices.
 fn stage_params(staged: &mut Staged, chunk: &Chunk, number: u32) -> Result<(), Error> {
     let (first_instance, first_slot) = (chunk.range.first, chunk.slots.start as u32);
     let object = SceneObject { first_instance, number, first_slot };
     chunk.drawables.iter().try_for_each(|drawable| drawable.stage(staged, &object))
 }
 
-/// Lays out the chunks of objects, one after the other, and tells each its range. `version` is the number of the layout, and whether the
-/// last frame is kept.
+/// Lays out the chunks of all objects one after the other, and sets their ranges. The arguments include the number of the
+/// layout and whether motion history is kept.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
@@ -149,7 +149,7 @@ pub(in crate::scene) fn laid_out(
 }
 
 impl Counted {
-    /// These objects, whose places a layout has set.
+    /// The objects at their places in a layout.
     fn new(objects: &Slots<Object>) -> Self {
         let counted = |(object, entry): (ObjectId, &Object)| CountedObject {
             object,

@@ -1,4 +1,4 @@
-//! Objects: what all instances of one model or one terrain share.
+//! Objects: the data shared by all instances of one model or one terrain.
 
 mod device;
 mod frame;
@@ -30,7 +30,7 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 pub(super) use frame::laid_out;
 
-/// The most instances of an object.
+/// Largest number of instances of an object.
 const MAX_CAPACITY: usize = 1 << 20;
 
 /// An object of a scene.
@@ -38,36 +38,36 @@ const MAX_CAPACITY: usize = 1 << 20;
 pub(crate) struct Object {
     pub(super) kind: Box<dyn ObjectKind>,
     pub(super) instances: Instances,
-    /// A sphere around an instance that moves no bone.
+    /// A sphere around an instance whose bones do not move.
     pub(super) sphere: BoundingSphere,
     /// The error of each level in the model's units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
-    /// How its levels change, and what chooses them.
+    /// Transition between levels, and the criterion that chooses them.
     pub(super) transition: Transition,
     pub(super) criterion: Criterion,
-    /// The factor by which its levels are coarser than the views ask for: 1 unless memory has ended.
+    /// LOD bias: 1 unless memory has ended.
     pub(super) lod_bias: f32,
-    /// Whether the device does not know the factor yet, or whether the object is drawn.
+    /// Dirty: LOD bias or visibility must be uploaded again.
     pub(super) is_retuned: bool,
-    /// Whether the device does not know where what is drawn from new buffers lies.
+    /// Dirty: the ranges of rebound drawables must be uploaded again.
     is_rebound: bool,
-    /// The number that its handle tells.
+    /// The handle's number.
     pub(super) handle: u32,
     pub(super) is_shown: bool,
-    /// What still waits to be uploaded.
+    /// Data that waits to be uploaded.
     pub(super) pending: Option<PendingUploads>,
-    /// The materials of a mesh or a character.
+    /// Materials of a mesh or a character.
     pub(super) looks: Option<Looks>,
-    /// Of each part, the draws of all lists of a chunk, without instances.
+    /// Draws of all lists of a chunk per part, with instance counts of 0.
     pub(super) draws: Vec<SceneDraw>,
-    /// At least one.
+    /// Chunks, at least one.
     pub(super) chunks: Vec<Chunk>,
     fitted: u64,
 }
 
 impl Object {
-    /// An object that is shown.
+    /// A visible object.
     pub(super) fn new(
         kind: impl ObjectKind,
         (instances, sphere): (Instances, BoundingSphere),
@@ -106,7 +106,7 @@ impl Object {
         Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
-    /// A model's meshes at rest.
+    /// A static mesh: a model's meshes at rest.
     pub(super) fn of_mesh(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -123,7 +123,7 @@ impl Object {
         Ok(Self { looks: Some(looks), ..object })
     }
 
-    /// A mesh with relief.
+    /// A relief-mapped mesh.
     pub(super) fn of_relief(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -136,7 +136,7 @@ impl Object {
         Ok(Self::new(relief.clone(), (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
-    /// An object of a kind of the caller's.
+    /// An object of a caller-defined kind.
     pub(super) fn of_kind(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -150,7 +150,7 @@ impl Object {
         Ok(Self::new(own, (instances, sphere), (errors, 1.0), drawn))
     }
 
-    /// A model that has clips.
+    /// A character: a model with clips.
     pub(super) fn of_character(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -169,12 +169,12 @@ impl Object {
         Ok(Self { looks: Some(looks), ..object })
     }
 
-    /// The same object, of which some uploads wait.
+    /// The same object, with uploads that still wait.
     pub(super) fn awaiting(self, pending: Option<PendingUploads>) -> Self {
         Self { pending, ..self }
     }
 
-    /// A chunk of the object as kernels see it.
+    /// A chunk of the object, in kernel format.
     pub(super) fn lod_object(&self, chunk: &Chunk) -> LodObject {
         LodObject {
             first: chunk.range.first,
@@ -189,61 +189,61 @@ impl Object {
         }
     }
 
-    /// The metric from which on each of its levels is drawn, or begins to move.
+    /// Smallest metric per level at which the level is drawn or begins to morph.
     pub(super) fn thresholds(&self) -> Vec<f32> {
         self.transition.begins(&self.criterion.thresholds(&self.errors))
     }
 
-    /// Keeps the last frame, once it is refreshed, or does no longer.
+    /// Sets whether motion history is kept, once the object is refreshed.
     pub(super) fn keep_last(&mut self, keeps: bool) {
         self.instances.keep_last(keeps);
         self.kind.keep_last(keeps);
     }
 
-    /// The largest number of its draws in a view and a layer.
+    /// Largest number of its draws in one view and one layer.
     pub(super) fn draws(&self) -> usize {
         let parts: usize = self.drawables().map(|drawable| drawable.part_count()).sum();
         let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
         sides * parts * self.errors.len()
     }
 
-    /// The index of an instance in the buffers of all instances.
+    /// An instance's index in the scene's instance buffers.
     pub(super) fn place(&self, index: u32) -> Option<usize> {
         Some(self.chunk_of(index)?.place(index as usize))
     }
 
-    /// The chunk in which an instance lies.
+    /// The chunk that holds an instance.
     pub(super) fn chunk_of(&self, index: u32) -> Option<&Chunk> {
         self.chunks.iter().find(|chunk| chunk.slots.contains(&(index as usize)))
     }
 
-    /// The character, if it is one.
+    /// The object as a character, if it is one.
     pub(super) fn character(&self) -> Option<&Character> {
         self.kind.downcast()
     }
 
-    /// As [`Object::character`], to be changed.
+    /// Mutable form of [`Object::character`].
     pub(super) fn character_mut(&mut self) -> Option<&mut Character> {
         self.kind.downcast_mut()
     }
 
-    /// What is drawn, chunk by chunk.
+    /// The drawables, chunk by chunk.
     pub(super) fn drawables(&self) -> impl Iterator<Item = &dyn Drawable> {
         self.chunks.iter().flat_map(|chunk| chunk.drawables.iter().map(|drawable| &**drawable))
     }
 
-    /// Number of instances that there is room for.
+    /// Number of instances the object has room for.
     pub(crate) fn capacity(&self) -> usize {
         self.instances.capacity()
     }
 }
 
-/// What is drawn of all instances in one chunk.
+/// One chunk with all instances.
 fn whole(instances: &Instances, (drawables, draws): Drawn) -> (Vec<Chunk>, Vec<SceneDraw>) {
     (vec![Chunk::new(0..instances.capacity(), drawables)], draws)
 }
 
-/// Room for at least `capacity` instances.
+/// Empty storage for at least `capacity` instances.
 fn room(capacity: usize) -> Result<Instances, InputError> {
     match (1..=MAX_CAPACITY).contains(&capacity) {
         true => Ok(Instances::new(capacity)),

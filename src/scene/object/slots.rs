@@ -1,17 +1,17 @@
-//! The objects of a scene, by their handles.
+//! A scene's objects, by handle.
 
 use crate::scene::handles::{InstanceId, ObjectId, Slots};
 use crate::scene::object::Object;
 
 impl Slots<Object> {
-    /// The object of an instance, if the instance exists.
+    /// The object of an instance; `None` if the instance does not exist.
     pub fn existing(&self, instance: InstanceId) -> Option<&Object> {
         let InstanceId { object: ObjectId { scene, index, generation }, .. } = instance;
         let object = self.get([index, generation]).filter(|_| scene == self.scene())?;
         object.instances.contains([instance.index, instance.generation]).then_some(object)
     }
 
-    /// As [`Slots::existing`], to be changed.
+    /// Mutable form of [`Slots::existing`].
     pub fn existing_mut(&mut self, instance: InstanceId) -> Option<&mut Object> {
         let InstanceId { object: ObjectId { scene, index, generation }, .. } = instance;
         let is_of = scene == self.scene();

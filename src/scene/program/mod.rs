@@ -1,4 +1,4 @@
-//! The shader of a kind of object, from the caller's text.
+//! Shaders of caller-defined kinds.
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -13,12 +13,12 @@ use crate::scene::caller_text::{CallerText, without_comments};
 use crate::scene::wgsl::entries::{KindText, OutputText, composed, exports, fragments};
 use crate::scene::wgsl::prefix::{declared_names, prefixed_with};
 
-/// The bind group of a kind's own resources.
+/// Index of the bind group with a kind's own resources.
 const GROUP: u32 = 2;
 
-/// The shader of a [`Kind`](crate::scene::kind::Kind): the caller's WGSL, checked, with entry points for every layer.
+/// The shader of a [`Kind`](crate::scene::kind::Kind): the caller's checked WGSL, with entry points for every layer.
 ///
-/// Clones share one shader, and with it the pipelines that renderers compile.
+/// Clones share one shader, and so share the pipelines that renderers compile.
 #[derive(Debug, Clone)]
 pub struct KindProgram(Arc<Inner>);
 
@@ -26,9 +26,9 @@ pub struct KindProgram(Arc<Inner>);
 struct Inner {
     name: String,
     text: String,
-    /// The names that the text declares.
+    /// Names that the text declares.
     declared: Vec<String>,
-    /// Whether vertices move in the model's space.
+    /// Whether vertices move in model space.
     moves: bool,
     entries: Vec<wgpu::BindGroupLayoutEntry>,
 }
@@ -48,10 +48,10 @@ impl Hash for KindProgram {
 }
 
 impl KindProgram {
-    /// Checks a text and writes its entry points. It needs no device, and compiles nothing.
+    /// Checks a text and generates its entry points. No device is needed, and nothing is compiled.
     ///
-    /// `name` is the prefix of every name that the text declares: `grass_bend`, `GRASS_HEIGHT`, `GrassBlade` of `grass`.
-    /// The text has two functions, and a third if vertices move in the model's space:
+    /// `name` is the prefix of every name that the text declares, such as `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` for
+    /// `grass`. The text has two functions, and a third if vertices move in model space:
     ///
     /// ```wgsl
     /// // Where an instance has a vertex: the entry says which instance, the vertex is an index of the index buffer.
@@ -62,8 +62,8 @@ impl KindProgram {
     /// fn NAME_last_position(entry: u32, vertex: u32) -> vec3<f32>
     /// ```
     ///
-    /// Its resources are in bind group 2: uniform buffers, storage buffers that are read, textures and samplers. The crate's own
-    /// names begin with `relievo_`:
+    /// Its resources are in bind group 2: uniform buffers, read-only storage buffers, textures and samplers. The crate's
+    /// own names start with `relievo_`:
     ///
     /// ```wgsl
     /// // A vertex. Positions are relative to the corner of the view's cell.
@@ -94,20 +94,21 @@ impl KindProgram {
     ///
     /// | function | |
     /// |---|---|
-    /// | `relievo_scene_placed(entry, position, normal, tangent, uv) -> relievo_SceneVertex` | a vertex of the model's space, at the instance's place |
-    /// | `relievo_scene_surface(fragment) -> Surface` | white, opaque, on the side that is seen, with the tint, the user data and the numbers of the instance; the colour does not contain the tint yet |
-    /// | `relievo_scene_last_placed(entry, position) -> vec3<f32>` | where a point of the model's space was in the last frame |
-    /// | `relievo_scene_last_rigid(entry, position) -> vec3<f32>` | where a placed point was that does not move in the model's space |
+    /// | `relievo_scene_placed(entry, position, normal, tangent, uv) -> relievo_SceneVertex` | transforms a vertex in model space by the instance's placement |
+    /// | `relievo_scene_surface(fragment) -> Surface` | a white, opaque surface on the visible side, with the instance's tint, user data and numbers; its colour does not contain the tint yet |
+    /// | `relievo_scene_last_placed(entry, position) -> vec3<f32>` | position of a model-space point in the last frame |
+    /// | `relievo_scene_last_rigid(entry, position) -> vec3<f32>` | last frame's position of a placed point that does not move in model space |
     ///
-    /// `relievo_view` is the view: `clip_from_world`, `eye`, `light`. `Surface` is that of
+    /// `relievo_view` is the view: `clip_from_world`, `eye`, `light`. `Surface` is defined in
     /// [`Renderer::with_shading`](crate::render::Renderer::with_shading).
     ///
-    /// Of WebGPU's default limits for a stage, the crate's part is 3 storage buffers (4 in the vertex stage), 2 uniform buffers, 1
-    /// texture and 1 sampler. A kind and the caller's shading share the rest: 5, 10, 15 and 15 in the fragment stage.
+    /// The crate uses a part of WebGPU's default limits per stage: 3 storage buffers (4 in the vertex stage), 2 uniform
+    /// buffers, 1 texture and 1 sampler. A kind and the caller's shading share the rest: 5 storage buffers, 10 uniform
+    /// buffers, 15 textures and 15 samplers in the fragment stage.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake, with the path `kind:LINE:COLUMN`, both counted from 1, and for a name that is not
-    /// one of lower-case letters, digits and underscores (`kind.name`).
+    /// [`InputError`] for the first mistake, with the path `kind:LINE:COLUMN`, line and column counted from 1. Also for a
+    /// name with anything but lower-case letters, digits and underscores (`kind.name`).
     pub fn new(name: &str, source: &str) -> Result<Self, InputError> {
         let is_letter =
             |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_';
@@ -120,7 +121,7 @@ impl KindProgram {
         let declares = |what: &str| declared.contains(&format!("{name}_{what}"));
         let kind =
             KindText { name, discards: true, blends: true, deep: true, moves: declares("last_position") };
-        // Without comments, so that nothing in them is taken for code; what stands where stays.
+        // Comments are blanked so that nothing in them is taken for code; all code keeps its place.
         let text = format!("{code}\n{}", composed(&kind, SCENE_CORE, SCENE_OUTPUTS));
         let own = CallerText { path: "kind", source, text: &text };
         own.check_declarations(name)?;
@@ -148,22 +149,22 @@ impl KindProgram {
         &self.0.text
     }
 
-    /// The names that the text declares.
+    /// Names that the text declares.
     pub(crate) fn declared(&self) -> &[String] {
         &self.0.declared
     }
 
-    /// What its entry points are generated from.
+    /// Input of the generator of entry points.
     pub(crate) fn kind(&self) -> KindText<'_> {
         KindText { name: &self.0.name, discards: true, blends: true, deep: true, moves: self.0.moves }
     }
 
-    /// A kind that shows nothing.
+    /// A kind that draws nothing.
     pub(crate) fn least() -> Result<Self, InputError> {
         Self::new("least", LEAST)
     }
 
-    /// The layout of bind group 2: what the text binds, visible where entry points use it.
+    /// The layout of bind group 2: the resources that the text binds, visible to the stages that use them.
     ///
     /// # Errors
     /// [`GpuError`] for more than the device's limits.
@@ -176,7 +177,8 @@ impl KindProgram {
         })
     }
 
-    /// Bind group 2, from the resources of its bindings in any order, for a [`KindPart`](crate::scene::kind::KindPart).
+    /// Creates bind group 2 for a [`KindPart`](crate::scene::kind::KindPart), from the resources of its bindings in any
+    /// order.
     ///
     /// # Errors
     /// [`GpuError`] for a resource that does not fit.
@@ -195,7 +197,7 @@ impl KindProgram {
     }
 }
 
-/// A kind that binds nothing.
+/// The text of a kind without bindings.
 pub(crate) const LEAST: &str = "
 fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
     return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
@@ -205,7 +207,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface {
 }
 ";
 
-/// The shader of a kind with an output of the caller's: the output's text in front, and entry points for it.
+/// The shader of a kind with the caller's output: the output's text first, then the entry points for it.
 pub(crate) fn with_output(program: &Program<'_>, source: &str, output: &OutputText) -> String {
     let Program { text, kind, is_own } = program;
     let mut kept = vec![output.targets(), format!("{}_write", output.name)];
@@ -215,14 +217,14 @@ pub(crate) fn with_output(program: &Program<'_>, source: &str, output: &OutputTe
     format!("{source}\n{}", prefixed_with(text, &fragments(kind, output), &kept))
 }
 
-/// A shader, what its entry points are generated from, and whether the kind is the caller's.
+/// A shader, the input of its generator of entry points, and whether the kind is the caller's.
 pub(crate) struct Program<'a> {
     pub text: &'a str,
     pub kind: KindText<'a>,
     pub is_own: bool,
 }
 
-/// The function that a text must have.
+/// The signature of a function that the text must have.
 fn signature(name: &str, what: &str) -> String {
     let rest = match what {
         "place" => "(entry: u32, vertex: u32) -> relievo_SceneVertex",
@@ -233,8 +235,8 @@ fn signature(name: &str, what: &str) -> String {
 }
 
 impl CallerText<'_> {
-    /// An error of naga's: a type that does not fit outside of the caller's text is in an entry point, which calls a function of
-    /// another form.
+    /// Explains an error of naga. A type mismatch outside the caller's text is in an entry point that calls a function with
+    /// another signature.
     fn explained(&self, name: &str, error: InputError) -> InputError {
         let end = self.refused(std::iter::empty(), String::new());
         let is_of_types = ["Call to", "type"].iter().any(|word| error.bound.contains(word));
@@ -247,7 +249,7 @@ impl CallerText<'_> {
     }
 }
 
-/// The entries of bind group 2: what the text binds, visible where it is used.
+/// Layout entries of bind group 2: the resources that the text binds, visible to the stages that use them.
 fn bound(
     own: &CallerText<'_>,
     module: &Module,
@@ -285,7 +287,7 @@ fn bound(
     Ok(entries)
 }
 
-/// What a layout says of a variable; `None` for what kinds do not bind.
+/// The binding type of a variable; `None` if kinds cannot bind it.
 fn layout_type(
     module: &Module,
     info: &ModuleInfo,
@@ -340,7 +342,7 @@ fn layout_type(
 mod tests {
     use super::*;
 
-    /// A kind that uses every name of the documentation, in its order.
+    /// A kind that uses every documented name, in order.
     #[test]
     fn every_name_of_the_documentation_is_there() {
         let text = "

@@ -1,4 +1,4 @@
-//! Counts of what characters took, copied from the lists that kernels make anyway.
+//! Counts of the work that characters took, copied from lists that kernels write anyway.
 
 use std::sync::Arc;
 
@@ -8,16 +8,16 @@ use crate::scene::character::Character;
 use crate::scene::handles::{ObjectId, Slots};
 use crate::scene::object::Object;
 
-/// The word of `[workgroups x, y, z, number]` that holds the number.
+/// Byte offset of the number in `[workgroups x, y, z, number]`.
 const NUMBER: u64 = 12;
 
-/// A frame on its way: its number, and for each character the numbers of its meshes and of its chunks.
+/// A frame in flight: its number, and for each character the numbers of its meshes and chunks.
 type About = (u64, Arc<[(ObjectId, [usize; 2])]>);
 
-/// The counts of a scene's characters.
+/// Readback of the counts of a scene's characters.
 #[derive(Debug)]
 pub(in crate::scene) struct SceneCounts {
-    /// The layout for which it was made.
+    /// The layout version that it was made for.
     pub version: u64,
     characters: Arc<[(ObjectId, [usize; 2])]>,
     ring: ReadbackRing<About>,
@@ -25,7 +25,7 @@ pub(in crate::scene) struct SceneCounts {
 }
 
 impl SceneCounts {
-    /// Room for the counts of these objects.
+    /// Allocates buffers for the counts of these objects.
     pub fn new(gpu: &Gpu, version: u64, objects: &Slots<Object>) -> Result<Self, GpuError> {
         let character = |(object, entry): (ObjectId, &Object)| Some((object, entry.character()?.counted()));
         let characters: Arc<[_]> = objects.each().filter_map(character).collect();
@@ -34,7 +34,7 @@ impl SceneCounts {
         Ok(Self { version, characters, ring, last: None })
     }
 
-    /// Records the copies of a frame, if a buffer is free.
+    /// Records the copies of a frame's counts, if a buffer is free.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, objects: &Slots<Object>) {
         self.arrive();
         self.ring.record(encoder, (frame, self.characters.clone()), |encoder, to| {
@@ -52,7 +52,7 @@ impl SceneCounts {
         self.last.as_ref()
     }
 
-    /// Gives up frames that were dropped.
+    /// Discards frames that were dropped.
     pub fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
         self.ring.invalidate(gpu)
     }

@@ -1,4 +1,4 @@
-//! What frames did, counted on the device, and read some frames later without a wait.
+//! Statistics of frames, counted on the device and read back some frames later without waiting.
 
 mod counts;
 mod times;
@@ -11,40 +11,40 @@ use crate::Error;
 use crate::scene::Scene;
 use crate::scene::handles::ObjectId;
 
-/// The number of frames whose statistics may be on their way. If all of them are, a frame goes uncounted.
+/// Largest number of frames whose statistics are in flight. If all are taken, a frame is not counted.
 pub(super) const FRAMES: usize = 8;
 
-/// What the characters of a scene took in a frame.
+/// Work that a scene's characters took in a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneStatistics {
-    /// The frame: the number of frames that the scene had recorded before it.
+    /// Number of the frame: how many frames the scene had recorded before it.
     pub frame: u64,
-    /// One for each character, in the order in which they were added.
+    /// One entry per character, in the order in which they were added.
     pub characters: Vec<CharacterStatistics>,
 }
 
-/// What a character took in a frame, all instances together.
+/// Work that one character took in a frame, all instances together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CharacterStatistics {
     /// The character.
     pub object: ObjectId,
-    /// Number of bones that were interpolated between keys.
+    /// Number of bones interpolated between keyframes.
     pub bones: u32,
-    /// Number of clusters, of up to 64 vertices each, that were skinned.
+    /// Number of skinned clusters, each of up to 64 vertices.
     pub clusters: u32,
 }
 
-/// How long the stages of a frame took on the device, in milliseconds.
+/// GPU time of each stage of a frame, in milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct StageTimes {
-    /// The frame, as [`SceneStatistics::frame`].
+    /// Number of the frame, as [`SceneStatistics::frame`].
     #[serde(skip)]
     pub frame: u64,
-    /// Culling, levels of detail and lists, of all views.
+    /// Culling, level selection and list building, of all views.
     pub select: f64,
-    /// The decision which bones are sampled, and their lists.
+    /// Choosing the bones to sample, and listing them.
     pub gate: f64,
-    /// Samples of bones, and weights of morph targets.
+    /// Sampling of bones, and weights of morph targets.
     pub sample: f64,
     /// Model matrices, and the placements of attached meshes.
     pub local_to_model: f64,
@@ -59,54 +59,54 @@ impl StageTimes {
     }
 }
 
-/// What a view saw in a frame.
+/// What a view drew in a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ViewStatistics {
-    /// The frame, as [`SceneStatistics::frame`].
+    /// Number of the frame, as [`SceneStatistics::frame`].
     pub frame: u64,
-    /// The largest number of pixels by which anything may have been off: that of [`Quality`](crate::scene::Quality), or that
-    /// of the object for which levels of detail had to be coarser ([`Scene::lod_bias`]).
+    /// Largest possible error of anything, in pixels: that of [`Quality`](crate::scene::Quality), or of the object whose
+    /// levels of detail had to be coarser ([`Scene::lod_bias`]).
     pub pixels: f32,
-    /// One for each object, in the order in which they were added.
+    /// One entry per object, in the order in which they were added.
     pub objects: Vec<ObjectStatistics>,
 }
 
-/// What a view saw of an object.
+/// What a view drew of one object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectStatistics {
     /// The object.
     pub object: ObjectId,
-    /// The number of pixels by which its instances may have been off.
+    /// Largest possible error of its instances, in pixels.
     pub pixels: f32,
-    /// One for each level of detail, the finest first.
+    /// One entry per level of detail, the finest first.
     pub levels: Vec<LevelStatistics>,
 }
 
-/// What a view saw of a level of detail of an object.
+/// What a view drew of one level of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LevelStatistics {
-    /// Number of instances that were drawn.
+    /// Number of drawn instances.
     pub instances: u32,
-    /// Number of their triangles, those that turn away included.
+    /// Number of triangles in these instances, back faces included.
     pub triangles: u64,
 }
 
 impl ObjectStatistics {
-    /// Number of instances of all levels.
+    /// Number of drawn instances, all levels together.
     pub fn instances(&self) -> u32 {
         self.levels.iter().map(|level| level.instances).sum()
     }
 
-    /// Number of triangles of all levels.
+    /// Number of drawn triangles, all levels together.
     pub fn triangles(&self) -> u64 {
         self.levels.iter().map(|level| level.triangles).sum()
     }
 }
 
 impl Scene {
-    /// Counts what frames do, from the next one on, or no longer. A frame then also copies some bytes for each object, view and
-    /// character, and, where the device has timestamps, takes a compute pass for each stage. The first such frame
-    /// allocates.
+    /// Turns statistics on or off, from the next frame on. They cost each frame a copy of a few bytes per object, view and
+    /// character. On a device with timestamps, each stage also takes a compute pass of its own. The first such frame
+    /// allocates memory.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -117,23 +117,23 @@ impl Scene {
         Ok(())
     }
 
-    /// The statistics of the last frame whose counts have arrived; `None` before the first, and unless
-    /// [`Scene::set_statistics`] asked for them. Nothing is waited for: they arrive when the device has executed the frame and
-    /// is polled, as each submission does.
+    /// The statistics of the last frame whose counts have arrived. `None` before the first, and unless
+    /// [`Scene::set_statistics`] turned them on. The call does not wait: counts arrive when the device has executed the
+    /// frame and is polled, which each submission does.
     pub fn statistics(&mut self) -> Option<&SceneStatistics> {
         self.counts.as_mut()?.last()
     }
 
-    /// How long the stages of the last frame took whose times have arrived. `None` before the first, unless
-    /// [`Scene::set_statistics`] asked for them, and on a device without `TIMESTAMP_QUERY`.
+    /// The stage times of the last frame whose times have arrived. `None` before the first, unless
+    /// [`Scene::set_statistics`] turned them on, and on a device without `TIMESTAMP_QUERY`.
     ///
-    /// The clock is the device's. A software adapter executes a pass when the results are needed, and its clock
-    /// hides what the driver does before and after: compilation, above all, and waiting for its threads.
+    /// The clock is the device's. A software adapter executes a pass only when its results are needed. Its clock then hides
+    /// the driver's work before and after, mainly compilation and waiting for threads.
     pub fn stage_times(&mut self) -> Option<&StageTimes> {
         self.timer.as_mut()?.last()
     }
 
-    /// The number of frames that were recorded so far.
+    /// The number of frames recorded so far.
     pub fn frames(&self) -> u64 {
         self.frames
     }

@@ -1,4 +1,4 @@
-//! Times of the stages of a frame, by timestamps around their compute passes.
+//! Stage times of a frame, from timestamps around the stages' compute passes.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,34 +7,34 @@ use super::{FRAMES, StageTimes};
 use crate::gpu::{Gpu, GpuError, ReadbackRing};
 use crate::scene::stage::STAGES;
 
-/// The number of timestamps of a frame: one before and one after each stage.
+/// Number of timestamps per frame: one before and one after each stage.
 const STAMPS: u32 = 2 * STAGES as u32;
 
-/// Takes the time of stages.
+/// Timer of a frame's stages.
 #[derive(Debug)]
 pub(in crate::scene) struct StageTimer {
     sets: Vec<Queries>,
-    /// The set of the frame that is being recorded.
+    /// Index of the set that the current frame writes.
     current: Option<usize>,
     ring: ReadbackRing<u64>,
-    /// Milliseconds a tick.
+    /// Milliseconds per tick.
     period: f64,
     last: Option<StageTimes>,
 }
 
-/// The timestamps of a frame. They are resolved by a later frame, once this one was executed: some drivers resolve zeros in
-/// the same submission, and none resolves what was never written.
+/// The timestamps of a frame. A later frame resolves them, after this one was executed. Some drivers resolve zeros within
+/// the same submission, and no driver resolves queries that were never written.
 #[derive(Debug)]
 struct Queries {
     set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    /// The frame that wrote it, until it is resolved.
+    /// Frame that wrote the set; `None` once it is resolved.
     frame: Option<u64>,
     is_done: Arc<AtomicBool>,
 }
 
 impl StageTimer {
-    /// A timer, if the device has timestamps.
+    /// A timer; `None` if the device has no timestamps.
     pub fn new(gpu: &Gpu) -> Result<Option<Self>, GpuError> {
         if !gpu.device().features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
@@ -45,7 +45,7 @@ impl StageTimer {
         Ok(Some(Self { sets, current: None, ring, period, last: None }))
     }
 
-    /// Begins a frame: records the arrival of those that were executed.
+    /// Begins a frame: resolves the timestamps of executed frames.
     pub fn begin(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64) {
         self.arrive();
         let ring = &mut self.ring;
@@ -69,7 +69,7 @@ impl StageTimer {
         }
     }
 
-    /// The timestamps of a stage of the frame.
+    /// The timestamp writes of a stage in the current frame.
     pub fn stage(&self, stage: usize) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         let first = 2 * stage as u32;
         Some(wgpu::ComputePassTimestampWrites {
@@ -85,7 +85,7 @@ impl StageTimer {
         self.last.as_ref()
     }
 
-    /// Gives up frames that were dropped.
+    /// Discards frames that were dropped.
     pub fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
         for queries in self.sets.iter_mut().filter(|queries| queries.frame.is_some()) {
             *queries = Queries::new(gpu)?;

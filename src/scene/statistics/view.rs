@@ -1,4 +1,4 @@
-//! Counts of what a view draws, copied from the arguments of its draws.
+//! Counts of a view's draws, copied from their indirect arguments.
 
 use std::sync::Arc;
 
@@ -9,19 +9,19 @@ use crate::scene::handles::Slots;
 use crate::scene::layout::{Counted, CountedObject};
 use crate::scene::object::Object;
 
-/// A frame on its way.
+/// A frame in flight.
 #[derive(Debug)]
 struct About {
     frame: u64,
     counted: Arc<Counted>,
     pixels: f32,
-    /// The smallest focal length in pixels of its perspective cameras, if it has any.
+    /// Smallest focal length in pixels of the view's perspective cameras; `None` if there is none.
     focal: Option<f32>,
-    /// The factors by which levels are coarser, object by object; empty if all are 1.
+    /// LOD bias per object; empty if all are 1.
     lod_bias: Vec<f32>,
 }
 
-/// The counts of a view.
+/// Readback of a view's counts.
 #[derive(Debug)]
 pub(in crate::scene) struct ViewCounts {
     counted: Arc<Counted>,
@@ -30,7 +30,7 @@ pub(in crate::scene) struct ViewCounts {
 }
 
 impl ViewCounts {
-    /// Room for the draws of a view.
+    /// Allocates buffers for a view's draws.
     pub fn new(gpu: &Gpu, counted: &Arc<Counted>, draws: &wgpu::Buffer) -> Result<Self, GpuError> {
         let ring = ReadbackRing::new(gpu, "statistics of a view", FRAMES, draws.size())?;
         Ok(Self { counted: counted.clone(), ring, last: None })
@@ -83,7 +83,7 @@ impl ViewCounts {
 }
 
 impl CountedObject {
-    /// What the draws of a level show.
+    /// Instances and triangles in the draws of one level.
     fn level(&self, level: u32, draws: &[SceneDraw]) -> LevelStatistics {
         let mut found = LevelStatistics::default();
         let lists = [2 * level, 2 * level + 1].into_iter();
@@ -99,9 +99,9 @@ impl CountedObject {
     }
 }
 
-/// The number of pixels by which something may be off if it may be off by `factor` times the distance that `pixels` allow.
-/// At depth z on the axis, that distance is d = z · pixels / (focal + pixels), and a point that is off by e is drawn at most
-/// focal · e / (z − e) pixels off.
+/// The error in pixels when the allowed displacement for `pixels` is multiplied by `factor`. On the axis at depth z, that
+/// displacement is d = z · pixels / (focal + pixels). A displacement of e is at most focal · e / (z − e) pixels on the
+/// screen.
 fn coarser_pixels(pixels: f32, factor: f32, focal: Option<f32>) -> f32 {
     match focal {
         _ if factor <= 1.0 => pixels,

@@ -1,4 +1,4 @@
-//! Terrain on the device: heights that are generated or the caller's, and what is drawn of them.
+//! Terrain on the device: its heights, generated or the caller's, and its drawables.
 
 use super::drawable::{TerrainDrawable, TerrainGeometry, patch_indices};
 use super::morphing::Morphing;
@@ -21,11 +21,11 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::texture::Texture;
 use crate::{Error, InputError};
 
-/// The samples around each patch that the scene generates: shading reads one.
+/// Samples around each generated patch; shading reads one.
 pub(super) const MARGIN: u32 = 1;
 
-/// Makes terrain: what a scene keeps of it, its patches as instances, and how they are drawn, in a chunk for each part of the
-/// heights that one binding holds.
+/// Makes terrain: host data, one instance per patch, and drawables. Each part of the heights that one binding holds becomes
+/// a chunk.
 pub(in crate::scene) async fn made(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -92,7 +92,7 @@ async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<V
     generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await
 }
 
-/// How the patches of one part are drawn; `first` is the number of the first of them.
+/// The drawable of one part's patches. `first` is the index of its first patch.
 fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
     (source, zones, triangles): (&TerrainSource, &Materials, &Buffer<u32>),
@@ -128,7 +128,7 @@ fn drawable(
     Ok(TerrainDrawable::new(gpu, layouts, geometry, source.style)?)
 }
 
-/// Patches as shaders see them, the first with the first window.
+/// Patches in shader format; the first one has the first window.
 pub(in crate::scene) fn listed(config: &Config, patches: &[[i32; 2]]) -> Vec<TerrainPatch> {
     let (edge, tiles) = (config.patch_size as i32 - 1, config.tiles_per_patch());
     let patch = |(window, patch): (u32, &[i32; 2])| TerrainPatch {

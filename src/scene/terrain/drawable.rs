@@ -1,4 +1,4 @@
-//! Patches of terrain on the device, as a renderer draws them.
+//! Terrain patches on the device, as a renderer draws them.
 
 use crate::gpu::bindings::render::scene_terrain;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Uniform};
@@ -9,34 +9,34 @@ use crate::scene::specialization::Specialization;
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::terrain::materials::Materials;
 
-/// The buffers of a terrain.
+/// Device buffers of a terrain.
 #[derive(Debug, Clone)]
 pub(crate) struct TerrainGeometry {
-    /// What patches have in common.
+    /// Parameters shared by all patches.
     pub params: Uniform<TerrainParams>,
-    /// Windows of heights in 1/65536 units.
+    /// Height windows in 1/65536 units.
     pub heights: Buffer<i32>,
-    /// One per instance.
+    /// Patch per instance.
     pub patches: Buffer<TerrainPatch>,
-    /// The triangles of a patch: [`patch_indices`].
+    /// Triangles of a patch: [`patch_indices`].
     pub indices: Buffer<u32>,
     /// Zones and their textures.
     pub zones: Materials,
 }
 
-/// Patches of terrain on the device.
+/// Terrain patches on the device.
 #[derive(Debug, Clone)]
 pub(crate) struct TerrainDrawable {
-    /// Its buffers.
+    /// The buffers.
     pub geometry: TerrainGeometry,
     /// Bind group 2; bind group 1 belongs to the view.
     pub group: Group,
-    /// What its pipelines are compiled from.
+    /// Specialization of its pipelines.
     pub specialization: Specialization,
 }
 
 impl TerrainDrawable {
-    /// Binds buffers. When one of them is replaced, bind all anew.
+    /// Binds the buffers. If one of them is replaced, all must be bound again.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -77,8 +77,8 @@ impl Drawable for TerrainDrawable {
     }
 }
 
-/// The triangles of a patch of `size` × `size` vertices, row by row, counter-clockwise seen from above. The diagonal of
-/// each cell runs from its south-west to its north-east.
+/// Triangle indices of a patch of `size` × `size` vertices, row by row, counter-clockwise seen from above. The diagonal of
+/// each cell runs from south-west to north-east.
 pub(crate) fn patch_indices(size: u32) -> Vec<u32> {
     let cells = || 0..size.saturating_sub(1);
     let corners = |x: u32, y: u32| {
@@ -97,7 +97,7 @@ mod tests {
     fn a_patch_has_the_diagonals_of_its_strips() {
         assert_eq!(patch_indices(2), [0, 2, 1, 1, 2, 3]);
         let size = 5;
-        // A strip for each row of cells.
+        // One strip per row of cells.
         let strip = |row: u32| {
             let corner = move |index: u32| (row + (index & 1)) * size + (index >> 1);
             (0..2 * size - 2).map(move |at| [0, 1, 2].map(|next| corner(at + next)))
@@ -111,14 +111,15 @@ mod tests {
         let found: Vec<_> =
             indices.chunks(3).map(|corners| sorted([corners[0], corners[1], corners[2]])).collect();
         assert_eq!(found, expected);
-        // A vertex has one corner in all triangles, as `vertex_wired` of `wgsl/render/scene_terrain.wgsl` says.
+        // Each vertex has the same corner index in all of its triangles, which `vertex_wired` of
+        // `wgsl/render/scene_terrain.wgsl` relies on.
         let corner = |vertex: u32| (vertex % size + 2 * (vertex / size)) % 3;
         assert!(indices.chunks(3).all(|corners| {
             let mut own = [0, 1, 2].map(|at| corner(corners[at]));
             own.sort_unstable();
             own == [0, 1, 2]
         }));
-        // Seen from above, where y runs down the page, counter-clockwise triangles have a positive product here.
+        // Seen from above, y points down the page, so this product is positive for counter-clockwise triangles.
         let place = |vertex: u32| [vertex % size, vertex / size].map(|at| at as i32);
         for corners in indices.chunks(3) {
             let [a, b, c] = [0, 1, 2].map(|at| place(corners[at]));

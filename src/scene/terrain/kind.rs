@@ -1,4 +1,4 @@
-//! Terrain as what an object is.
+//! Terrain as a kind of object.
 
 use std::any::Any;
 
@@ -17,10 +17,10 @@ use crate::scene::ray::SurfaceHit;
 use crate::{Error, InputError};
 
 impl Terrain {
-    /// Whether it can be made again on another device.
+    /// Checks that the terrain can be made again on another device.
     ///
     /// # Errors
-    /// [`InputError`] for terrain made from fields, which were on the device that was lost.
+    /// [`InputError`] for terrain made from fields, because they were on the lost device.
     fn check_can_be_rebuilt(&self) -> Result<(), InputError> {
         match self.source.fields() {
             None => Ok(()),
@@ -37,12 +37,12 @@ impl ObjectKind for Terrain {
         "terrain"
     }
 
-    /// Its patches are its instances.
+    /// The instances are the patches.
     fn is_spawned(&self) -> bool {
         false
     }
 
-    /// It does not grow.
+    /// Terrain does not grow.
     fn renew(&mut self, _: &Gpu, _: &SceneLayouts, _: usize, _: &mut Vec<Chunk>) -> Result<(), Error> {
         self.morphing.iter_mut().for_each(Morphing::refresh);
         Ok(())
@@ -86,7 +86,7 @@ impl ObjectKind for Terrain {
         self.morphing.iter_mut().for_each(|morphing| morphing.record(encoder));
     }
 
-    /// The ground is seen from both sides.
+    /// Both sides of the ground are visible, so both are hit.
     fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
         let Some(patch) = self.source.patches.get(instance.index as usize) else { return Ok(None) };
         let [x, z] = patch.map(|index| f64::from(index) * self.edge);
@@ -95,7 +95,7 @@ impl ObjectKind for Terrain {
         Ok(hit.map(|hit| SurfaceHit { distance: hit.distance, normal: hit.normal }))
     }
 
-    /// Where its heights are unknown, that of its sphere.
+    /// Without known heights, the box of the patch's sphere.
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {
         let patch = self.source.patches.get(instance.index as usize);
         let extremes = patch.and_then(|patch| self.ground.extremes(*patch));

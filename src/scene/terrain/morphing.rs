@@ -1,4 +1,4 @@
-//! Terrain whose heights lie between those of two recipes.
+//! Terrain that blends the heights of two recipes.
 
 use crate::Error;
 use crate::gpu::{Gpu, Staged};
@@ -6,19 +6,19 @@ use crate::terrain::fields::Fields;
 use crate::terrain::morph::reference::morph;
 use crate::terrain::morph::{Morph, MorphedFields};
 
-/// The heights of two recipes, and the blend of them that is drawn.
+/// The heights of two recipes, and their blend.
 #[derive(Debug)]
 pub(in crate::scene) struct Morphing {
     blend: MorphedFields,
-    /// The windows of both recipes on the host, patch by patch.
+    /// Height windows of both recipes on the host, patch by patch.
     ends: [Vec<Vec<i32>>; 2],
     morph: Morph,
-    /// Whether the device does not have the blend yet.
+    /// Whether the device still needs to compute the blend.
     is_due: bool,
 }
 
 impl Morphing {
-    /// Blends two batches of fields on the device, and waits for it.
+    /// Blends two sets of fields on the device, and waits for it.
     pub async fn new(gpu: &Gpu, [from, to]: [Vec<Fields>; 2], morph: Morph) -> Result<Self, Error> {
         let blend = MorphedFields::new(gpu, &from, &to)?;
         blend.set(gpu, morph)?;
@@ -27,12 +27,12 @@ impl Morphing {
         Ok(Self { blend, ends, morph, is_due: false })
     }
 
-    /// The fields of the blend, part by part.
+    /// The blended fields, part by part.
     pub fn fields(&self) -> Vec<Fields> {
         self.blend.fields().to_vec()
     }
 
-    /// Sets another time, and gives the windows of the blend as the device will have them.
+    /// Sets another time. Returns the blended windows, equal to those the device will compute.
     pub fn set(&mut self, time: Morph) -> impl Iterator<Item = Vec<i32>> {
         self.is_due |= time != self.morph;
         self.morph = time;
@@ -40,7 +40,7 @@ impl Morphing {
         from.iter().zip(to).map(move |(from, to)| morph(from, to, time.fixed_time()))
     }
 
-    /// Lets the next frame blend again, since the device may not have what was recorded.
+    /// Makes the next frame blend again, because the device may have missed the last recording.
     pub fn refresh(&mut self) {
         self.is_due = true;
     }

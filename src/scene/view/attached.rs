@@ -9,16 +9,16 @@ use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
 use crate::scene::object::Object;
 
-/// The jobs that place attached meshes, one for each character that carries any.
+/// Jobs that place attached meshes: one per list of attachments.
 #[derive(Debug, Default)]
 pub(in crate::scene) struct AttachedJobs {
-    /// The lists of attachments for which they were prepared.
+    /// Version of the attachment lists that the jobs are bound to.
     version: u64,
     jobs: Vec<Job>,
 }
 
 impl View {
-    /// Prepares the placements of attached meshes, unless they are prepared.
+    /// Prepares the jobs that place attached meshes, unless they are up to date.
     pub(in crate::scene) fn fit_attached(
         &mut self,
         gpu: &Gpu,
@@ -50,7 +50,7 @@ impl View {
         Ok(())
     }
 
-    /// Adds the placements of attached meshes to a compute pass.
+    /// Adds the jobs that place attached meshes to a compute pass.
     pub(in crate::scene) fn dispatch_attached(&self, pass: &mut wgpu::ComputePass<'_>) {
         let jobs = self.lists.iter().flat_map(|lists| &lists.attached.jobs);
         jobs.for_each(|job| job.dispatch(pass));

@@ -11,14 +11,14 @@ use crate::scene::statistics::ViewStatistics;
 use crate::scene::statistics::view::ViewCounts;
 
 impl View {
-    /// What the view saw in the last frame whose counts have arrived; `None` before the first, and unless
-    /// [`Scene::set_statistics`](crate::scene::Scene::set_statistics) asked for them. Nothing is waited for: they arrive
-    /// when the device has executed the frame and is polled, as each submission does.
+    /// Statistics of the last frame whose counts have arrived. `None` before the first, and unless
+    /// [`Scene::set_statistics`](crate::scene::Scene::set_statistics) turned them on. The call does not wait: counts arrive
+    /// when the device has executed the frame and is polled, which each submission does.
     pub fn statistics(&mut self) -> Option<&ViewStatistics> {
         self.counts.as_mut()?.last()
     }
 
-    /// Allocates what the counts of these objects need, or gives it up.
+    /// Allocates the buffers for the counts of these objects, or frees them.
     pub(in crate::scene) fn fit_counts(
         &mut self,
         gpu: &Gpu,
@@ -46,7 +46,7 @@ impl View {
         counts.record(encoder, lists.arguments.raw(), (frame, self.quality.pixels, focal), objects);
     }
 
-    /// The smallest focal length, in pixels, of the perspective cameras that decide how fine the view is.
+    /// The smallest focal length, in pixels, among the perspective cameras that decide the view's levels of detail.
     fn shortest_focal(&self) -> Option<f32> {
         let (_, view) = self.select_view(0, false).ok()?;
         let perspective = view.cameras().iter().filter(|camera| camera.perspective > 0.0);

@@ -1,4 +1,4 @@
-//! What a view sees of a scene, in buffers.
+//! Device buffers of a view: the visible instances and their draws.
 
 use super::attached::AttachedJobs;
 use crate::Error;
@@ -17,37 +17,37 @@ use crate::scene::order::Ordered;
 use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_view::SceneView;
 
-/// The draws of instances that are drawn one by one.
+/// Draws of sorted instances.
 #[derive(Debug)]
 pub(crate) struct SortedLists {
     pub job: Job,
     pub draws: Buffer<SceneDraw>,
-    /// The list of each draw, which has one entry.
+    /// Instance list of each draw; each has one entry.
     pub entries: Buffer<u32>,
 }
 
-/// What a view sees, in buffers for one layout of the scene.
+/// Device buffers of a view, for one layout of the scene.
 #[derive(Debug)]
 pub(crate) struct ViewLists {
     pub version: u64,
-    /// The lists of instances to draw.
+    /// Instance lists to draw.
     pub lists: Buffer<u32>,
-    /// The draws of all objects.
+    /// Draws of all objects.
     pub arguments: Buffer<SceneDraw>,
-    /// For each instance that is seen, the transform from the model's space to the corner of the view's cell. If the last frame
-    /// is kept, as many follow for meshes on bones as they were then.
+    /// Transform of each visible instance from model space to the corner of the view's cell. With motion history, as many
+    /// entries follow: the last frame's transforms of attached meshes.
     pub placements: Buffer<Affine>,
-    /// For each instance the decision of the last frame.
+    /// Last frame's decision per instance.
     last_decisions: Buffer<u32>,
     /// Bind group 0.
     pub group: Group,
-    /// The map of the sun's shadow in it.
+    /// The sun's shadow map that is bound in `group`.
     map: Option<wgpu::TextureView>,
-    /// For each object what its kind has in the view by itself.
+    /// Per object, the resources that its kind keeps per view.
     pub(in crate::scene) in_view: Vec<Option<Box<dyn KindInView>>>,
-    /// The draws of instances that are drawn one by one, if there are any.
+    /// Sorted draws, if there are any.
     pub sorted: Option<SortedLists>,
-    /// The instances that are drawn one by one, from back to front.
+    /// Sorted instances, from back to front.
     pub order: Vec<Ordered>,
     pub(super) select: Job,
     pub(super) list: Job,
@@ -113,7 +113,7 @@ impl ViewLists {
 }
 
 impl ViewLists {
-    /// Binds another map of the sun's shadow, unless it is bound.
+    /// Binds a sun's shadow map, unless it is bound already.
     pub(super) fn bind_map(
         &mut self,
         gpu: &Gpu,
@@ -139,7 +139,7 @@ fn in_view<'a>(
     InstancesInView { placements, instances, last_instances, last_decisions }
 }
 
-/// The draws of instances that are drawn one by one, if there are any, and the job that writes them.
+/// The sorted draws, if there are any, and the job that writes them.
 fn sorted(
     gpu: &Gpu,
     layout: &Layout,

@@ -1,4 +1,4 @@
-//! Views: a camera into a scene, with what it sees and how fine.
+//! Views: a camera into a scene, its visible instances and their levels of detail.
 
 mod attached;
 mod counted;
@@ -33,13 +33,13 @@ use uniforms::lod_camera;
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
 ///
-/// What is set of a view counts from the next [`Scene::record`](super::Scene::record) on. For half of a split screen,
+/// All settings of a view take effect in the next [`Scene::record`](super::Scene::record). For half of a split screen,
 /// [`Camera::viewport`] is the size of that half.
 ///
 /// # Examples
 ///
-/// The eye's view, and a shadow map of the sun, which sees only what casts shadows, also outside the eye's picture, as fine as
-/// the eye needs it.
+/// The eye's view, and the view of a sun's shadow map. The sun's view sees only casters, including those outside the eye's
+/// picture, at the levels of detail that the eye needs.
 ///
 /// ```no_run
 /// use glam::Vec3;
@@ -79,18 +79,18 @@ use uniforms::lod_camera;
 #[derive(Debug)]
 pub struct View {
     scene: SceneNumber,
-    /// The number of the scene's device on which it was made.
+    /// Number of the scene's device on which the view was made.
     device: u32,
-    /// The function that makes it again on another device.
+    /// Name of the function that remakes the view on another device.
     pub(crate) remade_by: &'static str,
     quality: Quality,
     camera: Option<Camera>,
-    /// The camera of its last frame, and the number of that frame.
+    /// Number and camera of the view's last frame.
     last: Option<(u64, Camera)>,
     lod_cameras: Vec<Camera>,
     mask: u16,
     casters: bool,
-    /// The shadow in which it shows the scene.
+    /// The sun's shadow that is applied in this view.
     shadow: Option<ViewShadow>,
     select: Uniform<SelectView>,
     drawn: Uniform<SceneView>,
@@ -99,14 +99,14 @@ pub struct View {
     counts: Option<ViewCounts>,
 }
 
-/// What a renderer needs to know of a view's last frame.
+/// Facts about a view's last frame that a renderer needs.
 #[derive(Debug, Default)]
 pub(super) struct Recorded {
     /// Whether the picture is a mirror image.
     pub mirrors: bool,
     /// Whether depth falls with distance.
     pub reversed: bool,
-    /// For each object, whether it has instances that are not mirrored, and such that are.
+    /// Per object: whether it has instances that are not mirrored, and whether it has mirrored ones.
     pub sides: Vec<[bool; 2]>,
 }
 
@@ -138,11 +138,11 @@ impl View {
         })
     }
 
-    /// Sets the camera, which stays until another is set. Field of view, viewport and direction of depth may change too.
+    /// Sets the camera. Field of view, viewport and depth direction may differ from the previous camera's.
     ///
     /// # Errors
-    /// [`InputError`] as [`Camera::validate`], and for a projection that is neither perspective nor parallel or whose near
-    /// plane is not ahead of the eye, where `depth` says; the camera stays what it was.
+    /// [`InputError`] as [`Camera::validate`], for a projection that is neither perspective nor parallel, and for a near
+    /// plane that, by `depth`, is not ahead of the eye. The camera then stays unchanged.
     pub fn set(&mut self, camera: Camera) -> Result<(), InputError> {
         camera.validate()?;
         lod_camera(&camera, camera.cell, self.quality.pixels)?;
@@ -150,7 +150,7 @@ impl View {
         Ok(())
     }
 
-    /// Sets the quality, which stays until another is set.
+    /// Sets the quality.
     ///
     /// # Errors
     /// [`InputError`] for pixels that are negative or not finite.
@@ -165,9 +165,9 @@ impl View {
         self.quality
     }
 
-    /// Lets other cameras decide the levels of detail: the finest that any of them needs. A shadow view takes those of
-    /// the main views, so that shadows fit what casts them. They stay until others are set, so set them whenever those
-    /// views' cameras change. Without any, the view's own camera decides.
+    /// Sets the cameras that decide the levels of detail: each instance gets the finest level that any of them needs.
+    /// Without any, the view's own camera decides. Give a shadow view the cameras of the main views, so that shadows match
+    /// their casters. Call this again whenever those cameras change.
     ///
     /// # Errors
     /// [`InputError`] for more than four cameras, and as [`View::set`].
@@ -188,23 +188,23 @@ impl View {
         Ok(())
     }
 
-    /// Shows only instances whose visibility mask ([`Scene::set_visibility_mask`](super::Scene::set_visibility_mask)) shares a bit with
-    /// `mask`; all of them at first.
+    /// Sets the view's mask: it shows only instances whose visibility mask
+    /// ([`Scene::set_visibility_mask`](super::Scene::set_visibility_mask)) shares a bit with `mask`. The default shows all.
     pub fn set_mask(&mut self, mask: u16) {
         self.mask = mask;
     }
 
-    /// Sets whether the view shows only instances that cast shadows; at first it shows all.
+    /// Sets whether the view shows only instances that cast shadows; the default is false.
     pub fn set_casters_only(&mut self, casters: bool) {
         self.casters = casters;
     }
 
-    /// The camera, if it was set.
+    /// The camera, if one was set.
     pub fn camera(&self) -> Option<&Camera> {
         self.camera.as_ref()
     }
 
-    /// Whether the view shows an instance with these flags if it is inside the view volume.
+    /// Whether the view shows an instance with these flags when it is inside the view volume.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn may_show(&self, flags: u32) -> bool {
         let is_in_mask = instance_flags_mask(flags) & u32::from(self.mask) != 0;
@@ -215,7 +215,7 @@ impl View {
         self.scene == scene
     }
 
-    /// Allocates what the view needs for a layout of these objects, unless it has it.
+    /// Allocates the view's buffers for a layout of these objects, unless they exist.
     pub(super) fn fit(
         &mut self,
         gpu: &Gpu,
@@ -236,23 +236,22 @@ impl View {
         Ok(())
     }
 
-    /// What a renderer needs to know of the last frame, if there was one.
+    /// Facts about the last frame that a renderer needs, if there was one.
     pub(super) fn last_recorded(&self) -> Option<&Recorded> {
         self.recorded.as_ref()
     }
 
-    /// Whether it was recorded in the last of so many frames.
+    /// Whether frame `frames − 1`, the last one, included this view.
     pub(super) fn is_of_frame(&self, frames: u64) -> bool {
         self.last.is_some_and(|(frame, _)| frame + 1 == frames)
     }
 
-    /// Remembers the camera of a frame that was recorded.
+    /// Stores the camera of a recorded frame.
     pub(super) fn recorded(&mut self, frame: u64) {
         self.last = self.camera.map(|camera| (frame, camera));
     }
 
-    /// Stages the view's uniforms. `sides` are what each object has, as [`Recorded::sides`]; a frame has a number, and a first
-    /// view.
+    /// Stages the view's uniforms. `sides` has the meaning of [`Recorded::sides`].
     pub(super) fn stage(
         &mut self,
         staged: &mut Staged,
@@ -283,14 +282,14 @@ impl View {
         Ok(())
     }
 
-    /// Orders what is drawn instance by instance.
+    /// Sorts the instances that are drawn one by one.
     pub(super) fn order<'a>(&mut self, objects: impl Iterator<Item = &'a Object>, selected: &SelectView) {
         if let (Some(lists), Some(camera)) = (&mut self.lists, &self.camera) {
             back_to_front(&mut lists.order, objects, (selected, camera));
         }
     }
 
-    /// The view as kernels see it.
+    /// The view's uniform for the selection kernels.
     pub(super) fn select_view(
         &self,
         blocks: u32,
@@ -317,7 +316,7 @@ impl View {
         Ok((camera, view))
     }
 
-    /// Adds culling, choice of levels and lists to a compute pass.
+    /// Adds culling, level selection and list building to a compute pass.
     pub(super) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);

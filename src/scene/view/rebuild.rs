@@ -1,4 +1,4 @@
-//! A view on another device, after its scene's was lost.
+//! Rebuilding a view on another device, after the scene's device was lost.
 
 use super::View;
 use crate::scene::handles::foreign;
@@ -12,12 +12,11 @@ impl Rebuild for View {
 }
 
 impl View {
-    /// Creates everything that the view has on the device again, after its scene was rebuilt on another one
-    /// ([`Scene::rebuild_async`]). Cameras, quality and mask stay; a shadow of
-    /// the sun is to be fitted again.
+    /// Recreates all device resources of the view after its scene was rebuilt on another device ([`Scene::rebuild_async`]).
+    /// Cameras, quality and mask stay; a sun's shadow must be fitted again.
     ///
     /// # Errors
-    /// [`InputError`] for another scene; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a view of another scene; [`crate::gpu::GpuError`].
     pub fn rebuild(&mut self, scene: &Scene) -> Result<(), Error> {
         if !self.is_of(scene.objects.scene()) {
             return Err(InputError::new("scene", "another", "must be the one that the view is of").into());
@@ -26,12 +25,12 @@ impl View {
         let Self { device, select, drawn, .. } = fresh;
         (self.device, self.select, self.drawn) = (device, select, drawn);
         (self.lists, self.counts, self.recorded, self.last) = (None, None, None, None);
-        // Its map was of the lost device.
+        // The shadow map belonged to the lost device.
         self.shadow = None;
         Ok(())
     }
 
-    /// Refuses a view that is not of a scene on its present device; `path` names the view.
+    /// Refuses a view that does not belong to the scene's present device; `path` names the view in the error.
     pub(crate) fn check(&self, scene: &Scene, path: &str) -> Result<(), InputError> {
         if !self.is_of(scene.objects.scene()) {
             return Err(foreign(path));

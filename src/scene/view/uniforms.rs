@@ -1,4 +1,4 @@
-//! A view as kernels and shaders see it.
+//! Uniforms of a view for kernels and shaders.
 
 use glam::{DMat4, DVec3, IVec3, Mat4, Vec3, Vec4};
 
@@ -11,7 +11,7 @@ use crate::scene::view::ViewShadow;
 use crate::shared::render::scene_view::SceneView;
 
 impl SceneView {
-    /// The view of a camera, and of the last frame's, under a light and in its shadow.
+    /// The uniform of a camera and its last frame's camera, under a light and with its shadow.
     pub(super) fn new(
         [camera, last]: [&Camera; 2],
         own: &LodCamera,
@@ -51,7 +51,7 @@ impl SceneView {
     }
 }
 
-/// The matrix from positions relative to the corner of a cell to the last frame's clip space.
+/// The matrix from positions relative to a cell's corner to the last frame's clip space.
 fn last_clip_from_world(last: &Camera, cell: [i32; 3]) -> Mat4 {
     match last.cell == cell {
         true => last.clip_from_cell(),
@@ -59,7 +59,7 @@ fn last_clip_from_world(last: &Camera, cell: [i32; 3]) -> Mat4 {
     }
 }
 
-/// The matrix from positions relative to the corner of a cell to a camera's clip space.
+/// The matrix from positions relative to a cell's corner to the clip space of a camera.
 pub(super) fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> DMat4 {
     let cells = [0, 1, 2].map(|axis| f64::from(cell[axis]) - f64::from(camera.cell[axis]));
     let moved = DMat4::from_translation(DVec3::from(cells) * f64::from(Placement::CELL));
@@ -96,7 +96,7 @@ impl SelectView {
     }
 }
 
-/// A camera that decides levels of detail, relative to the corner of a cell.
+/// A camera that decides levels of detail, relative to a cell's corner.
 pub(super) fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result<LodCamera, InputError> {
     let is_reversed = camera.depth == Depth::Reversed;
     let Camera { view_from_cell, clip_from_view, viewport, .. } = *camera;

@@ -8,8 +8,8 @@ use crate::InputError;
 use crate::asset::skeleton::inverse_bind;
 use crate::asset::{Influence, Influences, Mesh, Model, Skin};
 
-/// Two joints of one bone become one if they take each vertex of a skin to positions nearer to each other than
-/// this, as a fraction of the model's size at rest.
+/// Tolerance for merging two joints of one bone, as a fraction of the model's size at rest. They become one if they
+/// take each vertex of a skin to positions closer than this.
 const SAME: f64 = 1e-4;
 
 /// Rebinds the model's skins and meshes to the kept bones.
@@ -41,15 +41,15 @@ pub(super) fn rebound(
     Ok((skins, meshes))
 }
 
-/// A joint of a skin: the kept bone that it follows, and the transform of vertices into that bone's space.
+/// A joint of a skin: its kept bone, and the transform of vertices into that bone's space.
 struct Joint {
     bone: usize,
     bind: DAffine3,
     stored: [f32; 16],
 }
 
-/// Makes a skin whose joints are kept bones, those that were joints already first. Returns it with the new
-/// index of each joint of the old skin.
+/// Makes a skin of kept bones; bones that were joints already come first. Returns it with the new index of each joint
+/// of the old skin.
 fn rebound_skin(model: &Model, index: usize, remap: &Remap, rest: &Rest) -> (Skin, Vec<u32>) {
     let skin = &model.skins[index];
     let corners = corners(model, index);

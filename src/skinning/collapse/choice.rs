@@ -1,4 +1,4 @@
-//! Chooses the bones that collapse: one after another, the bone whose collapse displaces vertices least.
+//! Choice of the bones that collapse: repeatedly the bone whose collapse displaces vertices least.
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -15,12 +15,12 @@ use crate::skinning::pose::{Moment, bones_at};
 /// The largest number of poses of each clip in which costs are measured.
 const POSES: usize = 64;
 
-/// Displacements below this fraction of the model's size are taken for rounding.
+/// Displacements below this fraction of the model's size count as rounding.
 const UNSEEN: f64 = 1e-6;
 
 /// The kept bones, and the kept bone that each other bone follows.
 pub(super) struct Remap {
-    /// For each bone, itself if it is kept, or the kept bone that it follows.
+    /// For each bone, itself if it is kept, else the kept bone that it follows.
     follows: Vec<usize>,
     parents: Vec<Option<usize>>,
 }
@@ -35,7 +35,7 @@ impl Remap {
         self.follows[bone] == bone
     }
 
-    /// The bone itself if it is kept, or the kept bone that it follows.
+    /// The bone itself if it is kept, else the kept bone that it follows.
     pub(super) fn follows(&self, bone: usize) -> usize {
         self.follows[bone]
     }
@@ -53,7 +53,7 @@ impl Remap {
         chain
     }
 
-    /// For each bone, the index among the kept bones of the bone that it is or follows.
+    /// For each bone, the index among the kept bones of itself or of the bone that it follows.
     pub(super) fn indices(&self) -> Vec<u32> {
         let mut indices = vec![0; self.follows.len()];
         self.kept().zip(0..).for_each(|(bone, index)| indices[bone] = index);
@@ -74,15 +74,14 @@ impl Remap {
 /// weighted distance of a vertex from the bone.
 type Cost = [f64; 2];
 
-/// The poses and the bones from which to choose.
+/// The poses and bones to choose from.
 pub(super) struct Choice<'a> {
     rest: &'a Rest,
     /// For each pose, the matrices of all bones.
     poses: Vec<Vec<DAffine3>>,
     /// Bones that never collapse.
     stays: Vec<bool>,
-    /// For each bone, whether its scale is the same along all axes except for signs, at rest and in every
-    /// clip.
+    /// For each bone, whether its scale is uniform except for signs, at rest and in every clip.
     is_even: Vec<bool>,
     remap: Remap,
     costs: Vec<Option<Cost>>,
@@ -128,8 +127,8 @@ impl<'a> Choice<'a> {
         Ok(self.remap)
     }
 
-    /// Collapses the bone with the least cost, if there is one. Of equal costs the last bone is taken, which
-    /// is the deepest of its chain.
+    /// Collapses the bone with the least cost, and returns whether there was one. Of equal costs, the last bone is
+    /// taken, which is the deepest of its chain.
     fn collapse(&mut self) -> bool {
         let holds = self.holds();
         let is_candidate = |bone: &usize| !self.stays[*bone] && (self.is_even[*bone] || !holds[*bone]);
@@ -146,8 +145,7 @@ impl<'a> Choice<'a> {
         };
         let Some(best) = candidates.into_iter().rev().min_by(order) else { return false };
         let Some(into) = self.remap.kept_above(best) else { return false };
-        // The costs of these bones change: those below now follow another bone, and that bone receives the
-        // vertices.
+        // The costs of these bones change: bones below follow another bone now, and that bone receives the vertices.
         let below: Vec<usize> =
             self.remap.kept().filter(|bone| self.remap.kept_above(*bone) == Some(best)).collect();
         below.into_iter().chain([into]).for_each(|bone| self.costs[bone] = None);
@@ -166,7 +164,7 @@ impl<'a> Choice<'a> {
         holds
     }
 
-    /// The cost of letting a bone, and what has collapsed into it, follow the next kept bone above.
+    /// The cost of letting a bone, and the bones collapsed into it, follow the next kept bone above.
     fn cost(&self, bone: usize) -> Cost {
         let Some(above) = self.remap.kept_above(bone) else { return [f64::INFINITY; 2] };
         let group: Vec<usize> =

@@ -1,16 +1,15 @@
-//! Composes a chain of bones into one translation, rotation and scale.
+//! Composition of a chain of bones into one translation, rotation and scale.
 
 use glam::{DQuat, DVec3};
 
 use crate::asset::clip::{Clip, Interpolation, Part};
 use crate::asset::{Skeleton, Transform};
 
-/// The largest difference between a bone's scales along the axes, as a fraction of the largest, that still
-/// counts as uniform scale.
+/// Tolerance for uniform scale: the largest difference between the scales along the axes, as a fraction of the largest.
 const UNEVEN: f32 = 1e-4;
 
-/// The transform of a bone in the space of a bone above it. All bones of the chain but the last have uniform
-/// scale: the same along all axes, except for `signs`.
+/// The transform of a bone in the space of a bone above it. All bones of the chain but the last have uniform scale: the
+/// same along all axes except for `signs`.
 #[derive(Clone, Copy)]
 pub(super) struct Composed {
     pub translation: DVec3,
@@ -31,13 +30,13 @@ impl Composed {
         self.rotation * (self.scale * vector)
     }
 
-    /// The rotation of a bone below: uniform scale leaves it, and the signs mirror its axis.
+    /// The rotation of a bone below. Uniform scale leaves its axis unchanged, and the signs mirror it.
     pub(super) fn turned(&self, below: DQuat) -> DQuat {
         let axis = self.signs.element_product() * self.signs * DVec3::new(below.x, below.y, below.z);
         self.rotation * DQuat::from_xyzw(axis.x, axis.y, axis.z, below.w)
     }
 
-    /// Adds a bone below, whose scale has these signs.
+    /// Appends a bone below whose scale has these signs.
     pub(super) fn with(&self, below: &Transform, signs: DVec3) -> Self {
         let [translation, scale] =
             [below.translation, below.scale].map(|vector| DVec3::from(vector.map(f64::from)));
@@ -58,7 +57,7 @@ impl Composed {
     }
 }
 
-/// The signs of scales that are uniform except for these signs; `None` if the scales are not uniform.
+/// The signs of scales that are uniform except for signs; `None` if they are not.
 pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3> {
     let scales: Vec<[f32; 3]> = scales.into_iter().collect();
     let largest = scales.iter().max_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))?;
@@ -70,12 +69,12 @@ pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3>
     scales.iter().all(is_even).then(|| DVec3::from(signs.map(f64::from)))
 }
 
-/// The signs of a bone's scales in a clip, between its keys too; `None` if the scales are not uniform.
+/// The signs of a bone's scales in a clip, also between its keys; `None` if the scales are not uniform.
 pub(super) fn signs_in(clip: &Clip, bone: usize) -> Option<DVec3> {
     signs(clip.stored_keys(clip.track(bone, Part::Scale)).values.into_iter().map(|[x, y, z, _]| [x, y, z]))
 }
 
-/// Whether a part of a bone, its translation, rotation or scale, is constant in a clip.
+/// Whether a bone's translation, rotation or scale is constant in a clip.
 pub(super) fn is_constant(clip: &Clip, bone: usize, part: Part) -> bool {
     let keys = clip.stored_keys(clip.track(bone, part));
     let is_spline = keys.interpolation == Interpolation::CubicSpline && !keys.times.is_empty();

@@ -1,4 +1,4 @@
-//! Measures how far a collapsed model is from the original.
+//! Error of a collapsed model against the original.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -9,7 +9,7 @@ use crate::InputError;
 use crate::asset::{Affine, Mesh, Model};
 use crate::skinning::pose::{Moment, Pose, bones_at, weights_at};
 
-/// The largest distances of bones and of vertices in a pose, and the sum of the squares of the latter.
+/// Distances in one pose: the largest of bones, the largest of vertices, and the sum of squares over vertices.
 #[derive(Default)]
 struct Off {
     bones: f64,

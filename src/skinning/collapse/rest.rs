@@ -1,5 +1,4 @@
-//! A model at rest: the transforms of its bones, the positions of its vertices, and the distances of vertices
-//! from the bones that they follow.
+//! A model at rest: bone transforms, vertex positions, and distances of vertices from their bones.
 
 use glam::{DAffine3, DVec3};
 
@@ -22,11 +21,10 @@ pub(super) struct Rest {
     pub models: Vec<DAffine3>,
     /// The vertices that follow each bone.
     pub followers: Vec<Vec<Follower>>,
-    /// For each bone, the largest distance from its origin of the vertices that follow it or a bone below it,
-    /// and of the origins of bones below it; in the model's units.
+    /// The radius of each bone in the model's units: the largest distance from its origin of the vertices that follow
+    /// it or a bone below it, and of the origins of bones below it.
     pub radii: Vec<f64>,
-    /// Half the diagonal of a box around all vertices, or around the origins of all bones if there are no
-    /// vertices.
+    /// Half the diagonal of a box around all vertices, or around the origins of all bones if there are none.
     pub size: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Computes the tracks of bones whose parents have collapsed: the composed motion of the chain in the space
-//! of the kept bone above it.
+//! Tracks of bones whose parents have collapsed: the composed motion of the chain in the space of the kept bone above
+//! it.
 
 use glam::{DQuat, DVec3};
 
@@ -13,13 +13,14 @@ use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::finite;
 use crate::asset::{Model, Skeleton, Transform};
 
-/// How far interpolation between two composed keys of a bone may displace the points that follow it or bones
-/// below it, as a fraction of the model's size at rest (half the diagonal of a box around it). Translation,
-/// rotation and scale are each tested at a quarter, half and three quarters of the way. If the displacement
-/// is larger, up to 63 keys are added between the two.
+/// Allowed displacement of points by interpolation between two composed keys, as a fraction of the model's size at rest
+/// (half the diagonal of its bounding box). The points follow the bone or bones below it.
+///
+/// Translation, rotation and scale are each tested at a quarter, half and three quarters of the way. If the
+/// displacement is larger, up to 63 keys are added between the two.
 const BETWEEN_KEYS: f64 = 1e-3;
 
-/// The largest number of times that a stretch between two keys is halved.
+/// The largest number of times that an interval between two keys is halved.
 const HALVINGS: u32 = 6;
 
 /// Two values count as equal if they differ by less than this fraction of the larger.
@@ -48,8 +49,8 @@ pub(super) fn clip(
     Clip::of_stored(clip.name(), clip.duration(), tracks)
 }
 
-/// Gives a track without keys one key if its constant value differs from the rest transform, because tracks
-/// without keys stand for that.
+/// Adds a key to a track without keys if its constant value differs from the rest transform, because a track without
+/// keys means the rest transform.
 fn settled(mut keys: Keys, part: Part, rest: &Transform) -> Keys {
     if keys.times.is_empty() {
         let rest = value(rest, part);
@@ -63,7 +64,7 @@ fn settled(mut keys: Keys, part: Part, rest: &Transform) -> Keys {
     keys
 }
 
-/// The side of a jump from which a track is sampled.
+/// The side of a jump on which a track is sampled.
 #[derive(Clone, Copy, PartialEq)]
 enum Side {
     Before,
@@ -76,8 +77,7 @@ struct Chain<'a> {
     /// The collapsed bones, each with the signs of its scale.
     collapsed: Vec<(usize, DVec3)>,
     bone: usize,
-    /// How far points of the model are displaced if translation, rotation (in radians) and scale are off by
-    /// 1.
+    /// Displacement of the model's points per unit of error in translation, rotation (radians) and scale.
     levers: [f64; 3],
     tolerance: f64,
 }
@@ -130,8 +130,8 @@ impl<'a> Chain<'a> {
         self.above(time, side).with(&local(self.clip, self.bone, time, side), DVec3::ONE).transform()
     }
 
-    /// The bone's own keys mapped through collapsed bones that do not move. This is exact, because the map is
-    /// linear in the values.
+    /// The bone's own keys, mapped through collapsed bones that do not move. This is exact, because the map is linear
+    /// in the values.
     fn mapped(&self, part: Part) -> Keys {
         let above = self.above(0.0, Side::After);
         let mut keys = self.clip.stored_keys(self.clip.track(self.bone, part));
@@ -152,8 +152,7 @@ impl<'a> Chain<'a> {
         keys
     }
 
-    /// Keys at the key times of all tracks of the chain, and between them where linear interpolation would
-    /// not suffice.
+    /// Keys at the key times of all tracks of the chain, and between them where linear interpolation is not sufficient.
     fn sampled(&self) -> [Keys; 3] {
         let tracks = self.moving(self.collapsed.iter().map(|(bone, _)| *bone).chain([self.bone]));
         let mut times: Vec<f32> = tracks.iter().flat_map(|keys| keys.times.iter().copied()).collect();
@@ -175,7 +174,7 @@ impl<'a> Chain<'a> {
         Part::ALL.map(|part| keys(&poses, part, interpolation))
     }
 
-    /// Adds keys between two keys if linear interpolation would be too far off.
+    /// Adds keys between two keys if linear interpolation is too far off.
     fn halve(&self, ends: [(f32, Transform); 2], halvings: u32, poses: &mut Vec<(f32, Transform)>) {
         let [(from, start), (to, end)] = ends;
         let at = |fraction: f32| from + (to - from) * fraction;
@@ -249,8 +248,8 @@ fn between(part: Part, start: [f32; 4], end: [f32; 4], fraction: f32) -> [f32; 4
     slerp(start, if dot < 0.0 { end.map(|x| -x) } else { end }, fraction)
 }
 
-/// The distance between two values of a part: of vectors for translation, in radians for rotation, and the
-/// largest difference for scale.
+/// The distance between two values of a part: Euclidean for translation, in radians for rotation, the largest component
+/// difference for scale.
 fn distance(part: Part, a: [f32; 4], b: [f32; 4]) -> f64 {
     let [a, b] = [a, b].map(|value| glam::DVec4::from_array(value.map(f64::from)));
     match part {

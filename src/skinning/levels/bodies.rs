@@ -1,5 +1,5 @@
-//! Rigid bodies: vertices that follow one bone alone have the same distances from each other in every pose, as long as the
-//! bone is not stretched. What is found of them in one pose holds in all.
+//! Rigid bodies: sets of vertices that follow the same single bone. Their mutual distances are the same in every pose,
+//! unless the bone is stretched. A distance found in one pose holds in all.
 
 use std::collections::BTreeSet;
 
@@ -12,24 +12,23 @@ use crate::mesh::simplify::NO_BODY;
 use crate::skinning::palette::reference::palette;
 use crate::skinning::pose::{Moment, bones_at};
 
-/// The largest part by which distances on a body may differ between two moments.
+/// The largest relative difference of distances on a body between two moments.
 pub(super) const STRETCH: f32 = 1e-4;
 
-/// How far rounding may move a position, as a fraction of the largest number that is added up to it: 64 times half of an
-/// f32's last place.
+/// Bound on the rounding of a position, as a fraction of the largest summand: 64 times half an ulp of f32.
 const ROUNDING: f32 = 4e-6;
 
 /// The bodies of a model's meshes.
 pub(super) struct Bodies {
     /// For each mesh of the model, the body of each vertex, or [`NO_BODY`].
     of: Vec<Vec<u32>>,
-    /// How far rounding may move a position at any of the moments, in the model's units.
+    /// Bound on the rounding of a position at any of the moments, in the model's units.
     pub rounding: f32,
 }
 
 impl Bodies {
-    /// The bodies of some meshes: bones that are not stretched between any two of these moments. There is at least one
-    /// moment.
+    /// The bodies of some meshes, from bones that are not stretched between any two of these moments. There is at least
+    /// one moment.
     pub fn new(model: &Model, meshes: &[usize], moments: &[Moment]) -> Self {
         let skins: BTreeSet<usize> = meshes.iter().map(|mesh| model.meshes[*mesh].skin).collect();
         let skins: Vec<(usize, f32)> =
@@ -44,7 +43,7 @@ impl Bodies {
         let (is_rigid, largest) = moments.par_iter().map(look).reduce(none, |(a, largest), (b, other)| {
             (a.iter().zip(&b).map(|(a, b)| *a && *b).collect(), largest.max(other))
         });
-        // A bone that is stretched in one skin is no body in any.
+        // A bone that is stretched in one skin is not a body in any skin.
         let mut is_body = vec![true; model.skeleton.len()];
         let bones = skins.iter().flat_map(|(skin, _)| &model.skins[*skin].bones);
         bones.zip(is_rigid).for_each(|(bone, is_rigid)| is_body[*bone as usize] &= is_rigid);
@@ -61,17 +60,17 @@ impl Bodies {
     }
 }
 
-/// The body that some vertices share, or [`NO_BODY`].
+/// The body that all three vertices share, or [`NO_BODY`].
 pub(super) fn common(bodies: &[u32], vertices: &[u32; 3]) -> u32 {
     let [a, b, c] = vertices.map(|vertex| bodies[vertex as usize]);
     if a == b && b == c { a } else { NO_BODY }
 }
 
-/// What the bones of some skins do at a moment.
+/// The bones of some skins at a moment.
 struct Look {
     /// For each bone of each skin, the products of its matrix's columns.
     squares: Vec<Mat3>,
-    /// The largest number that is added up to a position.
+    /// The largest summand of a position.
     largest: f32,
 }
 
@@ -93,17 +92,19 @@ impl Look {
     }
 }
 
-/// Whether a bone with these products of columns has the same lengths in every direction as another, up to [`STRETCH`].
+/// Whether two bones, given the products of their columns, stretch equally in every direction, up to [`STRETCH`].
 fn is_alike(first: &Mat3, other: &Mat3) -> bool {
     let trace = first.x_axis.x + first.y_axis.y + first.z_axis.z;
-    // At most the smallest eigenvalue: the product of all three by the square of the mean of the others.
+    // A lower bound of the smallest eigenvalue: the product of all three, divided by the squared mean of the two
+    // others.
     let least = 4.0 * first.determinant() / (trace * trace);
     let off = (*first - *other).to_cols_array().into_iter().fold(0.0, |most: f32, x| most.max(x.abs()));
-    // Three times the largest entry bounds the norm. Squares of lengths differ by twice as much as lengths. Not for NaN.
+    // Three times the largest entry bounds the norm. Squares differ by twice the relative difference of lengths. False
+    // for NaN.
     3.0 * off <= 2.0 * STRETCH * least
 }
 
-/// The distance from the origin within which a skin's vertices are before skinning.
+/// The largest distance from the origin of a skin's vertices before skinning.
 fn reach(model: &Model, meshes: &[usize], skin: usize) -> f32 {
     let length = |vector: &[f32; 3]| Vec3::from(*vector).length();
     let own = meshes.iter().map(|mesh| &model.meshes[*mesh]).filter(|mesh| mesh.skin == skin);

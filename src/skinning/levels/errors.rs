@@ -1,5 +1,5 @@
-//! The errors of levels: the largest distance of any sample in any pose. Most samples are known to be nearer than another one
-//! before they are looked at, so that all poses can be.
+//! The errors of levels: the largest distance of any sample in any pose. Most samples are ruled out in advance, because
+//! another one is known to be farther. This makes it feasible to examine all poses.
 
 use std::ops::{ControlFlow, Range};
 
@@ -14,36 +14,35 @@ use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::NO_BODY;
 use crate::skinning::pose::{Moment, bones_at};
 
-/// Number of moments that are looked at between two reports of progress.
+/// Number of moments between two reports of progress.
 const BATCH: usize = 64;
 
 /// The samples of several levels that may be the farthest of their level at some moment.
 pub(super) struct Suspects {
-    /// What positions are divided by.
+    /// Positions are divided by this.
     unit: f32,
-    /// How far rounding may move a position, in units.
+    /// Bound on the rounding of a position, in units.
     rounding: f32,
-    /// For each mesh that is simplified together with others, the vertices whose positions are needed, one mesh after the
-    /// other.
+    /// The vertices whose positions are needed, for each mesh of a group that is simplified as one.
     vertices: Vec<Vec<u32>>,
     all: Vec<Suspect>,
     triangles: Vec<[u32; 3]>,
-    /// For each level, the least that its error can be.
+    /// A lower bound of each level's error.
     least: Vec<f32>,
 }
 
 struct Suspect {
     level: u32,
     sample: Sample,
-    /// The point that was nearest in the first pose.
+    /// The nearest point in the first pose.
     foot: Sample,
     /// The triangles close to it, in [`Suspects::triangles`].
     near: Range<u32>,
 }
 
 impl Suspects {
-    /// `first` is the first key pose, in multiples of `unit`; `rounding` is in these too. `bodies` has the rigid body of each
-    /// vertex.
+    /// `first` is the first key pose and `rounding` the rounding bound, both in multiples of `unit`. `bodies` has the
+    /// rigid body of each vertex.
     pub(super) fn new(
         whole: &Whole<'_>,
         sides: &[Sides],
@@ -70,7 +69,7 @@ impl Suspects {
         suspects
     }
 
-    /// Lists the vertices that are needed, and names vertices by their places in this list.
+    /// Lists the vertices that are needed, and replaces vertex indices by their positions in this list.
     fn number_anew(&mut self, whole: &Whole<'_>) {
         let mut places = vec![0; whole.vertices()];
         let used = self.all.iter().flat_map(|one| [&one.sample.0, &one.foot.0]).chain(&self.triangles);
@@ -88,7 +87,7 @@ impl Suspects {
         samples.chain(&mut self.triangles).flatten().for_each(|vertex| *vertex = places[*vertex as usize]);
     }
 
-    /// Raises the errors of levels to what they are when vertices have these positions.
+    /// Raises the errors of levels to their values at these vertex positions.
     fn look(&self, points: &[Vec3], errors: &mut [f32]) {
         let point = |vertex: u32| points[vertex as usize];
         for suspect in &self.all {
@@ -107,7 +106,7 @@ impl Suspects {
     }
 }
 
-/// The samples of a level that may be farthest, their triangles, and the least that the level's error can be.
+/// The samples of a level that may be farthest, their triangles, and a lower bound of the level's error.
 fn suspects_of(
     level: u32,
     sides: &Sides,
@@ -133,7 +132,7 @@ fn suspects_of(
         .collect();
     let (mut all, mut triangles) = (Vec::new(), Vec::new());
     for (sample, foot, near, most) in found {
-        // Not for NaN.
+        // False for NaN.
         if most <= least {
             continue;
         }
@@ -156,7 +155,7 @@ fn foot_of(wanted: Vec3, near: &[[u32; 3]], point: &impl Fn(u32) -> Vec3) -> (Sa
     })
 }
 
-/// Barycentric coordinates of a point of a triangle; those of a corner where the triangle has no area.
+/// Barycentric coordinates of a point of a triangle; those of a corner if the triangle has no area.
 fn parts_of(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
     let normal = (b - a).cross(c - a);
     let area = normal.length_squared();
@@ -169,8 +168,8 @@ fn parts_of(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
     [first, second, 1.0 - first - second]
 }
 
-/// The largest distance of each level of several groups of meshes at any of these moments, in units of each. `watch` gets the
-/// number of moments that were looked at, and may break.
+/// The largest distance of each level of several groups of meshes at any of these moments, in each group's unit.
+/// `watch` gets the number of moments examined so far, and may break.
 pub(super) fn errors(
     model: &Model,
     groups: &[(&Whole<'_>, &Suspects)],
@@ -178,7 +177,7 @@ pub(super) fn errors(
     watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> ControlFlow<(), Vec<Vec<f32>>> {
     let mut errors: Vec<Vec<f32>> = groups.iter().map(|(_, suspects)| suspects.least.clone()).collect();
-    // Moments far from each other first: they soon tell how far samples are off, so that others need not be looked at.
+    // Widely spaced moments come first: they soon give large distances, which rule out most other samples.
     let stride = moments.len().div_ceil(BATCH).max(1);
     let order: Vec<Moment> =
         (0..stride).flat_map(|first| moments.iter().skip(first).step_by(stride)).copied().collect();

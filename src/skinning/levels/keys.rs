@@ -1,6 +1,7 @@
-//! The key poses that decide the levels of meshes, and their size in them. The error of a level is a fraction of that
-//! size and does not depend on the positions with which the meshes were bound, whose units the inverse bind
-//! matrices may change.
+//! The key poses that decide the levels of meshes, and the meshes' size in them.
+//!
+//! The error of a level is a fraction of that size. It does not depend on the bind positions, whose units the inverse
+//! bind matrices may change.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -12,12 +13,12 @@ use crate::skinning::pose::Moment;
 /// Number of the clips' moments that serve as key poses.
 const MOMENTS: usize = 24;
 
-/// The rest pose is ignored if it is larger or smaller than the mesh in clips by more than this factor, since
-/// it is not seen then.
+/// The rest pose is ignored if its size differs from the mesh's in clips by more than this factor, because it is not
+/// seen then.
 const UNLIKE: f32 = 2.0;
 
-/// The key poses, in multiples of a unit of their own, so that numbers have the same magnitude in every model.
-/// The first is the rest pose or, if its size differs from the others' too much, the largest of these.
+/// The key poses, in multiples of a common unit, so that numbers have the same magnitude in every model. The first is
+/// the rest pose. If its size differs too much from the others', it is the largest of these.
 pub(super) struct Keys {
     pub poses: Vec<Vec<[f32; 3]>>,
     /// The normals of the first pose, vertex by vertex.
@@ -32,7 +33,7 @@ impl Keys {
     pub fn new(whole: &Whole<'_>, moments: &[Moment]) -> Self {
         let mut all: Vec<Key> =
             key_moments(moments).into_par_iter().map(|moment| Key::new(whole, moment)).collect();
-        // Takes the first of several equally large ones.
+        // Takes the first of several equally large poses.
         let largest = (1..all.len()).rev().max_by(|a, b| all[*a].size.total_cmp(&all[*b].size));
         if let Some(largest) = largest.filter(|largest| all[0].is_unlike(all[*largest].size)) {
             all.swap(0, largest);
@@ -45,7 +46,7 @@ impl Keys {
         Self { poses: all.into_iter().map(|key| key.points).collect(), normals, size: size / unit, unit }
     }
 
-    /// For each mesh the factor of texture coordinates, by the first pose.
+    /// The weight of texture coordinates for each mesh, from the first pose.
     pub fn texture_factors(&self, whole: &Whole<'_>) -> Vec<f32> {
         let mut areas = vec![TextureArea::default(); whole.meshes.len()];
         for triangle in whole.indices.chunks_exact(3) {

@@ -1,5 +1,5 @@
-//! The parts of a level and of its mesh that are close to each other. Collapses are local: the vertex into
-//! which a vertex has collapsed, and the triangles around it, are close to it in every pose.
+//! Pairs of nearby parts of a level and its mesh. Collapses are local: the vertex into which a vertex has collapsed,
+//! and the triangles around it, are close to it in every pose.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,13 +13,13 @@ use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::{NO_BODY, Simplified};
 use crate::surface::tangent::Adjacency;
 
-/// The largest number of triangles that may be nearest in some pose; those of the first poses are kept.
+/// The largest number of triangles kept as nearest in some pose; those of the first poses are kept.
 const MAX: usize = 32;
 
 /// For each item of a sequence, the triangles close to it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Near {
-    /// Where the triangles of each item begin; one more entry than there are items.
+    /// First triangle of each item; one more entry than there are items.
     starts: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
@@ -42,7 +42,7 @@ impl Near {
         &self.triangles[self.starts[thing] as usize..self.starts[thing + 1] as usize]
     }
 
-    /// The triangles of the things in a range, with other numbers of their corners.
+    /// The triangles of the items in a range, with renumbered corners.
     pub(super) fn part(&self, range: Range<usize>, local: impl Fn(u32) -> u32) -> Self {
         let is_own = |corners: &&[u32; 3]| range.contains(&(corners[0] as usize));
         let own = |thing: usize| self.triangles_of(thing).iter().filter(is_own);
@@ -59,11 +59,11 @@ impl Near {
 
 /// Both directions of a level's error: from the mesh to the level, and from the level to the mesh.
 pub(super) struct Sides {
-    /// For each vertex of the mesh that the level does not have.
+    /// Nearby triangles of the level, for each vertex of the mesh that the level lacks.
     pub(super) near: Near,
     /// Samples on the level, as barycentric coordinates in its triangles.
     samples: Vec<Sample>,
-    /// For each sample, triangles of the mesh.
+    /// Nearby triangles of the mesh, for each sample.
     behind: Near,
 }
 
@@ -71,7 +71,7 @@ pub(super) struct Sides {
 pub(super) type Sample = ([u32; 3], [f32; 3]);
 
 impl Sides {
-    /// `keys` are the poses that decide what is close. What is close is of the same mesh. `bodies` has the rigid body of each
+    /// Finds nearby parts in the poses `keys`; they belong to the same mesh. `bodies` has the rigid body of each
     /// vertex.
     pub(super) fn new(
         whole: &Whole<'_>,
@@ -89,7 +89,7 @@ impl Sides {
         let ring = around(level, &|vertex| vertex);
         let near = Near::of(before(whole, &ring, found, &point, keys, bodies).into_iter());
 
-        // Triangles of the meshes that have an area, by the points into which their corners have collapsed.
+        // The meshes' triangles with an area, by the points into which their corners have collapsed.
         let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
         let area: Vec<u32> = whole.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
         let became = around(&area, &|vertex| found.remap[vertex as usize]);
@@ -122,8 +122,8 @@ impl Sides {
         Self { near, samples, behind }
     }
 
-    /// All samples of both sides, each with the triangles of the other side that are close to it; those of vertices come
-    /// first. A sample is close to at least one triangle.
+    /// All samples of both sides, each with the nearby triangles of the other side; samples at vertices come first. A
+    /// sample has at least one triangle.
     pub(super) fn all(&self) -> impl Iterator<Item = (Sample, &[[u32; 3]])> {
         let vertices = (0..self.near.len()).map(|vertex| ([vertex as u32; 3], [1.0, 0.0, 0.0]));
         let forth = vertices.enumerate().map(|(at, sample)| (sample, self.near.triangles_of(at)));
@@ -133,7 +133,7 @@ impl Sides {
     }
 }
 
-/// For each vertex that a level does not have, triangles of the level that are close to it.
+/// Nearby triangles of the level, for each vertex that the level lacks.
 fn before(
     whole: &Whole<'_>,
     ring: &Around,
@@ -148,23 +148,23 @@ fn before(
     let mut search = Search::new(level, keys, bodies);
     // Many vertices have collapsed into the same one.
     let mut rings: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
-    // The triangles of each mesh, once they are needed.
+    // The triangles of each mesh, computed on demand.
     let mut owned: HashMap<u32, Vec<u32>> = HashMap::new();
     let near = |vertex: u32| {
         if is_left[vertex as usize] {
             return Vec::new();
         }
         let is_own = |at: &u32| whole.member_of(&corners_of(level, *at)) == whole.member[vertex as usize];
-        // There may be none for a vertex without triangles. The replacement itself may be a wedge that no triangle of the
-        // level uses.
+        // There may be none for a vertex without triangles. The replacement itself may be a wedge that no triangle of
+        // the level uses.
         let target = remap[vertex as usize];
         let own = || ring.two_rings(target, level, point).into_iter().filter(is_own).collect();
         let candidates = rings.entry((target, whole.member[vertex as usize])).or_insert_with(own);
         if !candidates.is_empty() || !is_used[vertex as usize] {
             return search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], candidates);
         }
-        // A piece of the mesh has become a point between triangles of other meshes, or the whole mesh has become one. What shows
-        // the mesh there is its own nearest triangle.
+        // A piece of the mesh became a point between triangles of other meshes, or the whole mesh became one. Its own
+        // nearest triangle represents it there.
         let member = whole.member[vertex as usize];
         let all = owned.entry(member).or_insert_with(|| (0..level.len() as u32 / 3).filter(is_own).collect());
         search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], all)
@@ -194,7 +194,7 @@ struct Search<'a> {
     keys: &'a [Vec<Vec3>],
     /// The rigid body of each vertex.
     bodies: &'a [u32],
-    /// For each triangle, in the first pose: the middle of a sphere around it, and the radius.
+    /// A sphere around each triangle in the first pose: center and radius.
     spheres: Vec<(Vec3, f32)>,
     /// Candidates with their squared distances in the first pose.
     found: Vec<(f32, u32)>,
@@ -207,7 +207,7 @@ impl<'a> Search<'a> {
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             let radius =
                 corners.map(|corner| corner.distance_squared(middle)).into_iter().fold(0.0, f32::max);
-            // Rounding moves a bound by less than this.
+            // Enlarged to cover rounding.
             (middle, 1.000_01 * radius.sqrt())
         };
         let spheres = indices.as_chunks::<3>().0.iter().map(sphere).collect();
@@ -219,7 +219,7 @@ impl<'a> Search<'a> {
         nearest_on_triangle(wanted, corners).distance_squared(wanted)
     }
 
-    /// Of these triangles, those that are nearest in one of the poses to a point that lies on a body.
+    /// Those candidates that are nearest, in one of the poses, to a point on a body.
     fn nearest_in_each(
         &mut self,
         wanted: impl Fn(&Vec<Vec3>) -> Vec3,
@@ -228,7 +228,7 @@ impl<'a> Search<'a> {
     ) -> Vec<[u32; 3]> {
         let corners = |triangle: u32| corners_of(self.indices, triangle);
         let is_rigid = |triangle: u32| body != NO_BODY && common(self.bodies, &corners(triangle)) == body;
-        // On one body, the triangle that is nearest in one pose is nearest in all.
+        // On one body, the nearest triangle of one pose is nearest in all poses.
         if self.keys.len() == 1 || candidates.iter().all(|triangle| is_rigid(*triangle)) {
             return self.nearest(wanted(&self.keys[0]), candidates).map(corners).into_iter().collect();
         }
@@ -257,7 +257,7 @@ impl<'a> Search<'a> {
         nearest
     }
 
-    /// The nearest of some triangles in the first pose, the first of several.
+    /// The nearest candidate in the first pose; the first of several.
     fn nearest(&self, wanted: Vec3, candidates: &[u32]) -> Option<u32> {
         let mut best = Nearest::default();
         best.start(self, wanted, candidates.iter().copied());
@@ -266,11 +266,11 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The nearest triangle so far, in the first pose; the first of several.
+/// The nearest triangle found so far, in the first pose; the first of several.
 struct Nearest {
     triangle: u32,
     squared: f32,
-    /// What is further away than this is not nearest.
+    /// Triangles further away than this are not nearest.
     within: f32,
 }
 
@@ -281,7 +281,7 @@ impl Default for Nearest {
 }
 
 impl Nearest {
-    /// Begins with the triangle whose middle is nearest, so that most others are seen to be further away.
+    /// Begins with the triangle whose center is nearest, so that most others are ruled out quickly.
     fn start(&mut self, search: &Search<'_>, wanted: Vec3, triangles: impl Iterator<Item = u32>) {
         let to_middle = |triangle: &u32| search.spheres[*triangle as usize].0.distance_squared(wanted);
         if let Some(likely) = triangles.min_by(|a, b| to_middle(a).total_cmp(&to_middle(b))) {
@@ -299,7 +299,7 @@ impl Nearest {
         }
     }
 
-    /// Whether all of a sphere is further away.
+    /// Whether a whole sphere is further away.
     fn is_beyond(&self, wanted: Vec3, (middle, radius): (Vec3, f32)) -> bool {
         middle.distance_squared(wanted) > (self.within + radius) * (self.within + radius)
     }
@@ -316,7 +316,7 @@ struct Clusters<'a> {
     spheres: Vec<(Vec3, f32)>,
     /// For each point, the rigid body of all of its triangles.
     bodies: Vec<u32>,
-    /// Whether the first pose shows all distances.
+    /// Whether there is only one pose, so that it decides alone.
     is_still: bool,
 }
 
@@ -326,7 +326,7 @@ impl<'a> Clusters<'a> {
             let all = || around.of(point).map(|triangle| search.spheres[triangle as usize]);
             let count = all().count().max(1) as f32;
             let middle = all().map(|(middle, _)| middle).sum::<Vec3>() / count;
-            // As in the spheres of triangles.
+            // Enlarged to cover rounding.
             let reach = |(other, radius): (Vec3, f32)| 1.000_01 * (other.distance(middle) + radius);
             (middle, all().map(reach).fold(0.0, f32::max))
         };
@@ -342,15 +342,15 @@ impl<'a> Clusters<'a> {
         Self { around, spheres: points().map(sphere).collect(), bodies, is_still }
     }
 
-    /// Whether the triangles of all of these points have the same distances from a body in every pose.
+    /// Whether the triangles of all of these points keep their distances from a body in every pose.
     fn are_rigid(&self, points: &[u32], body: u32) -> bool {
         let is_on =
             |point: &u32| self.bodies[*point as usize] == body || self.around.of(*point).next().is_none();
         self.is_still || body != NO_BODY && points.iter().all(is_on)
     }
 
-    /// The nearest triangle of some points in the first pose, of those that are `is_own`. `likely` is one of these, and looked
-    /// at first.
+    /// The nearest triangle around some points in the first pose, among those that pass `is_own`. `likely` is one of
+    /// the points and examined first.
     fn nearest(
         &self,
         search: &Search<'_>,
@@ -382,7 +382,7 @@ impl<'a> Clusters<'a> {
 struct Around(Adjacency);
 
 impl Around {
-    /// `corners` are points, three per triangle.
+    /// `corners` has three points per triangle.
     fn new(corners: &[u32], points: usize) -> Self {
         Self(Adjacency::new(points, corners))
     }
@@ -396,20 +396,20 @@ impl Around {
         self.0.at(point as usize).iter().map(|corner| corner / 3)
     }
 
-    /// The points of the triangles around the points of some vertices, each once.
+    /// The points of the triangles around these vertices' points, without duplicates.
     fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<u32> {
         let around = vertices.iter().flat_map(|vertex| self.of(of(*vertex)));
         sorted(around.flat_map(|triangle| corners_of(level, triangle)).map(of))
     }
 
-    /// The triangles around a vertex's point, and those around the corners of these.
+    /// The triangles around a vertex's point, and those around their corners.
     fn two_rings(&self, vertex: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<u32> {
         let points = self.beside(&[vertex], level, of);
         sorted(points.iter().flat_map(|point| self.of(*point)))
     }
 }
 
-/// Ascending, each once.
+/// Sorts ascending and removes duplicates.
 fn sorted(all: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut all: Vec<u32> = all.collect();
     all.sort_unstable();

@@ -1,6 +1,5 @@
-//! A mesh without hard edges: vertices that differ only in their normals are merged, so that a mesh in which
-//! every triangle has vertices of its own can be simplified. Its triangles then get back vertices with normals
-//! close to their own.
+//! A mesh without hard edges. Vertices that differ only in their normals are merged, so that a mesh whose triangles
+//! have their own vertices can be simplified. The triangles then get back vertices with normals close to their own.
 
 use std::collections::HashMap;
 
@@ -19,7 +18,7 @@ pub(super) struct Welded {
 }
 
 impl Welded {
-    /// Merges vertices of one mesh that have one position in every pose and the same texture coordinates.
+    /// Merges vertices of one mesh that have the same position in every pose and the same texture coordinates.
     pub(super) fn new(whole: &Whole<'_>, poses: &[Vec<[f32; 3]>]) -> Self {
         let points = weld(poses);
         let mut known: HashMap<(u32, u32, [u32; 2]), u32> = HashMap::with_capacity(whole.vertices());
@@ -38,7 +37,7 @@ impl Welded {
         Self { first, all }
     }
 
-    /// The triangles with vertices replaced by the first ones of their groups.
+    /// The triangles, with each vertex replaced by the first one of its group.
     pub(super) fn indices(&self, whole: &Whole<'_>) -> Vec<u32> {
         whole.indices.iter().map(|vertex| self.first[*vertex as usize]).collect()
     }
@@ -59,14 +58,14 @@ impl Welded {
         self.first.iter().map(|first| remap[*first as usize]).collect()
     }
 
-    /// The next level after one with these triangles, in which vertices have collapsed as `remap` says: its triangles, three
-    /// different points each, and for each vertex that the triangles of the level before use the one that takes its place. A
-    /// vertex that has collapsed gets the vertex at its new point whose normal is closest to its own, of those that are used.
+    /// The next level: its triangles, the replacement of each vertex that the level before uses, and a triangle count.
     ///
-    /// A mesh of which nothing is left becomes a point: all of its vertices go to one, and one triangle has it in all
-    /// corners. The number counts the other triangles.
+    /// The input is the level before and `remap`, the collapses. Each triangle has three different points. A collapsed
+    /// vertex is replaced by a used vertex at its new point, the one whose normal is closest to its own. If triangles
+    /// are flat-shaded, the normal of the new triangle counts instead.
     ///
-    /// Where triangles are flat-shaded, the normal of a vertex that has collapsed is to be that of the new triangle.
+    /// A mesh without remaining triangles becomes a point: all of its vertices go to one, and one triangle has it in
+    /// all corners. The count excludes these triangles.
     pub(super) fn next(
         &self,
         whole: &Whole<'_>,
@@ -112,8 +111,7 @@ impl Welded {
         (left, into, count)
     }
 
-    /// The vertex that takes the place of another one: at its new point, of those that are used, the one whose normal is
-    /// closest to `wanted`.
+    /// The replacement of a vertex: the used vertex at its new point whose normal is closest to `wanted`.
     fn corner(&self, normals: &[[f32; 3]], wanted: Vec3, remap: &[u32], used: &[bool], vertex: u32) -> u32 {
         let target = remap[vertex as usize];
         if target == self.first[vertex as usize] {
@@ -126,11 +124,11 @@ impl Welded {
     }
 }
 
-/// The cosine of the angle up to which the corners of a triangle have the same normal: 2.5°.
+/// Cosine of the angle (2.5°) within which the corners' normals of a flat-shaded triangle agree.
 const FLAT: f32 = 0.999;
 
-/// For each vertex, the sum of the new normals of flat-shaded triangles that have it, in the first key pose; 0 for a vertex of
-/// another triangle.
+/// For each vertex, the sum of the new normals of its flat-shaded triangles, in the first key pose; 0 if one of its
+/// triangles is not flat-shaded.
 fn flat_faces(keys: &Keys, remap: &[u32], triangles: &[u32]) -> Vec<Vec3> {
     let mut faces = vec![Vec3::ZERO; remap.len()];
     let mut is_smooth = vec![false; remap.len()];

@@ -1,4 +1,4 @@
-//! The meshes of a model that share borders, as one surface: what is closed across them stays closed at every level.
+//! The meshes of a model that share borders, as one surface. Closed borders stay closed at every level.
 
 mod shared;
 
@@ -13,22 +13,22 @@ use crate::skinning::attribute_weights::shown_uv;
 use crate::skinning::pose::{Moment, Pose, positions_of};
 pub(super) use shared::{Shared, shared};
 
-/// Meshes of a model, one after the other.
+/// Meshes of a model, concatenated.
 pub(super) struct Whole<'a> {
     model: &'a Model,
-    /// Indices in the model.
+    /// Indices of the meshes in the model.
     pub meshes: Vec<usize>,
-    /// Index of the first vertex of each mesh, and the number of all vertices.
+    /// First vertex of each mesh, then the number of all vertices.
     starts: Vec<u32>,
-    /// For each vertex the number of its mesh here.
+    /// For each vertex, its mesh as an index in [`Whole::meshes`].
     pub member: Vec<u32>,
-    /// For each vertex, the vertex whose position it takes: that of another mesh at the border, or its own.
+    /// For each vertex, the vertex whose position it takes: one of another mesh at the border, or itself.
     pub shared: Vec<u32>,
     /// The triangles of all meshes, in their order.
     pub indices: Vec<u32>,
-    /// [`shown_uv`].
+    /// Texture coordinates for simplification ([`shown_uv`]).
     pub uv: Vec<[f32; 2]>,
-    /// Before skinning.
+    /// Normals before skinning.
     pub normals: Vec<[f32; 3]>,
 }
 
@@ -77,14 +77,14 @@ impl<'a> Whole<'a> {
         self.member[triangle[0] as usize]
     }
 
-    /// Of a list of triangles those of one mesh, with the mesh's own indices.
+    /// The triangles of one mesh from a list, in the mesh's own indices.
     pub fn own(&self, indices: &[u32], member: usize) -> Vec<u32> {
         let of_member = |triangle: &&[u32]| self.member_of(triangle) as usize == member;
         let own = indices.chunks_exact(3).filter(of_member).flatten();
         own.map(|vertex| vertex - self.starts[member]).collect()
     }
 
-    /// A list that is as one of a mesh, of the mesh's own indices.
+    /// The index of a vertex in its own mesh.
     pub fn local(&self, vertex: u32) -> u32 {
         vertex - self.starts[self.member[vertex as usize] as usize]
     }
@@ -99,8 +99,8 @@ impl<'a> Whole<'a> {
         self.all(points).into_iter().map(|point| point / unit).collect()
     }
 
-    /// The positions of some vertices, listed for each mesh in the mesh's own numbers, at a moment at which bones have these
-    /// model matrices; in multiples of `unit`.
+    /// The positions of some vertices at a moment with these model matrices of bones, in multiples of `unit`. Vertices
+    /// are listed per mesh, in the mesh's own indices.
     pub fn some_points(
         &self,
         moment: Moment,
@@ -116,7 +116,7 @@ impl<'a> Whole<'a> {
         points
     }
 
-    /// The positions of all vertices, where meshes that share a border have the same positions there to the bit.
+    /// The positions of all vertices. Meshes that share a border have the same positions there, to the bit.
     pub fn joined_points(&self, moment: Moment) -> Vec<[f32; 3]> {
         let points = self.points(moment, 1.0);
         self.shared.iter().map(|vertex| points[*vertex as usize].to_array()).collect()

@@ -1,4 +1,4 @@
-//! One mesh and one skin from several.
+//! Joining of several meshes and skins into one.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use crate::InputError;
 use crate::asset::mesh::MAX_VERTICES;
 use crate::asset::{Influences, Mesh, MeshLevel, Model, MorphTarget, Skin};
 
-/// The pairs of a bone and an inverse bind matrix that vertices follow, each once, in the order of first use.
+/// The pairs of a bone and an inverse bind matrix that vertices follow, without duplicates, in the order of first use.
 #[derive(Default)]
 pub(super) struct Union {
     pub bones: Vec<u32>,
@@ -15,7 +15,7 @@ pub(super) struct Union {
 }
 
 impl Union {
-    /// The index of one of a skin's pairs.
+    /// The index of one of a skin's pairs, which is added if it is new.
     fn index(&mut self, skin: &Skin, at: u32) -> u32 {
         let (bone, bind) = (skin.bones[at as usize], skin.inverse_binds[at as usize]);
         *self.of_pairs.entry((bone, bind.map(f32::to_bits))).or_insert_with(|| {
@@ -25,7 +25,7 @@ impl Union {
         })
     }
 
-    /// The skin of all pairs. It has the name of the model's first skin.
+    /// The skin of all pairs, named as the model's first skin.
     pub fn skin(self, model: &Model) -> Skin {
         let name = model.skins.first().map_or_else(String::new, |skin| skin.name.clone());
         Skin { name, bones: self.bones, inverse_binds: self.binds }
@@ -37,9 +37,9 @@ pub(super) fn morphs(mesh: &Mesh) -> bool {
     mesh.targets.iter().any(|target| !target.vertices.is_empty())
 }
 
-/// One mesh from several, which have the same morph weights if they morph, with vertices and triangles in their
-/// order. `own` has the own level of each at every level of the object, whose levels 1, 2 … have these `errors`.
-/// There is at least one mesh.
+/// Joins meshes, with vertices and triangles in their order. There is at least one mesh; if they morph, they have the
+/// same weights. `own` has the own level of each mesh at every level of the object; `errors` are those of levels 1, 2
+/// ….
 pub(super) fn joined(
     model: &Model,
     meshes: &[&Mesh],
@@ -93,8 +93,8 @@ fn starts(meshes: &[&Mesh]) -> Result<Vec<u32>, InputError> {
     Ok(meshes.iter().map(start).collect())
 }
 
-/// The partners of all vertices, which skip the own levels that no level of the object has; none if a mesh has levels and no
-/// partners.
+/// The partners of all vertices. They skip own levels that no level of the object uses. Empty if a mesh has levels but
+/// no partners.
 fn partners(meshes: &[&Mesh], own: &[Vec<u32>], starts: &[u32]) -> Vec<u32> {
     let is_lacking = |mesh: &&Mesh| mesh.partners.is_empty() && !mesh.levels.is_empty();
     if meshes.iter().any(is_lacking) || meshes.iter().all(|mesh| mesh.partners.is_empty()) {
@@ -107,7 +107,7 @@ fn partners(meshes: &[&Mesh], own: &[Vec<u32>], starts: &[u32]) -> Vec<u32> {
                 return vertex;
             };
             let mut partner = vertex;
-            // A chain goes to coarser levels until a vertex is its own partner (`Mesh::validate`).
+            // A chain of partners leads to coarser levels until a vertex is its own partner (`Mesh::validate`).
             while coarsest[partner as usize] < *next && mesh.partners[partner as usize] != partner {
                 partner = mesh.partners[partner as usize];
             }
@@ -133,7 +133,7 @@ fn influences(model: &Model, meshes: &[&Mesh], union: &mut Union) -> Influences 
     all
 }
 
-/// For each target, the vertices that it moves in any of the meshes.
+/// For each target, the displaced vertices of all meshes.
 fn targets(meshes: &[&Mesh], starts: &[u32]) -> Vec<MorphTarget> {
     let target = |target: usize| {
         let mut all = MorphTarget::default();

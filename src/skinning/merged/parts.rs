@@ -4,21 +4,21 @@ use crate::InputError;
 use crate::asset::material::{Alpha, Sampling};
 use crate::asset::{Material, Mesh, Model};
 
-/// The largest number of parts of an object, unless morphed or blended meshes make it larger.
+/// The largest number of parts of an object, unless morphed or blended meshes need more.
 pub const MAX_PARTS: usize = 4;
 
-/// What the meshes of a part have in common.
+/// The draw state that the meshes of a part share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PartKey {
-    /// Whether alpha leaves out pixels: [`Alpha::Mask`] or [`Alpha::Dithered`].
+    /// Whether alpha cuts out pixels: [`Alpha::Mask`] or [`Alpha::Dithered`].
     pub cut_out: bool,
-    /// Whether it is blended with what is behind it: [`Alpha::Blended`].
+    /// Whether it is blended with the background: [`Alpha::Blended`].
     pub blended: bool,
     /// Whether triangles are also visible from inside.
     pub double_sided: bool,
-    /// How the textures of base colours are sampled; `None` if there are none.
+    /// Sampling of base colour textures; `None` if there are none.
     pub sampling: Option<Sampling>,
-    /// How normal maps are sampled; `None` if there are none.
+    /// Sampling of normal maps; `None` if there are none.
     pub normal_sampling: Option<Sampling>,
 }
 
@@ -39,7 +39,7 @@ impl PartKey {
         })
     }
 
-    /// Whether meshes of the other key may join without losing a sampling.
+    /// Whether meshes with the other key may join without losing a sampling.
     fn covers(&self, other: &Self) -> bool {
         let covers = |own: Option<Sampling>, other: Option<Sampling>| other.is_none() || own == other;
         covers(self.sampling, other.sampling) && covers(self.normal_sampling, other.normal_sampling)
@@ -48,10 +48,10 @@ impl PartKey {
 
 /// The meshes of a part.
 pub(super) struct Sorted {
-    /// Index of the group of meshes that become one.
+    /// Index of the group of meshes that are merged into one.
     pub group: usize,
     pub key: PartKey,
-    /// Indices of the meshes in the model, ascending; there is at least one.
+    /// Indices of the meshes in the model, ascending; at least one.
     pub meshes: Vec<usize>,
 }
 
@@ -69,7 +69,7 @@ impl Sorted {
     }
 }
 
-/// The parts of all groups, those of each group together. `keys` has the key of every mesh of the model.
+/// The parts of all groups, those of a group together. `keys` has the key of every mesh of the model.
 pub(super) fn parts(model: &Model, groups: &[Vec<usize>], keys: &[PartKey]) -> Vec<Sorted> {
     let mut parts: Vec<Sorted> = Vec::new();
     for (group, meshes) in groups.iter().enumerate() {
@@ -93,13 +93,13 @@ pub(super) fn parts(model: &Model, groups: &[Vec<usize>], keys: &[PartKey]) -> V
     parts
 }
 
-/// Whether another part fits a part.
+/// Whether any other part can take in the part at `at`.
 fn has_other(parts: &[Sorted], at: usize, fits: impl Fn(&Sorted, &Sorted) -> bool) -> bool {
     parts.iter().enumerate().any(|(other, part)| other != at && fits(part, &parts[at]))
 }
 
-/// Adds the meshes of a part to the part with the most triangles among those that fit it; of several, to the first. A
-/// sampling that this part lacks is added too.
+/// Merges a part into the fitting part with the most triangles, the first of several. That part also gets a sampling
+/// that it lacks.
 fn give_up(model: &Model, parts: &mut Vec<Sorted>, at: usize, fits: impl Fn(&Sorted, &Sorted) -> bool) {
     let given = parts.remove(at);
     let mut most: Option<&mut Sorted> = None;

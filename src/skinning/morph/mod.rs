@@ -8,7 +8,6 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::MorphPass;
 
-/// The largest difference allowed between a component and the reference, on any device, for four targets with
-/// deltas of at most 1, weights of at most 1.5 and vertices of at most 2: each sum, of at most 8, adds 2ε of
-/// itself and 2ε of the product, with ε = 2⁻²⁴.
+/// Parity bound for a component on any device: 5e-6, for four targets with deltas of at most 1, weights of at most 1.5
+/// and vertices of at most 2. Each sum, of at most 8, adds 2ε of its own and 2ε of the product, with ε = 2⁻²⁴.
 pub const MORPH_BOUND: f32 = 5e-6;

@@ -26,8 +26,8 @@ impl MorphPass {
         Ok(Self { kernel: kernel(false)?, paged: kernel(true)? })
     }
 
-    /// Prepares the active clusters, as far as their instances are seen and the clusters are within the level
-    /// of detail; all other vertices stay unchanged. `None` for a mesh without targets.
+    /// Prepares the active clusters of visible instances, within their level of detail. All other vertices stay
+    /// unchanged. `None` for a mesh without targets.
     ///
     /// # Errors
     /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
@@ -47,7 +47,7 @@ impl MorphPass {
         job(gpu, &self.kernel, (mesh, crowd), active, (seen, &crowd.morphed)).map(Some)
     }
 
-    /// As [`MorphPass::prepare_active`], into the pages that [`PagesPass`](crate::skinning::pages::PagesPass) deals out.
+    /// As [`MorphPass::prepare_active`], into pages assigned by [`PagesPass`](crate::skinning::pages::PagesPass).
     /// Clusters without a page are skipped.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl MorphPass {
     }
 }
 
-/// `seen` are the words of the levels of detail, or the page table.
+/// `seen` is the LOD words of instances, or the page table.
 fn job(
     gpu: &Gpu,
     kernel: &Kernel,

@@ -3,8 +3,8 @@
 use crate::asset::Mesh;
 use crate::skinning::vertex::{Vertex, vertices_of};
 
-/// The vertices of a mesh before skinning, with these weights of its targets. Normals and tangents are sums and
-/// not normalized.
+/// The vertices of a mesh before skinning, with these weights of its targets. Normals and tangents are sums, not
+/// normalized.
 ///
 /// # Panics
 /// For a mesh that [`Mesh::validate`] refuses.

@@ -1,5 +1,4 @@
-//! The weights of a mesh's morph targets in a set of clips, arranged for the kernel that evaluates them for
-//! each instance of a crowd in each frame.
+//! Morph weights of a mesh in a set of clips, arranged for the kernel that evaluates them per instance and frame.
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
@@ -15,11 +14,11 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{MorphWeightsJob, MorphWeightsPass};
 
-/// The largest difference allowed between a weight and the reference, on any device, for values and tangents
-/// (per second) of at most 1, keys 1/8 to 1 s apart, and times up to 16 s.
+/// Parity bound for a weight on any device: 1.3e-4, for values and tangents (per second) of at most 1, keys 1/8 to 1 s
+/// apart, and times up to 16 s.
 ///
-/// Let ε = 2⁻²⁴. A time carries 3ε of 16 s, which in segments of 1/8 s is 2.3e-5 of a segment. The slope of a
-/// spline there is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline carries some 40ε.
+/// Let ε = 2⁻²⁴. A time carries 3ε of 16 s, which in segments of 1/8 s is 2.3e-5 of a segment. The slope of a spline
+/// there is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline carries some 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
 
 /// The keys of a clip in a [`WeightSet`].
@@ -33,7 +32,7 @@ pub struct WeightEntry {
     pub keys: u32,
     /// Index of its first value.
     pub first_value: u32,
-    /// How weights between keys are interpolated.
+    /// Interpolation of weights between keys.
     pub interpolation: Interpolation,
 }
 
@@ -54,15 +53,15 @@ pub struct WeightSet {
     pub entries: Vec<WeightEntry>,
     /// Key times in seconds.
     pub times: Vec<f32>,
-    /// Values, key by key: one per target, in splines three.
+    /// Values, key by key: one per target; for splines, three.
     pub values: Vec<f32>,
     /// Number of morph targets.
     pub targets: usize,
 }
 
 impl WeightSet {
-    /// The weights of a mesh in a set of clips; `clips` gives the index in the model of each clip of the set. A
-    /// clip that does not animate the weights gets one key, [`Mesh::weights`].
+    /// The weights of a mesh in a set of clips. `clips` has the model's index of each clip of the set. A clip that does
+    /// not animate the weights gets one key, [`Mesh::weights`].
     ///
     /// # Errors
     /// [`InputError`] if there is not one clip of the model for each clip of the set.

@@ -68,10 +68,11 @@ impl MorphWeightsPass {
 pub type MorphWeightsJob = ParamsJob<MorphWeightsParams>;
 
 impl MorphWeightsJob {
-    /// Sets the time of the next submission: seconds since the starts of the instances.
+    /// Sets the time for the next submission: seconds since the instances' starts.
     ///
     /// # Errors
-    /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
+    /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS);
+    /// [`GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         self.set_through(&mut &*gpu, elapsed)
     }

@@ -6,8 +6,8 @@ use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::asset::Mesh;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The weights of a mesh's targets at each instance's time in its clip, instance by instance; those of
-/// instances that are not seen stay unchanged. `clips` gives the index in the model of each clip of the set.
+/// The weights of a mesh's targets at each instance's time in its clip, instance by instance. Weights of invisible
+/// instances stay unchanged. `clips` has the model's index of each clip of the set.
 ///
 /// # Panics
 /// If the lengths of the lists differ, and for instances of a clip that the set does not have.

@@ -1,8 +1,8 @@
-//! Pages of skinned vertices: memory follows what is seen. A page has room for the vertices of one cluster. An instance that
-//! is seen holds one for each cluster of its level of detail; one that is not seen holds none.
+//! Pages of skinned vertices: memory follows visibility. A page has room for the vertices of one cluster. A visible
+//! instance holds one page for each cluster of its level of detail; an invisible one holds none.
 //!
-//! Pages stay with their cluster while it is needed, so that vertices that do not move are not skinned again. Which page an
-//! instance gets is the same on every run.
+//! A page stays with its cluster while the cluster is needed, so that static vertices are not skinned again. The
+//! assignment of pages is the same on every run.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -14,8 +14,8 @@ pub use pass::{PageBuffers, PagesPass};
 pub use crate::shared::skinning::page::NO_PAGE;
 pub use crate::shared::skinning::pages::PageState;
 
-/// The bytes of a page.
+/// Size of a page in bytes.
 pub const PAGE_BYTES: usize = super::clusters::CLUSTER * size_of::<super::vertex::Vertex>();
 
-/// The bytes of a page with last positions: four floats for each vertex more.
+/// Size of a page with last positions in bytes: four more floats per vertex.
 pub const KEEPING_PAGE_BYTES: usize = PAGE_BYTES + super::clusters::CLUSTER * size_of::<[f32; 4]>();

@@ -15,25 +15,25 @@ impl SeenAs<PageState> for u32 {}
 /// The pages of all instances of a mesh on the device.
 #[derive(Debug, Clone)]
 pub struct PageBuffers {
-    /// The skinned vertices, 64 a page. If last positions are kept, they follow: four floats for each vertex, of which the
-    /// last is unused.
+    /// The skinned vertices, 64 per page. If last positions are kept, they follow: four floats per vertex, the last one
+    /// unused.
     pub skinned: Buffer<Vertex>,
-    /// The same vertices before skinning, if the mesh has morph targets; else empty.
+    /// The vertices before skinning, if the mesh has morph targets; else empty.
     pub morphed: Buffer<Vertex>,
-    /// If last positions are kept, the index of the first of them in pairs of floats; else 0.
+    /// Index of the first last position in pairs of floats; 0 if none are kept.
     pub last: u32,
     /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Buffer<u32>,
-    /// For each instance the number of clusters, from the first on, that have a page.
+    /// For each instance, the number of its clusters that have a page, counted from the first.
     pub held: Buffer<u32>,
-    /// The pages that nobody holds; the last of them is dealt out first.
+    /// Free pages, as a stack: the last one is assigned first.
     pub stack: Buffer<u32>,
-    /// How many these are, and how many instances went without a page.
+    /// The number of free pages, and of instances that went without a page.
     pub state: Buffer<u32>,
 }
 
 impl PageBuffers {
-    /// Allocates `pages` pages that nobody holds.
+    /// Allocates `pages` free pages.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -42,7 +42,7 @@ impl PageBuffers {
         Self::with_room(gpu, mesh, crowd, pages, vertices)
     }
 
-    /// With so many pages, and room for so many vertices in them and behind them.
+    /// Allocates `pages` free pages. `room` is the number of vertices in them and in the area of last positions.
     fn with_room(
         gpu: &Gpu,
         mesh: &MeshBuffers,
@@ -64,7 +64,7 @@ impl PageBuffers {
         })
     }
 
-    /// As [`PageBuffers::new`], with room for last positions.
+    /// As [`PageBuffers::new`], plus the area of last positions.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -75,7 +75,7 @@ impl PageBuffers {
         pages: u32,
     ) -> Result<Self, GpuError> {
         let vertices = CLUSTER * pages as usize;
-        // Four floats a vertex, in vertices of ten.
+        // Four floats per vertex, counted in vertices of ten floats.
         let room = vertices + (4 * vertices).div_ceil(10);
         Ok(Self { last: 5 * vertices as u32, ..Self::with_room(gpu, mesh, crowd, pages, room)? })
     }
@@ -86,7 +86,7 @@ impl PageBuffers {
     }
 }
 
-/// Deals out pages.
+/// Assigns pages to visible instances.
 #[derive(Debug, Clone)]
 pub struct PagesPass {
     kernel: Kernel,
@@ -101,7 +101,7 @@ impl PagesPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the pages of a crowd, which need as many as its levels of detail say. Record it before
+    /// Prepares the page assignment of a crowd. Its levels of detail decide how many pages it needs. Record it before
     /// [`select`](crate::skinning::select) and [`skin`](crate::skinning::skin).
     ///
     /// # Errors
@@ -130,7 +130,7 @@ impl PagesPass {
             stack: pages.stack.slice(),
             state: pages.state.slice().cast(),
         };
-        // One workgroup serves all instances.
+        // One workgroup processes all instances.
         let group = group.bind(gpu, &self.kernel)?;
         Ok(Job::spread(gpu, "skinning/pages", (&self.kernel, group), 1)?)
     }

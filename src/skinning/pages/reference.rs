@@ -8,9 +8,9 @@ use crate::skinning::instance_lod::InstanceLod;
 pub struct Pages {
     /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Vec<u32>,
-    /// For each instance the number of clusters, from the first on, that have a page.
+    /// For each instance, the number of its clusters that have a page, counted from the first.
     pub held: Vec<u32>,
-    /// The pages that nobody holds; the last is dealt out first.
+    /// Free pages; the last one is assigned first.
     pub free: Vec<u32>,
     /// Number of instances that went without a page in the last frame.
     pub short: u32,
@@ -18,14 +18,14 @@ pub struct Pages {
 }
 
 impl Pages {
-    /// So many pages that nobody holds, for `instances` instances of a mesh of `clusters` clusters.
+    /// `pages` free pages, for `instances` instances of a mesh with `clusters` clusters.
     pub fn new(instances: usize, clusters: usize, pages: u32) -> Self {
         let table = vec![NO_PAGE; instances * clusters];
         Self { table, held: vec![0; instances], free: (0..pages).rev().collect(), short: 0, clusters }
     }
 
-    /// Takes back the pages that instances no longer need, then deals out what others need, both in the order of the
-    /// instances. `levels` gives the number of clusters at each level of detail.
+    /// Frees the pages that instances no longer need, then assigns pages to those that need more, both in the order of
+    /// instances. `levels` has the number of clusters at each level of detail.
     ///
     /// # Panics
     /// For fewer levels of detail or instances than there are.

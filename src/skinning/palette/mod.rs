@@ -1,10 +1,8 @@
-//! Palettes: for each bone of a skin, the transform that takes a vertex from the space of binding to its
-//! position in the model's space.
+//! Palettes: for each bone of a skin, the transform from bind space to the model's space.
 //!
-//! Linear blending uses affine matrices. Dual-quaternion blending (Kavan et al. 2008) decomposes each matrix
-//! into an upper triangular stretch and a rigid motion after it (Gram–Schmidt on its columns): stretches are
-//! blended linearly, motions as dual quaternions. A single bone thus gives the same result in both, sheared and
-//! mirrored or not.
+//! Linear blending uses affine matrices. Dual-quaternion blending (Kavan et al. 2008) decomposes each matrix into an
+//! upper triangular stretch and a rigid motion after it (Gram–Schmidt on its columns). Stretches are blended linearly,
+//! motions as dual quaternions. A single bone thus gives the same result in both, sheared and mirrored or not.
 
 use crate::asset::transform::Affine;
 
@@ -15,16 +13,15 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::PalettePass;
 
-/// The largest difference allowed between a component and the reference, on any device, relative to the
-/// palette's largest component (at least 1), for matrices whose columns are no shorter than ½ and no closer to
-/// each other than 45°.
+/// Parity bound for a component on any device: 3.2e-5, relative to the palette's largest component (at least 1). It
+/// holds for matrices whose columns have a length of at least ½ and angles of at least 45° between them.
 ///
-/// A product of rows carries 16ε (ε = 2⁻²⁴). The axes of Gram–Schmidt carry twice that over the length (64ε),
-/// again over the sine (128ε), and their cross product 256ε. The quaternion's components, differences of these
-/// over at least 1, carry 512ε, and the dual part as much times the translation: 3.1e-5.
+/// A product of rows carries 16ε (ε = 2⁻²⁴). The axes of Gram–Schmidt carry twice that over the length (64ε), again
+/// over the sine (128ε), and their cross product 256ε. The quaternion's components, differences of these over at least
+/// 1, carry 512ε, and the dual part as much times the translation: 3.1e-5.
 pub const PALETTE_BOUND: f32 = 3.2e-5;
 
-/// A bone's stretch, and the rigid motion after it, in the layout of the kernels.
+/// A bone's stretch and the rigid motion after it, in the layout of the kernels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]

@@ -26,12 +26,12 @@ impl PalettePass {
         Ok(Self { linear: kernel(false)?, dual: kernel(true)? })
     }
 
-    /// Prepares the palettes of all instances that are seen.
+    /// Prepares the palettes of all visible instances.
     ///
     /// # Errors
-    /// [`crate::InputError`] for fewer matrices than the crowd needs, and for dual quaternions over matrices of
-    /// a crowd under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending
-    /// only; [`GpuError`].
+    /// [`crate::InputError`] for fewer matrices than the crowd needs, and for dual quaternions over matrices of a crowd
+    /// under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending only;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -32,7 +32,7 @@ pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Pale
 pub fn dual(matrix: &Affine) -> DualBone {
     let column = |at: usize| Vec3::new(matrix[0][at], matrix[1][at], matrix[2][at]);
     let [a, b, c] = [0, 1, 2].map(column);
-    // A column without direction is replaced by one that leaves the others unchanged.
+    // A column without a direction is replaced by one that leaves the others unchanged.
     let x = unit_or(a, Vec3::X);
     let along = x.dot(b);
     let y = unit_or(b - along * x, upright(x));

@@ -1,11 +1,11 @@
-//! Selection of the clusters that are skinned in a frame, among instances that are seen, at their level of
-//! detail: clusters with an updated bone, clusters of instances whose influences changed and, where morph
-//! targets move vertices, clusters of instances whose weights changed. Skipping a bone thus saves its vertices,
-//! and instances that are not seen cost nothing. The order of the list may differ between runs; its set does
-//! not.
+//! Selection of the clusters to skin in a frame, among visible instances at their level of detail: clusters with an
+//! updated bone, clusters of instances whose influences changed, and clusters that morph targets move if the instance's
+//! weights changed.
 //!
-//! An instance that is not seen keeps its vertices. When it is seen again, all of it is skinned, whatever
-//! moved. Clusters beyond its level keep their vertices likewise, and are skinned when the level becomes finer.
+//! A skipped bone thus saves its vertices, and invisible instances cost nothing. The order of the list may differ
+//! between runs; its set does not. An invisible instance keeps its vertices. Once it is visible again, all of it is
+//! skinned, whatever moved. Clusters beyond its level keep their vertices likewise, and are skinned when the level
+//! becomes finer.
 
 #[cfg(feature = "gpu")]
 mod pass;

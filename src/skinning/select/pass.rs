@@ -9,19 +9,18 @@ use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, Sk
 /// The inputs of a selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
 pub struct SelectBuffers {
-    /// The bones of each instance that were updated since the last selection, one bit per slot of the skeleton's
-    /// order, in [`MeshBuffers::mask_words`] words per instance. Under a gate,
-    /// [`SkinFrame`](crate::skinning::frame::SkinFrame) uses
-    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) for it. Every bone below an
-    /// updated one must be set too.
-    pub updated_bones: Buffer<u32>,
-    /// The state of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: the fade (as
-    /// bits), largest number of influences and level of its InstanceLod; the number of frames for which it has
-    /// been seen; and the weights of its targets, as bits. All words are 0 at first, so that everything that is
-    /// seen then is skinned.
+    /// The bones of each instance that were updated since the last selection, in [`MeshBuffers::mask_words`] words per
+    /// instance: one bit per slot of the skeleton's order.
     ///
-    /// The fourth word is 0 for an instance that is not seen, 1 for one that is seen for the first time or
-    /// again, and 2 for one that was seen in the frame before too.
+    /// Under a gate, [`SkinFrame`](crate::skinning::frame::SkinFrame) uses
+    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here. Every bone below an updated one
+    /// must be set too.
+    pub updated_bones: Buffer<u32>,
+    /// The state of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: fade (as bits), largest
+    /// number of influences and level of its LOD; visibility; and the weights of its targets, as bits.
+    ///
+    /// The visibility word is 0 for an invisible instance, 1 for one that just became visible, and 2 for one that was
+    /// visible in the frame before too. All words are 0 at first, so that the first frame skins everything visible.
     pub skinned: Buffer<u32>,
 }
 
@@ -41,7 +40,7 @@ impl SelectBuffers {
     }
 }
 
-/// Selects clusters.
+/// Selects the clusters to skin.
 #[derive(Debug, Clone)]
 pub struct SelectPass {
     select: Kernel,
@@ -64,7 +63,7 @@ impl SelectPass {
         })
     }
 
-    /// Prepares two lists of clusters to be skinned: the first job leaves the updated bones as they are, the second clears them.
+    /// Prepares two selections of clusters: the first job keeps the updated bones, the second clears them.
     ///
     /// # Errors
     /// [`crate::InputError`] for buffers of another crowd; [`GpuError`].
@@ -105,7 +104,7 @@ impl SelectPass {
             pairs: active.pairs.slice(),
             dispatched: active.dispatched.slice().cast(),
         };
-        // Where last positions are kept, the kernel that selects is another.
+        // Another kernel selects if last positions are kept.
         let select = match active.keeps_last {
             true => &bindings::kernel(gpu, &bindings::Constants { keep: true, ..Default::default() })?,
             false => &self.select,

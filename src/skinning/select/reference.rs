@@ -18,9 +18,9 @@ pub struct Now<'a> {
 /// The state of an instance in the frame before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skinned {
-    /// Its InstanceLod in that frame.
+    /// Its LOD in that frame.
     pub instance_lod: InstanceLod,
-    /// The number of frames for which it has been seen, 2 for more; see
+    /// Visibility: the number of frames for which it has been visible, at most 2; see
     /// [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned).
     pub seen: u32,
     /// Its weights in that frame.
@@ -34,15 +34,16 @@ impl Skinned {
     }
 }
 
-/// The bits of what determines the influences.
+/// The bits that determine the influences.
 fn bits(instance_lod: &InstanceLod) -> [u32; 2] {
     [instance_lod.influence_fade.to_bits(), instance_lod.max_influences]
 }
 
-/// The pairs `cluster · instances + instance` to be skinned, ascending, among instances that are seen, at their
-/// level of detail: clusters with an updated bone, clusters that morph targets move if a weight has changed
-/// since the frame before, clusters beyond the level of the frame before, and all clusters of instances whose
-/// influences changed.
+/// The pairs `cluster · instances + instance` to skin, ascending, of visible instances at their level of detail:
+/// - clusters with an updated bone;
+/// - clusters that morph targets move, if a weight has changed since the frame before;
+/// - clusters beyond the level of the frame before;
+/// - all clusters of instances whose influences changed.
 ///
 /// # Panics
 /// If the lengths of the lists do not match the number of instances in `last`.
@@ -67,8 +68,8 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
     (0..(clusters.len() * last.len()) as u32).filter(is_selected).collect()
 }
 
-/// As [`select`], where last positions are kept: `states` says for each pair what the last selection did to it, and
-/// becomes what this one does. What moved in the last frame is selected once more.
+/// As [`select`], with last positions kept. In: the last selection's state of each pair, in `states`. Out: this
+/// selection's. A pair that moved in the last frame is selected once more.
 ///
 /// # Panics
 /// As [`select`], and with fewer states than pairs.

@@ -11,21 +11,21 @@ use crate::{Error, InputError};
 /// Skins vertices.
 #[derive(Debug, Clone)]
 pub struct SkinPass {
-    /// For the mesh's vertices, and for morphed ones.
+    /// Kernels for the mesh's vertices, and for morphed ones.
     kernels: [Kernel; 2],
-    /// The same for pages.
+    /// The same for paged vertices.
     paged: [Kernel; 2],
     blend: Blend,
 }
 
-/// Where vertices are written.
+/// The destination of skinned vertices.
 struct Output<'a> {
     skinned: &'a Buffer<Vertex>,
-    /// Vertices before skinning, of meshes with morph targets.
+    /// Vertices before skinning, for meshes with morph targets.
     morphed: &'a Buffer<Vertex>,
-    /// Any buffer where vertices do not lie in pages.
+    /// The page table; any buffer if vertices are not paged.
     table: &'a Buffer<u32>,
-    /// Where last positions begin, in pairs of floats; 0 if they are not kept.
+    /// Index of the first last position in pairs of floats; 0 if none are kept.
     last: u32,
 }
 
@@ -43,11 +43,12 @@ impl SkinPass {
         Ok(Self { kernels, paged: [kernel(true, false)?, kernel(true, true)?], blend })
     }
 
-    /// Prepares the active clusters into `skinned`, one instance after the other, in the order of the mesh's clusters, as far
-    /// as their instances are seen and the clusters are within the level of detail; all other vertices stay unchanged.
+    /// Prepares the active clusters of visible instances, within their level of detail. They are written to `skinned`,
+    /// instance by instance, in the order of the mesh's clusters. All other vertices stay unchanged.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another mesh or kind of blending, and for an output that is too small; [`GpuError`].
+    /// [`InputError`] for a crowd of another mesh or kind of blending, and for an output that is too small;
+    /// [`GpuError`].
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -63,12 +64,12 @@ impl SkinPass {
         self.job(gpu, &self.kernels[usize::from(mesh.targets > 0)], (mesh, crowd), active, output)
     }
 
-    /// As [`SkinPass::prepare_active`], into the pages that [`PagesPass`](crate::skinning::pages::PagesPass) deals out.
+    /// As [`SkinPass::prepare_active`], into pages assigned by [`PagesPass`](crate::skinning::pages::PagesPass).
     /// Clusters without a page are skipped. If the pages have room for last positions ([`PageBuffers::keeping`]), each
-    /// vertex's position is kept before it changes, or as it becomes, as the active clusters' states say.
+    /// vertex's position before or after the change is kept, depending on the active cluster's state.
     ///
     /// # Errors
-    /// As [`SkinPass::prepare_active`]; [`InputError`] too where only one of pages and clusters keeps last positions.
+    /// As [`SkinPass::prepare_active`]; [`InputError`] also if only one of pages and clusters keeps last positions.
     pub fn prepare_paged(
         &self,
         gpu: &Gpu,

@@ -12,7 +12,7 @@ use crate::{Error, InputError};
 /// The cone maps of a batch, one after another.
 #[derive(Debug, Clone)]
 pub struct Cones {
-    /// Highest corner and radius of each cell, in rows of `pitch`.
+    /// Height of the highest corner, and radius, of each cell, in rows of `pitch` cones.
     pub cones: Buffer<[f32; 2]>,
     /// Cells along x and y.
     pub cells: [u32; 2],
@@ -32,7 +32,7 @@ impl ConeMapPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
@@ -43,14 +43,14 @@ impl ConeMapPass {
     /// [`GpuError`].
     pub fn output(&self, gpu: &Gpu, pyramids: &Pyramids) -> Result<Cones, GpuError> {
         let cells = pyramids.layout.cells;
-        // Rows of a texture copy start at multiples of 256 bytes.
+        // Rows of a texture copy must start at multiples of 256 bytes.
         let pitch = cells[0].next_multiple_of(32);
         let cones = Buffer::new(gpu, "cones", (pitch * cells[1]) as usize * pyramids.count as usize)
             .map_err(|error| error.with_remedy(REMEDY))?;
         Ok(Cones { cones, cells, pitch, count: pyramids.count })
     }
 
-    /// Prepares the cone maps of a batch from its pyramids, for their address mode.
+    /// Prepares the cone maps of a batch from its pyramids, with the pyramids' address mode.
     ///
     /// # Errors
     /// [`InputError`] when pyramids or cones do not belong to the batch; [`GpuError`].

@@ -1,5 +1,5 @@
-//! Max-mip pyramids of height maps (B section 2.3.4): a leaf is the highest corner of a bilinear cell, and a
-//! node the highest of its four children. `quadtree` traverses them, and cone maps are computed from them.
+//! Max-mip pyramids of height maps (B section 2.3.4). A leaf is the highest corner of a bilinear cell, and a node is the
+//! highest of its four children. `quadtree` traverses pyramids, and cone maps are computed from them.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -10,32 +10,30 @@ pub use pass::{HeightPyramidPass, Pyramids};
 
 use crate::surface::map::Address;
 
-/// The arrangement of a pyramid's nodes: all levels in one plane, with rows padded so that the plane can be
-/// copied to a texture.
+/// Layout of a pyramid's nodes. All levels share one plane, with rows padded so that the plane can be copied to a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PyramidLayout {
     /// Texels of the map along x and y.
     pub size: [u32; 2],
-    /// Bilinear cells along x and y: as many as texels with [`Address::Wrap`], one more per axis with
-    /// [`Address::Clamp`].
+    /// Bilinear cells along x and y: equal to texels with [`Address::Wrap`], one more per axis with [`Address::Clamp`].
     pub cells: [u32; 2],
     /// Nodes per row of the plane.
     pub pitch: u32,
     /// Rows of the plane.
     pub rows: u32,
-    /// Number of levels, from the one of single cells to the one with a single node.
+    /// Number of levels, from single cells to a single node.
     pub levels: u32,
 }
 
 impl PyramidLayout {
-    /// The layout for a map of `size` texels.
+    /// Layout for a map of `size` texels.
     pub fn new(size: [u32; 2], address: Address) -> Self {
         let cells = match address {
             Address::Wrap => size,
             Address::Clamp => size.map(|edge| edge + 1),
         };
         let levels = cells[0].max(cells[1]).next_power_of_two().ilog2() + 1;
-        // Rows of a texture copy start at multiples of 256 bytes.
+        // Rows of a texture copy must start at multiples of 256 bytes.
         let width = cells[0].next_multiple_of(4) + cells[0].div_ceil(2);
         let mut layout = Self { size, cells, pitch: width.next_multiple_of(64), rows: cells[1], levels };
         for level in 1..levels {
@@ -44,22 +42,22 @@ impl PyramidLayout {
         layout
     }
 
-    /// Nodes of a level along x and y.
+    /// Number of nodes of a level along x and y.
     pub fn nodes(&self, level: u32) -> [u32; 2] {
         self.cells.map(|cells| cells.div_ceil(1 << level))
     }
 
-    /// Number of nodes in the plane, padding included.
+    /// Number of nodes in the plane, including padding.
     pub fn len(&self) -> usize {
         self.pitch as usize * self.rows as usize
     }
 
-    /// Always false, since a pyramid has at least one node.
+    /// Always false: a pyramid has at least one node.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The index of a node in the plane. The padding, which lies wherever there is no level, may have any value.
+    /// Index of a node in the plane. Elements that belong to no level are padding and may have any value.
     pub fn index(&self, level: u32, node: [u32; 2]) -> usize {
         let first = self.first(level);
         ((first[1] + node[1]) * self.pitch + first[0] + node[0]) as usize

@@ -13,11 +13,12 @@ use crate::{Error, InputError};
 /// The pyramids of a batch of height maps, one after another.
 #[derive(Debug, Clone)]
 pub struct Pyramids {
-    /// Nodes; [`PyramidLayout::index`] gives the index within each pyramid of [`PyramidLayout::len`] nodes.
+    /// Nodes of all pyramids, [`PyramidLayout::len`] nodes per pyramid. [`PyramidLayout::index`] gives a node's index within
+    /// its pyramid.
     pub nodes: Buffer<f32>,
-    /// The arrangement of each pyramid's nodes.
+    /// Layout of each pyramid.
     pub layout: PyramidLayout,
-    /// The address mode of the maps.
+    /// Address mode of the maps.
     pub address: Address,
     /// Number of pyramids.
     pub count: u32,
@@ -45,7 +46,7 @@ impl Pyramids {
     }
 }
 
-/// Computes pyramids, a level per dispatch.
+/// Computes pyramids, one level per dispatch.
 #[derive(Debug, Clone)]
 pub struct HeightPyramidPass {
     kernel: Kernel,
@@ -55,7 +56,7 @@ impl HeightPyramidPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }

@@ -3,7 +3,7 @@
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::{Address, HeightMap};
 
-/// The pyramid of a map, arranged as [`PyramidLayout`] says; 0 in the padding.
+/// Pyramid of a map in the layout of [`PyramidLayout`], with 0 in the padding.
 pub fn height_pyramid(map: &HeightMap, address: Address) -> Vec<f32> {
     let layout = PyramidLayout::new([map.width(), map.height()], address);
     let mut pyramid = vec![0.0; layout.len()];
@@ -17,8 +17,7 @@ pub fn height_pyramid(map: &HeightMap, address: Address) -> Vec<f32> {
                     four.map(|[dx, dy]| map.texel(x as i32 + first + dx, y as i32 + first + dy, address))
                 } else {
                     let [width, height] = layout.nodes(level - 1);
-                    // Children beyond the edge are replaced by those at the edge, which does not change the
-                    // maximum.
+                    // Clamping children to the edge does not change the maximum.
                     four.map(|[dx, dy]| {
                         let child = [(2 * x + dx as u32).min(width - 1), (2 * y + dy as u32).min(height - 1)];
                         pyramid[layout.index(level - 1, child)]

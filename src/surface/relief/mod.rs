@@ -1,7 +1,7 @@
-//! Ray-height methods: their list, their rays, their march and its results (B section 3.1).
+//! Ray-height methods: the methods, their rays, march parameters and results (B section 3.1).
 //!
-//! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The
-//! kernel of this folder runs them on lists of rays.
+//! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The kernel in this
+//! folder runs them on lists of rays.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -19,16 +19,16 @@ pub use crate::shared::surface::ray::{SurfaceHit as Hit, SurfaceRay as Ray};
 use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
-/// The smallest cosine with which rays are marched: 89.55° from the normal.
+/// Smallest cosine to the normal with which rays are marched: 89.55° from the normal.
 pub const LEAST_COSINE: f32 = ray::SURFACE_LEAST_COSINE;
 
-/// The most linear steps of a march.
+/// Largest number of linear steps of a march.
 pub const MAX_STEPS: u32 = linear::SURFACE_MAX_STEPS;
 
-/// The most binary steps of a march.
+/// Largest number of binary steps of a march.
 pub const MAX_BINARY: u32 = linear::SURFACE_MAX_BINARY;
 
-/// The deepest relief, in uv units.
+/// Largest depth of a relief, in uv units.
 pub const MAX_SCALE: f32 = 1.0;
 
 /// The method that finds the surface.
@@ -36,9 +36,9 @@ pub const MAX_SCALE: f32 = 1.0;
 #[serde(rename_all = "kebab-case")]
 #[repr(u32)]
 pub enum Method {
-    /// None: the polygon's own texture coordinates.
+    /// No mapping: the polygon's own texture coordinates.
     Plain = trace::SURFACE_PLAIN,
-    /// Parallax mapping: one height, one shift (Kaneko 2001).
+    /// Parallax mapping: one height sample and one shift (Kaneko 2001).
     ///
     /// **Decided**: the bias is −`plane` · `scale`. B takes +½ · `scale` (3.1.1), but wants heights remapped around 0, which
     /// needs the minus.
@@ -47,7 +47,7 @@ pub enum Method {
     ParallaxLimited = trace::SURFACE_PARALLAX_LIMITED,
     /// Linear search, then binary search (Policarpo 2005; B table 4.4).
     Relief = trace::SURFACE_RELIEF,
-    /// Linear search, then the segment between the last two samples (Tatarchuk 2006; B section 2.3.1).
+    /// Linear search, then intersection with the segment between the last two samples (Tatarchuk 2006; B section 2.3.1).
     Occlusion = trace::SURFACE_OCCLUSION,
     /// Relaxed cones that are safe under bilinear filtering, then binary search. Needs a cone map.
     Cone = trace::SURFACE_CONE,
@@ -67,7 +67,7 @@ impl Method {
         Self::Quadtree,
     ];
 
-    /// The method's name in options and reports.
+    /// Name in options and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -80,12 +80,12 @@ impl Method {
         }
     }
 
-    /// The method's value in the shaders.
+    /// Value in the shaders.
     pub fn code(self) -> u32 {
         self as u32
     }
 
-    /// Whether its cost and error depend on the numbers of steps.
+    /// Whether the method's cost and error depend on the numbers of steps.
     pub fn is_stepped(self) -> bool {
         matches!(self, Self::Relief | Self::Occlusion)
     }
@@ -103,9 +103,8 @@ impl FromStr for Method {
 }
 
 impl Ray {
-    /// The ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space,
-    /// `scale` the depth of the relief in uv units, and `plane` the polygon's height in the volume, 0 (bottom)
-    /// to 1 (top).
+    /// The ray through a polygon at `uv`. `view` is the unit vector towards the eye in tangent space. `scale` is the depth of
+    /// the relief in uv units. `plane` is the polygon's height in the volume, 0 (bottom) to 1 (top).
     pub fn new(uv: [f32; 2], view: [f32; 3], scale: f32, plane: f32) -> Self {
         let steepness = -scale / view[2].max(LEAST_COSINE);
         let slope = [view[0] * steepness, view[1] * steepness];
@@ -114,7 +113,7 @@ impl Ray {
         Self { origin, slope, cosine: view[2], polygon }
     }
 
-    /// uv at a parameter.
+    /// uv of the ray at a parameter.
     pub fn at(&self, parameter: f32) -> [f32; 2] {
         [self.origin[0] + parameter * self.slope[0], self.origin[1] + parameter * self.slope[1]]
     }
@@ -123,10 +122,10 @@ impl Ray {
 /// Parameters of a march.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct March {
-    /// What lies beyond the map's edge. An acceleration map is computed for one address mode.
+    /// Address mode of the map. An acceleration map is computed for one address mode.
     pub address: Address,
-    /// Numbers of linear steps for rays straight down and at the horizon, each 1 to [`MAX_STEPS`]; in between
-    /// ⌈mix(min, max, 1 − V.z)⌉.
+    /// Numbers of linear steps for rays straight down and at the horizon, each 1 to [`MAX_STEPS`]; in between ⌈mix(min, max, 1
+    /// − V.z)⌉.
     ///
     /// **Decided**: the number grows with the angle from the normal, as in B's text (3.1.2). B's table 4.4 takes 10 steps at
     /// every angle.
@@ -165,8 +164,8 @@ pub enum Outcome {
     Miss = ray::SURFACE_MISS,
     /// The ray met the surface.
     Hit = ray::SURFACE_HIT,
-    /// The method ran out of steps; the result is the point that it had reached. `cone` and `quadtree` visit at
-    /// most 32,774 nodes, which is enough for rays that cross 16,384 cells.
+    /// The method ran out of steps; the result is the last point that it reached. `cone` and `quadtree` visit at most 32,774
+    /// nodes, which is enough for rays that cross 16,384 cells.
     Exhausted = ray::SURFACE_EXHAUSTED,
 }
 
@@ -179,7 +178,7 @@ impl Default for Hit {
 }
 
 impl Hit {
-    /// The result at a point of the ray.
+    /// The result at a parameter of the ray.
     pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self {
             uv: ray.at(parameter),
@@ -190,7 +189,7 @@ impl Hit {
         }
     }
 
-    /// The outcome that `code` stands for.
+    /// The outcome encoded in `code`.
     pub fn outcome(&self) -> Outcome {
         match self.outcome_code {
             ray::SURFACE_MISS => Outcome::Miss,

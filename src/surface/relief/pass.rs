@@ -26,17 +26,17 @@ impl ReliefPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, method: Method) -> Result<Self, GpuError> {
         let constants = bindings::Constants { method: method.code() };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, method })
     }
 
-    /// Prepares the tracing of all `rays`, with one hit each.
+    /// Prepares the tracing of all `rays`, with one hit per ray.
     ///
     /// # Errors
-    /// [`InputError`] for a march out of bounds, for textures of another method or address mode, and for a
-    /// buffer with too few hits; [`GpuError`].
+    /// [`InputError`] for a march out of bounds, for textures of another method or address mode, and for a buffer with too few
+    /// hits; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

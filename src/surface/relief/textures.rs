@@ -1,4 +1,4 @@
-//! Height maps on the device: batches in buffers, which kernels read, and textures, over which shaders march.
+//! Height maps on the device: buffers that kernels read, and textures over which shaders march.
 
 use crate::gpu::{Gpu, GpuError};
 use crate::surface::HeightBatch;
@@ -8,7 +8,7 @@ use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{March, Method};
 use crate::{Error, InputError};
 
-/// The textures of a method: the height map, and its acceleration map.
+/// Textures of a method: the height map and its acceleration map.
 #[derive(Debug, Clone)]
 pub struct SurfaceTextures {
     /// Heights in the red channel, `R32Float`, with all mip levels.
@@ -22,8 +22,8 @@ pub struct SurfaceTextures {
 }
 
 impl SurfaceTextures {
-    /// Uploads the heights and computes the acceleration map of `method` on the device. This is set-up work: it
-    /// submits, and does not wait.
+    /// Uploads the heights and computes the acceleration map of `method` on the device. This is set-up work: it submits and
+    /// does not wait.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -93,7 +93,7 @@ fn texture(
     gpu.scoped(|| gpu.sampled_texture(label, [width, height, 1], levels, format))
 }
 
-/// Copies the first map of a buffer, whose rows start at multiples of 256 bytes.
+/// Copies the first map of a buffer; its rows start at multiples of 256 bytes.
 fn copy(encoder: &mut wgpu::CommandEncoder, from: &wgpu::Buffer, to: &wgpu::Texture, pitch: u32) {
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
     let from = wgpu::TexelCopyBufferInfo { buffer: from, layout };

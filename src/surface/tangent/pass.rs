@@ -50,13 +50,13 @@ impl TangentPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the frames of `mesh` into `tangents`: tangent x, y, z and handedness for each vertex. The
-    /// buffer can also serve as a vertex buffer.
+    /// Prepares the frames of `mesh` into `tangents`: tangent x, y, z and handedness for each vertex. The buffer can also serve
+    /// as a vertex buffer.
     ///
     /// # Errors
     /// [`InputError`] for a buffer with fewer tangents than vertices; [`GpuError`].

@@ -16,14 +16,14 @@ pub struct BlendPass {
     kernel: Kernel,
 }
 
-/// The buffers of a job of [`BlendPass`].
+/// Buffers of a [`BlendPass`] job.
 #[derive(Debug, Clone, Copy)]
 pub struct BlendBuffers<'a> {
     /// Windows of heights with one sample of margin.
     pub windows: &'a Fields,
-    /// The position of each window's first inner sample in tiles ([`Cover::place`]).
+    /// Position of each window's first inner sample, in tiles ([`Cover::place`]).
     pub places: &'a Buffer<[u32; 2]>,
-    /// Receives a pixel for every sample but those of the outermost ring: RGBA, 8 bits each, red in the lowest byte, sRGB.
+    /// Written: one pixel per sample, except for the outermost ring. RGBA, 8 bits each, red in the lowest byte, sRGB.
     pub pixels: &'a Buffer<u32>,
 }
 
@@ -31,12 +31,12 @@ impl BlendPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the colour maps of windows, which it uploads the cover for.
+    /// Prepares the colour maps of windows, and uploads the cover.
     ///
     /// # Errors
     /// [`crate::InputError`] for a cover or shading out of bounds, for windows with nothing inside the outermost ring, and for

@@ -1,9 +1,9 @@
-//! B's transition area (section 3.3.1), the border mode `blend`: along a border that a patch shares with a
-//! patch that already exists, its samples move towards the neighbour's heights.
+//! B's transition area (section 3.3.1), the border mode `blend`: along a border with an existing patch, a new patch's samples
+//! move towards the neighbour's heights.
 //!
-//! Where only one neighbour is within reach, the shared border takes the neighbour's heights exactly. Near a
-//! point where four patches meet, the top or bottom transition runs after the left or right one, so the
-//! vertical border no longer has exactly the neighbour's heights there. `seamless` terrain has no such places.
+//! Where only one neighbour is within reach, the shared border takes the neighbour's heights exactly. Near a point where four
+//! patches meet, the top or bottom transition runs after the left or right one. The vertical border then no longer has exactly
+//! the neighbour's heights there. `seamless` terrain has no such places.
 
 use crate::InputError;
 
@@ -16,10 +16,10 @@ mod visits;
 #[cfg(feature = "gpu")]
 pub use pass::BorderPass;
 
-/// Indices of the patches to the left, to the right, above (y − 1) and below (y + 1) that exist before a patch.
+/// Indices of the existing patches to the left, to the right, above (y − 1) and below (y + 1).
 pub type Neighbours = [Option<usize>; 4];
 
-/// The neighbours of each patch that come before it in `patches`.
+/// Neighbours of each patch among the patches that come before it in `patches`.
 pub fn neighbours(patches: &[[i32; 2]]) -> Vec<Neighbours> {
     let mut known = std::collections::HashMap::new();
     let mut all = Vec::with_capacity(patches.len());
@@ -31,8 +31,8 @@ pub fn neighbours(patches: &[[i32; 2]]) -> Vec<Neighbours> {
     all
 }
 
-/// Groups patches into waves, so that each patch comes in a later wave than the neighbours that it depends on.
-/// Patches of one wave are independent of each other.
+/// Groups patches into waves, so that each patch is in a later wave than the neighbours that it depends on. Patches of one wave
+/// are independent of each other.
 ///
 /// # Errors
 /// [`InputError`] when a patch comes before one of its neighbours.

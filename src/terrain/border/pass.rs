@@ -1,5 +1,4 @@
-//! The GPU pass of `kernels/terrain/border.wgsl`: one dispatch after the other, over the buffers that hold a
-//! batch.
+//! The GPU pass of `kernels/terrain/border.wgsl`: a sequence of dispatches over the buffers of a batch.
 
 use super::Neighbours;
 use super::visits::{Visit, visits};
@@ -20,18 +19,18 @@ impl BorderPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |others| bindings::kernel(gpu, &bindings::Constants { others });
         Ok(Self { within: kernel(false)?, across: kernel(true)? })
     }
 
-    /// Prepares the transition, `width` samples wide, of patches that lie in `parts` one after the other.
-    /// `neighbours` are indices of earlier patches, counted through all parts.
+    /// Prepares the transitions of patches that are stored one after the other in `parts`. A transition is `width` samples
+    /// wide. `neighbours` are indices of earlier patches, counted across all parts.
     ///
     /// # Errors
-    /// [`InputError`] as [`super::waves`], for a width that is not in 1..size of a patch, for more neighbours
-    /// than patches, and for parts of different widths or with heights that are too short; [`GpuError`].
+    /// [`InputError`] as [`super::waves`], for a width that is not in 1..size of a patch, for more neighbours than patches, and
+    /// for parts of different widths or with heights that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -59,8 +58,7 @@ impl BorderPass {
             let params = BorderParams { size, width, start: starts[*part] };
             starts[*part] += count;
             let Entries { neighbours, order } = &entries[*part];
-            // A buffer that is bound for writing cannot be bound a second time; the kernel never reads the one
-            // that stands in for it.
+            // A buffer bound for writing cannot be bound a second time. The kernel never reads the placeholder.
             let (kernel, others) = if source == part {
                 (&self.within, order.slice().cast())
             } else {
@@ -80,7 +78,7 @@ impl BorderPass {
     }
 }
 
-/// The entries of all visits to one part, one visit after the other.
+/// Entries of all visits to one part, one visit after the other.
 struct Entries {
     neighbours: Buffer<[u32; 4]>,
     order: Buffer<u32>,

@@ -1,14 +1,13 @@
 //! B's transition area: the CPU reference of `kernels/terrain/border.wgsl`.
 
-/// Moves the samples of `patch` (rows of `size`) that lie within `width` of a border towards the existing
-/// patches to the left, to the right, above and below it.
+/// Moves samples of `patch` (rows of `size`) towards the existing patches to the left, to the right, above and below it. Only
+/// samples within `width` of the shared border move.
 pub fn border(patch: &mut [i32], size: usize, width: u32, neighbours: [Option<&[i32]>; 4]) {
     let last = size - 1;
     for y in 0..size {
         for x in 0..size {
             let sample = &mut patch[y * size + x];
-            // For each border: the sample's distance from it, and the neighbour's sample at that distance on
-            // the other side.
+            // Per border: the sample's distance from it, and the neighbour's sample at that distance on the other side.
             let sides = [
                 (x, y * size + (last - x)),
                 (last - x, y * size + (last - x)),

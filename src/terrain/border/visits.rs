@@ -1,4 +1,4 @@
-//! The sequence of dispatches that moves the patches of a batch that lies in several buffers.
+//! Sequence of dispatches for the transitions of a batch that is split into several buffers.
 
 use std::collections::BTreeMap;
 
@@ -6,20 +6,19 @@ use super::{Neighbours, waves};
 use crate::InputError;
 use crate::terrain::fields::Place;
 
-/// One dispatch: patches of one part that move towards neighbours that all lie in one part.
+/// One dispatch: patches of one part move towards neighbours that all lie in one part.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Visit {
-    /// Index of the part that holds the patches.
+    /// Index of the part with the patches.
     pub part: usize,
-    /// Index of the part that holds their neighbours.
+    /// Index of the part with their neighbours.
     pub source: usize,
-    /// The index of each patch in its part, with the indices of its neighbours in theirs.
+    /// Index of each patch within its part, with its neighbours' indices within theirs.
     pub entries: Vec<(u32, [Option<u32>; 4])>,
 }
 
-/// The dispatches in order, given where each patch lies. A patch whose neighbours all lie in its own part takes
-/// one dispatch; any other takes one dispatch for each of its sides, in the order in which the kernel handles
-/// sides.
+/// Dispatches in order, for patches at the given places. A patch whose neighbours all lie in its own part takes one dispatch.
+/// Any other patch takes one dispatch per side, in the kernel's order of sides.
 ///
 /// # Errors
 /// [`InputError`] as [`waves`].
@@ -60,7 +59,7 @@ mod tests {
         counts.iter().enumerate().flat_map(part).collect()
     }
 
-    /// A patch with all four neighbours, which lie in different parts.
+    /// A patch with all four neighbours in different parts.
     fn surrounded() -> Vec<Neighbours> {
         vec![[None; 4], [None; 4], [None; 4], [None; 4], [Some(2), Some(0), Some(3), Some(1)]]
     }

@@ -1,4 +1,4 @@
-//! JSON objects, read by serde. An error names the field, its value and the allowed range.
+//! JSON objects, read with serde. Errors name the field, its value and the allowed range.
 
 use std::marker::PhantomData;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::error::json::{message, shown};
 use crate::error::json::{refused_value, unreadable};
 use crate::{Error, InputError};
 
-/// A struct that JSON stores as an object. Serde alone would also accept an array of its fields.
+/// A struct stored as a JSON object. Serde alone would also accept an array of its fields.
 pub(crate) struct Object<T>(pub(crate) T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
@@ -36,7 +36,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
     }
 }
 
-/// Reads one JSON object. An error names the field in which it lies, or `what` when it lies outside all fields.
+/// Reads one JSON object. The error names the field that contains the fault, or `what` if it lies outside all fields.
 pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> Result<T, InputError> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let object: Object<T> = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
@@ -44,7 +44,7 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
         if matches!(path.as_str(), "." | "?") {
             return unreadable(what, error.inner());
         }
-        // In a text that is JSON, a value is what is wrong.
+        // If the text is valid JSON, the fault is a value.
         let document: Option<Value> = serde_json::from_str(text).ok();
         document
             .and_then(|document| refused_value(&document, &error))
@@ -54,7 +54,7 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
     Ok(object.0)
 }
 
-/// As [`from_json_object`], from an object that has been read.
+/// As [`from_json_object`], from parsed JSON.
 #[cfg(feature = "gpu")]
 pub(crate) fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) -> Result<T, InputError> {
     let object: Object<T> = serde_path_to_error::deserialize(value).map_err(|error| {
@@ -68,9 +68,9 @@ pub(crate) fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) ->
     Ok(object.0)
 }
 
-/// A name of one of the values of `T`.
+/// Reads a value of `T` by its name.
 pub(crate) fn named<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
-    // What is no text has no name, and the error lists the names.
+    // A value that is not a string has no name; the error lists the names.
     let name = match Value::deserialize(deserializer)? {
         Value::String(name) => name,
         _ => String::new(),
@@ -78,7 +78,7 @@ pub(crate) fn named<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer
     T::deserialize(name.into_deserializer())
 }
 
-/// A whole number in `LOW..=HIGH`, as JSON may write it: `16` or `16.0`.
+/// Reads an integer in `LOW..=HIGH`, in either form of JSON: `16` or `16.0`.
 pub(crate) fn whole<'de, D: Deserializer<'de>, const LOW: u32, const HIGH: u32>(
     deserializer: D,
 ) -> Result<u32, D::Error> {

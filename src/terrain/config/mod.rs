@@ -1,4 +1,4 @@
-//! The terrain configuration: the JSON of B table 4.6 with relievo's optional fields.
+//! Terrain configuration: the JSON of B table 4.6 with relievo's optional fields.
 
 mod json;
 mod zones;
@@ -24,17 +24,16 @@ pub const HEIGHT_ONE: f64 = fixed::HEIGHT_ONE as f64;
 /// World coordinates along the edge of a patch: the world is addressed in 1/4096 of an edge.
 pub const PATCH_EDGE: i64 = 4096;
 
-/// The largest absolute height, 2^30 − 1 in 1/65536 units: sums and differences of two heights still fit `i32`.
+/// Largest absolute height, 2^30 − 1 in 1/65536 units. Sums and differences of two heights still fit `i32`.
 pub const HEIGHT_LIMIT: i64 = fixed::HEIGHT_LIMIT as i64;
 
-/// The largest range of offsets and the largest absolute feature where interpolation is smooth, 2^29 in 1/65536 units.
+/// Largest range of offsets, and largest absolute feature height, with smooth interpolation: 2^29 in 1/65536 units.
 const SMOOTH_LIMIT: i64 = 1 << 29;
 
-/// The most texture tiles along a patch's edge: with more, `f32` texture coordinates could not resolve a
-/// half a texel.
+/// Largest number of texture tiles along a patch's edge. With more, `f32` texture coordinates could not resolve half a texel.
 const MAX_TILES: f64 = 16_384.0;
 
-/// The distribution of the random offsets; r is the range at a level.
+/// Distribution of the random offsets; r is the range at a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Offset {
@@ -43,12 +42,12 @@ pub enum Offset {
     Signed,
     /// Uniform in [0, r), as in B.
     Positive,
-    /// The sum of four uniforms in [−r, r): nearly Gaussian.
+    /// Sum of four uniforms in [−r, r): nearly Gaussian.
     Gaussian,
 }
 
 impl Offset {
-    /// The value of the shaders' `DISTRIBUTION` for this distribution.
+    /// Value of the shaders' `DISTRIBUTION` for this distribution.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
@@ -59,11 +58,11 @@ impl Offset {
     }
 }
 
-/// How a subdivision computes a point from those of the coarser lattice, before its random offset.
+/// Interpolation of a new point from the coarser lattice, before its random offset is added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Interpolation {
-    /// The mean of four neighbours, as in B. It leaves creases along the lines of coarse lattices.
+    /// Mean of four neighbours, as in B. It leaves creases along the lines of coarse lattices.
     #[default]
     Linear,
     /// Four-point interpolation (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision scheme for curve design",
@@ -71,18 +70,18 @@ pub enum Interpolation {
     Smooth,
 }
 
-/// How the borders of patches are made.
+/// Treatment of patch borders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Border {
-    /// A patch is a window onto the diamond-square surface of the whole plane: neighbouring patches agree bit
-    /// for bit, in heights and slopes, in whatever order they are generated.
+    /// A patch is a window onto the diamond-square surface of the whole plane. Neighbouring patches agree bit for bit, in
+    /// heights and slopes, whatever the order of generation.
     #[default]
     Seamless,
-    /// Each patch is generated alone and its neighbours wrap around (B section 3.3.1).
+    /// Each patch is generated alone, and its neighbours wrap around (B section 3.3.1).
     Wrap,
-    /// As [`Border::Wrap`], followed by a transition, this many samples wide, towards neighbours that already
-    /// exist (B section 3.3.1). This is the only mode whose result depends on the order of generation.
+    /// As [`Border::Wrap`], followed by a transition towards existing neighbours (B section 3.3.1). The value is the
+    /// transition's width in samples. Only in this mode does the result depend on the order of generation.
     Blend(u32),
 }
 
@@ -100,11 +99,12 @@ pub struct Config {
     pub seed: String,
     /// H ≥ 0: the range of the offsets shrinks by the factor 2^−H per level. Default 1.
     pub roughness: f64,
-    /// k in 0..=8: points of the coarsest lattice lie 2^k patch edges apart. Default 0. `seamless` only.
+    /// Levels above the patch, k in 0..=8: points of the coarsest lattice are 2^k patch edges apart. Default 0. `seamless`
+    /// only.
     pub coarse_levels: u32,
     /// Distribution of the offsets. Default `signed`.
     pub offset: Offset,
-    /// How points are interpolated. Default `linear`.
+    /// Interpolation of new points. Default `linear`.
     pub interpolation: Interpolation,
     /// Border mode. Default `seamless`.
     pub border: Border,
@@ -112,14 +112,13 @@ pub struct Config {
     pub corners: [f64; 4],
     /// World units between neighbouring samples, > 0. Default 1.
     pub terrain_scale: f64,
-    /// World units that a zone's texture covers before it repeats, at least 1/16384 of a patch's edge. Default
-    /// `None`, which stands for (`patch_size` − 1) / 10 units; with B's `terrainScale` that is 10 · `terrain_scale`
-    /// tiles per patch.
+    /// World units that a zone's texture covers before it repeats, at least 1/16384 of a patch's edge. Default `None`:
+    /// (`patch_size` − 1) / 10 units. With B's `terrainScale` that is 10 · `terrain_scale` tiles per patch.
     pub texture_tile: Option<f64>,
-    /// Whether textures lie on steep ground from the sides too (triplanar mapping), so that they are not stretched there. Default
-    /// `false`.
+    /// Whether steep ground is also textured from the sides (triplanar mapping), so that textures are not stretched there.
+    /// Default `false`.
     pub triplanar: bool,
-    /// The strength of a variation of colour over many tiles, which hides that textures repeat, 0 to 1. Default 0.
+    /// Strength of a colour variation over many tiles, which hides that textures repeat, 0 to 1. Default 0.
     pub variation: f64,
     /// Zones of ground, 1 to 32. Default four: sand, grass, hill and snow.
     pub zones: Vec<Zone>,
@@ -230,8 +229,8 @@ impl Config {
         }
     }
 
-    /// Refuses a configuration whose heights could exceed 2^30 − 1 (`HEIGHT_LIMIT`), given the largest absolute
-    /// feature height in 1/65536 units. Smooth heights are clamped to it; there, only what would overflow before is
+    /// Refuses a configuration whose heights could exceed 2^30 − 1 (`HEIGHT_LIMIT`). `largest_feature` is the largest absolute
+    /// feature height in 1/65536 units. Smooth heights are clamped to the limit; for them, only overflow before the clamp is
     /// refused.
     ///
     /// # Errors
@@ -276,7 +275,7 @@ impl Config {
         Ok(())
     }
 
-    /// n, where `patch_size` = 2^n + 1.
+    /// Exponent n of `patch_size` = 2^n + 1.
     pub(crate) fn exponent(&self) -> u32 {
         (self.patch_size - 1).ilog2()
     }
@@ -306,23 +305,23 @@ impl Config {
         PATCH_EDGE >> self.exponent()
     }
 
-    /// r_l: the range of the offsets at `level`, in 1/65536 units, rounded to nearest with ties to even.
+    /// Range r_l of the offsets at `level`, in 1/65536 units, rounded to nearest with ties to even.
     pub fn level_range(&self, level: u32) -> u32 {
         self.range(level) as u32
     }
 
-    /// The range of the offsets of points on edges at `level`, where interpolation is smooth: half a step further (Saupe,
-    /// "Algorithms for random fractals", in The Science of Fractal Images, 1988), from the rounded range of the level.
+    /// Range of the offsets of edge points at `level`, with smooth interpolation. It is half a step further than the level's
+    /// rounded range (Saupe, "Algorithms for random fractals", in The Science of Fractal Images, 1988).
     pub fn edge_range(&self, level: u32) -> u32 {
         (self.range(level) * libm::exp2(-self.roughness / 2.0)).round_ties_even() as u32
     }
 
-    // `libm::exp2` is pure Rust, so that no platform's C library decides a bit.
+    // `libm::exp2` is pure Rust: no platform's C library may affect a bit.
     fn range(&self, level: u32) -> f64 {
         (self.scale_factor * libm::exp2(-self.roughness * f64::from(level)) * HEIGHT_ONE).round_ties_even()
     }
 
-    /// The key of the hash.
+    /// Key of the hash.
     pub fn key(&self) -> [u32; 2] {
         crate::hash::key_of(&self.seed)
     }

@@ -1,4 +1,4 @@
-//! Removal of the spikes that midpoint displacement leaves (B figure 5.10).
+//! Removal of the spikes that midpoint displacement produces (B figure 5.10).
 
 use crate::InputError;
 use crate::terrain::config::{HEIGHT_ONE, finite};
@@ -10,11 +10,11 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{DespikeBuffers, DespikePass};
 
-/// Replaces every point that is further than `threshold` from the mean of its four neighbours by that mean.
-/// Injected points are left alone. A result depends on samples at most one sample away.
+/// Replaces a point by the mean of its four neighbours if it differs from that mean by more than `threshold`. Injected points
+/// are left alone. A result depends on samples at most one sample away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Despike {
-    /// The threshold τ, in height units; 0 to 16383.
+    /// Threshold τ in height units, 0 to 16383.
     pub threshold: f64,
 }
 
@@ -27,7 +27,7 @@ impl Despike {
         finite("despike.threshold", self.threshold, 0.0, 16383.0)
     }
 
-    /// τ in 1/65536 units.
+    /// Threshold τ in 1/65536 units.
     pub fn fixed_threshold(&self) -> i32 {
         (self.threshold * HEIGHT_ONE).round_ties_even() as i32
     }

@@ -8,12 +8,12 @@ use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
 
-/// What despiking reads and writes.
+/// Buffers of a despiking job.
 #[derive(Debug, Clone, Copy)]
 pub struct DespikeBuffers<'a> {
-    /// The windows.
+    /// Read: the windows.
     pub windows: &'a Fields,
-    /// The injected points, which despiking leaves alone; grid 0 covers the windows.
+    /// Read: the injected points, which despiking leaves alone; grid 0 covers the windows.
     pub features: &'a FeatureIndex,
     /// Written: the despiked windows, one sample smaller on every side.
     pub cropped: &'a Fields,
@@ -26,11 +26,10 @@ pub struct DespikePass {
 }
 
 impl DespikePass {
-    /// Compiles the pipeline. `with_features` says whether there are injected points, which the kernel leaves
-    /// alone.
+    /// Compiles the pipeline. `with_features` tells whether there are injected points, which the kernel leaves alone.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, with_features: bool) -> Result<Self, GpuError> {
         let constants = bindings::Constants { features: with_features.into() };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)? })

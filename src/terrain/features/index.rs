@@ -1,5 +1,5 @@
-//! Features on the device: for each level a grid with one bit per point, and for each word of the grid the
-//! index of its first value (`wgsl/terrain/features.wgsl`).
+//! Features on the device. Each level has a grid with one bit per point, and, for each word of the grid, the index of the
+//! word's first value (`wgsl/terrain/features.wgsl`).
 
 use crate::gpu::bind::Slice;
 use crate::gpu::{Buffer, Gpu, GpuError};
@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 pub use crate::shared::terrain::features::FeatureGrid;
 use crate::shared::terrain::features::FeatureWord;
 
-/// The features of a batch of windows: several grids of different widths, and the injected values.
+/// Features of a batch of windows: several grids of different widths, and the injected values.
 #[derive(Debug, Clone)]
 pub struct FeatureIndex {
     grids: Vec<FeatureGrid>,
@@ -17,8 +17,8 @@ pub struct FeatureIndex {
 }
 
 impl FeatureIndex {
-    /// Allocates for `windows` windows with grids of these widths, and for `capacity` values in all. A capacity
-    /// of 0 allocates no memory; it is for kernels that are compiled without features.
+    /// Allocates grids of the given widths for `windows` windows, and room for `capacity` values in total. A capacity of 0
+    /// allocates no memory; it is for kernels compiled without features.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -36,7 +36,7 @@ impl FeatureIndex {
                     words_per_window: words_per_row * (width + 2),
                     start,
                 };
-                // Kernels that are compiled without features read none of the words.
+                // Wrapping is harmless: kernels compiled without features read none of the words.
                 start = start.wrapping_add(grid.words_per_window.wrapping_mul(windows));
                 grid
             })
@@ -49,8 +49,8 @@ impl FeatureIndex {
         })
     }
 
-    /// Replaces the features. `points(grid, window)` gives (column, row, height) sorted by row, then column,
-    /// counted from one point before the window's first.
+    /// Replaces the features. `points(grid, window)` returns (column, row, height) sorted by row, then column. Coordinates
+    /// count from one point before the window's first.
     ///
     /// # Errors
     /// [`GpuError::Limit`] when there are more features than the capacity.
@@ -91,7 +91,7 @@ impl FeatureIndex {
         self.heights.write(gpu, &heights)
     }
 
-    /// The grid at `index`, in the order of the widths, or a grid without points if there is none.
+    /// Grid at `index`, in the order of the widths; a grid without points if there is none.
     pub(crate) fn grid(&self, index: usize) -> FeatureGrid {
         let none = FeatureGrid { width: 0, words_per_row: 0, words_per_window: 0, start: 0 };
         self.grids.get(index).copied().unwrap_or(none)
@@ -105,7 +105,7 @@ impl FeatureIndex {
         self.heights.slice()
     }
 
-    /// Bytes that the index takes on the device.
+    /// Size of the index on the device, in bytes.
     pub fn bytes(&self) -> u64 {
         self.words.bytes() + self.heights.bytes()
     }

@@ -1,4 +1,4 @@
-//! Rays against the triangles of the ground.
+//! Ray queries against the triangles of the ground.
 
 use glam::DVec3;
 
@@ -8,18 +8,18 @@ use crate::mesh::ray::distance_to;
 /// A hit of the ground by a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundHit {
-    /// The distance, in lengths of the ray's direction.
+    /// Distance in lengths of the ray's direction.
     pub distance: f64,
-    /// The normal of the triangle, upwards, of any length.
+    /// Normal of the triangle, pointing up, of any length.
     pub normal: DVec3,
 }
 
 impl Ground {
-    /// The first hit of a patch by a ray, up to a distance in lengths of its direction. Positions are in world units from the
-    /// patch's first sample, x east, y up, z south. The triangles are those that are drawn; both of their sides are hit. `None`
-    /// where the ground has no such patch.
+    /// First hit of a patch by a ray. `limit` is the largest distance, in lengths of the ray's direction. Positions are in
+    /// world units from the patch's first sample, x east, y up, z south. The triangles are the drawn ones, and both of their
+    /// sides are hit. `None` if there is no hit or no such patch.
     ///
-    /// The ray is followed from cell to cell, so that it takes as many tests as there are cells below it.
+    /// The ray is followed from cell to cell, with one test per cell below it.
     pub fn hit(&self, patch: [i32; 2], [at, direction]: [DVec3; 2], limit: f64) -> Option<GroundHit> {
         let field = self.patches.get(&patch)?;
         let cells = self.size as usize - 1;
@@ -53,7 +53,7 @@ impl Ground {
     }
 }
 
-/// The distances at which a ray enters and leaves the positions from 0 to `edge` along an axis.
+/// Distances at which a ray enters and leaves the range 0 to `edge` along an axis.
 fn slab(at: f64, direction: f64, edge: f64) -> Option<[f64; 2]> {
     if direction == 0.0 {
         return (0.0..=edge).contains(&at).then_some([f64::NEG_INFINITY, f64::INFINITY]);
@@ -62,12 +62,12 @@ fn slab(at: f64, direction: f64, edge: f64) -> Option<[f64; 2]> {
     Some([a.min(b), a.max(b)])
 }
 
-/// A walk along a ray from cell to cell.
+/// Traversal of the cells along a ray.
 struct Walk {
     cell: [usize; 2],
     /// Number of cells along each axis.
     cells: usize,
-    /// The distances at which the next cell along each axis begins, and those between cells.
+    /// Per axis, the distance at which the next cell begins, and the distance between cell borders.
     next: [f64; 2],
     step: [f64; 2],
     forward: [bool; 2],
@@ -77,7 +77,7 @@ impl Walk {
     fn new([at, direction]: [DVec3; 2], from: f64, (spacing, cells): (f64, usize)) -> Self {
         let start = at + from * direction;
         let axes = [(at.x, direction.x, start.x), (at.z, direction.z, start.z)];
-        // Conversion saturates.
+        // The conversion saturates.
         let cell = axes.map(|(_, _, start)| ((start / spacing).floor().max(0.0) as usize).min(cells - 1));
         let forward = axes.map(|(_, direction, _)| direction > 0.0);
         let next = std::array::from_fn(|axis| {
@@ -89,7 +89,7 @@ impl Walk {
         Self { cell, cells, next, step, forward }
     }
 
-    /// Goes on to the next cell; returns the distance at which it begins.
+    /// Advances to the next cell; returns the distance at which it begins.
     fn step(&mut self) -> Option<f64> {
         let axis = usize::from(self.next[1] < self.next[0]);
         let begins = self.next[axis];
@@ -112,7 +112,7 @@ mod tests {
     use crate::terrain::field::field;
     use crate::terrain::recipe::Recipe;
 
-    /// Every ray hits what a search through all triangles finds, and on it the ground is as high as the hit.
+    /// Every ray hits the same triangle as a search through all triangles, and the ground has the hit's height there.
     #[test]
     fn rays_hit_the_triangles_that_are_drawn() {
         let config = Config::new(33, 6.0, "rays").expect("valid");
@@ -154,13 +154,13 @@ mod tests {
         );
     }
 
-    /// Whether a place lies next to an edge, where rounding decides which triangle answers.
+    /// Whether a place is so close to an edge that rounding decides which triangle answers.
     fn is_on_edge(config: &Config, place: DVec3) -> bool {
         let [u, v] = [place.x, place.z].map(|at| (at / config.terrain_scale).rem_euclid(1.0));
         [u, v, u + v - 1.0].iter().any(|distance| distance.abs() < 1e-6 || distance.abs() > 1.0 - 1e-6)
     }
 
-    /// The same without a walk: all triangles of the patch.
+    /// The same by a search through all triangles of the patch.
     fn nearest(ground: &Ground, [at, direction]: [DVec3; 2]) -> Option<f64> {
         let field = &ground.patches[&[1, -2]];
         let cells = ground.size as usize - 1;

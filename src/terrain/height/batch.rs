@@ -1,4 +1,4 @@
-//! A batch of windows of any size, split where it exceeds a storage binding.
+//! Batches of windows of any size, split where they exceed a storage binding.
 
 use super::{HeightJob, HeightPass, HeightScratch};
 use crate::gpu::Gpu;
@@ -8,7 +8,7 @@ use crate::terrain::fields::Fields;
 use crate::terrain::window::Window;
 use crate::{Error, InputError};
 
-/// A batch of any size. It is split where it exceeds a storage binding of 128 MiB, and recorded as one.
+/// A batch of any size. It is split at storage bindings of 128 MiB, and recorded as one.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     jobs: Vec<HeightJob>,
@@ -17,8 +17,7 @@ pub struct HeightBatch {
 }
 
 impl HeightBatch {
-    /// Allocates everything for `count` windows with `apron`, and for `feature_capacity` injected points in
-    /// each part.
+    /// Allocates all buffers for `count` windows with `apron`, and for `feature_capacity` injected points in each part.
     ///
     /// # Errors
     /// [`InputError`] as [`HeightPass::prepare`]; [`crate::gpu::GpuError`].
@@ -51,7 +50,7 @@ impl HeightBatch {
         Ok(Self { jobs, fields, scratch })
     }
 
-    /// Sets the patches, in order through the parts, and the features of the next recordings.
+    /// Sets the patches and features of the next recordings. Patches fill the parts in order.
     ///
     /// # Errors
     /// As [`HeightJob::set`].
@@ -79,7 +78,7 @@ impl HeightBatch {
         &self.fields
     }
 
-    /// Bytes of heights and scratch on the device, apart from features.
+    /// Size of heights and scratch on the device, in bytes, without features.
     pub fn bytes(&self) -> u64 {
         self.fields.iter().map(|fields| fields.heights.bytes()).sum::<u64>() + self.scratch.bytes()
     }

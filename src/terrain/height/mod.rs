@@ -1,5 +1,5 @@
-//! Heights of a window onto the diamond-square surface of the whole plane (B section 3.3.1), for `seamless`
-//! terrain. All arithmetic is on integers: every device computes the same bits.
+//! Heights of a window onto the diamond-square surface of the whole plane (B section 3.3.1), for `seamless` terrain. All
+//! arithmetic is on integers, so that every device computes the same bits.
 
 #[cfg(feature = "gpu")]
 mod batch;

@@ -1,4 +1,4 @@
-//! The GPU pass of `kernels/terrain/height.wgsl`: a level per dispatch, for a batch of windows.
+//! The GPU pass of `kernels/terrain/height.wgsl`: one dispatch per level, for a batch of windows.
 
 use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
@@ -16,7 +16,7 @@ impl HeightPass {
     /// Compiles the pipeline. `features` is the mode of injection; `None` means that there are no features.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
         let distribution = offset.code();
         let constants = bindings::Constants { distribution, features: features.map_or(0, FeatureMode::code) };
@@ -24,13 +24,12 @@ impl HeightPass {
         Ok(Self(LevelPass { label: "terrain/height", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `count` windows with `apron` into `output`, which holds
-    /// [`HeightJob::output_points`] heights. `feature_capacity` is the largest number of injected points, where
-    /// a point counts once for every window that sees it.
+    /// Prepares the generation of `count` windows with `apron` into `output`, which must hold [`HeightJob::output_points`]
+    /// heights. `feature_capacity` is the largest number of injected points; a point counts once for every window that sees it.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration that is not `seamless` or out of bounds, an apron out of bounds, or
-    /// buffers that are too short; [`GpuError`].
+    /// [`InputError`] for a configuration that is not `seamless` or out of bounds, an apron out of bounds, or buffers that are
+    /// too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

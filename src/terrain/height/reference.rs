@@ -6,7 +6,7 @@ use crate::terrain::fixed::{Draw, mean_of_four};
 use crate::terrain::lattice::{Injected, base_lattice, world};
 use crate::terrain::window::{Span, Window};
 
-/// The heights of a window, rows of `window.width(config)` samples. The window must be valid.
+/// Heights of a window, in rows of `window.width(config)` samples. The window must be valid.
 pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> {
     let levels = window.levels(config);
     let draw = Draw::new(config);
@@ -26,7 +26,7 @@ pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> 
     grid
 }
 
-/// The finer lattice that one subdivision makes.
+/// The finer lattice produced by one subdivision.
 struct Fine<'a> {
     features: &'a Features,
     draw: &'a Draw,
@@ -50,7 +50,7 @@ impl Fine<'_> {
         let mut between = upper.clone();
         let mut beside = upper.clone();
         let x = coarse_spans[0].first;
-        // The first row of squares lies outside the window and has no upper diamonds; it is not stored.
+        // The first row of squares lies outside the window and has no upper diamonds. It is not stored.
         for y in coarse_spans[1].first..coarse_spans[1].last {
             let (here, below) = (coarse_row(y), coarse_row(y + 1));
             self.diamonds(here, below, x, y, &mut lower);
@@ -69,7 +69,7 @@ impl Fine<'_> {
         fine
     }
 
-    /// The centers of the cells between two coarse rows. The first cell starts at the coarse point (x, y).
+    /// Centers of the cells between two coarse rows. The first cell starts at the coarse point (x, y).
     fn diamonds(&self, above: &[i32], below: &[i32], x: i64, y: i64, centers: &mut [i32]) {
         for (i, center) in centers.iter_mut().enumerate() {
             *center = mean_of_four(above[i], above[i + 1], below[i], below[i + 1]);
@@ -84,8 +84,7 @@ impl Fine<'_> {
         self.injected.inject_row(self.features, y, x, 2, heights);
     }
 
-    /// Stores those points that lie in the window from two interleaved rows, `even` and `odd`, which start at
-    /// (x, y).
+    /// Interleaves two rows, `even` and `odd`, which start at (x, y), and stores the points that lie in the window.
     fn store_row(&self, fine: &mut [i32], y: i64, x: i64, even: &[i32], odd: &[i32]) {
         if !(self.spans[1].first..=self.spans[1].last).contains(&y) {
             return;

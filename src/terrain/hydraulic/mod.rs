@@ -1,5 +1,6 @@
-//! Hydraulic erosion: rain collects in rivers, which carry ground away and leave it where they slow down (virtual pipes after
-//! Mei, Decaudin and Hu, "Fast hydraulic erosion simulation and visualization on GPU", Pacific Graphics 2007), in integers.
+//! Hydraulic erosion: rain collects in rivers, which carry ground away and deposit it where they slow down. The method is
+//! virtual pipes in integers (after Mei, Decaudin and Hu, "Fast hydraulic erosion simulation and visualization on GPU", Pacific
+//! Graphics 2007).
 
 use serde::Deserialize;
 
@@ -14,43 +15,51 @@ pub use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WAT
 #[cfg(feature = "gpu")]
 pub use pass::{HydraulicBuffers, HydraulicPass};
 
-/// The largest number of cycles.
+/// Largest number of cycles.
 pub const MAX_ITERATIONS: u32 = 2048;
 
-/// Rain, rivers, and what they do to the ground. Each cycle moves water and the sediment in it to the four neighbours of each
-/// sample, lets ground creep and steep banks slide, erodes or deposits, evaporates, and rains; in the last quarter of the cycles the land dries
-/// without rain, and after the last one all sediment settles where it is.
+/// Parameters of rain, rivers and their effect on the ground.
 ///
-/// Lengths are fractions of the spacing of samples (terrainScale), so that a landscape of another scale erodes alike. Ground and
-/// sediment together are conserved to the last bit. A cycle reads samples at most one sample away: a patch of 257² samples
-/// needs as many samples around it as there are cycles, and 300 cycles on it compute windows of 857², eleven times the patch, at
-/// first, so larger patches erode for less. Water comes from as far as there are cycles: rivers longer than that end.
+/// Each cycle has these steps:
 ///
-/// No configuration overflows: a sample holds at most 1024 height units of water and of sediment. What would exceed this, or
-/// the largest height, stays where it came from, and rain beyond it is lost.
+/// - water, and the sediment in it, moves to the four neighbours of each sample;
+/// - ground creeps, and steep banks slide;
+/// - water erodes or deposits;
+/// - water evaporates, and rain falls.
+///
+/// In the last quarter of the cycles the land dries without rain. After the last cycle all sediment settles where it is.
+///
+/// Lengths are fractions of the spacing of samples (terrainScale), so that a landscape of another scale erodes alike. Ground
+/// and sediment together are conserved to the last bit. A cycle reads samples at most one sample away, so a patch needs as many
+/// samples around it as there are cycles. For example, 300 cycles on a patch of 257² samples begin with windows of 857², eleven
+/// times the patch; larger patches cost less per sample. For the same reason, water comes from at most as many samples away as
+/// there are cycles: longer rivers end.
+///
+/// No configuration overflows. A sample holds at most 1024 height units of water and of sediment. Any excess over this, or over
+/// the largest height, stays where it came from; excess rain is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hydraulic {
     /// Number of cycles, at most [`MAX_ITERATIONS`]. Default 300.
     #[serde(deserialize_with = "whole::<_, 0, MAX_ITERATIONS>")]
     pub iterations: u32,
-    /// Depth of the rain in a cycle, in spacings of samples, 0 to 1. Default 0.001.
+    /// Depth of the rain per cycle, in spacings of samples, 0 to 1. Default 0.001.
     pub rain: f64,
-    /// The fraction of the water that evaporates in a cycle, 0 to 1. Default 0.001.
+    /// Fraction of the water that evaporates per cycle, 0 to 1. Default 0.001.
     pub evaporation: f64,
-    /// The sediment that water carries: for each unit of discharge, at a slope of 1; 0 to 1024. Default 100.
+    /// Sediment capacity of water, per unit of discharge at a slope of 1; 0 to 1024. Default 100.
     pub capacity: f64,
-    /// The discharge below which water carries nothing, as the number of samples whose rain it is; 0 to 65536. It decides how
-    /// far from the watershed valleys begin, and it is the most water that spreads to each side, whatever the slope. Default 2.
+    /// Discharge below which water carries nothing, as the number of samples whose rain it is; 0 to 65536. It decides how far
+    /// from the watershed valleys begin. It also limits the water that spreads to each side whatever the slope. Default 2.
     pub threshold: f64,
-    /// The fraction of the lacking sediment that the water takes from the ground in a cycle, 0 to 1. Default 0.01.
+    /// Fraction of the lacking sediment that the water takes from the ground per cycle, 0 to 1. Default 0.01.
     pub erosion: f64,
-    /// The fraction of the excess sediment that settles in a cycle, 0 to 1. Default 0.02.
+    /// Fraction of the excess sediment that settles per cycle, 0 to 1. Default 0.02.
     pub deposition: f64,
     /// The steepest stable bank, in degrees, 0 to 89. Default 40.
     pub talus: f64,
-    /// The fraction of the difference between two neighbours that creeps down in a cycle, 0 to 1/16. It rounds ridges, and the
-    /// more of it, the further apart are valleys. Default 0.002.
+    /// Fraction of the height difference between two neighbours that creeps down per cycle, 0 to 1/16. It rounds ridges; the
+    /// larger it is, the further apart are valleys. Default 0.002.
     pub creep: f64,
 }
 
@@ -92,7 +101,7 @@ impl Hydraulic {
         Ok(())
     }
 
-    /// What the kernel and its reference read in a cycle, counted from 0, on windows of `in_width`² samples that are
+    /// Parameters of one cycle, counted from 0, for the kernel and its reference. Windows have `in_width`² samples that are
     /// `terrain_scale` height units apart.
     pub fn params(&self, terrain_scale: f64, cycle: u32, in_width: u32) -> HydraulicParams {
         let fixed = |value: f64, most: i32| value.round_ties_even().min(f64::from(most)) as i32;

@@ -8,16 +8,16 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
 
-/// What erosion reads and writes.
+/// Buffers of hydraulic erosion.
 #[derive(Debug, Clone, Copy)]
 pub struct HydraulicBuffers<'a> {
     /// Read and written: the windows.
     pub windows: &'a Fields,
-    /// Written: fields with room for as many windows that are a sample smaller on every side.
+    /// Written: fields with room for the same number of windows, one sample smaller on every side.
     pub other: &'a Fields,
     /// Written: scratch for water and sediment, with room for the samples of `other`.
     pub flows: &'a Buffer<Flow>,
-    /// As `flows`.
+    /// Written: as `flows`.
     pub other_flows: &'a Buffer<Flow>,
 }
 
@@ -31,23 +31,23 @@ impl HydraulicPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// The number of elements that [`HydraulicBuffers::flows`] needs for windows.
+    /// Number of elements that [`HydraulicBuffers::flows`] needs for windows.
     pub fn flow_points(windows: &Fields) -> usize {
         windows.points(1)
     }
 
     /// Prepares all cycles, which alternate between `windows` and `other`. Each cycle drops the outermost ring of samples. The
-    /// result lies in `windows` if the number of cycles is even, else in `other`. Windows are at most 2^30 − 1 high, in 1/65536
-    /// units, and so is the result.
+    /// result is in `windows` if the number of cycles is even, otherwise in `other`. Heights of windows are at most 2^30 − 1,
+    /// in 1/65536 units, and so are the results.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for parameters out of bounds, for windows that have too few rings for the cycles, and for a buffer that
-    /// is too short; [`GpuError`].
+    /// [`InputError`](crate::InputError) for parameters out of bounds, for windows that have too few rings for the cycles, and
+    /// for a buffer that is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -3,8 +3,9 @@
 use crate::shared::terrain::fixed::HEIGHT_LIMIT;
 use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
 
-/// Water and suspended sediment, both in 1/65536 height units, and the shares of both that leave in the next cycle, in 1/32768:
-/// to the west in the low half of the third word and to the east in its high half, to the north and to the south in the fourth.
+/// Water state of a sample. The first two words are water and suspended sediment in 1/65536 height units. The other two are the
+/// shares of both that leave in the next cycle, in 1/32768: the third word has west in its low half and east in its high half,
+/// the fourth has north and south.
 pub type Flow = [i32; 4];
 
 /// A sample, with its shares towards west, east, north and south.
@@ -16,8 +17,8 @@ struct Cell {
     shares: [i32; 4],
 }
 
-/// One cycle on a window with [`HydraulicParams::in_width`] samples per row, without the outermost ring of samples: the ground
-/// and the flow after it. Of heights of at most 2^30 − 1 in size it makes such heights.
+/// Computes one cycle on a window with [`HydraulicParams::in_width`] samples per row. Returns the ground and the flow without
+/// the outermost ring of samples. Heights of at most 2^30 − 1 in size stay so.
 pub fn hydraulic(ground: &[i32], flow: &[Flow], params: &HydraulicParams) -> (Vec<i32>, Vec<Flow>) {
     let width = params.in_width as usize;
     let inner = (width - 2) * (width - 2);
@@ -40,31 +41,31 @@ impl Cell {
         Self { ground, water, sediment, shares: [across & 0xffff, across >> 16, along & 0xffff, along >> 16] }
     }
 
-    /// The height of the water's surface.
+    /// Height of the water's surface.
     #[inline(always)]
     fn surface(self) -> i32 {
         (self.ground + self.water).min(HEIGHT_LIMIT)
     }
 
-    /// The most water that one neighbour may add.
+    /// Most water that one neighbour may add.
     #[inline(always)]
     fn water_room(self) -> i32 {
         (WATER_LIMIT - self.water) >> 2
     }
 
-    /// The most ground that one neighbour may add, and as much sediment.
+    /// Most ground, and as much sediment, that one neighbour may add.
     #[inline(always)]
     fn ground_room(self) -> i32 {
         (HEIGHT_LIMIT - self.ground - self.sediment) >> 3
     }
 
-    /// The most sediment that one neighbour may add.
+    /// Most sediment that one neighbour may add.
     #[inline(always)]
     fn sediment_room(self) -> i32 {
         ((SEDIMENT_LIMIT - self.sediment) >> 2).min(self.ground_room())
     }
 
-    /// Water and sediment that leave through a side for a neighbour.
+    /// Water and sediment that leave to a neighbour through one side.
     #[inline(always)]
     fn leaving(self, side: usize, neighbour: Self) -> [i32; 2] {
         let share = self.shares[side];
@@ -72,7 +73,7 @@ impl Cell {
         [water, part(self.sediment, share).min(neighbour.sediment_room())]
     }
 
-    /// The ground that slides and creeps down to a neighbour.
+    /// Ground that slides and creeps down to a neighbour.
     #[inline(always)]
     fn sliding(self, neighbour: Self, params: &HydraulicParams) -> i32 {
         let step = (self.ground - neighbour.ground).max(0);
@@ -81,7 +82,7 @@ impl Cell {
     }
 }
 
-/// A cycle of one sample, from its neighbours to the west, east, north and south.
+/// One cycle of one sample, from its neighbours to the west, east, north and south.
 #[inline(always)]
 fn cycle(cell: Cell, around: [Cell; 4], params: &HydraulicParams) -> (i32, Flow) {
     let (mut lost, mut gained, mut slid) = ([0; 2], [0; 2], 0);
@@ -105,8 +106,8 @@ fn cycle(cell: Cell, around: [Cell; 4], params: &HydraulicParams) -> (i32, Flow)
     (cell.ground - lifted + slid, [water, sediment + lifted, west | east << 16, north | south << 16])
 }
 
-/// A quarter of the discharge of a sample, and three quarters of the mean of what leaves its neighbours, so that streams are
-/// wider than a sample and run in any direction alike.
+/// A quarter of a sample's own discharge plus three quarters of the mean outflow of its neighbours. The average makes streams
+/// wider than a sample and lets them run alike in any direction.
 #[inline(always)]
 fn discharge(own: i32, around: [Cell; 4]) -> i32 {
     let leaving = |cell: Cell| part(cell.water, cell.shares.into_iter().sum()) >> 3;
@@ -114,8 +115,8 @@ fn discharge(own: i32, around: [Cell; 4]) -> i32 {
     (own >> 2) + eighths + (eighths >> 1)
 }
 
-/// The sediment that a discharge carries down a surface that falls so far to the neighbours. A slope has the length of its two
-/// components, by the larger one and three eighths of the smaller one.
+/// Sediment that a discharge carries down a surface; `falls` are the height differences to the neighbours. The length of a
+/// slope is approximated from its two components: the larger one plus three eighths of the smaller one.
 #[inline(always)]
 fn capacity(discharge: i32, falls: [i32; 4], params: &HydraulicParams) -> i32 {
     let [across, along] = [falls[0].max(falls[1]), falls[2].max(falls[3])]
@@ -124,13 +125,13 @@ fn capacity(discharge: i32, falls: [i32; 4], params: &HydraulicParams) -> i32 {
     let rate = ((slope * params.capacity) >> 8).min(1 << 18);
     let driving = (discharge - params.threshold).clamp(0, WATER_LIMIT);
     let high = driving >> 12;
-    // A rate beyond this carries more than the limit, and its product might overflow.
+    // A larger rate exceeds the limit anyway, and its product might overflow.
     let safe = rate.min(1 << (high.max(1).leading_zeros() - 2));
     (high * safe + (((driving & 4095) * rate) >> 12)).min(SEDIMENT_LIMIT)
 }
 
-/// The ground that goes into suspension, or, below 0, the sediment that settles. Ground sinks no deeper than its lowest
-/// neighbour, and rises no higher than its highest or the water.
+/// Ground that goes into suspension; if negative, sediment that settles. Ground sinks no deeper than its lowest neighbour, and
+/// rises no higher than its highest neighbour or the water.
 #[inline(always)]
 fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -> i32 {
     if lacking > 0 {
@@ -141,9 +142,9 @@ fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -
     -part(-lacking, params.deposition).min((highest >> 3).max(water >> 2))
 }
 
-/// The shares that leave next: each pipe keeps half of its flux and takes a sixteenth of the fall. A thirty-second of the water,
-/// below the threshold, spreads through each, so that streams do not run along rows and columns. All together give three
-/// quarters of the water at most, so that neighbouring samples do not exchange all of it from cycle to cycle.
+/// Shares that leave in the next cycle. Each pipe keeps half of its flux and gains a sixteenth of the fall. In addition, a
+/// thirty-second of the water below the threshold spreads through each pipe, so that streams do not run along rows and columns.
+/// The sum is at most three quarters of the water, so that neighbouring samples do not exchange all of it from cycle to cycle.
 #[inline(always)]
 fn next_shares(cell: Cell, falls: [i32; 4], water: i32, params: &HydraulicParams) -> [i32; 4] {
     let spread = (water >> 5).min(params.threshold);
@@ -158,7 +159,8 @@ fn next_shares(cell: Cell, falls: [i32; 4], water: i32, params: &HydraulicParams
     flux.map(|flux| ((((flux as u32 >> shift) * inverse) >> 16) as i32 * 3) >> 2)
 }
 
-/// ⌊amount · share / 32768⌋ for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
+/// Returns ⌊amount · share / 32768⌋ for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most
+/// 2048.
 #[inline(always)]
 fn part(amount: i32, share: i32) -> i32 {
     (amount >> 15) * share + (((amount & 32767) * share) >> 15)

@@ -1,11 +1,11 @@
-//! Blends of whole batches of fields, part by part.
+//! Blends over time of whole batches of fields, part by part.
 
 use super::{Morph, MorphBuffers, MorphJob, MorphPass};
 use crate::gpu::{Gpu, Upload};
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
 
-/// Fields whose heights lie between those of two batches: set the time, then record. It holds both batches.
+/// Fields with heights between those of two batches: set the time, then record. It keeps both batches alive.
 #[derive(Debug, Clone)]
 pub struct MorphedFields {
     fields: Vec<Fields>,
@@ -13,12 +13,13 @@ pub struct MorphedFields {
 }
 
 impl MorphedFields {
-    /// Allocates fields for the blend of `from`, the heights at time 0, and `to`, those at time 1: parts of the same widths and
-    /// counts, as a [`Generator`](crate::terrain::generator::Generator) makes them of the same patches. They hold zeros until
-    /// the blend has been recorded.
+    /// Allocates fields for the blend from `from` (time 0) to `to` (time 1). Both must have parts of the same widths and
+    /// counts, as a [`Generator`](crate::terrain::generator::Generator) produces for the same patches. The fields are zero
+    /// until the blend has been recorded.
     ///
     /// # Errors
-    /// [`InputError`] for other numbers of parts, widths or counts, and for buffers that are too short; [`crate::gpu::GpuError`].
+    /// [`InputError`] for other numbers of parts, widths or counts, and for buffers that are too short;
+    /// [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, from: &[Fields], to: &[Fields]) -> Result<Self, Error> {
         InputError::check_same("to.len", to.len(), from.len(), "as from.len")?;
         let pass = MorphPass::new(gpu)?;
@@ -29,7 +30,7 @@ impl MorphedFields {
                 let (path, reason) = (format!("to[{part}].{field}"), format!("as from[{part}].{field}"));
                 InputError::check_same(path, to, from, &reason)?;
             }
-            // After erosion a buffer has more room than its fields take.
+            // After erosion a buffer is larger than its fields.
             from.check(&format!("from[{part}]"), 0)?;
             to.check(&format!("to[{part}]"), 0)?;
             let between = Fields::new(gpu, "terrain heights", from.width, from.count)?;
@@ -54,7 +55,7 @@ impl MorphedFields {
         self.stage(&mut gpu, morph)
     }
 
-    /// Sets the time where `to` records it.
+    /// Sets the time through `to`.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         self.jobs.iter().try_for_each(|job| job.stage(to, morph))
     }

@@ -14,11 +14,11 @@ pub use batch::MorphedFields;
 #[cfg(feature = "gpu")]
 pub use pass::{MorphBuffers, MorphJob, MorphPass};
 
-/// A blend of two fields: `from + ⌊(to − from)·time⌋`, in integers. It is exact at both ends, and every device
+/// A blend of two fields at one time: `from + ⌊(to − from)·time⌋`, in integers. It is exact at both ends, and every device
 /// computes the same bits in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Morph {
-    /// 0 (the first field) to 1 (the second), rounded to steps of 1/65536.
+    /// Time from 0 (the first field) to 1 (the second), rounded to steps of 1/65536.
     pub time: f64,
 }
 
@@ -29,7 +29,7 @@ impl Default for Morph {
     }
 }
 
-/// Checks that fields of `target` may follow those of `config`: that they have the same number of samples in the same places.
+/// Checks that fields of `target` can follow those of `config`: both must have the same number of samples in the same places.
 ///
 /// # Errors
 /// [`InputError`] that names `patch_size` or `terrain_scale`.
@@ -47,7 +47,7 @@ impl Morph {
         finite("time", self.time, 0.0, 1.0)
     }
 
-    /// The time in steps of 1/65536.
+    /// Time in steps of 1/65536.
     pub fn fixed_time(&self) -> u32 {
         (self.time * 65_536.0).round_ties_even() as u32
     }

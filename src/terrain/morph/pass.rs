@@ -6,14 +6,14 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Uniform, Upload}
 use crate::shared::terrain::morph::MorphParams;
 use crate::{Error, InputError};
 
-/// What a blend reads and writes: heights in 1/65536 units, as many in each buffer.
+/// Buffers of a blend: heights in 1/65536 units, the same number in each buffer.
 #[derive(Debug, Clone, Copy)]
 pub struct MorphBuffers<'a> {
-    /// The heights at time 0.
+    /// Read: heights at time 0.
     pub from: &'a Buffer<i32>,
-    /// The heights at time 1.
+    /// Read: heights at time 1.
     pub to: &'a Buffer<i32>,
-    /// Written: the heights at the time that is set.
+    /// Written: heights at the set time.
     pub heights: &'a Buffer<i32>,
 }
 
@@ -27,7 +27,7 @@ impl MorphPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
@@ -44,7 +44,7 @@ impl MorphPass {
         Ok(self.prepare_first(gpu, buffers, from.len() as u32)?)
     }
 
-    /// Prepares a blend of the first `points` heights, which all buffers hold; it writes whole vectors of four.
+    /// Prepares a blend of the first `points` heights, which all buffers hold. It writes whole vectors of four.
     pub(crate) fn prepare_first(
         &self,
         gpu: &Gpu,
@@ -79,7 +79,7 @@ impl MorphJob {
         self.stage(&mut &*gpu, morph)
     }
 
-    /// Sets the time where `to` records it.
+    /// Sets the time through `to`.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
         Ok(to.uniform(&self.uniform, &MorphParams { time: morph.fixed_time(), ..self.params })?)

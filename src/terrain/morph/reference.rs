@@ -1,6 +1,6 @@
 //! A blend of two height fields: the CPU reference of `kernels/terrain/morph.wgsl`.
 
-/// `from + ⌊(to − from)·time / 65536⌋` at every point.
+/// Returns `from + ⌊(to − from)·time / 65536⌋` at every point.
 pub fn morph(from: &[i32], to: &[i32], time: u32) -> Vec<i32> {
     from.iter()
         .zip(to)

@@ -17,17 +17,17 @@ impl NormalsPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the slopes of `windows`, whose samples are `terrain_scale` world units apart. For every sample
-    /// but those of the outermost ring, `gradients` receives the central differences in 1/65536 units, and
-    /// `normals` three components (x, up, z).
+    /// Prepares the slopes of `windows`, whose samples are `terrain_scale` world units apart. Outputs have one entry per
+    /// sample, except for the outermost ring. `gradients` receives the central differences in 1/65536 units, and `normals`
+    /// three components (x, up, z).
     /// # Errors
-    /// [`crate::InputError`] for a spacing out of bounds, for windows with nothing inside the outermost ring,
-    /// and for outputs that are too short; [`GpuError`].
+    /// [`crate::InputError`] for a spacing out of bounds, for windows with nothing inside the outermost ring, and for outputs
+    /// that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

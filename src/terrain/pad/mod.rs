@@ -1,6 +1,5 @@
-//! Windows around the patches of a batch. `seamless` terrain generates its windows directly; `wrap` and `blend`
-//! gather them here, from the patch itself or from its neighbours, so that the stencils after generation work
-//! in every border mode.
+//! Windows around the patches of a batch. `seamless` terrain generates its windows directly. `wrap` and `blend` gather them
+//! here from the patch itself or from its neighbours, so that the stencils after generation work in every border mode.
 
 use crate::InputError;
 use crate::terrain::config::{Border, Config};
@@ -12,12 +11,11 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::PadPass;
 
-/// Indices of the nine patches at and around a patch, row by row. Where one is missing, the window repeats the
-/// nearest sample that exists.
+/// Indices of the nine patches at and around a patch, row by row. If one is missing, the window repeats the nearest sample that
+/// exists.
 pub type Surround = [Option<usize>; 9];
 
-/// The surroundings of every patch of a batch: for `wrap` the patch itself on every side, for `blend` the
-/// batch's patches.
+/// Surroundings of every patch of a batch: for `wrap` the patch itself on every side, for `blend` the patches of the batch.
 pub fn surrounds(config: &Config, patches: &[[i32; 2]]) -> Vec<Surround> {
     let index: std::collections::HashMap<_, _> =
         patches.iter().enumerate().map(|(index, patch)| (*patch, index)).collect();

@@ -17,18 +17,16 @@ impl PadPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares windows that extend `apron` samples beyond their patches, one for each of `surrounds`. It reads
-    /// `parts`, which hold the patches one after the other, and writes `windows`. Surroundings are counted
-    /// through all parts.
+    /// Prepares windows that extend `apron` samples beyond their patches, one for each of `surrounds`. It reads `parts`, which
+    /// hold the patches one after the other, and writes `windows`. Indices in `surrounds` count patches across all parts.
     /// # Errors
-    /// [`InputError`] when the apron is the size of a patch or more, when a surrounding lacks its own patch or
-    /// names one beyond `parts`, when parts have different widths or heights that are too short, or when
-    /// `windows` is too short; [`GpuError`].
+    /// [`InputError`] when the apron is the size of a patch or more, when a surrounding lacks its own patch or names one beyond
+    /// `parts`, when parts have different widths or heights that are too short, or when `windows` is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -62,7 +60,7 @@ impl PadPass {
     }
 }
 
-/// The kernel's indices for the dispatch that reads `part`, or `None` when no tile lies there.
+/// Tile indices for the dispatch that reads `part`; `None` if no tile lies there.
 fn tiles_in(part: usize, tiles: &[Option<Place>]) -> Option<Vec<u32>> {
     let here = |tile: &Option<Place>| tile.is_some_and(|place| place.part == part);
     tiles.iter().any(here).then(|| {

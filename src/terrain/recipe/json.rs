@@ -10,7 +10,7 @@ use crate::terrain::config::{
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::thermal::Thermal;
 
-/// A recipe as JSON stores it: the configuration's fields, and erosion beside them.
+/// JSON form of a recipe: the configuration's fields, with erosion beside them.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 struct Raw {
@@ -60,7 +60,7 @@ enum RawCorners {
 }
 
 impl RawBorder {
-    /// The border, whose width this checks: an untagged value would name all of itself.
+    /// Converts the border and checks its width here, because an error of an untagged value would quote all of it.
     fn border(self) -> Result<Border, InputError> {
         match self {
             Self::Named(border) => Ok(border),
@@ -112,8 +112,8 @@ impl Config {
     /// Reads a configuration from B's JSON. [`Recipe::from_json`] reads erosion too.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not such JSON, for unknown keys, for values out of bounds, and for erosion, which a
-    /// configuration does not have.
+    /// [`InputError`] for text that is not valid JSON of this form, for unknown keys, for values out of bounds, and for
+    /// erosion, which a configuration does not have.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         let Recipe { config, thermal, hydraulic, thermal_after, .. } = Recipe::from_json(text)?;
         let given = [
@@ -131,19 +131,20 @@ impl Config {
 }
 
 impl Recipe {
-    /// Reads a configuration from JSON, with erosion beside it, each with its fields in a JSON object: `thermal` and
-    /// `thermalAfter` (`iterations`, `talus`), and `hydraulic` (the fields of [`Hydraulic`]); what is left out has its default.
+    /// Reads a recipe from JSON: the configuration's fields, with erosion beside them. `thermal` and `thermalAfter` are objects
+    /// with `iterations` and `talus`; `hydraulic` is an object with the fields of [`Hydraulic`]. Missing fields have their
+    /// defaults.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not such JSON, for unknown keys, and for values out of bounds.
+    /// [`InputError`] for text that is not valid JSON of this form, for unknown keys, and for values out of bounds.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         from_json_object::<Raw>("config", text)?.recipe()
     }
 
-    /// As [`Recipe::from_json`], from an object that has been read.
+    /// As [`Recipe::from_json`], from parsed JSON.
     ///
     /// # Errors
-    /// The same.
+    /// As [`Recipe::from_json`].
     #[cfg(feature = "gpu")]
     pub(crate) fn from_value(value: &serde_json::Value) -> Result<Self, InputError> {
         crate::terrain::config::from_json_value::<Raw>("config", value)?.recipe()

@@ -1,4 +1,4 @@
-//! The GPU pass of `kernels/terrain/smooth.wgsl`: a level per dispatch, for a batch of windows.
+//! The GPU pass of `kernels/terrain/smooth.wgsl`: one dispatch per level, for a batch of windows.
 
 use crate::gpu::bindings::terrain::smooth as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
@@ -15,7 +15,7 @@ impl SmoothPass {
     /// Compiles the pipeline. `features` is the mode of injection; `None` means that there are no features.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
         let distribution = offset.code();
         let constants = bindings::Constants { distribution, features: features.map_or(0, FeatureMode::code) };
@@ -23,13 +23,12 @@ impl SmoothPass {
         Ok(Self(LevelPass { label: "terrain/smooth", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `count` windows with `apron` into `output`, which holds
-    /// [`HeightJob::output_points`] heights. `feature_capacity` is the largest number of injected points, where
-    /// a point counts once for every window that sees it.
+    /// Prepares the generation of `count` windows with `apron` into `output`, which must hold [`HeightJob::output_points`]
+    /// heights. `feature_capacity` is the largest number of injected points; a point counts once for every window that sees it.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration that is not smooth or out of bounds, an apron out of bounds, or
-    /// buffers that are too short; [`GpuError`].
+    /// [`InputError`] for a configuration that is not smooth or out of bounds, an apron out of bounds, or buffers that are too
+    /// short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Numbers at the texels of a tile, and what is made of them all: blurs, and colours that are shaded by heights.
+//! Scalar fields over the texels of a tile, and operations on them: blurs, and colours shaded by heights.
 
 use rayon::prelude::*;
 
@@ -7,22 +7,22 @@ use super::TEXTURE_SIZE;
 /// Texels along an edge.
 const EDGE: usize = TEXTURE_SIZE as usize;
 
-/// A number for each texel, row by row.
+/// One number per texel, row by row.
 pub type Field = Vec<f32>;
 
-/// What `of` gives at the middle of each texel, 0 to 1 along each edge.
+/// Evaluates `of` at the middle of each texel, 0 to 1 along each edge.
 pub fn made<T: Send>(of: impl Fn([f32; 2]) -> T + Sync) -> Vec<T> {
     let middle = |index: usize| (index as f32 + 0.5) / EDGE as f32;
     (0..EDGE * EDGE).into_par_iter().map(|at| of([middle(at % EDGE), middle(at / EDGE)])).collect()
 }
 
-/// The means of squares of 2 · `radius` + 1 texels.
+/// Box blur: means of squares of 2 · `radius` + 1 texels along an edge.
 pub fn blurred(field: &[f32], radius: usize) -> Field {
     let rows = transposed_means(field, radius);
     transposed_means(&rows, radius)
 }
 
-/// The means of 2 · `radius` + 1 texels of a row, with rows and columns exchanged.
+/// Means of 2 · `radius` + 1 texels of a row, with rows and columns exchanged.
 fn transposed_means(field: &[f32], radius: usize) -> Field {
     let mut means = vec![0.0; EDGE * EDGE];
     for (y, row) in field.chunks_exact(EDGE).enumerate() {
@@ -36,7 +36,7 @@ fn transposed_means(field: &[f32], radius: usize) -> Field {
     means
 }
 
-/// Stretches numbers to 0 to 1.
+/// Rescales numbers to the range 0 to 1.
 pub fn stretched(mut field: Field) -> Field {
     let low = field.iter().copied().fold(f32::MAX, f32::min);
     let high = field.iter().copied().fold(f32::MIN, f32::max);
@@ -44,8 +44,8 @@ pub fn stretched(mut field: Field) -> Field {
     field
 }
 
-/// Texels from heights, 0 to 1, and sRGB colours, 0 to 1. What lies deeper than its surroundings is darker by `shade`, and large
-/// differences are taken out, because they would show that the texture repeats.
+/// Texels from heights and sRGB colours, both 0 to 1. Places deeper than their surroundings are darker by `shade`. Large-scale
+/// differences are removed, because they would show that the texture repeats.
 pub fn texels(heights: &[f32], mut colors: Vec<[f32; 3]>, shade: f32) -> Vec<u8> {
     for (radius, strength) in [(2, 1.6), (8, 1.0)] {
         let around = blurred(heights, radius);
@@ -69,14 +69,14 @@ pub fn texels(heights: &[f32], mut colors: Vec<[f32; 3]>, shade: f32) -> Vec<u8>
     colors.iter().zip(heights).flat_map(texel).collect()
 }
 
-/// The colour at 0 to 1 of a ramp of colours.
+/// Colour of a colour ramp at `at`, 0 to 1.
 pub fn ramp(colors: &[[f32; 3]], at: f32) -> [f32; 3] {
     let scaled = at.clamp(0.0, 1.0) * (colors.len() - 1) as f32;
     let first = (scaled as usize).min(colors.len() - 2);
     mixed(colors[first], colors[first + 1], scaled - first as f32)
 }
 
-/// From `from` at 0 to `to` at 1.
+/// Linear mix: `from` at 0, `to` at 1.
 pub fn mixed(from: [f32; 3], to: [f32; 3], at: f32) -> [f32; 3] {
     std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * at)
 }

@@ -1,5 +1,5 @@
-//! Noise that repeats after a tile: gradient noise (Perlin 2002) and cells (Worley 1996). Only arithmetic that is the same on
-//! every machine is used.
+//! Noise that repeats after a tile: gradient noise (Perlin 2002) and cells (Worley 1996). It uses only arithmetic that gives
+//! the same results on every machine.
 
 /// A random word of a lattice point; `key` separates the uses.
 pub fn word(key: u32, [x, y]: [u32; 2]) -> u32 {
@@ -21,7 +21,7 @@ pub fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Gradient noise of a lattice with `periods` cells along the tile's edges, about −1 to 1.
+/// Gradient noise on a lattice with `periods` cells along the tile's edges, about −1 to 1.
 pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
     let (x, y) = (u * periods[0] as f32, v * periods[1] as f32);
     let (cell_x, cell_y) = (x.floor(), y.floor());
@@ -30,7 +30,7 @@ pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
     let corner = |dx: i32, dy: i32| {
         let word = word(key, [wrapped(cell_x, dx, periods[0]), wrapped(cell_y, dy, periods[1])]);
         let (s, t) = (s - dx as f32, t - dy as f32);
-        // Eight directions of about one length.
+        // Eight directions of about equal length.
         let [long, short] = if word & 4 == 0 { [s, t] } else { [t, s] };
         let signed = |value: f32, bit: u32| if word & bit == 0 { value } else { -value };
         signed(long, 1) * 1.3 + signed(short, 2) * 0.55
@@ -41,7 +41,8 @@ pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
     mix(mix(corner(0, 0), corner(1, 0), fade_s), mix(corner(0, 1), corner(1, 1), fade_s), fade_t)
 }
 
-/// Octaves of gradient noise, each with twice the frequency of the one before and `gain` times its weight; about −1 to 1.
+/// Octaves of gradient noise, about −1 to 1. Each octave has twice the frequency of the previous one and `gain` times its
+/// weight.
 pub fn octaves(key: u32, periods: [u32; 2], count: u32, gain: f32, at: [f32; 2]) -> f32 {
     let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
     for octave in 0..count {
@@ -64,14 +65,14 @@ pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
     sum / total
 }
 
-/// The cell that a point lies in, among cells around one random point for each square of a lattice.
+/// Cell of a point in Worley noise, with one random feature point per lattice square.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
-    /// The distances to the nearest and the second nearest of these points, in squares.
+    /// Distances to the nearest and the second nearest feature point, in squares.
     pub distances: [f32; 2],
-    /// The way from the nearest of them, in squares.
+    /// Vector from the nearest feature point, in squares.
     pub offset: [f32; 2],
-    /// A random word of the cell.
+    /// Random word of the cell.
     pub word: u32,
 }
 

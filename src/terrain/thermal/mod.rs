@@ -12,16 +12,15 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{ThermalBuffers, ThermalPass};
 
-/// In every iteration, each pair of 4-neighbours whose heights differ by more than the talus angle allows moves
-/// an eighth of the excess downhill. Mass is conserved to the last bit. An iteration reads samples at most one
-/// sample away.
+/// In every iteration, each pair of 4-neighbours whose heights differ by more than the talus angle allows moves an eighth of
+/// the excess downhill. Mass is conserved to the last bit. An iteration reads samples at most one sample away.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thermal {
     /// Number of iterations, at most 1024.
     #[serde(deserialize_with = "whole::<_, 0, 1024>")]
     pub iterations: u32,
-    /// The steepest stable slope, in degrees, 0 to 89. Default 35.
+    /// Steepest stable slope, in degrees, 0 to 89. Default 35.
     #[serde(default = "talus")]
     pub talus: f64,
 }
@@ -46,7 +45,7 @@ impl Thermal {
         finite("thermal.talus", self.talus, 0.0, 89.0)
     }
 
-    /// T: the largest stable difference between neighbours that are `terrain_scale` apart, in 1/65536 units.
+    /// Largest stable difference T between neighbours that are `terrain_scale` apart, in 1/65536 units.
     pub fn fixed_threshold(&self, terrain_scale: f64) -> i32 {
         let difference = libm::tan(self.talus.to_radians()) * terrain_scale * HEIGHT_ONE;
         // No two heights differ by more than twice the limit.

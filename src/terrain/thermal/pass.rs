@@ -8,12 +8,12 @@ use crate::shared::terrain::thermal::ThermalParams;
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
 
-/// What erosion reads and writes.
+/// Buffers of thermal erosion.
 #[derive(Debug, Clone, Copy)]
 pub struct ThermalBuffers<'a> {
     /// Read and written: the windows.
     pub windows: &'a Fields,
-    /// Written: fields with room for as many windows that are a sample smaller on every side.
+    /// Written: fields with room for the same number of windows, one sample smaller on every side.
     pub other: &'a Fields,
 }
 
@@ -27,18 +27,17 @@ impl ThermalPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares all iterations, which alternate between `windows` and `other`. Each iteration drops the outermost
-    /// ring of samples. The result lies in `windows` if the number of iterations is even,
-    /// else in `other`.
+    /// Prepares all iterations, which alternate between `windows` and `other`. Each iteration drops the outermost ring of
+    /// samples. The result is in `windows` if the number of iterations is even, otherwise in `other`.
     ///
     /// # Errors
-    /// [`crate::InputError`] for parameters out of bounds, for windows that have too few rings for the
-    /// iterations, and for a buffer that is too short; [`GpuError`].
+    /// [`crate::InputError`] for parameters out of bounds, for windows that have too few rings for the iterations, and for a
+    /// buffer that is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,5 +1,5 @@
-//! Heights of a patch that is generated alone and whose neighbours wrap around (B section 3.3.1), for the
-//! border mode `wrap`. A patch with equal corners tiles with itself bit for bit.
+//! Heights of a patch that is generated alone, with neighbours that wrap around (B section 3.3.1), for the border mode `wrap`.
+//! A patch with equal corners tiles with itself bit for bit.
 
 #[cfg(feature = "gpu")]
 mod pass;

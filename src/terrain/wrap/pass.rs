@@ -1,4 +1,4 @@
-//! The GPU pass of `kernels/terrain/wrap.wgsl`: a level per dispatch, for a batch of patches.
+//! The GPU pass of `kernels/terrain/wrap.wgsl`: one dispatch per level, for a batch of patches.
 
 use crate::gpu::bindings::terrain::wrap as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
@@ -7,8 +7,8 @@ use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
 use crate::{Error, InputError};
 
-/// Diamond-square heights of patches that are generated alone. A pass is compiled for one distribution and one
-/// mode of injection.
+/// Diamond-square heights of patches that are generated alone. A pass is compiled for one distribution and one mode of
+/// injection.
 #[derive(Debug, Clone)]
 pub struct WrapPass(pub(in crate::terrain) LevelPass);
 
@@ -16,7 +16,7 @@ impl WrapPass {
     /// Compiles the pipeline. `features` is the mode of injection; `None` means that there are no features.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
         let distribution = offset.code();
         let constants = bindings::Constants { distribution, features: features.map_or(0, FeatureMode::code) };
@@ -24,12 +24,11 @@ impl WrapPass {
         Ok(Self(LevelPass { label: "terrain/wrap", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `count` patches into `output`, which holds patchSize² heights per patch.
-    /// `feature_capacity` is the largest number of injected points; `scratch` is for windows without an apron.
+    /// Prepares the generation of `count` patches into `output`, which must hold patchSize² heights per patch.
+    /// `feature_capacity` is the largest number of injected points. `scratch` is for windows without an apron.
     ///
     /// # Errors
-    /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short;
-    /// [`GpuError`].
+    /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -6,7 +6,7 @@ use crate::terrain::fixed::{Draw, inject, mean_of_four};
 use crate::terrain::lattice::base_lattice;
 use crate::terrain::window::{Lattice, Window};
 
-/// The heights of one patch, in rows of `patch_size` samples.
+/// Heights of one patch, in rows of `patch_size` samples.
 pub fn wrap(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
     let size = config.patch_size as usize;
     let torus = Torus {
@@ -67,7 +67,7 @@ impl Torus {
             let first = if (y / half).is_multiple_of(2) { half } else { 0 };
             for x in (first..size).step_by(step) {
                 let at = |x: usize, y: usize| grid[y * size + x];
-                // The neighbour to the left of column 0 is column S − 1 − half, and so on.
+                // The left neighbour of column 0 is column S − 1 − half, and so on.
                 let before = |i: usize| if i == 0 { self.last - half } else { i - half };
                 let after = |i: usize| if i == self.last { half } else { i + half };
                 let mean = mean_of_four(at(before(x), y), at(after(x), y), at(x, before(y)), at(x, after(y)));

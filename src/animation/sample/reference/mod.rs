@@ -24,10 +24,10 @@ pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> T
     sample_parts(of, path)
 }
 
-/// A track's values from its first on, their interpolation, and the cursor.
+/// A track at a cursor: its values from the first on, their interpolation, and the cursor.
 pub(crate) type Found<'a> = (&'a [[f32; 4]], Interpolation, KeyframeCursor);
 
-/// The transform of three tracks.
+/// Samples the three tracks of a bone into a transform.
 pub(crate) fn sample_parts<'a>(track: impl Fn(Part) -> Found<'a>, path: RotationPath) -> Transform {
     let vector = |part| {
         let (values, interpolation, cursor) = track(part);
@@ -72,7 +72,7 @@ pub(crate) fn rotation_at(
     }
 }
 
-/// The cubic spline of glTF; values and tangents, three per key.
+/// Evaluates the cubic spline of glTF; each key has in-tangent, value and out-tangent.
 fn spline(values: &[[f32; 4]], cursor: KeyframeCursor) -> [f32; 4] {
     let (at, t) = (3 * cursor.key as usize, cursor.fraction);
     let start = values[at + 1];
@@ -103,8 +103,9 @@ fn normalized(q: [f32; 4]) -> [f32; 4] {
     q.map(|component| component * scale)
 }
 
-/// The rotation at the fraction `t` of the way from `a` to `b`, both unit, with `dot(a, b) ≥ 0` as clips store
-/// them. The arc is halved: from the nearer end towards the unit quaternion in the middle, `(a + b)·inverse`.
+/// Rotation at the fraction `t` of the way from `a` to `b`. Both are unit quaternions with `dot(a, b) ≥ 0`, as clips store
+/// them. The arc is halved: the result is interpolated from the nearer end to the unit quaternion in the middle,
+/// `(a + b)·inverse`.
 pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
     let cosine = dot(a, b);
     let inverse = 1.0 / (2.0 + 2.0 * cosine).sqrt();
@@ -115,7 +116,7 @@ pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
     std::array::from_fn(|i| nearer[i] * of_nearer + farther[i] * of_middle)
 }
 
-/// `sin(t·θ) / sin(θ)` for `less_one` = cos θ − 1.
+/// Returns `sin(t·θ) / sin(θ)` for `less_one` = cos θ − 1.
 fn slerp_weight(t: f32, less_one: f32) -> f32 {
     let terms = SLERP_U.iter().zip(SLERP_V).rev();
     t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * (t * t) - v) * less_one * sum)
@@ -197,8 +198,7 @@ pub fn sample_layers(
     poses
 }
 
-/// The pose at the fraction `weight` of the way from one pose to another; rotations along the chord to the
-/// nearer of q and −q.
+/// Pose at the fraction `weight` of the way from one pose to another. Rotations go along the chord to the nearer of q and −q.
 pub fn blend(below: &Transform, over: &Transform, weight: f32) -> Transform {
     let rest = 1.0 - weight;
     let vector =

@@ -2,18 +2,18 @@
 
 use serde_json::{Value, json};
 
-/// glTF's numbers of component types.
+/// glTF's codes of component types.
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// Appends to a list of the document; returns the index.
+/// Appends to a list of the document; returns the new index.
 pub(super) fn push(list: &mut Vec<Value>, value: Value) -> usize {
     list.push(value);
     list.len() - 1
 }
 
-/// The bytes of the buffer, and what describes them.
+/// The bytes of the buffer, with their views and accessors.
 #[derive(Default)]
 pub(super) struct Binary {
     pub bytes: Vec<u8>,
@@ -22,7 +22,7 @@ pub(super) struct Binary {
 }
 
 impl Binary {
-    /// Appends bytes as a view of their own, aligned to four; returns its index.
+    /// Appends bytes as a new view, aligned to four bytes; returns its index.
     pub fn view(&mut self, bytes: impl IntoIterator<Item = u8>) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let start = self.bytes.len();
@@ -44,8 +44,8 @@ impl Binary {
         push(&mut self.accessors, accessor)
     }
 
-    /// Appends vectors of floats; returns the index of their accessor. `has_bounds` states the least and largest components, as
-    /// glTF requires of positions and times.
+    /// Appends vectors of floats; returns the index of their accessor. `has_bounds` writes the smallest and largest components,
+    /// which glTF requires for positions and times.
     pub fn floats<const N: usize>(&mut self, vectors: &[[f32; N]], has_bounds: bool) -> usize {
         let bytes = vectors.as_flattened().iter().flat_map(|number| number.to_le_bytes());
         let kind = match N {
@@ -72,7 +72,7 @@ impl Binary {
         self.accessor(bytes, "SCALAR", UNSIGNED_INT, indices.len())
     }
 
-    /// Appends vectors of four numbers of joints; returns the index of their accessor.
+    /// Appends vectors of four joint indices; returns the index of their accessor.
     pub fn joints(&mut self, joints: &[[u16; 4]]) -> usize {
         let bytes = joints.as_flattened().iter().flat_map(|joint| joint.to_le_bytes());
         self.accessor(bytes, "VEC4", UNSIGNED_SHORT, joints.len())

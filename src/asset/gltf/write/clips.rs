@@ -1,4 +1,4 @@
-//! Animations of a document: the keys of bones and of morph weights.
+//! Writes the animations of a document: keys of bones and of morph weights.
 
 use serde_json::{Value, json};
 
@@ -6,8 +6,8 @@ use super::binary::Binary;
 use crate::asset::clip::{Clip, Interpolation, Keys, Part};
 use crate::asset::{Mesh, Model};
 
-/// The animations of a model's clips, without those that have no keys. `weighted` are the nodes whose meshes have keys of
-/// weights, each with its first mesh.
+/// Animations of a model's clips, except clips without keys. `weighted` lists the nodes whose meshes have keys of weights, each
+/// with its first mesh.
 pub(super) fn clips(model: &Model, weighted: &[(usize, usize)], binary: &mut Binary) -> Vec<Value> {
     let mut written = Vec::new();
     for (index, clip) in model.clips.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Animation<'_> {
     }
 }
 
-/// Divides tangents by the seconds beside their keys, by which clips hold them multiplied, and glTF does not.
+/// Divides each tangent by the seconds of its segment: clips store the product, glTF does not.
 fn unstretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     for (key, pair) in times.windows(2).enumerate() {
         let seconds = pair[1] - pair[0];

@@ -1,4 +1,4 @@
-//! Materials of a document, with their textures, samplers and images.
+//! Writes the materials of a document, with their textures, samplers and images.
 
 use serde_json::{Value, json};
 
@@ -8,21 +8,22 @@ use crate::asset::images::png;
 use crate::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
 use crate::asset::{Material, Mesh, Model};
 
-/// What meshes use, each once.
+/// Materials that meshes use, each once.
 #[derive(Default)]
 pub(super) struct Materials {
     pub materials: Vec<Value>,
     pub textures: Vec<Value>,
     pub samplers: Vec<Value>,
     pub images: Vec<Value>,
-    /// The materials of the model that were written, and whether triangles are visible from inside.
+    /// Materials written so far: the index in the model, and whether triangles are visible from inside.
     known: Vec<(Option<usize>, bool)>,
     known_textures: Vec<Texture>,
     known_images: Vec<usize>,
 }
 
 impl Materials {
-    /// The index of a mesh's material. A mesh that has none needs one if its triangles are visible from inside.
+    /// Index of a mesh's material in the document. A mesh without a material also needs one if its triangles are visible from
+    /// inside.
     pub fn index(
         &mut self,
         model: &Model,
@@ -102,7 +103,7 @@ impl Materials {
     }
 }
 
-/// A sampler in OpenGL's numbers, which are glTF's.
+/// Sampler with OpenGL's enum values, which glTF uses.
 fn sampler(sampling: &Sampling) -> Value {
     const NEAREST: u32 = 9728;
     const LINEAR: u32 = 9729;
@@ -110,7 +111,7 @@ fn sampler(sampling: &Sampling) -> Value {
     let filter = |filter: Filter| if filter == Filter::Linear { LINEAR } else { NEAREST };
     let minified = match (sampling.minified, sampling.mips) {
         (minified, None) => filter(minified),
-        // Bit 0: between texels; bit 1: between mip levels.
+        // Bit 0: filter between texels; bit 1: filter between mip levels.
         (minified, Some(mips)) => {
             NEAREST_MIPMAP_NEAREST
                 + u32::from(minified == Filter::Linear)

@@ -14,26 +14,30 @@ use binary::{Binary, push};
 use materials::Materials;
 use meshes::{Group, groups};
 
-/// The most bytes of a GLB, whose lengths have 32 bits.
+/// Largest size of a GLB in bytes: its lengths have 32 bits.
 const MAX_BYTES: usize = u32::MAX as usize;
 
-/// The most joints of a skin, whose numbers have 16 bits in vertices.
+/// Largest number of joints of a skin: vertices store their indices in 16 bits.
 const MAX_JOINTS: usize = 1 << 16;
 
 impl Model {
-    /// The model as binary glTF (`.glb`): skeleton, skins, meshes with morph targets, clips, materials and images.
+    /// Writes the model as binary glTF (`.glb`): skeleton, skins, meshes with morph targets, clips, materials and images.
     ///
-    /// [`Model::from_gltf`] reads equal meshes, skins and materials back, all numbers to the bit, if the model was read from
-    /// glTF or OBJ: positions, normals, tangents, texture coordinates, triangles, influences up to the rounding of weights
-    /// that do not sum to 1, keys of clips. Bones that neither skins, meshes nor clips need are not read again, bones may
-    /// have another order, tangents of cubic splines and rotations may differ in the last bit, and a clip lasts until its last
-    /// key. [`Alpha::Blended`](crate::asset::material::Alpha::Blended) comes back as the pattern of `BLEND`. Images are PNG.
-    /// Metal and roughness, which models do not have, are 0 and 1. Levels of detail and lights are not written; clips
-    /// without keys are left out.
+    /// [`Model::from_gltf`] reads equal meshes, skins and materials back if the model was read from glTF or OBJ. All numbers
+    /// are equal to the bit: positions, normals, tangents, texture coordinates, triangles, influences up to the rounding of
+    /// weights that do not sum to 1, keys of clips. There are a few differences:
+    ///
+    /// - Bones that neither skins, meshes nor clips need are not read again, and bones may have another order.
+    /// - Tangents of cubic splines, and rotations, may differ in the last bit.
+    /// - A clip lasts until its last key. Clips without keys are left out.
+    /// - [`Alpha::Blended`](crate::asset::material::Alpha::Blended) comes back as the pattern of `BLEND`.
+    /// - Levels of detail and lights are not written.
+    ///
+    /// Images are PNG. Models have no metal and roughness; these are written as 0 and 1.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh, a skin or a material that is not valid, for images that PNG cannot hold, and for
-    /// more than 4 GiB.
+    /// [`InputError`] for a mesh, a skin or a material that is not valid, for images that PNG cannot hold, and for more than 4
+    /// GiB.
     pub fn to_glb(&self) -> Result<Vec<u8>, InputError> {
         (0..self.skins.len()).try_for_each(|skin| self.check_skin(skin))?;
         (0..self.meshes.len()).try_for_each(|mesh| self.check_mesh(mesh))?;
@@ -50,7 +54,7 @@ impl Model {
     }
 }
 
-/// A document as it grows. Nodes are the bones, in their order, followed by those of meshes.
+/// A document under construction. Nodes are the bones, in their order, followed by the nodes of meshes.
 #[derive(Default)]
 struct Document {
     binary: Binary,
@@ -61,7 +65,7 @@ struct Document {
     materials: Materials,
     /// Nodes whose meshes have animated weights, with their first mesh.
     weighted: Vec<(usize, usize)>,
-    /// How many skins, from the first on, are written; the others are matrices of nodes.
+    /// Number of leading skins that are written; the others become matrices of nodes.
     shared: usize,
 }
 
@@ -80,7 +84,7 @@ impl Document {
         at
     }
 
-    /// Adds a node for each group of meshes: at the root if it has a skin of the file, and below its bone otherwise.
+    /// Adds a node for each group of meshes: at the root if it has a skin of the file, otherwise below its bone.
     fn add_meshes(&mut self, model: &Model) -> Result<(), InputError> {
         let mirrored = mirrored(&model.skeleton);
         for Group { name, meshes, is_skinned } in groups(model) {
@@ -154,7 +158,7 @@ impl Document {
     }
 }
 
-/// A GLB of a document and its buffer (glTF 2.0, chapter 4).
+/// Packs a document and its buffer into a GLB (glTF 2.0, chapter 4).
 fn container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, InputError> {
     json.resize(json.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);

@@ -1,23 +1,23 @@
-//! A tree of boxes: the parts of a mesh in one pose.
+//! A bounding volume tree over the parts of a mesh in one pose.
 
 use glam::DVec3;
 
-/// A leaf, which is one part, or a node with two children.
+/// A leaf with one part, or an inner node with two children.
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Number of parts below that are there.
+    /// Number of remaining parts below.
     there: u32,
     parent: u32,
-    /// The first of two children that follow each other; of a leaf the part.
+    /// Index of the first of two consecutive children; for a leaf, the part.
     first: u32,
     is_leaf: bool,
 }
 
-/// Boxes of parts, halved again and again along the axis on which their middles lie furthest apart.
+/// Boxes of parts, recursively halved along the axis on which their centres lie furthest apart.
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// The leaf of each part.
+    /// Leaf of each part.
     leaves: Vec<u32>,
 }
 
@@ -50,7 +50,7 @@ impl Tree {
         tree
     }
 
-    /// Takes a part out.
+    /// Removes a part.
     pub(super) fn remove(&mut self, part: u32) {
         let mut at = self.leaves[part as usize];
         loop {
@@ -63,13 +63,13 @@ impl Tree {
         }
     }
 
-    /// Starts a search: the boxes that are to be visited, the nearest last.
+    /// Starts a search: pushes the boxes to visit, the nearest last.
     pub(super) fn start(&self, from: DVec3, open: &mut Vec<(f64, u32)>) {
         open.clear();
         self.open(0, from, open);
     }
 
-    /// The next part whose box is nearer than this, by the square.
+    /// Next part whose box is nearer than the squared distance `best`.
     pub(super) fn next(&self, from: DVec3, best: f64, open: &mut Vec<(f64, u32)>) -> Option<u32> {
         while let Some((squared, at)) = open.pop() {
             let node = &self.nodes[at as usize];
@@ -82,7 +82,7 @@ impl Tree {
             let start = open.len();
             self.open(node.first, from, open);
             self.open(node.first + 1, from, open);
-            // The nearer one is next.
+            // Visit the nearer child first.
             if open.len() == start + 2 && open[start].0 < open[start + 1].0 {
                 open.swap(start, start + 1);
             }
@@ -98,7 +98,7 @@ impl Tree {
     }
 }
 
-/// A node around parts, without children so far.
+/// A node around parts, still without children.
 fn node(boxes: &[[DVec3; 2]], parts: &[u32], parent: u32) -> Node {
     let of = |part: &u32| boxes[*part as usize];
     let low = parts.iter().map(|part| of(part)[0]).fold(DVec3::INFINITY, DVec3::min);
@@ -110,7 +110,7 @@ fn node(boxes: &[[DVec3; 2]], parts: &[u32], parent: u32) -> Node {
 mod tests {
     use super::*;
 
-    /// The search finds the same part as one over all of them, while one after the other goes.
+    /// The search finds the same part as a linear search, while parts are removed one after the other.
     #[test]
     fn the_nearest_box_is_found() {
         let number = |at: u32| f64::from((at.wrapping_mul(0x9e37_79b9) >> 8) % 1000) / 100.0;

@@ -1,4 +1,4 @@
-//! The search for the next collapse: the cheapest of each point, and whether it is legal.
+//! Search for the next collapse: the cheapest of each point, and whether it is legal.
 
 use super::super::bridged::bridged;
 use super::super::melax;
@@ -8,21 +8,21 @@ use super::super::topology::Kind;
 use super::super::turned::deviation;
 use super::{Cost, Reducer, Stopped};
 
-/// How much the square of the distance counts by which a collapse leaves the point off the planes of its triangles, beside
-/// the mean of squares, which hides a single spot among many triangles. Found by trial on twelve meshes, eight of them not
-/// ours: with half of it the largest errors grow on models of many hard-edged parts.
+/// Weight of the squared distance between the point after the collapse and the planes of its triangles. It complements the mean
+/// of squares, which hides a single spot among many triangles. Found by trial on twelve meshes, eight of them third-party: with
+/// half of it, the largest errors grow on models of many hard-edged parts.
 const DEVIATION: f64 = 1.0 / 8.0;
 
-/// As [`DEVIATION`], where attributes count too, and added to their cost: theirs is mostly larger, so that a maximum would
-/// not see a spot that is off. Found by trial: with more of it normals suffer.
+/// As [`DEVIATION`], but for use with attributes, and added to their cost. Attribute costs are mostly larger, so that a maximum
+/// would miss a spot that is off. Found by trial: a larger weight degrades normals.
 const BESIDE_ATTRIBUTES: f64 = 0.4;
 
-/// As [`BESIDE_ATTRIBUTES`], for the square of the distance between the middle of a new edge and the triangles before. Found
-/// by trial on the same meshes: with half of it, the largest errors grow on some of them. Without attributes it gains nothing.
+/// As [`BESIDE_ATTRIBUTES`], for the squared distance between the middle of a new edge and the triangles before. Found by trial
+/// on the same meshes: with half of it, the largest errors grow on some of them. Without attributes it gains nothing.
 const BRIDGED: f64 = 1.6;
 
-/// Number of a point's collapses, the cheapest first, that are tested against limited distances. Where those are refused,
-/// others hardly ever pass; a pole has hundreds.
+/// Number of a point's collapses, the cheapest first, that are tested against limited distances. If these are refused, others
+/// hardly ever pass; a pole has hundreds of collapses.
 const TESTED: usize = 12;
 
 /// A collapse that is not the cheapest.
@@ -31,7 +31,7 @@ fn second(cost: f32, neighbor: u32) -> Best {
 }
 
 impl Reducer<'_> {
-    /// The cheapest collapse of a point, legal or not; of equal ones, that into the lower neighbour.
+    /// Cheapest collapse of a point, legal or not; among equal ones, the one into the lower neighbour.
     pub(super) fn find(&mut self, point: u32) -> Option<Best> {
         if self.topology.kind(point) == Kind::Locked {
             return None;
@@ -39,7 +39,7 @@ impl Reducer<'_> {
         self.find_plain(point).or_else(|| self.find_any(point))
     }
 
-    /// As [`Self::find`], for points all of whose collapses are plain.
+    /// As [`Self::find`], for points with only plain collapses.
     fn find_plain(&self, point: u32) -> Option<Best> {
         let quadrics = self.quadrics.as_ref().filter(|_| self.topology.kind(point) == Kind::Interior)?;
         let vertex = self.points.only_wedge(point)?;
@@ -83,7 +83,7 @@ impl Reducer<'_> {
         (self.costs, self.listed) = (costs, Some(point));
     }
 
-    /// The most frequent reason why points that are left cannot collapse; [`Stopped::Topology`] if there are none.
+    /// Most frequent reason why remaining points cannot collapse; [`Stopped::Topology`] if no points remain.
     pub(super) fn hindrance(&mut self) -> Stopped {
         const REASONS: [Stopped; 5] =
             [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance];
@@ -94,7 +94,7 @@ impl Reducer<'_> {
                 counts[self.hindrance_of(point) as usize] += 1;
             }
         }
-        // The first of equally frequent ones.
+        // Among equally frequent reasons, the first wins.
         let mut most = Stopped::Topology;
         for reason in REASONS {
             if counts[reason as usize] > counts[most as usize] {
@@ -104,7 +104,7 @@ impl Reducer<'_> {
         most
     }
 
-    /// The reason why the cheapest collapse of a point is illegal.
+    /// Reason why the cheapest collapse of a point is illegal.
     fn hindrance_of(&mut self, point: u32) -> Stopped {
         if self.topology.kind(point) == Kind::Locked {
             return Stopped::Topology;
@@ -122,8 +122,8 @@ impl Reducer<'_> {
         }
     }
 
-    /// The cheapest collapse of a point that is legal at the moment. Where distances are limited, the test of a collapse
-    /// takes longer than its cost: costs are listed once, and tested from the cheapest on.
+    /// Cheapest collapse of a point that is legal now. Where distances are limited, testing a collapse takes longer than
+    /// computing its cost. Costs are therefore listed once, and tested from the cheapest on.
     pub(super) fn find_legal(&mut self, point: u32) -> Option<Best> {
         if self.tracked_samples.is_none() {
             return self.find_turning_none(point);
@@ -146,16 +146,16 @@ impl Reducer<'_> {
         best
     }
 
-    /// As [`Self::find_legal`], where distances are not limited. The cost of a collapse takes longer than its tests then,
-    /// and is worked out only for those that pass.
+    /// As [`Self::find_legal`], where distances are not limited. Computing the cost of a collapse then takes longer than
+    /// testing it, so costs are computed only for collapses that pass.
     fn find_turning_none(&mut self, point: u32) -> Option<Best> {
         self.look(point);
         let neighbors = std::mem::take(&mut self.neighbors);
         let (mut best, mut first): (Option<Best>, usize) = (None, 0);
         for neighbor in neighbors.all() {
             let both = [point, neighbor.point];
-            // The order of a point's triangles, and by it that of equal costs, depends on when they are brought up to date:
-            // here for every neighbour, whether the next test is passed or not.
+            // Refresh every neighbour, whether or not it passes the next test. The time of a refresh affects the order of a
+            // point's triangles, and thereby the order of equal costs.
             self.topology.refresh(neighbor.point);
             let Some(deviation) = deviation(&self.topology, &self.points, both, &mut first) else { continue };
             if !self.is_allowed(point, neighbor.point) {
@@ -173,18 +173,19 @@ impl Reducer<'_> {
         best
     }
 
-    /// The cost of a collapse into one of the neighbours that were collected last, or a part of it that is above `most`.
+    /// Cost of a collapse into one of the last collected neighbours. If the cost exceeds `most`, any part of it that does may
+    /// be returned.
     fn cost(&self, point: u32, neighbor: &Neighbor, most: f32) -> f32 {
         self.cost_of(&self.neighbors, point, neighbor, most)
     }
 
-    /// As [`Self::cost`], into one of these neighbours.
+    /// As [`Self::cost`], for given neighbours.
     fn cost_of(&self, neighbors: &Neighbors, point: u32, neighbor: &Neighbor, most: f32) -> f32 {
         let both = [point, neighbor.point];
         let cost = match &self.quadrics {
             Some(quadrics) => {
                 let shape = quadrics.shape_cost(&self.points, both);
-                // More than what rounds to it.
+                // Slightly more than any value that rounds to `most`.
                 let most = 1.000_001 * f64::from(most) - shape;
                 shape + quadrics.attribute_cost(&self.points, neighbors, point, neighbor, most)
             }
@@ -193,13 +194,13 @@ impl Reducer<'_> {
         cost as f32
     }
 
-    /// A collapse with its whole cost, if it is legal.
+    /// The collapse with its whole cost, if it is legal.
     pub(super) fn check(&mut self, point: u32, best: Best) -> Option<Best> {
         if self.is_allowed(point, best.neighbor) { self.measure(point, best) } else { None }
     }
 
-    /// Whether a collapse keeps the topology and, where they are limited, the distances of samples; and where the cost is
-    /// that of Melax with normals, whether normals stay alike.
+    /// Whether a collapse keeps the topology and, if they are limited, the distances of samples. For the cost of Melax with
+    /// normals, also whether normals stay alike.
     pub(super) fn is_allowed(&mut self, point: u32, neighbor: u32) -> bool {
         self.topology.refresh(neighbor);
         let differ = match self.cost {
@@ -215,15 +216,15 @@ impl Reducer<'_> {
             })
     }
 
-    /// A collapse with its whole cost, which counts how far the point would be off the planes of its triangles and, beside
-    /// attributes, how far its new edges would be off its triangles. `None` if it turns a triangle.
+    /// The collapse with its whole cost. It counts the point's distance from the planes of its triangles and, with attributes,
+    /// the distance of new edges from the triangles before. `None` if the collapse turns a triangle.
     pub(super) fn measure(&self, point: u32, best: Best) -> Option<Best> {
         deviation(&self.topology, &self.points, [point, best.neighbor], &mut 0)
             .map(|deviation| self.with_deviation(point, best, deviation, f32::INFINITY))
     }
 
-    /// A collapse with its whole cost, or with a part of it that is above `most`, from the square of how far the point would be
-    /// off the planes of its triangles.
+    /// The collapse with its whole cost, given the squared distance of the point from the planes of its triangles. If the cost
+    /// exceeds `most`, any part of it that does may be returned.
     fn with_deviation(&self, point: u32, best: Best, deviation: f64, most: f32) -> Best {
         let cost = |more: f64| best.base + more as f32;
         let cost = match &self.quadrics {

@@ -27,7 +27,7 @@ fn pipe(bumps: f32, seed: usize) -> ([Vec<[f32; 3]>; 2], Vec<f32>, Vec<u32>) {
     (positions, uv, indices)
 }
 
-/// The cost of the collapse of a point if it were its turn.
+/// Cost of a point's collapse if it were its turn now.
 fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
     reducer.topology.refresh(point);
     let found = reducer.find(point)?;
@@ -35,9 +35,8 @@ fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
     checked.map(|best| best.cost)
 }
 
-/// Simplifies until nothing is legal, and compares each collapse with those of all other points. Returns the number of
-/// steps, how often the collapse was more than a tenth above the cheapest, and how often it was not the cheapest of
-/// its point.
+/// Simplifies until nothing is legal, and compares each collapse with those of all other points. Returns three counts: the
+/// steps, the collapses more than a tenth above the cheapest, and the collapses that were not the cheapest of their point.
 fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
     let mut reducer =
         Reducer::new(surface, &Options { cost, ..Options::default() }, distance < f32::INFINITY, &[]);
@@ -52,7 +51,7 @@ fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
     while let Some((point, best)) = reducer.next(&mut queue) {
         let all = 0..reducer.points.len() as u32;
         let costs = all.clone().filter_map(|point| Some(find(&mut reducer, point)?.cost));
-        // Beside attributes, one cost may be found in two ways, which round differently.
+        // With attributes, a cost may be computed in two ways, which round differently.
         let least = costs.fold(f32::INFINITY, f32::min);
         assert!(best.cost >= 0.999 * least, "{cost:?} after {steps}: {} {least}", best.cost);
         let cheapest = all.filter_map(|point| now(&mut reducer, point)).fold(f32::INFINITY, f32::min);
@@ -65,8 +64,8 @@ fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
     [steps, dearer, seconds]
 }
 
-/// Collapses come in the order of their costs, up to the width of a bucket and to what became cheaper since the queue
-/// last looked; nothing that is legal is left.
+/// Collapses come in the order of their costs, up to the width of a bucket and to costs that fell since they were queued. No
+/// legal collapse is left.
 #[test]
 fn a_cheapest_legal_collapse_is_nearly_always_next() {
     for (cost, distance) in [

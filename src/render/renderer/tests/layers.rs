@@ -1,4 +1,4 @@
-//! Behind a prepass everything has the colours that it has without one.
+//! Drawing after a depth prepass gives the same colours as drawing without one.
 
 use glam::Vec3;
 
@@ -16,7 +16,7 @@ use crate::scene::drawable::Drawable;
 use crate::scene::layouts::SceneLayouts;
 use crate::surface::{Method, ReliefOptions};
 
-/// The number of pixels in which a picture behind a prepass differs from one without, at 1 and at 4 samples.
+/// The number of pixels that a depth prepass changes, at 1 and at 4 samples.
 fn changed(gpu: &Gpu, drawable: &dyn Drawable, stage: &Stage, ground: Option<&Group>) -> [usize; 2] {
     [1, 4].map(|samples| {
         let format = TargetFormat::new(FORMAT).with_samples(samples);
@@ -80,7 +80,7 @@ fn a_prepass_that_is_nearer_is_noticed() {
     let (drawable, indices) = mesh(&gpu, &layouts, &painted(Alpha::Opaque, false), 3);
     let seen = view(Vec3::new(0.4, 0.8, 4.5), false);
     let stage = Stage::new(&gpu, &layouts, seen, &placements(), &[[0, indices]]);
-    // The least nudge of the matrix that f32 holds at the depths of this picture.
+    // The smallest change of the matrix that f32 can represent at the depths of this picture.
     let mut nearer = seen;
     nearer.clip_from_world = glam::Mat4::from_translation(Vec3::new(0.0, 0.0, -1e-6)) * seen.clip_from_world;
     let other = Stage::new(&gpu, &layouts, nearer, &placements(), &[[0, indices]]);

@@ -1,4 +1,4 @@
-//! What every kind of object takes of WebGPU's default limits, in every entry point: as documented at
+//! Resource use of every kind of object under WebGPU's default limits, in every entry point, as documented at
 //! [`Renderer::with_shading`](crate::render::Renderer::with_shading) and [`KindProgram::new`].
 
 use naga::front::wgsl::parse_str;
@@ -9,7 +9,7 @@ use crate::scene::kind::KindProgram;
 use crate::scene::program::LEAST;
 use crate::scene::specialization::Program;
 
-/// Bindings of a stage by class, and locations between the stages.
+/// Bindings of a stage by class, and inter-stage locations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 struct Taken {
     storage: usize,
@@ -27,11 +27,11 @@ impl Taken {
     }
 }
 
-/// What vertex and fragment stages may take: the rest is the caller's.
+/// The most that vertex and fragment stages may use; the rest is left to the caller.
 const VERTEX: Taken = Taken { storage: 8, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
 const FRAGMENT: Taken = Taken { storage: 4, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
 
-/// The number of locations of a type: those of its members, or one.
+/// The number of locations that a type takes: one for each member, or one.
 fn locations(module: &Module, ty: naga::Handle<naga::Type>) -> usize {
     match &module.types[ty].inner {
         TypeInner::Struct { members, .. } => {
@@ -43,7 +43,7 @@ fn locations(module: &Module, ty: naga::Handle<naga::Type>) -> usize {
     }
 }
 
-/// What each entry point takes.
+/// Resource use of each entry point.
 fn taken(text: &str) -> Vec<(String, ShaderStage, Taken)> {
     let module = parse_str(text).expect("WGSL");
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
@@ -93,14 +93,14 @@ fn every_kind_stays_within_its_part_of_the_limits_in_every_output() {
         }
     }
     println!("vertex: {:?}, fragment: {:?}", largest[0], largest[1]);
-    // What a kind that binds nothing takes, as `KindProgram::new` says.
+    // Resource use of a kind without bindings, as `KindProgram::new` documents it.
     let least = Taken { storage: 3, uniforms: 2, textures: 1, samplers: 1, locations: 7 };
     let own = taken(KindProgram::least().expect("valid").text());
     assert!(own.iter().all(|(_, _, taken)| taken.is_within(&least)), "{own:?}");
-    // The caller has everything that the kinds do not take: what is stated is not more than is taken.
+    // The documented use is not larger than the actual one, so the caller gets everything that kinds leave.
     assert_eq!((largest[0].storage, largest[0].locations), (VERTEX.storage, VERTEX.locations));
     assert_eq!((largest[1].textures, largest[1].samplers), (FRAGMENT.textures, FRAGMENT.samplers));
-    // A kind that takes one more than its part is seen.
+    // A kind that uses one resource too many is detected.
     let more = LEAST.replace("return relievo_scene_surface(in)", "var surface = relievo_scene_surface(in); surface.color *= least_a * least_b * least_c * least_d; return surface");
     let bound: String = (0..4)
         .map(|at| {

@@ -21,7 +21,7 @@ use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::skin::reference::transformed;
 use crate::skinning::vertex::{Vertex, vertices_of};
 
-/// The creature with a texture of colours and of every alpha.
+/// The creature with a texture of many colours and all alphas.
 pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
     let mut model = creature().expect("valid");
     let color = |x: u32, y: u32| {
@@ -38,7 +38,7 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
     });
     model.meshes[0].material = Some(0);
     model.meshes[0].double_sided = double_sided;
-    // A quarter of the triangles is left away, so that the inside shows.
+    // A quarter of the triangles is removed, so that the inside is visible.
     let indices = &mut model.meshes[0].indices;
     let quarter = indices.len() / 12 * 3;
     indices.truncate(indices.len() - quarter);
@@ -46,10 +46,10 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
     model
 }
 
-/// The object of a stage.
+/// The object that a stage draws.
 pub const OBJECT: SceneObject = SceneObject { first_instance: 64, number: 1, first_slot: 0 };
 
-/// The model's first mesh, whose instances have vertices of their own in pages, which lie in reverse order.
+/// The model's first mesh. Its instances have their own vertices, in pages in reverse order.
 pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (MeshDrawable, u32) {
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];
@@ -98,7 +98,7 @@ pub fn placements() -> [Affine; 3] {
     [at(-1.2, Vec3::ONE), at(0.0, Vec3::new(1.0, 1.0, -1.0)), at(1.2, Vec3::new(-0.8, 1.1, 1.0))]
 }
 
-/// The host's picture of the same instances. A mirrored placement turns triangles inside out, so their corners are exchanged.
+/// The CPU reference's picture of the same instances. A mirrored placement flips the winding, so corners are swapped.
 fn expected(model: &Model, clip_from_world: Mat4) -> Vec<[u8; 4]> {
     let mesh = &model.meshes[0];
     let vertices = vertices_of(mesh);
@@ -119,7 +119,7 @@ fn expected(model: &Model, clip_from_world: Mat4) -> Vec<[u8; 4]> {
     pixels.map(|(light, pixel)| if *light == [-1.0; 3] { [0; 4] } else { pixel.0 }).collect()
 }
 
-/// The levels of 255 by which filters and the light may round differently.
+/// Allowed difference in 8-bit levels: filters and lighting may round differently.
 const LEVELS: u8 = 3;
 
 #[test]
@@ -139,11 +139,11 @@ fn meshes_look_as_the_reference_draws_them() {
             let found = drawn(&gpu, &TargetFormat::new(FORMAT), &drawable, &stage, None, &[Layer::Color]);
             let covered = found.iter().filter(|pixel| **pixel != [0; 4]).count();
             assert!(covered > 500, "{covered} pixels");
-            // Rasterizers disagree about pixels on edges of triangles and of holes, which are many here.
+            // Rasterizers disagree about pixels on the edges of triangles and holes, and this picture has many of them.
             let others = differing(&found, &expected, LEVELS);
             println!("{alpha:?} {double_sided} {}: {others} of {covered} pixels", view.side);
             assert!(25 * others <= covered, "{alpha:?} {double_sided} {}: {others} of {covered}", view.side);
-            // A view that keeps the side of the other mirrors the wrong instances.
+            // A view with the wrong handedness mirrors the wrong instances.
             let wrong = Stage::new(
                 &gpu,
                 &layouts,

@@ -1,4 +1,4 @@
-//! Pixels of a renderer without a scene: lists, rows and draws are made here as kernels would make them.
+//! Pixel tests of a renderer without a scene. The host writes lists, instance rows and draws in place of the kernels.
 
 mod formats;
 mod layers;

@@ -1,4 +1,4 @@
-//! Reliefs look the same as a larger mesh and as a larger instance.
+//! A relief looks the same when the mesh is larger and when the instance is scaled up.
 
 use glam::{Mat4, Vec3};
 
@@ -23,7 +23,7 @@ use crate::surface::{
 
 const TILES: f32 = 2.0;
 
-/// The maps of a relief.
+/// Textures of a relief.
 pub struct Maps {
     textures: SurfaceTextures,
     albedo: ColorTexture,
@@ -44,7 +44,7 @@ impl Maps {
     }
 }
 
-/// The default light in a relief's terms.
+/// The default light as a relief material.
 fn material(plane: f32) -> Material {
     let light = Light::default();
     Material {
@@ -67,7 +67,7 @@ pub fn square(
     mesh_of(gpu, layouts, (maps, options), (&mesh, 1.0 / TILES), plane)
 }
 
-/// A mesh with a length of a uv unit in the model's units.
+/// A mesh; a uv unit has a given length in model units.
 fn mesh_of(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -107,12 +107,12 @@ fn mesh_of(
     MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound")
 }
 
-/// Where the square stands.
+/// The placement of the square.
 pub fn place(scale: Vec3) -> Mat4 {
     Mat4::from_rotation_x(-0.7) * Mat4::from_scale(scale)
 }
 
-/// The square in the world, as large and where the instance stands.
+/// The square in world space, scaled and placed as the instance.
 fn placed(scale: f32) -> SurfaceMesh {
     let into = place(Vec3::ONE);
     let mut mesh = SurfaceMesh::square(TILES);
@@ -149,7 +149,7 @@ fn a_scaled_instance_is_a_larger_mesh() {
         };
         let found = look(Vec3::splat(scale));
         let wrong = differing(&found, &expected, 2);
-        // A ray that passes an edge of a stone may round to either side of it.
+        // A ray past the edge of a stone may round to either side.
         assert!(wrong <= 20, "{method:?}: {wrong} pixels");
         assert!(differing(&look(Vec3::splat(1.1 * scale)), &expected, 2) > 1000);
     }
@@ -163,7 +163,7 @@ fn a_mirrored_relief_is_the_mirror_image() {
     let options = ReliefOptions { shadow: Shadow::Hard, depth: true, ..ReliefOptions::default() };
     let square = square(&gpu, &layouts, &maps, options, 1.0);
     let format = TargetFormat::new(FORMAT);
-    // Mirrored in the plane x = 0: the placement, the eye, the light, and the picture.
+    // Placement, eye, light and picture mirrored in the plane x = 0.
     let mirror = Vec3::new(-1.0, 1.0, 1.0);
     let seen = view(Vec3::new(0.3, 0.9, 1.6), false);
     let plain = Stage::new(&gpu, &layouts, seen, &[rows(&place(Vec3::ONE).to_cols_array())], &[[0, 6]]);

@@ -1,5 +1,5 @@
-//! The colour of a surface against a closed form: Lambert's law with normal maps, tints, coloured light, mirrored
-//! placements and back faces.
+//! Surface colour against a closed form: Lambert's law with normal maps, tints, coloured light, mirrored placements and
+//! back faces.
 
 use glam::{Mat4, Vec3, Vec4};
 use image::{Rgba, RgbaImage};
@@ -21,10 +21,11 @@ use crate::shared::render::scene_view::SceneView;
 use crate::skinning::vertex::Vertex;
 use crate::srgb;
 
-/// A texel of the normal map: to the right, and down the image.
+/// A texel of the normal map that points to the right and down the image.
 const BUMP: [u8; 4] = [200, 40, 230, 255];
 
-/// A model without meshes whose materials are plain, and bumpy: of another size than the texture, and scaled.
+/// A model without meshes and with two materials, a plain one and one with a scaled normal map of another size than the
+/// texture.
 fn model() -> Model {
     let mut model = creature().expect("valid");
     model.images = vec![
@@ -46,12 +47,12 @@ fn model() -> Model {
     model
 }
 
-/// A square of two by two units that faces +Z, with u along +X and v along −Y, with the second material.
+/// A square of 2 × 2 units that faces +Z, with u along +X, v along −Y, and the second material.
 fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> MeshDrawable {
     square_of(gpu, layouts, &mut model(), double_sided)
 }
 
-/// The same with the second of two materials.
+/// The same square in another model, with the second of its two materials.
 fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided: bool) -> MeshDrawable {
     let corners = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
     let vertex = |[x, y]: [f32; 2]| Vertex {
@@ -88,10 +89,10 @@ fn seen(from_behind: bool, light: Vec3) -> SceneView {
     view
 }
 
-/// The colour of the bumpy material whose tangent space lies in the world as `frame` says.
+/// The expected colour of the normal-mapped material. `frame` is its tangent space in world axes.
 fn expected(frame: [Vec3; 3], light: Vec3, tint: [f32; 3]) -> [u8; 4] {
     let texel = [0, 1, 2].map(|axis| f32::from(BUMP[axis]) / 255.0 * 2.0 - 1.0);
-    // Green points up the image, and v down it.
+    // Green points up the image; v points down.
     let [tangent, bitangent, normal] = frame;
     let bumpy = 0.5 * texel[0] * tangent - 0.5 * texel[1] * bitangent + texel[2] * normal;
     let direct = bumpy.normalize().dot(light.normalize()).max(0.0);
@@ -108,7 +109,7 @@ fn a_bumpy_square_has_the_colors_of_the_closed_form() {
     let light = Vec3::new(0.3, 0.5, 0.9);
     let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z];
     let turned = Mat4::from_rotation_z(0.5);
-    // The placement, whether it is seen from behind, and its tangent space on the side that is seen.
+    // The placement, whether it is seen from behind, and its tangent space on the visible side.
     let cases = [
         (Mat4::IDENTITY, false, [x, -y, z]),
         (turned, false, [turned.transform_vector3(x), turned.transform_vector3(-y), z]),
@@ -134,7 +135,7 @@ fn a_bumpy_square_has_the_colors_of_the_closed_form() {
         let wanted = expected(frame, light, [1.0; 3]);
         let far = middle.iter().zip(wanted).any(|(found, wanted)| found.abs_diff(wanted) > 1);
         assert!(!far, "{placement} {from_behind}: {middle:?}, not {wanted:?}");
-        // The other way of green is told from this one.
+        // The test distinguishes the opposite direction of green.
         let other = expected([frame[0], -frame[1], frame[2]], light, [1.0; 3]);
         assert!(wanted.iter().zip(other).any(|(a, b)| a.abs_diff(b) > 4), "{wanted:?} {other:?}");
     }
@@ -146,7 +147,7 @@ fn a_square_with_one_side_is_seen_from_that_side_only() {
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let (format, square) = (TargetFormat::new(FORMAT), square(&gpu, &layouts, false));
     let mirror = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
-    // A mirror in its own plane turns the outside to the other side.
+    // A placement mirrored in the square's own plane turns its front to the other side.
     let flipped = Mat4::from_scale(Vec3::new(1.0, 1.0, -1.0));
     for (placement, is_seen_from_behind) in [(Mat4::IDENTITY, false), (mirror, false), (flipped, true)] {
         for from_behind in [false, true] {
@@ -165,7 +166,7 @@ fn materials_that_share_a_texture_or_have_none_keep_their_colors() {
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let (light, format) = (Vec3::Z, TargetFormat::new(FORMAT));
     let colors = [[1.0, 0.25, 0.5, 1.0], [0.5, 0.8, 1.0, 1.0]];
-    // No texture; one for both; one for the second alone; two.
+    // Textures of the two materials: none; a shared one; only the second's; two different ones.
     for images in [[None, None], [Some(0), Some(0)], [None, Some(0)], [Some(1), Some(0)]] {
         let mut model = model();
         let texture = |image| Texture { image, sampling: Sampling::default() };

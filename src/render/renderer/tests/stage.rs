@@ -14,7 +14,7 @@ use crate::scene::layouts::{InstancesInView, SceneLayouts};
 use crate::shared::lod::object::object_flags_word;
 use crate::shared::render::scene_view::SceneView;
 
-/// Pixels along the edges of a canvas. The bytes of a row are a multiple of 256, as copies demand.
+/// Width and height of a canvas in pixels. The bytes of a row are a multiple of 256, as copies require.
 pub const SIZE: [u32; 2] = [192, 128];
 
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -34,7 +34,7 @@ pub fn view(eye: Vec3, reversed: bool) -> SceneView {
     through(projection * look, eye.extend(1.0))
 }
 
-/// A view with this matrix, lit by default.
+/// A view with this matrix and the default light.
 pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
     let light = Light::default();
     SceneView {
@@ -50,7 +50,7 @@ pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
     }
 }
 
-/// What kernels would have written for a view of one object, whose instances are the scene's second block.
+/// The data that kernels would have written for a view of one object. Its instances are the scene's second block.
 pub struct Stage {
     view: SceneView,
     group: Group,
@@ -61,8 +61,8 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Shows instances at `placements`, at most a block of them, at level 0. Each of `parts` is a range of indices: the
-    /// first, and their number.
+    /// Shows instances at `placements`, at most one block of them, at level 0. Each of `parts` is a range of indices:
+    /// the first index and the count.
     pub fn new(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -103,7 +103,7 @@ impl Stage {
             lists: Buffer::from_slice(gpu, "lists", &lists).expect(up),
             arguments: Buffer::from_slice(gpu, "draws", &draws).expect(up),
             lod,
-            // An infinite far plane lies at depth 0, where only the near plane is left of the row.
+            // An infinite far plane lies at depth 0. Its row then has only the near plane left.
             reversed: z.truncate() == Vec3::ZERO,
         }
     }
@@ -136,7 +136,7 @@ fn listed(lod: &LodObject, placements: &[Affine], parts: &[[u32; 2]]) -> (Vec<u3
         all.map(|(index, _)| index).collect()
     };
     let all = [list(false), list(true)];
-    // Words of other lists would be found out.
+    // A draw that reads words of other lists fails the test.
     let mut lists = vec![u32::MAX; (4 * BLOCK) as usize];
     let mut draws = vec![[0; 5]; lod.first_draw as usize];
     for (at, list) in all.iter().enumerate() {
@@ -157,7 +157,7 @@ pub fn renderer(gpu: &Gpu, format: &TargetFormat, drawable: &dyn Drawable) -> Re
     renderer
 }
 
-/// Draws these layers of an object in one pass, after another, and reads the colours.
+/// Draws layers of an object in one pass, in this order, and reads the colours.
 pub fn drawn(
     gpu: &Gpu,
     format: &TargetFormat,
@@ -175,17 +175,17 @@ pub fn drawn(
     })
 }
 
-/// The number of pixels that differ by more than `levels`.
+/// The number of pixels that differ by more than `levels` in a channel.
 pub fn differing(a: &[[u8; 4]], b: &[[u8; 4]], levels: u8) -> usize {
     assert_eq!(a.len(), b.len());
     let far = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > levels);
     a.iter().zip(b).filter(|pair| far(*pair)).count()
 }
 
-/// What colours of [`FORMAT`]'s kind but the first are cleared to, and these texels.
+/// Clear value of all [`FORMAT`] colours but the first, and its texels.
 const OTHER: (wgpu::Color, [u8; 4]) = (wgpu::Color { r: 1.0, g: 0.0, b: 1.0, a: 0.0 }, [255, 0, 255, 0]);
 
-/// Attachments of a format.
+/// The attachments of a target format.
 pub struct Canvas {
     colors: Vec<Option<wgpu::Texture>>,
     resolved: wgpu::Texture,
@@ -217,7 +217,7 @@ impl Canvas {
         }
     }
 
-    /// Clears, draws, and reads the first colour, which has [`FORMAT`]; a depth-only canvas has none but black.
+    /// Clears, draws, and reads the first colour, which has [`FORMAT`]. A depth-only canvas returns black.
     pub fn draw(&self, gpu: &Gpu, draw: impl FnOnce(&mut wgpu::RenderPass<'_>)) -> Vec<[u8; 4]> {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let resolved = view(&self.resolved);
@@ -251,14 +251,14 @@ impl Canvas {
         from.map_or_else(|| vec![[0; 4]; (SIZE[0] * SIZE[1]) as usize], |from| texels(gpu, from))
     }
 
-    /// The number of texels of another colour of four bytes that are not what it was cleared to.
+    /// The number of texels of another four-byte colour that differ from its clear value.
     pub fn changed(&self, gpu: &Gpu, at: usize) -> usize {
         let color = self.colors[at].as_ref().expect("a colour");
         texels(gpu, color).iter().filter(|texel| **texel != OTHER.1).count()
     }
 }
 
-/// The texels of a colour of four bytes.
+/// The texels of a four-byte colour.
 fn texels(gpu: &Gpu, from: &wgpu::Texture) -> Vec<[u8; 4]> {
     let buffer = Buffer::<[u8; 4]>::new(gpu, "pixels", (SIZE[0] * SIZE[1]) as usize).expect("allocated");
     let layout =
@@ -271,7 +271,7 @@ fn texels(gpu: &Gpu, from: &wgpu::Texture) -> Vec<[u8; 4]> {
     buffer.read_blocking(gpu).expect("read")
 }
 
-/// The attachment of a depth, cleared to the distance.
+/// A depth attachment, cleared to the far value.
 fn cleared<'a>(
     view: &'a wgpu::TextureView,
     depth: &DepthFormat,

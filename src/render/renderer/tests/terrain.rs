@@ -1,4 +1,4 @@
-//! Terrain looks the same wherever its samples are counted from.
+//! Terrain looks the same for any origin of its sample coordinates.
 
 use glam::{DVec3, IVec2, Mat4, Vec3};
 
@@ -42,7 +42,7 @@ impl Land {
         Materials::new(gpu, &self.config.zones, &textures).expect("uploaded")
     }
 
-    /// The terrain as an object.
+    /// The terrain as a drawable object.
     pub fn drawable(&self, gpu: &Gpu, layouts: &SceneLayouts, style: TerrainStyle) -> (TerrainDrawable, u32) {
         let Config { patch_size: size, terrain_scale, .. } = self.config;
         let tiles = self.config.tiles_per_patch();
@@ -79,7 +79,7 @@ impl Land {
         (terrain, indices.len() as u32)
     }
 
-    /// The samples counted from `base`, in a view whose cell's corner is the first sample.
+    /// The ground with sample coordinates counted from `base`, in a view whose cell corner is the first sample.
     pub fn ground(&self, gpu: &Gpu, layouts: &SceneLayouts, base: [i32; 2]) -> Group {
         let rest = base.map(|at| (f64::from(at) * self.config.terrain_scale) as f32);
         let ground =
@@ -92,7 +92,7 @@ impl Land {
         2.0 * f64::from(self.config.patch_size - 1) * self.config.terrain_scale
     }
 
-    /// A view of the whole land, in the light of maps. All of it lies in the camera's cell and below.
+    /// A view of the whole land, lit as maps are. All of it lies in the camera's cell or below it.
     pub fn view(&self) -> SceneView {
         let high = DVec3::new(self.edge(), 0.2 * self.edge(), self.edge());
         let framed = Camera::framing(DVec3::ZERO, high, SIZE);
@@ -108,8 +108,8 @@ impl Land {
     }
 }
 
-/// Positions are counted from any sample, and rounding moves edges by a fraction of a pixel; the other diagonal is told from
-/// this one.
+/// Another origin of the samples moves edges only by rounding, a fraction of a pixel. The other diagonal of the quads
+/// is distinguished.
 #[test]
 fn terrain_looks_the_same_from_any_sample() {
     let gpu = gpu();
@@ -139,7 +139,7 @@ fn terrain_looks_the_same_from_any_sample() {
     assert!(differing(&wrong, &expected, 1) > 200, "{}", differing(&wrong, &expected, 1));
 }
 
-/// A wide view of a plane from below the ground sees sky through every crack between patches.
+/// A wide view of a plane from below the ground shows sky through every crack between patches.
 #[test]
 fn no_crack_opens_between_patches_far_from_the_origin() {
     let gpu = gpu();
@@ -147,7 +147,7 @@ fn no_crack_opens_between_patches_far_from_the_origin() {
     let land = Land::new(&gpu);
     let (drawable, indices) = land.drawable(&gpu, &layouts, TerrainStyle::Textured);
     let edge = land.edge() as f32;
-    // Straight down on the middle, where four patches meet, at a place that f32 cannot hold exactly.
+    // Straight down on the middle, where four patches meet, at a coordinate that f32 cannot represent exactly.
     let eye = Vec3::new(0.5 * edge, 0.6 * edge, 0.5 * edge);
     let look = glam::camera::rh::view::look_at_mat4(eye, eye - Vec3::Y, Vec3::NEG_Z);
     let clip = glam::camera::rh::proj::directx::perspective(0.8, 1.5, 1.0, 10.0 * edge) * look;

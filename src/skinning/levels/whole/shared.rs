@@ -1,4 +1,4 @@
-//! Which vertices of different meshes lie at one place: where the border of a mesh meets another mesh.
+//! Coincident vertices of different meshes: places where the border of a mesh meets another mesh.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,19 +9,20 @@ use crate::asset::Model;
 use crate::mesh::simplify::weld;
 use crate::skinning::pose::{Moment, Pose};
 
-/// How far apart two positions of one place may be, as a fraction of the largest coordinate of the pose: about eight
-/// roundings of an f32. Meshes with skins or nodes of their own compute a common position in different ways.
+/// Tolerance of coincident positions, as a fraction of the pose's largest coordinate: about eight roundings of an f32.
+/// Meshes with different skins or nodes compute a common position in different ways.
 const TOLERANCE: f32 = 5e-7;
 
-/// The largest number of places that are compared with one; places of a mesh that is a point in the first pose are many.
+/// The largest number of places compared with one. A mesh that is a point in the first pose has many places there.
 const MAX_COMPARED: usize = 64;
 
-/// For vertices (mesh, vertex) that lie where one of an earlier mesh lies: that one.
+/// For each shared vertex (mesh, vertex), the coincident vertex of an earlier mesh.
 pub(crate) type Shared = HashMap<(usize, u32), (usize, u32)>;
 
-/// The vertices that meshes share in all of these poses, and the groups of meshes that do: each ascending, by their first
-/// mesh, meshes that share nothing included. Vertices inside of two meshes are not shared: a copy of a surface is another
-/// surface.
+/// The vertices that meshes share in all of these poses, and the groups of meshes that share any.
+///
+/// Groups are ascending, and ordered by their first mesh; a mesh that shares nothing is a group of its own. Vertices
+/// inside of two meshes are not shared: a copy of a surface is another surface.
 pub(crate) fn shared(model: &Model, moments: &[Moment]) -> (Shared, Vec<Vec<usize>>) {
     if model.meshes.len() < 2 {
         return (Shared::new(), (0..model.meshes.len()).map(|mesh| vec![mesh]).collect());
@@ -59,14 +60,14 @@ pub(crate) fn shared(model: &Model, moments: &[Moment]) -> (Shared, Vec<Vec<usiz
     (found, groups(&group))
 }
 
-/// The places of a mesh.
+/// The distinct vertex positions (places) of a mesh.
 struct Places {
     poses: Vec<Vec<[f32; 3]>>,
     /// For each vertex, the first vertex at its place.
     point: Vec<u32>,
-    /// The first vertices of places that triangles use, ascending.
+    /// The places that triangles use, as their first vertices, ascending.
     used: Vec<u32>,
-    /// Those of them at a border.
+    /// The used places at a border.
     border: HashSet<u32>,
 }
 
@@ -106,7 +107,7 @@ impl Places {
     }
 }
 
-/// The places at the ends of edges that have a triangle on one side alone.
+/// The places at the ends of edges with a triangle on only one side.
 fn border(indices: &[u32], point: &[u32]) -> HashSet<u32> {
     let triangles =
         indices.as_chunks::<3>().0.iter().map(|corners| corners.map(|vertex| point[vertex as usize]));
@@ -117,14 +118,14 @@ fn border(indices: &[u32], point: &[u32]) -> HashSet<u32> {
     open.flatten().copied().collect()
 }
 
-/// A place that is known already.
+/// A place already found.
 struct Known {
     mesh: usize,
     vertex: u32,
     is_border: bool,
 }
 
-/// Finds places in a grid of cells of the first pose.
+/// Lookup of places in a grid over the first pose.
 struct Search<'a> {
     tolerances: &'a [f32],
     known: Vec<Known>,
@@ -141,7 +142,7 @@ impl Search<'_> {
         [at(0), at(1), at(2)]
     }
 
-    /// The known place of another mesh at which a vertex lies, if one of both is at a border.
+    /// The known place of another mesh at which a vertex lies, if either of them is at a border.
     fn find(&self, places: &[Places], mesh: usize, vertex: u32) -> Option<usize> {
         let own = &places[mesh];
         let position = own.poses[0][vertex as usize];
@@ -173,7 +174,7 @@ impl Search<'_> {
     }
 }
 
-/// Makes one group of those of two meshes.
+/// Merges the groups of two meshes.
 fn join(group: &mut [usize], a: usize, b: usize) {
     let (a, b) = (group[a], group[b]);
     group.iter_mut().filter(|own| **own == a.max(b)).for_each(|own| *own = a.min(b));

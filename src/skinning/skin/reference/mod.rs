@@ -13,12 +13,11 @@ use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::vertex::Vertex;
 
-/// Transforms vertices by a palette. `vertices` are those of a mesh, morphed or not, and `influences` are the
-/// mesh's own.
+/// Transforms vertices by a palette. `vertices` are those of a mesh, morphed or not; `influences` are the mesh's own.
 ///
 /// # Panics
-/// With fewer influences than vertices, with an InstanceLod of 0 influences, and with a palette of fewer bones
-/// than the influences name.
+/// With fewer influences than vertices, with an InstanceLod of 0 influences, and with a palette of fewer bones than the
+/// influences name.
 pub fn skin(
     vertices: &[Vertex],
     influences: &Influences,
@@ -29,7 +28,7 @@ pub fn skin(
     vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
 }
 
-/// As [`skin`], for one instance of a crowd: if it is not seen its vertices stay unchanged, and so do those in
+/// As [`skin`], for one instance of a crowd. The vertices of an invisible instance stay unchanged, as do those in
 /// clusters beyond its level of detail. `clusters` are those of the mesh.
 ///
 /// # Panics
@@ -80,7 +79,7 @@ fn dual_mean(bones: &[DualBone], left: &[Influence]) -> Affine {
     let mut sum = DualBone { real: zero, dual: zero, diagonal: zero, above: zero };
     for influence in weaker_first(left) {
         let bone = &bones[influence.bone as usize];
-        // Of q and −q, the one in the hemisphere of the strongest bone's quaternion.
+        // Of q and −q, takes the one in the hemisphere of the strongest bone's quaternion.
         let side = if dot4(bone.real, strongest.real) < 0.0 { -influence.weight } else { influence.weight };
         sum.real = added(sum.real, side, bone.real);
         sum.dual = added(sum.dual, side, bone.dual);
@@ -94,8 +93,7 @@ fn dot4(a: [f32; 4], b: [f32; 4]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// The matrix of a sum. Its rotation is not 0: the strongest weight is at least 1/8, and no other bone opposes
-/// it.
+/// The matrix of a sum. Its rotation is not 0: the strongest weight is at least 1/8, and no other bone opposes it.
 fn matrix_of(sum: &DualBone) -> Affine {
     let inverse = 1.0 / dot4(sum.real, sum.real);
     let [x, y, z, w] = sum.real;

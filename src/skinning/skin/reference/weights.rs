@@ -3,9 +3,9 @@
 use crate::asset::influences::Influence;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The remaining influences, the strongest first; their weights sum to 1. `influences` is what
-/// [`Influences::of`](crate::asset::Influences::of) gives. The weight of the strongest influence is not read:
-/// it is 1 minus the others.
+/// The remaining influences, the strongest first; their weights sum to 1. `influences` comes from
+/// [`Influences::of`](crate::asset::Influences::of). The strongest influence's weight is not read: it is 1 minus the
+/// others.
 ///
 /// # Panics
 /// For an InstanceLod of 0 influences, which belongs to an instance without vertices.

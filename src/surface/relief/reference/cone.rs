@@ -5,8 +5,8 @@ use super::linear::narrowed;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{Hit, March, Outcome, Ray};
 
-/// Cone stepping over the map's cones (highest corner and radius, row by row of cells), which must have been
-/// computed for the march's address mode.
+/// Cone stepping over the map's cones, which must have been computed for the march's address mode. `cones` has highest corner
+/// and radius of each cell, row by row.
 pub(crate) fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hit {
     let grid = Grid::new(map, ray, march.address);
     let distance = (grid.travel[0] * grid.travel[0] + grid.travel[1] * grid.travel[1]).sqrt();

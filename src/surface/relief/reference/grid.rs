@@ -17,8 +17,7 @@ pub(crate) struct Grid {
     address: Address,
 }
 
-/// A square of cells: its index at its level, and its edges in cells from the base; the upper edges are
-/// exclusive.
+/// A square of cells: its index at its level, and its edges in cells from the base. The upper edges are exclusive.
 pub(crate) struct Node {
     pub index: [i32; 2],
     low: [i32; 2],
@@ -80,7 +79,7 @@ impl Grid {
         [0, 1].map(|axis| at[axis].clamp(node.low[axis], node.high[axis] - 1))
     }
 
-    /// The cell in which the ray is at a parameter.
+    /// Cell of the ray at a parameter.
     pub(crate) fn at(&self, parameter: f32) -> [i32; 2] {
         [0, 1].map(|axis| (self.start[axis] + parameter * self.travel[axis]).floor() as i32)
     }
@@ -92,13 +91,13 @@ impl Grid {
         next
     }
 
-    /// The four heights of a cell: (0,0), (1,0), (0,1), (1,1).
+    /// Heights of a cell's four corners: (0,0), (1,0), (0,1), (1,1).
     pub(crate) fn corners(&self, map: &HeightMap, index: [i32; 2]) -> [f32; 4] {
         let first = if self.address == Address::Wrap { index } else { index.map(|at| at - 1) };
         [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| map.texel(first[0] + dx, first[1] + dy, self.address))
     }
 
-    /// The first parameter in enter..=leave at which the ray is on or below a cell's bilinear patch, or -1.
+    /// First parameter in enter..=leave at which the ray is on or below a cell's bilinear patch, or -1.
     pub(crate) fn patch(&self, corners: [f32; 4], low: [i32; 2], enter: f32, leave: f32) -> f32 {
         let [h00, h10, h01, h11] = corners;
         let at = [0, 1].map(|i| (self.start[i] - low[i] as f32) + enter * self.travel[i]);
@@ -128,7 +127,7 @@ impl Grid {
 }
 
 impl Node {
-    /// The corner from which a leaf's patch is counted.
+    /// Corner that is the origin of a leaf's patch.
     pub(crate) fn corner(&self) -> [i32; 2] {
         [0, 1].map(|axis| if self.low[axis] == -FAR { self.high[axis] - 1 } else { self.low[axis] })
     }

@@ -18,21 +18,21 @@ use crate::surface::relief::reference::linear::{occlusion, relief};
 use crate::surface::relief::reference::quadtree::quadtree;
 use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
 
-/// A height map with the acceleration map of a method.
+/// A height map with a method's acceleration map.
 #[derive(Debug, Clone)]
 pub struct Surface<'a> {
     /// The heights.
     pub map: &'a HeightMap,
-    /// The address mode for which its maps were computed, and with which it is traced.
+    /// Address mode in which the map is traced, and for which its acceleration maps were computed.
     pub address: Address,
-    /// Its pyramid, for [`Method::Quadtree`]; empty for other methods.
+    /// Pyramid of the map, for [`Method::Quadtree`]; empty for other methods.
     pub pyramid: Vec<f32>,
-    /// Its cones, for [`Method::Cone`]; empty for other methods.
+    /// Cones of the map, for [`Method::Cone`]; empty for other methods.
     pub cones: Vec<[f32; 2]>,
 }
 
 impl<'a> Surface<'a> {
-    /// Computes the maps that `method` needs.
+    /// Computes the acceleration maps that `method` needs.
     pub fn new(map: &'a HeightMap, method: Method, address: Address) -> Self {
         let pyramid = match method {
             Method::Quadtree | Method::Cone => height_pyramid(map, address),

@@ -11,28 +11,28 @@ use crate::terrain::cover::{Cover, ShaderZone};
 use crate::terrain::normals::reference::unit_normal;
 pub use texturing::{color_variation, texel_indices, tiles_of, triplanar_weights, varied};
 
-/// The tangent of half the angle between a unit normal and the vertical: 0 on level ground, 1 on a wall.
+/// Tangent of half the angle between a unit normal and the vertical: 0 on level ground, 1 on a wall.
 pub fn steepness(normal: [f32; 3]) -> f32 {
     let [x, y, z] = normal;
     (x * x + z * z).sqrt() / (1.0 + y)
 }
 
-/// The weight of a zone at `height` (B equation 3.6) and a steepness: by height 1 at `max`, falling linearly to 0 at `max` ±
-/// (`max` − `min`), times the two lines of the slope.
+/// Weight of a zone at a height and a steepness (B equation 3.6). By height it is 1 at `max`, and falls linearly to 0 at `max`
+/// ± (`max` − `min`). It is multiplied by the two linear transitions of the slope.
 pub fn zone_weight(zone: &ShaderZone, height: f32, steep: f32) -> f32 {
     let range = zone.max - zone.min;
     let line = |line: [f32; 2]| (line[0] * steep + line[1]).clamp(0.0, 1.0);
     ((range - (height - zone.max).abs()) / range).max(0.0) * (line(zone.rise) * line(zone.fall))
 }
 
-/// The factor of a weight by the height of a texel, 0 to 1.
+/// Factor of a weight that depends on a texel's height, 0 to 1.
 fn prominence(zone: &ShaderZone, texel_height: f32) -> f32 {
     let squared = (1.0 + zone.height_blend * (0.9375 * texel_height - 0.9375)).powi(2);
     squared * squared
 }
 
-/// The fraction of each zone's colour at `height`, in units, and a steepness, in the order of `zones`; `texel_heights` are those of
-/// the zones' textures there, 0 to 1.
+/// Fraction of each zone's colour at a height and a steepness, in the order of `zones`. `height` is in height units.
+/// `texel_heights` are the heights of the zones' texels there, 0 to 1.
 pub fn zone_fractions(
     zones: &[ShaderZone],
     (height, steep): (f32, f32),
@@ -57,8 +57,8 @@ pub fn zone_fractions(
     (0..zones.len()).map(|index| if index == nearest { 1.0 } else { 0.0 }).collect()
 }
 
-/// The colour map of a window with `width` samples per row, without the outermost ring of samples: RGBA, 8 bits
-/// each, red in the lowest byte. `place` is that of the first sample inside ([`Cover::place`]).
+/// Colour map of a window with `width` samples per row, without the outermost ring of samples: RGBA, 8 bits each, red in the
+/// lowest byte. `place` is the position of the first inner sample ([`Cover::place`]).
 pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, place: [u32; 2]) -> Vec<u32> {
     let at = |x: usize, y: usize| window[y * width + x];
     let zones: Vec<ShaderZone> = cover.zones.iter().map(|map_zone| map_zone.zone).collect();
@@ -78,7 +78,7 @@ pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, pla
     pixels
 }
 
-/// The colour of the ground at a place, given in 2^-22 tiles: east, up, south.
+/// Colour of the ground at a position in 2^-22 tiles: east, up, south.
 fn ground_color(
     cover: &Cover,
     zones: &[ShaderZone],

@@ -1,4 +1,4 @@
-//! Grass: blades that grow from random places, the highest in front, as seen from above.
+//! Grass texture: blades that grow from random places, the highest in front, seen from above.
 
 use crate::terrain::texture::TEXTURE_SIZE;
 use crate::terrain::texture::field::{made, mixed, texels as shaded};
@@ -9,14 +9,14 @@ const EDGE: usize = TEXTURE_SIZE as usize;
 /// Number of blades.
 const BLADES: u32 = 30_000;
 
-/// What is seen at a texel.
+/// Visible surface at a texel.
 #[derive(Clone, Copy)]
 struct Seen {
     height: f32,
     color: [f32; 3],
 }
 
-/// The texels.
+/// Texels of the texture.
 pub fn grass() -> Vec<u8> {
     let soil = made(|at| {
         let rough = octaves(201, [24, 24], 4, 0.6, at);
@@ -40,7 +40,7 @@ fn grow(seen: &mut [Seen], blade: u32) {
     let tuft = octaves(223, [11, 11], 3, 0.5, root);
     let length = (9.0 + 17.0 * number(2)) * (1.0 + 0.5 * tuft);
     let tall = (0.35 + 0.45 * number(3)) * (1.0 + 0.35 * tuft);
-    // A direction without a sine: a point of a square.
+    // A random direction without a sine: a point of a square.
     let way = [2.0 * number(4) - 1.0, 2.0 * number(5) - 1.0];
     let scale = length / (way[0] * way[0] + way[1] * way[1]).sqrt().max(0.2);
     let bend = (number(6) - 0.5) * 0.7;

@@ -1,18 +1,18 @@
-//! Stones: loose ones on soil, and a slope that consists of them.
+//! Stone textures: loose stones on soil, and a slope of broken stones.
 
 use super::apart;
 use crate::terrain::texture::field::{made, mixed, ramp, stretched, texels as shaded};
 use crate::terrain::texture::noise::{cell, gradient, octaves, random, smoothstep};
 
-/// A stone at a point, or none.
+/// A stone at a point, or no stone.
 struct Stone {
-    /// Height above what it lies on, 0 where there is none.
+    /// Height above the ground below, 0 where there is no stone.
     height: f32,
-    /// Its brightness and its hue, 0 to 1.
+    /// Brightness and hue, 0 to 1.
     look: [f32; 2],
 }
 
-/// Stones of one size, `count` in a row; of the places for stones, the part `dense` has one.
+/// Stones of one size, `count` places in a row. The fraction `dense` of the places has a stone.
 fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
     let bend = 0.16 / count as f32;
     let bent = [
@@ -22,7 +22,7 @@ fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
     let cell = cell(key, [count; 2], bent);
     let number = |use_of: u32| random(key + 3, [cell.word, use_of]);
     let gap = cell.distances[1] - cell.distances[0];
-    // Faces: the top is a plane, tilted, and cut by two others.
+    // The top is a tilted plane, cut by two others.
     let face =
         |first: u32| cell.offset[0] * (number(first) - 0.5) + cell.offset[1] * (number(first + 1) - 0.5);
     let top = (0.55 + 0.45 * number(0) + 0.7 * face(1)).min(0.8 + 1.6 * face(3)).min(0.85 + 1.6 * face(5));
