@@ -6,9 +6,9 @@
 //!
 //! `below + (layer − below) · weight · mask`
 //!
-//! Rotations are blended along the chord to the nearer of q and −q and normalized (nlerp). They are exact at weights of 0 and
-//! 1. In between they are on the shortest arc, but not at constant speed: up to 0.002 rad off for rotations 45° apart, 0.016
-//! for 90°, 0.14 for 180°. A layer is not loaded for a bone on which its weight times mask is 0.
+//! Rotations are blended along the chord to the nearer of q and −q and normalized (nlerp). They are exact at the weights
+//! 0 and 1. In between they are on the shortest arc, but not at constant speed: up to 0.002 rad off for rotations 45° apart,
+//! 0.016 for 90°, 0.14 for 180°. A layer is not loaded for a bone on which its weight times mask is 0.
 //!
 //! A cross-fade of two clips is one layer without a mask. An arm that waves during a walk is one layer with the mask of the arm
 //! ([`mask_below`]).

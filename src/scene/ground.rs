@@ -57,8 +57,8 @@ impl Scene {
     }
 
     /// Sets the time at which a terrain with a target
-    /// ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) blends its two recipes. Heights are from
-    /// + ⌊(to − from) · time⌋ in integers, so the picture equals that of terrain made from these heights. The next frame
+    /// ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) blends its two recipes. Heights are
+    /// `from + ⌊(to − from) · time⌋` in integers, so the picture equals that of terrain made from these heights. The next frame
     /// blends heights and normals on the device. [`Scene::ground`] and [`Scene::pick`] use the new heights at once. An
     /// unchanged time costs nothing. The host takes a few nanoseconds per sample.
     ///

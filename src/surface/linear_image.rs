@@ -7,6 +7,7 @@ use crate::srgb;
 pub struct LinearImage {
     /// Pixels along x and y.
     pub size: [u32; 2],
+    /// `size[0] * size[1]` pixels.
     pub pixels: Vec<[f32; 3]>,
 }
 

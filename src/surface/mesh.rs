@@ -21,6 +21,7 @@ pub struct SurfaceVertex {
 /// A mesh that carries relief.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceMesh {
+    /// The vertices that `indices` name.
     pub vertices: Vec<SurfaceVertex>,
     /// Three indices per triangle.
     pub indices: Vec<u32>,

@@ -24,7 +24,7 @@ impl SelectPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the selection of all instances, [`BLOCK`](crate::lod::BLOCK) for each element of `block_objects`.
+    /// Prepares the selection of all instances, [`BLOCK`] for each element of `block_objects`.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`].
