@@ -22,6 +22,9 @@
 //! (it compares every kernel with its reference, measures it against a copy of the same bytes, and says what level of detail
 //! costs and shows on the caller's own data), and the program `relievo-cli`.
 //!
+//! The documentation cites two theses as **A** and **B**, by section, table or equation; `docs/sources.md` in the repository names
+//! them.
+//!
 //! `wgpu`, [`glam`] and [`image`] are exported, so that the versions of an embedding program match.
 //!
 //! # Axes and units

@@ -45,7 +45,7 @@ pub struct Material {
     /// Number of height samples of a soft shadow on the way to the light, 1 to 1024.
     pub shadow_steps: u32,
     /// Ratio at which a soft shadow is full, > 0: the height of the surface above the way to the light, divided by the
-    /// distance.
+    /// height that the way has gained since the shaded point.
     pub softness: f32,
 }
 

@@ -26,7 +26,7 @@ pub const SAMPLE_BOUND: f32 = 1e-5;
 
 /// Factor by which the bound grows with each layer above the base.
 ///
-/// A blend of two vectors with error e has the error e and 12ε of rounding (weight times mask 2ε, the rest of 1 4ε, both
+/// A blend of two vectors with error e has the error e and 12ε of rounding (weight times mask 2ε, 1 minus that 4ε, both
 /// products and their sum 6ε). The blend of two unit quaternions less than 90° apart has a length of at least √½. Normalizing
 /// therefore enlarges its error by at most √2 and adds 16ε: √2·e + 33ε, where 33ε = 2e-6 is a fifth of the smallest e.
 pub const LAYER_GROWTH: f32 = 1.65;

@@ -143,7 +143,7 @@ fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -
 }
 
 /// Shares that leave in the next cycle. Each pipe keeps half of its flux and gains a sixteenth of the fall. In addition, a
-/// thirty-second of the water below the threshold spreads through each pipe, so that streams do not run along rows and columns.
+/// thirty-second of the water, at most the threshold, spreads through each pipe, so that streams do not run along rows and columns.
 /// The sum is at most three quarters of the water, so that neighbouring samples do not exchange all of it from cycle to cycle.
 #[inline(always)]
 fn next_shares(cell: Cell, falls: [i32; 4], water: i32, params: &HydraulicParams) -> [i32; 4] {
