@@ -1,15 +1,16 @@
 //! The same heights from the CPU and from the GPU: `cargo run --example heights`.
 
 use relievo::gpu::{Gpu, Options};
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::export::sha256;
 use relievo::ops::terrain::field::field;
 use relievo::ops::terrain::generator::Generator;
 use relievo::ops::terrain::recipe::Recipe;
 
 fn main() -> Result<(), relievo::Error> {
-    let recipe =
-        Recipe::new(Config::from_json(r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#)?);
+    let recipe = Recipe::new(TerrainConfig::from_json(
+        r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#,
+    )?);
     let on_cpu = field(&recipe, &[[0, 0]], 0)?;
     println!("CPU {}", sha256(&on_cpu[0]));
 

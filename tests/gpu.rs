@@ -16,7 +16,7 @@ use relievo::ops::animation::instance::Wrap;
 use relievo::ops::animation::keyframe_cursor::KeyframeCursorPass;
 use relievo::ops::animation::local_to_model::LocalToModelPass;
 use relievo::ops::animation::sample::SamplePass;
-use relievo::ops::terrain::config::{Config, Offset};
+use relievo::ops::terrain::config::{Offset, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::height::reference::height;
@@ -43,7 +43,7 @@ fn foreign_with_instance() -> (wgpu::Instance, wgpu::Device, wgpu::Queue) {
 }
 
 fn heights_equal_the_reference(gpu: &Gpu) {
-    let config = Config::new(65, 20.0, "device").expect("valid");
+    let config = TerrainConfig::new(65, 20.0, "device").expect("valid");
     let pass = HeightPass::new(gpu, Offset::Signed, None).expect("compiled");
     let batch = HeightBatch::new(gpu, &pass, &config, [2, 0], 0).expect("allocated");
     batch.set(gpu, &[[3, 4], [-1, 0]], &Features::default()).expect("set");
@@ -142,7 +142,7 @@ fn a_buffer_beyond_the_limit_names_it() {
 fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_elsewhere() {
     let (device, queue) = foreign();
     for gpu in [gpu(), Gpu::from_wgpu(device, queue)] {
-        let config = Config::new(4097, 20.0, "large").expect("valid");
+        let config = TerrainConfig::new(4097, 20.0, "large").expect("valid");
         let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
         let apron = 850;
         match HeightBatch::new(&gpu, &pass, &config, [1, apron], 0) {
@@ -164,7 +164,7 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
 #[test]
 fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let gpu = gpu();
-    let config = Config::new(1025, 20.0, "split").expect("valid");
+    let config = TerrainConfig::new(1025, 20.0, "split").expect("valid");
     let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
     let count = 33_u32;
     let batch = HeightBatch::new(&gpu, &pass, &config, [count, 0], 0).expect("allocated");

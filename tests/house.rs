@@ -315,7 +315,7 @@ fn a_planted_circle_is_found() {
 #[test]
 fn nested_lists_of_uses_are_read() {
     let text = "use crate::{\n    asset::{mesh::{Mesh, Skin as S}, clip::Clip},\n    hash::{self, *},\n};\n\
-        pub(super) fn f(a: super::Config) -> u32 { crate::hash::<u32>(a) as u32 }\n";
+        pub(super) fn f(a: super::TerrainConfig) -> u32 { crate::hash::<u32>(a) as u32 }\n";
     let paths: Vec<String> =
         Source::new("terrain/pad/mod.rs", text).paths().iter().map(|path| path.join("::")).collect();
     let expected = [
@@ -324,7 +324,7 @@ fn nested_lists_of_uses_are_read() {
         "asset::clip::Clip",
         "hash",
         "hash",
-        "terrain::Config",
+        "terrain::TerrainConfig",
         "hash",
     ];
     assert_eq!(paths, expected);

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use harness::gpu_of_bindings;
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::config::{Border, TerrainConfig};
 use relievo::ops::terrain::despike::Despike;
 use relievo::ops::terrain::features::{FeatureFile, FeatureIndex, Features};
 use relievo::ops::terrain::field::field;
@@ -28,7 +28,7 @@ const PATCHES: [[i32; 2]; 12] =
 fn recipes() -> Vec<Recipe> {
     let mut recipes = Vec::new();
     for border in [Border::Seamless, Border::Wrap, Border::Blend(16)] {
-        let config = Config { border, ..Config::new(SIZE, 20.0, "memory").expect("valid") };
+        let config = TerrainConfig { border, ..TerrainConfig::new(SIZE, 20.0, "memory").expect("valid") };
         let some = (0..SIZE * SIZE).step_by(11);
         let points = some.flat_map(|i| [f64::from(i % SIZE), f64::from(i / SIZE), f64::from(i % 7)]);
         let file = FeatureFile { patch_coordinates: [1, 1], precomputed_heights: points.collect() };

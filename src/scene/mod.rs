@@ -77,7 +77,7 @@ pub use crate::surface::{
 };
 #[doc(inline)]
 pub use crate::terrain::{
-    blend::Shading as TerrainShading, config::Config as TerrainConfig, fields::Fields as TerrainFields,
+    blend::Shading as TerrainShading, config::TerrainConfig, fields::Fields as TerrainFields,
     mesh::GroundPoint, morph::Morph as TerrainMorph, recipe::Recipe as TerrainRecipe,
     texture::Texture as TerrainTexture,
 };

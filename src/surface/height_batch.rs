@@ -6,7 +6,7 @@ use crate::{Error, InputError};
 
 /// Height maps of one size on the device, one after another.
 #[derive(Debug, Clone)]
-pub struct HeightBatch {
+pub struct HeightMapBatch {
     /// Heights, row by row, map by map.
     pub heights: Buffer<f32>,
     /// Texels of each map along x and y.
@@ -15,7 +15,7 @@ pub struct HeightBatch {
     pub count: u32,
 }
 
-impl HeightBatch {
+impl HeightMapBatch {
     /// Uploads maps of one size.
     ///
     /// # Errors

@@ -20,7 +20,7 @@ pub mod tangent;
 #[cfg(feature = "gpu")]
 pub use color::ColorTexture;
 #[cfg(feature = "gpu")]
-pub use height_batch::HeightBatch;
+pub use height_batch::HeightMapBatch;
 pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
 pub use material::{Green, Material, Shadow};

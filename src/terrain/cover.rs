@@ -6,7 +6,7 @@ pub use crate::shared::terrain::tiles::MapZone;
 /// Zone in the form that shaders use ([`zone_of`]).
 pub use crate::shared::terrain::zones::Zone as ShaderZone;
 use crate::terrain::config::{
-    Config, MAX_REPEATS, Slope, Zone, check_range, check_terrain_scale, check_zone_count, finite,
+    MAX_REPEATS, Slope, TerrainConfig, Zone, check_range, check_terrain_scale, check_zone_count, finite,
 };
 use crate::terrain::texture::{TEXTURE_SIZE, Texture};
 use crate::{InputError, srgb};
@@ -55,8 +55,8 @@ impl Cover {
     /// to the distance between samples.
     ///
     /// # Errors
-    /// [`InputError`] where the numbers of zones and textures differ, and as [`Config::validate`].
-    pub fn new(config: &Config, textures: &[Texture]) -> Result<Self, InputError> {
+    /// [`InputError`] where the numbers of zones and textures differ, and as [`TerrainConfig::validate`].
+    pub fn new(config: &TerrainConfig, textures: &[Texture]) -> Result<Self, InputError> {
         config.validate()?;
         if textures.len() != config.zones.len() {
             let bound = format!("must be one for each of the {} zones", config.zones.len());

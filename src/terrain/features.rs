@@ -8,7 +8,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, PATCH_EDGE};
+use crate::terrain::config::{Border, HEIGHT_LIMIT, HEIGHT_ONE, PATCH_EDGE, TerrainConfig};
 use crate::terrain::config::{from_json_object, read_text};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::pad::reference::pad;
@@ -49,7 +49,7 @@ impl FeatureFile {
     }
 
     /// Points as (X, Y, height in 1/65536 units), checked against the patch.
-    fn points(&self, config: &Config) -> Result<Vec<(i32, i32, i32)>, InputError> {
+    fn points(&self, config: &TerrainConfig) -> Result<Vec<(i32, i32, i32)>, InputError> {
         let values = &self.precomputed_heights;
         if !values.len().is_multiple_of(3) {
             let bound = "its length must be a multiple of 3 (x, y, height, …)";
@@ -92,7 +92,7 @@ impl Features {
     /// # Errors
     /// [`InputError`] for a coordinate outside the patch, a list whose length is not a multiple of 3, heights
     /// that are not finite or could overflow, and a lattice point with two different heights.
-    pub fn new(config: &Config, files: &[FeatureFile], mode: FeatureMode) -> Result<Self, InputError> {
+    pub fn new(config: &TerrainConfig, files: &[FeatureFile], mode: FeatureMode) -> Result<Self, InputError> {
         config.validate()?;
         let mut features = Self { mode, worlds: BTreeMap::new() };
         for file in files {
@@ -106,7 +106,7 @@ impl Features {
     ///
     /// # Errors
     /// As [`Features::new`].
-    pub fn add(&mut self, config: &Config, file: &FeatureFile) -> Result<(), InputError> {
+    pub fn add(&mut self, config: &TerrainConfig, file: &FeatureFile) -> Result<(), InputError> {
         let patch = file.patch_coordinates;
         // Features of a patch that no window can have would never be seen.
         Window { patch, apron: 0 }.validate(config)?;
@@ -135,7 +135,7 @@ impl Features {
     ///
     /// # Errors
     /// [`InputError`] when heights with these features could leave the range of fixed-point heights.
-    pub fn check(&self, config: &Config) -> Result<(), InputError> {
+    pub fn check(&self, config: &TerrainConfig) -> Result<(), InputError> {
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
 
@@ -192,7 +192,7 @@ impl Features {
     /// samples around a patch, and their features, belong to other patches or to the other side of the patch itself.
     pub(crate) fn in_windows(
         &self,
-        config: &Config,
+        config: &TerrainConfig,
         patches: &[[i32; 2]],
         apron: u32,
     ) -> Vec<Vec<(u32, u32)>> {
@@ -227,7 +227,7 @@ impl Features {
     }
 
     /// World that contains a patch; see [`Features::on_lattice`].
-    pub(crate) fn world_of(config: &Config, patch: [i32; 2]) -> [i32; 2] {
+    pub(crate) fn world_of(config: &TerrainConfig, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
     }
 }

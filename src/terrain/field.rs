@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{border, despike, height, hydraulic, pad, smooth, thermal, wrap};
 use crate::InputError;
 use crate::terrain::border::neighbours;
-use crate::terrain::config::{Border, Config, Interpolation};
+use crate::terrain::config::{Border, Interpolation, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::pad::surrounds;
@@ -55,7 +55,12 @@ pub fn field_with(
 }
 
 /// Windows of `patches` before despiking and erosion.
-pub fn generate(config: &Config, features: &Features, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<i32>> {
+pub fn generate(
+    config: &TerrainConfig,
+    features: &Features,
+    patches: &[[i32; 2]],
+    apron: u32,
+) -> Vec<Vec<i32>> {
     if config.border == Border::Seamless {
         let made = match config.interpolation {
             Interpolation::Linear => height::reference::height,

@@ -3,7 +3,7 @@
 use crate::hash::{LANES, threefry2x32};
 #[cfg(feature = "gpu")]
 use crate::shared::terrain::features;
-use crate::terrain::config::{Config, Offset};
+use crate::terrain::config::{Offset, TerrainConfig};
 
 /// Mean of four heights, rounded half up.
 #[inline(always)]
@@ -39,7 +39,7 @@ pub struct Draw {
 
 impl Draw {
     /// The offsets of a configuration.
-    pub fn new(config: &Config) -> Self {
+    pub fn new(config: &TerrainConfig) -> Self {
         Self { key: config.key(), offset: config.offset }
     }
 

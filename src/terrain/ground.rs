@@ -5,7 +5,7 @@ mod ray;
 use std::collections::HashMap;
 
 use crate::InputError;
-use crate::terrain::config::Config;
+use crate::terrain::config::TerrainConfig;
 use crate::terrain::export::cropped;
 use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fraction};
 pub use ray::GroundHit;
@@ -17,9 +17,9 @@ pub use ray::GroundHit;
 ///
 /// ```
 /// use relievo::ops::terrain::field::field;
-/// use relievo::ops::terrain::{config::Config, ground::Ground, recipe::Recipe};
+/// use relievo::ops::terrain::{config::TerrainConfig, ground::Ground, recipe::Recipe};
 ///
-/// let config = Config::new(33, 40.0, "any text")?;
+/// let config = TerrainConfig::new(33, 40.0, "any text")?;
 /// let patches = [[-1, 0], [0, 0]];
 /// let mut ground = Ground::new(&config)?;
 /// for (patch, heights) in patches.iter().zip(field(&Recipe::new(config), &patches, 0)?) {
@@ -43,8 +43,8 @@ impl Ground {
     /// An empty world of `config`.
     ///
     /// # Errors
-    /// [`InputError`] as [`Config::validate`].
-    pub fn new(config: &Config) -> Result<Self, InputError> {
+    /// [`InputError`] as [`TerrainConfig::validate`].
+    pub fn new(config: &TerrainConfig) -> Result<Self, InputError> {
         config.validate()?;
         Ok(Self { size: config.patch_size, spacing: config.terrain_scale, patches: HashMap::new() })
     }

@@ -1,6 +1,6 @@
 //! Lattices of points in world coordinates: the base lattice, where subdivision starts, and the features of a lattice.
 
-use crate::terrain::config::{Border, Config, HEIGHT_LIMIT, Interpolation, PATCH_EDGE};
+use crate::terrain::config::{Border, HEIGHT_LIMIT, Interpolation, PATCH_EDGE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject};
 use crate::terrain::window::{Lattice, Span};
@@ -8,7 +8,7 @@ use crate::terrain::window::{Lattice, Span};
 /// Heights of the base lattice of a patch: random ones on the points of `spans`, or the corners of a patch that is generated
 /// alone.
 pub(crate) fn base_lattice(
-    config: &Config,
+    config: &TerrainConfig,
     features: &Features,
     patch: [i32; 2],
     spans: [Span; 2],
@@ -32,7 +32,7 @@ pub(crate) fn base_lattice(
     grid
 }
 
-fn corners(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
+fn corners(config: &TerrainConfig, features: &Features, patch: [i32; 2]) -> Vec<i32> {
     let mut corners = config.fixed_corners().to_vec();
     let lattice = Lattice { origin: [0, 0], width: 2, spacing: PATCH_EDGE };
     for (x, y, height) in features.on_lattice(Features::world_of(config, patch), lattice, false) {

@@ -3,7 +3,7 @@
 
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::level::Level;
-use crate::terrain::config::{Border, Config, Interpolation};
+use crate::terrain::config::{Border, Interpolation, TerrainConfig};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
 use crate::terrain::lattice::base_lattice;
@@ -38,7 +38,7 @@ impl LevelPass {
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        config: &Config,
+        config: &TerrainConfig,
         [count, apron]: [u32; 2],
         feature_capacity: usize,
         output: &Buffer<i32>,
@@ -84,7 +84,7 @@ impl LevelPass {
 }
 
 /// Points along an edge at every level, the base lattice first; enough for windows of any alignment.
-fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
+fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     let halo = match (config.border, config.interpolation) {
         (Border::Seamless, Interpolation::Linear) => 3,
         (Border::Seamless, Interpolation::Smooth) => 8,
@@ -99,7 +99,7 @@ fn level_widths(config: &Config, apron: u32) -> Vec<u32> {
 }
 
 /// Number of points around a window whose features a level sees. The grids of an index already have room for one.
-fn rim(config: &Config) -> u32 {
+fn rim(config: &TerrainConfig) -> u32 {
     match config.interpolation {
         Interpolation::Linear => 1,
         Interpolation::Smooth => SMOOTH_RIM,
@@ -123,7 +123,7 @@ impl HeightScratch {
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
-    pub fn new(gpu: &Gpu, config: &Config, [count, apron]: [u32; 2]) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, config: &TerrainConfig, [count, apron]: [u32; 2]) -> Result<Self, GpuError> {
         let [first, second] = Self::points(&level_widths(config, apron), count);
         let buffer =
             |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));
@@ -154,7 +154,7 @@ impl HeightScratch {
 /// A prepared generation of a batch of windows: set the patches, then record any number of times.
 #[derive(Debug, Clone)]
 pub struct HeightJob {
-    config: Config,
+    config: TerrainConfig,
     count: u32,
     apron: u32,
     widths: Vec<u32>,
@@ -167,7 +167,7 @@ pub struct HeightJob {
 
 impl HeightJob {
     /// Number of heights that the output must hold.
-    pub fn output_points(config: &Config, count: u32, apron: u32) -> usize {
+    pub fn output_points(config: &TerrainConfig, count: u32, apron: u32) -> usize {
         points(config.patch_size + 2 * apron, count)
     }
 
@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn scratch_holds_what_dispatches_leave() {
         let points = |size, coarse_levels, apron| {
-            let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
+            let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 1.0, "").expect("valid") };
             HeightScratch::points(&level_widths(&config, apron), 3)
         };
         // The levels before the last are 131, 68, 36, 20, … points wide.
@@ -229,10 +229,10 @@ mod tests {
         assert_eq!(points(3, 0, 0), [0, 0], "one dispatch");
         assert_eq!(points(5, 0, 0), [3 * 5 * 5, 0], "two");
         // With smooth interpolation, the levels before the last of 3 points are 9, 12, 13, 14, 14, … points wide.
-        let smooth = Config {
+        let smooth = TerrainConfig {
             interpolation: Interpolation::Smooth,
             coarse_levels: 8,
-            ..Config::new(3, 1.0, "").expect("valid")
+            ..TerrainConfig::new(3, 1.0, "").expect("valid")
         };
         assert_eq!(HeightScratch::points(&level_widths(&smooth, 0), 3), [3 * 14 * 14; 2]);
     }
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn level_widths_cover_every_alignment() {
         for (size, coarse_levels, apron) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {
-            let config = Config { coarse_levels, ..Config::new(size, 1.0, "").expect("valid") };
+            let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 1.0, "").expect("valid") };
             let widths = level_widths(&config, apron);
             for patch in -300..300 {
                 let levels = Window { patch: [patch, 1 - patch], apron }.levels(&config);

@@ -4,7 +4,7 @@ mod json;
 
 use std::path::Path;
 
-use crate::terrain::config::{Border, Config, read_text};
+use crate::terrain::config::{Border, TerrainConfig, read_text};
 use crate::terrain::despike::Despike;
 use crate::terrain::features::Features;
 use crate::terrain::hydraulic::Hydraulic;
@@ -18,7 +18,7 @@ use crate::{Error, InputError};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
     /// Configuration of the generation.
-    pub config: Config,
+    pub config: TerrainConfig,
     /// Injected heights.
     pub features: Features,
     /// Removal of spikes; `None` skips it.
@@ -33,7 +33,7 @@ pub struct Recipe {
 
 impl Recipe {
     /// A recipe with generation only.
-    pub fn new(config: Config) -> Self {
+    pub fn new(config: TerrainConfig) -> Self {
         Self {
             config,
             features: Features::default(),

@@ -3,7 +3,7 @@
 use std::iter::successors;
 
 use crate::InputError;
-use crate::terrain::config::{Border, Config, Interpolation};
+use crate::terrain::config::{Border, Interpolation, TerrainConfig};
 
 /// Largest number of samples by which a window may extend beyond its patch.
 pub const MAX_APRON: u32 = 4096;
@@ -53,12 +53,12 @@ impl Span {
 
 impl Window {
     /// Samples along an edge of the window.
-    pub fn width(&self, config: &Config) -> u32 {
+    pub fn width(&self, config: &TerrainConfig) -> u32 {
         config.patch_size + 2 * self.apron
     }
 
     /// Columns and rows of the window, in units of samples.
-    pub(crate) fn spans(&self, config: &Config) -> [Span; 2] {
+    pub(crate) fn spans(&self, config: &TerrainConfig) -> [Span; 2] {
         let edge = i64::from(config.patch_size) - 1;
         self.patch.map(|patch| {
             let first = i64::from(patch) * edge - i64::from(self.apron);
@@ -68,7 +68,7 @@ impl Window {
 
     /// Columns and rows of the window at every level, the base lattice first. For a patch that is generated alone, they exclude
     /// the apron.
-    pub(crate) fn levels(&self, config: &Config) -> Vec<[Span; 2]> {
+    pub(crate) fn levels(&self, config: &TerrainConfig) -> Vec<[Span; 2]> {
         let (apron, coarser): (_, fn(Span) -> Span) = match (config.border, config.interpolation) {
             (Border::Seamless, Interpolation::Linear) => (self.apron, Span::coarser),
             (Border::Seamless, Interpolation::Smooth) => (self.apron, Span::coarser_smooth),
@@ -83,7 +83,7 @@ impl Window {
     }
 
     /// Lattice of the window's samples, in the world that holds its features.
-    pub(crate) fn lattice(&self, config: &Config) -> Lattice {
+    pub(crate) fn lattice(&self, config: &TerrainConfig) -> Lattice {
         let spacing = config.sample_spacing();
         let origin = if config.border == Border::Seamless {
             self.spans(config).map(|span| span.first * spacing)
@@ -97,7 +97,7 @@ impl Window {
     ///
     /// # Errors
     /// [`InputError`] when the apron is too large, or when world coordinates, halo included, exceed `i32`.
-    pub fn validate(&self, config: &Config) -> Result<(), InputError> {
+    pub fn validate(&self, config: &TerrainConfig) -> Result<(), InputError> {
         if self.apron > MAX_APRON {
             return Err(InputError::new("apron", self.apron, format!("must be at most {MAX_APRON} samples")));
         }

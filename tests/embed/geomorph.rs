@@ -11,7 +11,7 @@ use relievo::gpu::Gpu;
 use relievo::ops::mesh::ProgressiveMesh;
 use relievo::ops::skinning::add_levels;
 use relievo::ops::skinning::merged::merged;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{Layer, Renderer};
 use relievo::scene::{
     Camera, ErrorBudget, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition, View,
@@ -212,7 +212,7 @@ fn what_was_set_stays_and_can_be_taken_back() {
 fn objects_without_partners_are_refused() {
     let gpu = device();
     let mut scene = Scene::new(&gpu).expect("compiled");
-    let config = Config::new(33, 6.0, "geomorph").expect("valid");
+    let config = TerrainConfig::new(33, 6.0, "geomorph").expect("valid");
     let land = scene.add_terrain(&TerrainSource::new(config)).expect("generated");
     let bare = scene.add_mesh(&rock().expect("valid"), 1).expect("added");
     let mut model = rock().expect("valid");

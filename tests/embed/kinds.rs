@@ -10,7 +10,7 @@ use relievo::asset::Light;
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::map::HeightMap;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{Layer, OutputProgram, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
     Camera, InstanceId, ObjectId, Placement, Quality, Ray, Relief, Scene, TerrainSource, View,
@@ -90,8 +90,8 @@ fn square() -> Vec<[[f32; 3]; 3]> {
     vec![[a, b, c], [a, c, d]]
 }
 
-fn land() -> Config {
-    Config::new(17, 2.0, "kinds").expect("valid")
+fn land() -> TerrainConfig {
+    TerrainConfig::new(17, 2.0, "kinds").expect("valid")
 }
 
 fn in_world(scene: &Scene, instance: InstanceId, corners: &[[[f32; 3]; 3]]) -> Vec<[DVec3; 3]> {

@@ -3,7 +3,7 @@
 use relievo::InputError;
 use relievo::asset::{Light, Model, Transform};
 use relievo::gpu::{Gpu, GpuError};
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{DepthFormat, Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Quality, Relief, Scene, TerrainSource};
 use relievo::wgpu::{self, TextureFormat as Format};
@@ -63,7 +63,7 @@ fn patches_of_terrain_stay() {
     assert_eq!(wrong(scene.despawn(patch)), refused);
     assert_eq!(wrong(scene.set_tint(patch, [0.5; 4])), refused);
     scene.set_visibility_mask(patch, 0).expect("may be hidden");
-    let twice = TerrainSource::new(Config::new(33, 6.0, "twice").expect("valid"));
+    let twice = TerrainSource::new(TerrainConfig::new(33, 6.0, "twice").expect("valid"));
     let twice = twice.with_patches(&[[0, 0], [1, 0], [0, 0]]);
     assert_eq!(wrong(scene.add_terrain(&twice)), ["patches[2]", "[0, 0]"]);
 }

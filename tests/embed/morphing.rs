@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use image::RgbaImage;
 use relievo::InputError;
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::generator::Generator;
 use relievo::ops::terrain::morph::Morph;
@@ -19,8 +19,9 @@ use crate::world::SIZE;
 
 const HERE: [[i32; 2]; 4] = [[-1, -1], [0, -1], [-1, 0], [0, 0]];
 
-fn ends() -> [Config; 2] {
-    [("embed", 6.0), ("another", 9.0)].map(|(seed, height)| Config::new(33, height, seed).expect("valid"))
+fn ends() -> [TerrainConfig; 2] {
+    [("embed", 6.0), ("another", 9.0)]
+        .map(|(seed, height)| TerrainConfig::new(33, height, seed).expect("valid"))
 }
 
 /// The first is eroded.
@@ -92,7 +93,7 @@ fn a_time_looks_as_its_heights() {
 fn mountains_rise_into_view() {
     let gpu = device();
     let [plain, mountains] = [("plain", 0.01), ("mountains", 300.0)]
-        .map(|(seed, height)| Recipe::new(Config::new(33, height, seed).expect("valid")));
+        .map(|(seed, height)| Recipe::new(TerrainConfig::new(33, height, seed).expect("valid")));
     let land = |time| {
         let source = TerrainSource::from(plain.clone()).with_patches(&HERE);
         Stage::new(&gpu, &source.with_target(mountains.clone(), Morph { time }))
@@ -145,10 +146,10 @@ fn mistakes_about_targets_are_told() {
     let [from, to] = ends();
     let mut refused = |source: TerrainSource| told(scene.add_terrain(&source).expect_err("refused"));
     let plain = || TerrainSource::new(from.clone());
-    let finer = Config::new(65, 9.0, "finer").expect("valid");
+    let finer = TerrainConfig::new(65, 9.0, "finer").expect("valid");
     let half = Morph { time: 0.5 };
     assert_eq!(refused(plain().with_target(Recipe::new(finer), half)), pair("target.patch_size", "65"));
-    let wide = Config { terrain_scale: 2.0, ..to.clone() };
+    let wide = TerrainConfig { terrain_scale: 2.0, ..to.clone() };
     assert_eq!(refused(plain().with_target(Recipe::new(wide), half)), pair("target.terrain_scale", "2"));
     let beyond = plain().with_target(Recipe::new(to.clone()), Morph { time: 1.5 });
     assert_eq!(refused(beyond), pair("time", "1.5"));

@@ -4,7 +4,7 @@ use glam::Vec3;
 use relievo::asset::material::Alpha;
 use relievo::asset::{Influence, Influences, Material, Mesh, MeshLevel, Model};
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{Layer, TargetFormat};
 use relievo::scene::{Camera, Placement, Quality, Ray, Scene, TerrainSource};
 
@@ -105,7 +105,7 @@ fn terrain_beyond_a_binding_is_drawn_in_chunks() {
     let patches: Vec<[i32; 2]> = (0..256).map(|at| [at % 16 - 8, at / 16 - 8]).collect();
     let draw = |gpu: &Gpu| {
         let mut scene = Scene::new(gpu).expect("compiled");
-        let config = Config::new(65, 12.0, "chunks").expect("valid");
+        let config = TerrainConfig::new(65, 12.0, "chunks").expect("valid");
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
         let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
         let camera = Camera::looking_at(Vec3::new(20.0, 180.0, -300.0), Vec3::ZERO, 0.8, [1.0, 4000.0], SIZE);

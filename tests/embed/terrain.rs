@@ -3,7 +3,7 @@
 use image::RgbaImage;
 use relievo::InputError;
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::field::field;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::generator::Generator;
@@ -39,8 +39,8 @@ fn eroded_ground_is_that_of_the_reference() {
 
 const HERE: [[i32; 2]; 4] = [[-1, -1], [0, -1], [-1, 0], [0, 0]];
 
-fn config() -> Config {
-    Config::new(33, 6.0, "embed").expect("valid")
+fn config() -> TerrainConfig {
+    TerrainConfig::new(33, 6.0, "embed").expect("valid")
 }
 
 /// Heights of patches with a margin of `margin` samples.

@@ -6,7 +6,7 @@ use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::{Material, Model, Transform};
 use relievo::gpu::Gpu;
 use relievo::ops::surface::SurfaceMesh;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::Renderer;
 use relievo::scene::{
     Camera, InstanceId, ObjectId, Placement, Play, Quality, Ray, Relief, Scene, TerrainSource, View,
@@ -52,7 +52,7 @@ impl Stage {
     fn new(gpu: &Gpu, budget: Option<usize>) -> Self {
         let mut scene = Scene::new(gpu).expect("compiled");
         scene.set_upload_budget(budget).expect("a number");
-        let config = Config::new(33, 3.0, "uploads").expect("valid");
+        let config = TerrainConfig::new(33, 3.0, "uploads").expect("valid");
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&[[0, 0], [-1, -1]]));
         let bricks = BuiltInMap::Bricks;
         let (heights, colors) = (bricks.height_map(64).expect("a map"), bricks.albedo(64).expect("colours"));

@@ -6,7 +6,7 @@ use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
 use relievo::ops::skinning::add_levels;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Quality, Scene, TerrainSource, View};
 use relievo_samples::creature;
 
@@ -49,7 +49,7 @@ impl World {
     /// Without creatures, at time 0.
     pub fn empty(gpu: &Gpu, capacity: usize) -> Self {
         let mut scene = Scene::new(gpu).expect("compiled");
-        let config = Config::new(33, 6.0, "embed").expect("valid");
+        let config = TerrainConfig::new(33, 6.0, "embed").expect("valid");
         let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3 - 1, at / 3 - 1]).collect();
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
         let creature = scene.add_character(&model(), capacity).expect("added");

@@ -1,7 +1,7 @@
 //! No camera sees through a seamless grid.
 
 use glam::{DVec3, Vec3};
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::generator::Generator;
 use relievo::ops::terrain::recipe::Recipe;
 use relievo::render::Offscreen;
@@ -16,7 +16,7 @@ const SKY: [f32; 3] = [1.0, 0.0, 1.0];
 /// the heights of one patch, in units: a planted crack.
 fn sky_pixels(lift: i32) -> usize {
     let gpu = gpu();
-    let config = Config::new(33, 6.0, "cracks").expect("valid");
+    let config = TerrainConfig::new(33, 6.0, "cracks").expect("valid");
     let patches: Vec<[i32; 2]> = (0..9).map(|i| [i % 3 - 7, i / 3 + 4]).collect();
     let generator = Generator::new(&gpu, Recipe::new(config.clone())).expect("valid");
     let parts = generator.generate(&gpu, &patches, 1, &mut |_| ()).expect("generated");

@@ -1,7 +1,7 @@
 //! Objects on the ground touch it: the depth of every pixel is that of the triangle which the CPU finds.
 
 use glam::{DMat4, DVec3, Vec3};
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::generator::Generator;
 use relievo::ops::terrain::ground::Ground;
 use relievo::ops::terrain::mesh::HeightField;
@@ -31,7 +31,8 @@ struct Seen {
 
 fn seen() -> Seen {
     let gpu = gpu();
-    let config = Config { terrain_scale: 0.25, ..Config::new(17, 12.0, "ground").expect("valid") };
+    let config =
+        TerrainConfig { terrain_scale: 0.25, ..TerrainConfig::new(17, 12.0, "ground").expect("valid") };
     let patches = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| [ORIGIN[0] + x, ORIGIN[1] + y]);
     let generator = Generator::new(&gpu, Recipe::new(config.clone())).expect("valid");
     let fields = generator.generate(&gpu, &patches, 1, &mut |_| ()).expect("generated").remove(0);

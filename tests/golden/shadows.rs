@@ -3,7 +3,7 @@
 use glam::Vec3;
 use image::RgbaImage;
 use relievo::asset::Light;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow};
 use relievo::scene::{Camera, Placement, Play, Relief, Scene, TerrainSource};
 use relievo_samples::maps::BuiltInMap;
@@ -18,7 +18,7 @@ fn picture(sun: Vec3) -> RgbaImage {
     let gpu = gpu();
     let mut scene = Scene::new(&gpu).expect("compiled");
     scene.set_light(Light { direction: sun, ambient: 0.25, ..Light::default() }).expect("a light");
-    let config = Config::new(33, 4.0, "shadows").expect("valid");
+    let config = TerrainConfig::new(33, 4.0, "shadows").expect("valid");
     let land = scene.add_terrain(&TerrainSource::new(config)).expect("generated");
     let ground = |scene: &Scene, x: f64, z: f64| {
         let height = scene.ground(land, x, z).expect("terrain").expect("inside").height;

@@ -5,7 +5,7 @@ use image::RgbaImage;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::ops::terrain::config::BuiltIn;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::texture::{TEXTURE_SIZE, Texture};
 use relievo::render::Offscreen;
@@ -32,9 +32,12 @@ fn quarters() -> Texture {
 /// Two flat patches from `first` on, 64 × 32 units, seen from straight above: a pixel is an eighth of a unit, and
 /// the first is that of world position (16, 0) from the first patch.
 fn drawn(gpu: &Gpu, tile: Option<f64>, first: [i32; 2]) -> RgbaImage {
-    let config =
-        Config { terrain_scale: 2.0, texture_tile: tile, ..Config::new(SIZE, 0.0, "").expect("valid") };
-    let config = Config { zones: config.zones[..1].to_vec(), ..config };
+    let config = TerrainConfig {
+        terrain_scale: 2.0,
+        texture_tile: tile,
+        ..TerrainConfig::new(SIZE, 0.0, "").expect("valid")
+    };
+    let config = TerrainConfig { zones: config.zones[..1].to_vec(), ..config };
     let fields = Fields::new(gpu, "flat", SIZE + 2, 2).expect("allocated");
     let patches = [first, [first[0] + 1, first[1]]];
     let [x, z] = first.map(|index| 32.0 * f64::from(index));

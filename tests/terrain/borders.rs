@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::despike::Despike;
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::field::{field, field_with};
@@ -12,7 +12,7 @@ use relievo::ops::terrain::thermal::Thermal;
 
 fn despiked_beside_features(border: &str, patches: &[[i32; 2]]) -> Vec<Vec<i32>> {
     let text = format!(r#"{{"patchSize": 33, "scaleFactor": 40, "seed": "s", "border": {border}}}"#);
-    let config = Config::from_json(&text).expect("valid");
+    let config = TerrainConfig::from_json(&text).expect("valid");
     let precomputed_heights = vec![1.0, 10.0, 50.0, 1.0, 20.0, -50.0, 2.0, 15.0, 40.0];
     let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights };
     let features = Features::new(&config, &[file], FeatureMode::Keep).expect("valid");
@@ -52,7 +52,7 @@ fn progress_hears_of_every_patch_and_changes_nothing() {
     for border in ["\"seamless\"", "\"wrap\"", "{\"blend\": 3}"] {
         let text = format!(r#"{{"patchSize": 17, "scaleFactor": 4, "seed": "s", "border": {border}}}"#);
         let thermal = Some(Thermal { iterations: 2, talus: 35.0 });
-        let recipe = Recipe { thermal, ..Recipe::new(Config::from_json(&text).expect("valid")) };
+        let recipe = Recipe { thermal, ..Recipe::new(TerrainConfig::from_json(&text).expect("valid")) };
         let heard = AtomicUsize::new(0);
         let count = || {
             heard.fetch_add(1, Ordering::Relaxed);

@@ -1,6 +1,6 @@
 //! What is decided where thesis B contradicts itself on terrain (`docs/sources.md`).
 
-use relievo::ops::terrain::config::{Border, Config, HEIGHT_ONE, Offset};
+use relievo::ops::terrain::config::{Border, HEIGHT_ONE, Offset, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::wrap::reference::wrap;
 
@@ -8,10 +8,10 @@ const SCALE: f64 = 10.0;
 
 /// The patch of the smallest or the second smallest size, alone, between corners of height 0.
 fn patch(patch_size: u32, seed: u32) -> Vec<i32> {
-    let config = Config {
+    let config = TerrainConfig {
         offset: Offset::Positive,
         border: Border::Wrap,
-        ..Config::new(patch_size, SCALE, &seed.to_string()).expect("valid")
+        ..TerrainConfig::new(patch_size, SCALE, &seed.to_string()).expect("valid")
     };
     wrap(&config, &Features::default(), [0, 0])
 }

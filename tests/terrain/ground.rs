@@ -1,7 +1,7 @@
 //! Compares the ground at world positions with vertical rays through the triangles of the exported meshes.
 
 use glam::DVec3;
-use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::config::{Border, TerrainConfig};
 use relievo::ops::terrain::field::field;
 use relievo::ops::terrain::ground::Ground;
 use relievo::ops::terrain::mesh::{GroundPoint, HeightField};
@@ -14,15 +14,15 @@ const EDGE: i32 = SIZE as i32 - 1;
 const BLOCK: [[i32; 2]; 9] =
     [[-2, -2], [-1, -2], [0, -2], [-2, -1], [-1, -1], [0, -1], [-2, 0], [-1, 0], [0, 0]];
 
-fn config(terrain_scale: f64) -> Config {
-    Config { terrain_scale, ..Config::new(SIZE, 12.0, "ground").expect("valid") }
+fn config(terrain_scale: f64) -> TerrainConfig {
+    TerrainConfig { terrain_scale, ..TerrainConfig::new(SIZE, 12.0, "ground").expect("valid") }
 }
 
-fn heights(config: &Config, patches: &[[i32; 2]]) -> Vec<Vec<i32>> {
+fn heights(config: &TerrainConfig, patches: &[[i32; 2]]) -> Vec<Vec<i32>> {
     field(&Recipe::new(config.clone()), patches, 0).expect("valid")
 }
 
-fn ground(config: &Config, patches: &[[i32; 2]]) -> Ground {
+fn ground(config: &TerrainConfig, patches: &[[i32; 2]]) -> Ground {
     let mut ground = Ground::new(config).expect("valid");
     for (patch, heights) in patches.iter().zip(heights(config, patches)) {
         ground.insert(*patch, &heights, 0).expect("as many as there should be");
@@ -31,7 +31,7 @@ fn ground(config: &Config, patches: &[[i32; 2]]) -> Ground {
 }
 
 /// The triangles of the patches' OBJ files, in world space.
-fn exported(config: &Config, patches: &[[i32; 2]]) -> Vec<[DVec3; 3]> {
+fn exported(config: &TerrainConfig, patches: &[[i32; 2]]) -> Vec<[DVec3; 3]> {
     let mut triangles = Vec::new();
     for (patch, heights) in patches.iter().zip(heights(config, patches)) {
         let field = HeightField::new(heights, SIZE as usize, config.terrain_scale).expect("square");
@@ -200,10 +200,10 @@ fn margins_are_cut_off_and_other_numbers_of_heights_are_refused() {
         assert!(error.starts_with(&format!("heights = [{length} heights]: must be ")), "{error}");
     }
     assert_eq!(margin.point_at(9.0, 1.0), None);
-    let error = Ground::new(&Config { terrain_scale: 0.0, ..config.clone() }).expect_err("refused");
+    let error = Ground::new(&TerrainConfig { terrain_scale: 0.0, ..config.clone() }).expect_err("refused");
     assert_eq!(error.path, "terrain_scale");
     // Patches that do not blend have different heights on their common edge; the eastern patch decides.
-    let config = Config { border: Border::Wrap, ..config };
+    let config = TerrainConfig { border: Border::Wrap, ..config };
     let (both, east) = (ground(&config, &[[-1, 0], [0, 0]]), ground(&config, &[[0, 0]]));
     let west = ground(&config, &[[-1, 0]]);
     assert_ne!(west.point_at(0.0, 4.0), east.point_at(0.0, 4.0));

@@ -1,7 +1,7 @@
 //! Hydraulic erosion on the CPU: an independent program in 64 bits, conservation, bounds, reach, and neighbours that agree.
 
 use proptest::prelude::*;
-use relievo::ops::terrain::config::{Border, Config, HEIGHT_LIMIT};
+use relievo::ops::terrain::config::{Border, HEIGHT_LIMIT, TerrainConfig};
 use relievo::ops::terrain::despike::Despike;
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::field::field;
@@ -270,7 +270,7 @@ proptest! {
 
 /// A recipe with everything, on patches of 17² samples.
 fn rainy(hydraulic: Hydraulic, terrain_scale: f64, mode: FeatureMode) -> Recipe {
-    let config = Config { terrain_scale, ..Config::new(17, 30.0, "rain").expect("valid") };
+    let config = TerrainConfig { terrain_scale, ..TerrainConfig::new(17, 30.0, "rain").expect("valid") };
     let heights = [-20.0, 25.0, 4.0].into_iter().zip([3.0, 9.0, 15.0]);
     let heights: Vec<f64> = heights.flat_map(|(height, at)| [at, 16.0 - at, height]).collect();
     let patches = (-4..5).flat_map(|x| (-4..5).map(move |y| [x, y]));
@@ -350,7 +350,8 @@ fn a_river_erodes_the_slope_and_leaves_a_fan_on_the_plain() {
 /// The mass of a patch whose sides wrap is that of before.
 #[test]
 fn a_patch_that_wraps_keeps_its_mass() {
-    let config = Config { border: Border::Wrap, ..Config::new(33, 30.0, "wrap").expect("valid") };
+    let config =
+        TerrainConfig { border: Border::Wrap, ..TerrainConfig::new(33, 30.0, "wrap").expect("valid") };
     let before = Recipe::new(config);
     let hydraulic = Hydraulic { iterations: 32, rain: 0.01, threshold: 1.0, ..Hydraulic::default() };
     let after = Recipe { hydraulic: Some(hydraulic), ..before.clone() };
@@ -382,11 +383,11 @@ fn parameters_out_of_bounds_are_refused() {
         refused(Hydraulic { talus: bad, ..good }, "hydraulic.talus", "0..=89");
         refused(Hydraulic { creep: bad, ..good }, "hydraulic.creep", "0..=0.0625");
     }
-    let config = Config::new(257, 30.0, "s").expect("valid");
+    let config = TerrainConfig::new(257, 30.0, "s").expect("valid");
     let far = Thermal { iterations: 1025, talus: 30.0 };
     let recipe = Recipe { thermal_after: Some(far), ..Recipe::new(config.clone()) };
     assert_eq!(recipe.validate(&[], 0).expect_err("refused").path, "thermal_after.iterations");
-    let wraps = Config { border: Border::Wrap, ..config };
+    let wraps = TerrainConfig { border: Border::Wrap, ..config };
     let recipe = Recipe { hydraulic: Some(good), ..Recipe::new(wraps) };
     let error = recipe.validate(&[[0, 0]], 0).expect_err("refused");
     assert!(error.path == "hydraulic.iterations" && error.bound.contains("257"), "{error}");

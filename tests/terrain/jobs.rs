@@ -4,7 +4,7 @@ use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Options};
 use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, Shading, WeightMode};
 use relievo::ops::terrain::border::BorderPass;
-use relievo::ops::terrain::config::{Border, Config, Offset};
+use relievo::ops::terrain::config::{Border, Offset, TerrainConfig};
 use relievo::ops::terrain::cover::{Cover, MapZone};
 use relievo::ops::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use relievo::ops::terrain::features::{FeatureIndex, Features};
@@ -78,7 +78,7 @@ fn normals() {
 fn blend() {
     let gpu = gpu();
     let pass = BlendPass::new(&gpu).expect("compiled");
-    let config = Config::new(3, 10.0, "").expect("valid");
+    let config = TerrainConfig::new(3, 10.0, "").expect("valid");
     let textures = Texture::of_zones(&config.zones).expect("built in");
     refuses(Cover::new(&config, &textures[1..]).map(|_| ()).map_err(Error::from), &["textures.len = 3"]);
     let cover = Cover::new(&config, &textures).expect("valid");
@@ -247,7 +247,7 @@ fn pad() {
 #[test]
 fn generation() {
     let gpu = gpu();
-    let config = Config::new(5, 1.0, "short").expect("valid");
+    let config = TerrainConfig::new(5, 1.0, "short").expect("valid");
     let height = HeightPass::new(&gpu, Offset::Signed, Some(FeatureMode::Keep)).expect("compiled");
     let scratch = HeightScratch::new(&gpu, &config, [2, 1]).expect("allocated");
     let points = HeightJob::output_points(&config, 2, 1);
@@ -263,7 +263,7 @@ fn generation() {
     let features = Features::default();
     refuses(job.set(&gpu, &three, &features), &["patches.len = 3: must be at most 2, the batch's count"]);
 
-    let config = Config { border: Border::Wrap, ..config };
+    let config = TerrainConfig { border: Border::Wrap, ..config };
     let wrap = WrapPass::new(&gpu, Offset::Signed, None).expect("compiled");
     let prepare = |output, scratch_for| {
         let scratch = HeightScratch::new(&gpu, &config, [scratch_for, 0]).expect("allocated");

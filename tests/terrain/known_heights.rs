@@ -1,7 +1,7 @@
 //! Hashes of whole patches, computed by two independent programs (two others for smooth interpolation) in Python (one with numpy, one by recursion for each
 //! point), which agree with each other and share no code with this crate.
 
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::despike::Despike;
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::field::{field, generate};
@@ -27,7 +27,7 @@ struct Known {
 }
 
 fn heights(known: &Known) -> Vec<i32> {
-    let config = Config::from_json(&known.config.to_string()).expect("a known configuration is valid");
+    let config = TerrainConfig::from_json(&known.config.to_string()).expect("a known configuration is valid");
     let mode = if known.feature_mode == "additive" { FeatureMode::Additive } else { FeatureMode::Keep };
     let files: Vec<_> = (known.features.iter())
         .map(|(px, py, heights)| FeatureFile {

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use relievo::ops::terrain::blend::WeightMode;
 use relievo::ops::terrain::blend::reference::{steepness, zone_fractions, zone_weight};
-use relievo::ops::terrain::config::{Border, Config, HEIGHT_LIMIT, HEIGHT_ONE, Offset, Slope, Zone};
+use relievo::ops::terrain::config::{Border, HEIGHT_LIMIT, HEIGHT_ONE, Offset, Slope, TerrainConfig, Zone};
 use relievo::ops::terrain::cover::{ShaderZone, zone_of};
 use relievo::ops::terrain::despike::Despike;
 use relievo::ops::terrain::export::cropped;
@@ -39,7 +39,7 @@ type Points = BTreeMap<[i32; 2], f64>;
 /// A world, and the patch under test.
 #[derive(Debug, Clone)]
 struct World {
-    config: Config,
+    config: TerrainConfig,
     points: Points,
     mode: FeatureMode,
     patch: [i32; 2],
@@ -82,29 +82,29 @@ impl World {
     }
 }
 
-fn edge(config: &Config) -> i32 {
+fn edge(config: &TerrainConfig) -> i32 {
     config.patch_size as i32 - 1
 }
 
 /// Writes every point to the file of the patch that it lies in, or on whose left or upper border it lies.
-fn features(config: &Config, patch: [i32; 2], points: &Points, mode: FeatureMode) -> Features {
+fn features(config: &TerrainConfig, patch: [i32; 2], points: &Points, mode: FeatureMode) -> Features {
     let files: Vec<_> = points.iter().map(|(place, height)| file(config, patch, *place, *height)).collect();
     Features::new(config, &files, mode).expect("the points of a world are valid")
 }
 
-fn file(config: &Config, patch: [i32; 2], place: [i32; 2], height: f64) -> FeatureFile {
+fn file(config: &TerrainConfig, patch: [i32; 2], place: [i32; 2], height: f64) -> FeatureFile {
     let edge = edge(config);
     let patch_coordinates = [0, 1].map(|axis| patch[axis] + place[axis].div_euclid(edge));
     let [x, y] = place.map(|index| f64::from(index.rem_euclid(edge)));
     FeatureFile { patch_coordinates, precomputed_heights: vec![x, y, height] }
 }
 
-fn configs() -> impl Strategy<Value = Config> {
+fn configs() -> impl Strategy<Value = TerrainConfig> {
     let offsets = prop_oneof![Just(Offset::Signed), Just(Offset::Positive), Just(Offset::Gaussian)];
     (1..=6_u32, 0..=4_u32, offsets, 0.5..400.0, 0.0..2.0, 0.1..10.0, any::<u64>()).prop_map(
         |(exponent, coarse_levels, offset, scale_factor, roughness, terrain_scale, seed)| {
-            let config = Config::new((1 << exponent) + 1, scale_factor, &seed.to_string());
-            Config {
+            let config = TerrainConfig::new((1 << exponent) + 1, scale_factor, &seed.to_string());
+            TerrainConfig {
                 coarse_levels,
                 offset,
                 roughness,
@@ -214,7 +214,7 @@ proptest! {
     #[test]
     fn a_patch_is_every_second_sample_of_the_next_larger_one(world in worlds(), apron in 0..5_u32) {
         let fine = World {
-            config: Config { patch_size: 2 * world.config.patch_size - 1, ..world.config.clone() },
+            config: TerrainConfig { patch_size: 2 * world.config.patch_size - 1, ..world.config.clone() },
             points: world.points.iter().map(|(place, height)| (place.map(|at| 2 * at), *height)).collect(),
             ..world.clone()
         };
@@ -272,7 +272,7 @@ proptest! {
         along in -200..264_i32,
         [flip, far] in any::<[bool; 2]>(),
     ) {
-        let world = World { config: Config { coarse_levels: 0, ..world.config.clone() }, ..world };
+        let world = World { config: TerrainConfig { coarse_levels: 0, ..world.config.clone() }, ..world };
         let edge = edge(&world.config);
         let rings = (apron as i32 + edge + edge - 1) / edge;
         let outside = if far { (1 + rings) * edge + beyond } else { -rings * edge - beyond };
@@ -282,7 +282,7 @@ proptest! {
 }
 
 fn plain(exponent: u32) -> World {
-    let config = Config::new((1 << exponent) + 1, 40.0, "plain").expect("a valid configuration");
+    let config = TerrainConfig::new((1 << exponent) + 1, 40.0, "plain").expect("a valid configuration");
     World { config, points: Points::new(), mode: FeatureMode::Keep, patch: [5, -7] }
 }
 
@@ -421,7 +421,7 @@ proptest! {
         iterations in 1..8_u32,
         talus in 0.0..30.0,
     ) {
-        let config = Config { coarse_levels: 0, border: Border::Wrap, ..config };
+        let config = TerrainConfig { coarse_levels: 0, border: Border::Wrap, ..config };
         let iterations = iterations.min(config.patch_size - 1);
         let edge = edge(&config) as usize;
         let mass = |field: &[i32]| {
@@ -464,9 +464,9 @@ fn tiles(field: &[i32], size: usize) -> bool {
     rows.clone().all(|row| row[0] == row[size - 1]) && rows.next() == rows.next_back()
 }
 
-fn wraps() -> impl Strategy<Value = Config> {
+fn wraps() -> impl Strategy<Value = TerrainConfig> {
     let corners = [-100.0..100.0, -100.0..100.0, -100.0..100.0, -100.0..100.0_f64];
-    (configs(), corners).prop_map(|(config, corners)| Config {
+    (configs(), corners).prop_map(|(config, corners)| TerrainConfig {
         coarse_levels: 0,
         border: Border::Wrap,
         corners,
@@ -474,16 +474,16 @@ fn wraps() -> impl Strategy<Value = Config> {
     })
 }
 
-fn blends() -> impl Strategy<Value = (Config, u32)> {
+fn blends() -> impl Strategy<Value = (TerrainConfig, u32)> {
     (wraps(), any::<prop::sample::Index>()).prop_map(|(config, at)| {
         let width = 1 + at.index(config.patch_size as usize - 1) as u32;
-        (Config { border: Border::Blend(width), ..config }, width)
+        (TerrainConfig { border: Border::Blend(width), ..config }, width)
     })
 }
 
 /// The patches after their transitions, and each patch as `wrap` makes it.
-fn with_and_without_blend(config: &Config, patches: &[[i32; 2]]) -> [Vec<Vec<i32>>; 2] {
-    let wrap = Config { border: Border::Wrap, ..config.clone() };
+fn with_and_without_blend(config: &TerrainConfig, patches: &[[i32; 2]]) -> [Vec<Vec<i32>>; 2] {
+    let wrap = TerrainConfig { border: Border::Wrap, ..config.clone() };
     [config, &wrap].map(|config| {
         config.validate().expect("a valid configuration");
         generate(config, &Features::default(), patches, 0)
@@ -514,7 +514,7 @@ proptest! {
 
     #[test]
     fn wrap_with_equal_corners_tiles(config in wraps(), corner in -100.0..100.0, patch in patches()) {
-        let config = Config { corners: [corner; 4], ..config };
+        let config = TerrainConfig { corners: [corner; 4], ..config };
         let fields = generate(&config, &Features::default(), &[patch], 0);
         prop_assert!(tiles(&fields[0], config.patch_size as usize));
     }

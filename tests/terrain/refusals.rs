@@ -2,7 +2,7 @@
 //! cases are accepted.
 
 use relievo::InputError;
-use relievo::ops::terrain::config::{Border, Config, Offset};
+use relievo::ops::terrain::config::{Border, Offset, TerrainConfig};
 use relievo::ops::terrain::despike::Despike;
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fixed::FeatureMode;
@@ -24,14 +24,14 @@ fn json(changes: &[(&str, &str)]) -> String {
 }
 
 #[track_caller]
-fn accepted(changes: &[(&str, &str)]) -> Config {
+fn accepted(changes: &[(&str, &str)]) -> TerrainConfig {
     let text = json(changes);
-    Config::from_json(&text).unwrap_or_else(|error| panic!("{text} was refused: {error}"))
+    TerrainConfig::from_json(&text).unwrap_or_else(|error| panic!("{text} was refused: {error}"))
 }
 
 #[track_caller]
 fn refused(changes: &[(&str, &str)], parts: &[&str]) {
-    refuses(Config::from_json(&json(changes)), parts);
+    refuses(TerrainConfig::from_json(&json(changes)), parts);
 }
 
 /// Whether the error's text has all parts: field, value and bound.
@@ -123,23 +123,23 @@ fn fields_that_are_missing_doubled_or_unknown_are_named() {
     refused(&[("zones", zone)], &["unknown field `colour`", "`texture`"]);
     refused(&[("zones", r#"[{"min": 0}]"#)], &["missing field `max`"]);
     let doubled = r#"{"patchSize": 33, "seed": "", "scaleFactor": 1, "scaleFactor": 2}"#;
-    refuses(Config::from_json(doubled), &["duplicate field `scaleFactor`"]);
+    refuses(TerrainConfig::from_json(doubled), &["duplicate field `scaleFactor`"]);
 }
 
 #[test]
 fn what_is_not_one_json_object_is_refused_with_its_place() {
-    refuses(Config::from_json(""), &["config = line 1 column 0", "EOF"]);
-    refuses(Config::from_json("terrain"), &["config = line 1"]);
-    refuses(Config::from_json("null"), &["config = line 1"]);
-    refuses(Config::from_json("\"257\""), &["config = line 1"]);
-    refuses(Config::from_json(&json(&[]).replace('}', "")), &["config = line 1", "EOF"]);
-    let error = Config::from_json(r#"{"patchSize": 33, "seed": ""}"#).expect_err("no scale");
+    refuses(TerrainConfig::from_json(""), &["config = line 1 column 0", "EOF"]);
+    refuses(TerrainConfig::from_json("terrain"), &["config = line 1"]);
+    refuses(TerrainConfig::from_json("null"), &["config = line 1"]);
+    refuses(TerrainConfig::from_json("\"257\""), &["config = line 1"]);
+    refuses(TerrainConfig::from_json(&json(&[]).replace('}', "")), &["config = line 1", "EOF"]);
+    let error = TerrainConfig::from_json(r#"{"patchSize": 33, "seed": ""}"#).expect_err("no scale");
     assert_eq!(error.to_string().matches("line 1 column").count(), 1, "{error}");
-    refuses(Config::from_json(&json(&[("scaleFactor", "NaN")])), &["line 1", "expected value"]);
+    refuses(TerrainConfig::from_json(&json(&[("scaleFactor", "NaN")])), &["line 1", "expected value"]);
     for rest in ["}", " {}", "\n, 1", "x"] {
-        refuses(Config::from_json(&(json(&[]) + rest)), &["config = line", "trailing characters"]);
+        refuses(TerrainConfig::from_json(&(json(&[]) + rest)), &["config = line", "trailing characters"]);
     }
-    assert!(Config::from_json(&(json(&[]) + " \n")).is_ok());
+    assert!(TerrainConfig::from_json(&(json(&[]) + " \n")).is_ok());
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn values_of_another_type_are_refused_with_path_value_and_bound() {
         assert_eq!(error, message);
     }
     let long = format!("\"{}\"", "x".repeat(100));
-    let error = Config::from_json(&json(&[("patchSize", &long)])).expect_err("no number");
+    let error = TerrainConfig::from_json(&json(&[("patchSize", &long)])).expect_err("no number");
     assert_eq!(error.value, format!("{}…", "x".repeat(60)));
 }
 
@@ -205,7 +205,7 @@ fn texture_tiles_are_counted_in_world_units() {
 
 #[test]
 fn numbers_that_are_not_finite_are_refused() {
-    let refuses_all = |break_one: fn(&mut Config, f64), field: &str| {
+    let refuses_all = |break_one: fn(&mut TerrainConfig, f64), field: &str| {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut config = accepted(&[("border", "\"wrap\"")]);
             break_one(&mut config, value);
@@ -254,7 +254,7 @@ fn an_unknown_word_is_refused_with_its_field() {
 
 #[test]
 fn a_list_is_no_configuration() {
-    refuses(Config::from_json(r#"[33, 40.0, "any text"]"#), &["config"]);
+    refuses(TerrainConfig::from_json(r#"[33, 40.0, "any text"]"#), &["config"]);
     refuses(FeatureFile::from_json("[[0, 0], [1, 2, 3.5]]"), &["features"]);
     refused(&[("zones", "[[0, 1]]")], &["zones"]);
     refused(&[("border", "[5]")], &["border"]);
@@ -274,14 +274,17 @@ fn coarse_levels_are_bounded_and_for_seamless_only() {
 #[test]
 fn a_configuration_made_by_hand_is_checked_as_well() {
     let config = accepted(&[]);
-    refuses(Config { patch_size: 34, ..config.clone() }.validate(), &["patch_size = 34: ", "2^n + 1"]);
-    refuses(Config { coarse_levels: 9, ..config.clone() }.validate(), &["coarse_levels = 9: ", "0..=8"]);
+    refuses(TerrainConfig { patch_size: 34, ..config.clone() }.validate(), &["patch_size = 34: ", "2^n + 1"]);
     refuses(
-        Config { border: Border::Blend(0), ..config.clone() }.validate(),
+        TerrainConfig { coarse_levels: 9, ..config.clone() }.validate(),
+        &["coarse_levels = 9: ", "0..=8"],
+    );
+    refuses(
+        TerrainConfig { border: Border::Blend(0), ..config.clone() }.validate(),
         &["border.blend = 0: ", "1..=32"],
     );
-    refuses(Config { zones: Vec::new(), ..config }.validate(), &["zones = [0 zones]: ", "1 to 32"]);
-    refuses(Config::new(256, 40.0, "any text"), &["patch_size = 256: ", "2^n + 1"]);
+    refuses(TerrainConfig { zones: Vec::new(), ..config }.validate(), &["zones = [0 zones]: ", "1 to 32"]);
+    refuses(TerrainConfig::new(256, 40.0, "any text"), &["patch_size = 256: ", "2^n + 1"]);
 }
 
 #[test]
@@ -394,7 +397,11 @@ fn a_height_beyond_all_bounds_is_named_itself() {
 }
 
 /// Feature files of (patch, heights), read from JSON and checked.
-fn features(config: &Config, files: &[([i32; 2], &str)], mode: FeatureMode) -> Result<Features, InputError> {
+fn features(
+    config: &TerrainConfig,
+    files: &[([i32; 2], &str)],
+    mode: FeatureMode,
+) -> Result<Features, InputError> {
     let text = |([x, y], heights): &([i32; 2], &str)| {
         format!("{{\"patchCoordinates\": [{x}, {y}], \"precomputedHeights\": [{heights}]}}")
     };
@@ -503,7 +510,8 @@ fn a_configuration_that_overflows_with_the_features_of_another_is_refused() {
     let features =
         features(&quiet, &[([0, 0], "0, 0, 1000")], FeatureMode::Additive).expect("11·1000 units fit");
     let loud = accepted(&[("scaleFactor", "2000")]);
-    let recipe = |config: &Config| Recipe { features: features.clone(), ..Recipe::new(config.clone()) };
+    let recipe =
+        |config: &TerrainConfig| Recipe { features: features.clone(), ..Recipe::new(config.clone()) };
     assert_eq!(recipe(&quiet).validate(&[[0, 0]], 0), Ok(()));
     refuses(recipe(&loud).validate(&[[0, 0]], 0), &["scale_factor = 2000: ", "heights could reach"]);
 }
@@ -607,11 +615,11 @@ fn what_happens_after_generation_is_bounded() {
 fn files_are_named_with_what_is_wrong_in_them() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("terrain.json");
-    let missing = Config::from_file(&path).map(|_| ()).expect_err("there is no such file").to_string();
+    let missing = TerrainConfig::from_file(&path).map(|_| ()).expect_err("there is no such file").to_string();
     assert!(missing.contains("terrain.json"), "{missing}");
     let text = r#"{"patchSize": 256, "scaleFactor": 1, "seed": ""}"#;
     std::fs::write(&path, text).expect("a file is written");
-    let wrong = Config::from_file(&path).map(|_| ()).expect_err("256 is no patch size").to_string();
+    let wrong = TerrainConfig::from_file(&path).map(|_| ()).expect_err("256 is no patch size").to_string();
     assert!(wrong.contains("terrain.json: patchSize = 256: must be 2^n + 1"), "{wrong}");
     let wrong = FeatureFile::from_file(&path).map(|_| ()).expect_err("not features").to_string();
     assert!(wrong.contains("terrain.json: ") && wrong.contains("unknown field `patchSize`"), "{wrong}");

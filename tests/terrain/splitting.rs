@@ -1,6 +1,6 @@
 //! A batch of `blend` that exceeds one binding is split, and its heights keep the same bits.
 
-use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::config::{Border, TerrainConfig};
 use relievo::ops::terrain::despike::Despike;
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::field::field;
@@ -33,7 +33,10 @@ fn orders() -> Vec<(&'static str, Vec<[i32; 2]>)> {
 
 /// Neither despiking nor erosion, either of them, and both.
 fn recipes(blend: u32) -> Vec<Recipe> {
-    let config = Config { border: Border::Blend(blend), ..Config::new(SIZE, 20.0, "split").expect("valid") };
+    let config = TerrainConfig {
+        border: Border::Blend(blend),
+        ..TerrainConfig::new(SIZE, 20.0, "split").expect("valid")
+    };
     let precomputed_heights = vec![3.0, 10.0, 50.0, 32.0, 20.0, -50.0];
     let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights };
     let features = Features::new(&config, &[file], FeatureMode::Keep).expect("valid");

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use relievo::Error;
-use relievo::ops::terrain::config::{Config, Interpolation};
+use relievo::ops::terrain::config::{Interpolation, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::generate;
 use relievo_lab::files::Staged;
@@ -55,8 +55,8 @@ impl Creases {
         let seeds: Vec<String> = (0..self.seeds).map(|seed| format!("crease {seed}")).collect();
         let config = |interpolation| {
             let first = seeds.first().map_or("", String::as_str);
-            let config = Config::new(self.size, self.scale, first)?;
-            let config = Config { roughness: self.roughness, interpolation, ..config };
+            let config = TerrainConfig::new(self.size, self.scale, first)?;
+            let config = TerrainConfig { roughness: self.roughness, interpolation, ..config };
             config.validate().map(|()| config)
         };
         let both = [config(Interpolation::Linear)?, config(Interpolation::Smooth)?];

@@ -19,7 +19,7 @@ use relievo::ops::animation::{bounds, keyframe_cursor, local_to_model, sample};
 use relievo::ops::skinning::collapse::{CollapseOptions, KeptBones, collapse_bones};
 use relievo::ops::skinning::{morph, morph_weights, palette, skin};
 use relievo::ops::surface::{cone_map, tangent};
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::normals;
 use relievo::scene_file::SceneFile;
@@ -219,10 +219,10 @@ fn the_table_lists_every_kernel_and_drawing_pass() {
 fn the_configuration_has_the_fields_and_defaults_of_the_table() {
     let json = |more: &str| format!(r#"{{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"{more}}}"#);
     assert!(is_said(&json("")));
-    let plain = Config::from_json(&json("")).expect("the configuration of the documents");
+    let plain = TerrainConfig::from_json(&json("")).expect("the configuration of the documents");
     let rows = table("| field | default");
     let named: BTreeSet<_> = rows.iter().map(|row| quoted(row[0])[0]).collect();
-    let unknown = |text: &str| Config::from_json(&json(text)).expect_err("unknown").to_string();
+    let unknown = |text: &str| TerrainConfig::from_json(&json(text)).expect_err("unknown").to_string();
     let known = unknown(r#", "nothing": 0"#);
     let known: BTreeSet<_> = quoted(&known).into_iter().filter(|name| *name != "nothing").collect();
     let given = BTreeSet::from(["patchSize", "scaleFactor", "seed"]);
@@ -234,9 +234,10 @@ fn the_configuration_has_the_fields_and_defaults_of_the_table() {
             default => default.replace('`', ""),
         };
         let name = quoted(row[0])[0];
-        let config = Config::from_json(&json(&format!(", \"{name}\": {default}"))).expect("the default");
+        let config =
+            TerrainConfig::from_json(&json(&format!(", \"{name}\": {default}"))).expect("the default");
         // Not the words, but what they mean.
-        let tiles = (config.tiles_per_patch(), Config { texture_tile: None, ..config });
+        let tiles = (config.tiles_per_patch(), TerrainConfig { texture_tile: None, ..config });
         assert_eq!(tiles, (plain.tiles_per_patch(), plain.clone()), "{name}");
     }
     assert_eq!(plain.zones.len(), 4);

@@ -1,7 +1,7 @@
 //! Lists from bits: the CPU reference of `kernels/animation/compact.wgsl`.
 
 use crate::animation::active::PAIR_AHEAD;
-use crate::animation::gate::reference::Chosen;
+use crate::animation::gate::reference::ChosenBones;
 use crate::animation::gate_table::bits_of;
 use crate::animation::order::Order;
 
@@ -23,8 +23,8 @@ pub fn accumulated(before: &[u32], updated_bones: &[u32]) -> Vec<u32> {
 }
 
 /// Work lists for the given bits, with [`Order::words`] words per instance.
-pub fn compact(order: &Order, chosen: &Chosen) -> Work {
-    let Chosen { bits, ahead } = chosen;
+pub fn compact(order: &Order, chosen: &ChosenBones) -> Work {
+    let ChosenBones { bits, ahead } = chosen;
     let bones = order.slots.len() as u32;
     let mut work = Work { updated_bones: Vec::with_capacity(bits.len()), ..Work::default() };
     let each = bits.chunks_exact(order.words()).zip(ahead.chunks_exact(order.words()));

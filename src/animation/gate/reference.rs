@@ -10,14 +10,14 @@ use crate::shared::animation::gate::{SCRAMBLE_FIRST, SCRAMBLE_SECOND};
 
 /// The bones that a gate decides to sample.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Chosen {
+pub struct ChosenBones {
     /// One bit per slot of each instance, in [`AnimatedBones::words`] words per instance.
     pub bits: Vec<u32>,
     /// The bones of `bits` that are sampled ahead of the frame's time, in the same layout.
     pub ahead: Vec<u32>,
 }
 
-impl Chosen {
+impl ChosenBones {
     /// The words of `bits` and `ahead`, in the layout of `Active::bits`.
     pub fn words(&self) -> Vec<u32> {
         [self.bits.as_slice(), &self.ahead].concat()
@@ -35,7 +35,7 @@ pub fn gate(
     lods: &[Lod],
     clip_clocks: &[ClipClock],
     sampled: &mut [u32],
-) -> Chosen {
+) -> ChosenBones {
     match gate {
         Gate::Off(bones) => thinned(bones, lods, clip_clocks, |word| word.candidates),
         Gate::SkipPeriod { table, period } => thinned(table.animated_bones(), lods, clip_clocks, |word| {
@@ -48,7 +48,7 @@ pub fn gate(
         Gate::Bounded(table) => bounded(table, lods, clip_clocks, sampled),
         Gate::Budget { table, bones } => {
             let bits = budget(table, *bones, lods, clip_clocks, sampled);
-            Chosen { ahead: vec![0; bits.len()], bits }
+            ChosenBones { ahead: vec![0; bits.len()], bits }
         }
     }
 }
@@ -87,8 +87,8 @@ fn thinned(
     lods: &[Lod],
     clip_clocks: &[ClipClock],
     thin: impl Fn(&Word<'_>) -> u32,
-) -> Chosen {
-    let mut chosen = Chosen::default();
+) -> ChosenBones {
+    let mut chosen = ChosenBones::default();
     for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {
         chosen.bits.extend(words(bones, instance, lod, clip_clock).map(|word| match clip_clock.reason() {
             UpdateReason::Hidden => 0,
@@ -102,8 +102,8 @@ fn thinned(
 }
 
 /// The decision of [`Gate::Bounded`].
-fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled: &mut [u32]) -> Chosen {
-    let mut chosen = Chosen::default();
+fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled: &mut [u32]) -> ChosenBones {
+    let mut chosen = ChosenBones::default();
     let bones = table.animated_bones();
     let mut by_slot = vec![0; bones.bones()];
     for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {

@@ -86,9 +86,9 @@ impl BoundTable {
                 .find(|slot| animated_bones.contains(clip, *slot));
             rows[first + slot][0] = above.map_or(NO_PARENT, |above| above as u32);
             if above.is_none() || above != before {
-                rows[last + slot][1] |= ErrorBudget::STARTS;
+                rows[last + slot][1] |= BoneErrorBudget::STARTS;
                 if let Some(above) = above {
-                    rows[last + above][1] |= ErrorBudget::REMAINING;
+                    rows[last + above][1] |= BoneErrorBudget::REMAINING;
                 }
             }
             before = Some(slot);
@@ -106,7 +106,7 @@ impl BoundTable {
     }
 
     /// Entries row by row: the accumulated motion at the row's time and its rise to the next row. A clip's last row holds the
-    /// motion of the whole clip and an [`ErrorBudget`]. One more row per clip follows after all others: for each slot that the
+    /// motion of the whole clip and an [`BoneErrorBudget`]. One more row per clip follows after all others: for each slot that the
     /// clip moves, the nearest ancestor slot that the clip moves, or `u32::MAX`.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.motion.rows
@@ -141,9 +141,9 @@ impl BoundTable {
     }
 
     /// A slot's motion over a whole clip, and its error budget.
-    pub(crate) fn of_clip(&self, clip: u32, slot: usize) -> (u32, ErrorBudget) {
+    pub(crate) fn of_clip(&self, clip: u32, slot: usize) -> (u32, BoneErrorBudget) {
         let [period, granted] = self.motion.of_clip(clip, slot);
-        (period, ErrorBudget(granted))
+        (period, BoneErrorBudget(granted))
     }
 
     /// Nearest ancestor slot that the clip moves, for a slot that the clip moves.
@@ -155,9 +155,9 @@ impl BoundTable {
 
 /// A bone's share of the allowed error, packed for the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ErrorBudget(pub u32);
+pub struct BoneErrorBudget(pub u32);
 
-impl ErrorBudget {
+impl BoneErrorBudget {
     /// Flag: the nearest animated ancestor is not the previous bone in the order.
     const STARTS: u32 = gate::STARTS;
     /// Flag: a later bone needs what this bone leaves.

@@ -1,6 +1,6 @@
 //! The motion of one bone along a clip, as a column of a table.
 
-use super::{EVERYTHING, ErrorBudget};
+use super::{BoneErrorBudget, EVERYTHING};
 use crate::animation::motion::{BoneMotion, Path};
 
 /// The motion of one bone along a clip.
@@ -46,7 +46,7 @@ impl Column {
             false if self.path.total() > 0.0 => (4 + (steepest / 4096.0).ceil() as u32).next_power_of_two(),
             false => 0,
         };
-        let budget = ErrorBudget::new(self.fraction, slack);
+        let budget = BoneErrorBudget::new(self.fraction, slack);
         table[self.path.rises.len() * stride] = [(self.path.total() / unit).ceil() as u32, budget.0];
     }
 }

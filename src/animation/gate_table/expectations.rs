@@ -47,7 +47,7 @@ impl ExpectationTable {
     }
 
     /// Entries row by row: the accumulated motion at the row's time and its rise to the next row. A clip's last row holds the
-    /// motion of the whole clip and an [`ErrorBudget`](super::ErrorBudget) of 0.
+    /// motion of the whole clip and an [`BoneErrorBudget`](super::BoneErrorBudget) of 0.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.0.rows
     }

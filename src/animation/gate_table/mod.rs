@@ -18,7 +18,7 @@ use crate::asset::keyframe::RotationPath;
 pub(crate) use crate::shared::animation::gate::EVERYTHING;
 pub use animated_bones::AnimatedBones;
 pub(crate) use animated_bones::bits_of;
-pub use bounds::{BoundTable, ErrorBudget};
+pub use bounds::{BoneErrorBudget, BoundTable};
 #[cfg(feature = "gpu")]
 pub(crate) use buffers::TableBuffers;
 pub use expectations::ExpectationTable;

@@ -11,7 +11,7 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
 /// Accumulated motion of each row and slot: the sum at the row's time and its rise to the next row, in units of the table. A
-/// clip's last row holds the motion of the whole clip and an [`ErrorBudget`](super::ErrorBudget).
+/// clip's last row holds the motion of the whole clip and an [`BoneErrorBudget`](super::BoneErrorBudget).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MotionTable {
     pub animated_bones: AnimatedBones,

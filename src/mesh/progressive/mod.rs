@@ -20,7 +20,7 @@ mod stored;
 
 pub(crate) use partners::{Became, partners};
 pub use patch::IndexPatch;
-pub use record::Chosen;
+pub use record::ChosenLevel;
 pub use stored::VERSION;
 
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,7 @@ use stored::Stored;
 /// hashes of all levels.
 ///
 /// ```
-/// use relievo::ops::mesh::progressive::Chosen;
+/// use relievo::ops::mesh::progressive::ChosenLevel;
 /// use relievo::ops::mesh::{Options, ProgressiveMesh, Surface, simplify};
 ///
 /// let rock = relievo_samples::rock()?.meshes.remove(0);
@@ -45,7 +45,7 @@ use stored::Stored;
 /// let simplified = simplify(&surface, &Options::default())?;
 /// let chosen = [0.5, 0.1].map(|share| {
 ///     let collapses = simplified.collapses_to((share * rock.indices.len() as f64 / 3.0) as usize);
-///     Chosen { collapses, error: simplified.collapses()[collapses - 1].error }
+///     ChosenLevel { collapses, error: simplified.collapses()[collapses - 1].error }
 /// });
 /// let progressive = ProgressiveMesh::new(&rock, &simplified, &chosen)?;
 ///
@@ -77,7 +77,7 @@ impl ProgressiveMesh {
     /// # Errors
     /// [`InputError`] as [`Mesh::validate`], for a sequence of another mesh, for more than 15 levels or levels that do not
     /// ascend in collapses and errors, and for a level without triangles.
-    pub fn new(mesh: &Mesh, simplified: &Simplified, chosen: &[Chosen]) -> Result<Self, InputError> {
+    pub fn new(mesh: &Mesh, simplified: &Simplified, chosen: &[ChosenLevel]) -> Result<Self, InputError> {
         let (mesh, times) = record::levelled(mesh, simplified, chosen)?;
         Self::ordered(&mesh, &times)
     }

@@ -8,7 +8,7 @@ use crate::mesh::simplify::Simplified;
 
 /// A level to take from a sequence of collapses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chosen {
+pub struct ChosenLevel {
     /// Number of leading collapses that make the level; at least one more than for the level before.
     pub collapses: usize,
     /// Error of the level, finite and at least that of the level before.
@@ -20,11 +20,11 @@ pub struct Chosen {
 pub(super) fn levelled(
     mesh: &Mesh,
     simplified: &Simplified,
-    chosen: &[Chosen],
+    chosen: &[ChosenLevel],
 ) -> Result<(Mesh, Vec<u32>), InputError> {
     let remaps = remaps(mesh, simplified, chosen)?;
     let mut levels = Vec::with_capacity(chosen.len());
-    for (at, Chosen { collapses, error }) in chosen.iter().enumerate() {
+    for (at, ChosenLevel { collapses, error }) in chosen.iter().enumerate() {
         let indices = simplified.triangles(&mesh.indices, *collapses);
         let left = simplified.collapses()[collapses - 1].triangles as usize;
         if indices.len() != 3 * left {
@@ -45,7 +45,7 @@ pub(super) fn levelled(
 }
 
 /// For each level, the replacement of each vertex.
-fn remaps(mesh: &Mesh, simplified: &Simplified, chosen: &[Chosen]) -> Result<Vec<Vec<u32>>, InputError> {
+fn remaps(mesh: &Mesh, simplified: &Simplified, chosen: &[ChosenLevel]) -> Result<Vec<Vec<u32>>, InputError> {
     mesh.validate_alone()?;
     let vertices = simplified.remap(0).len();
     let reason = "as of the mesh that was simplified";
@@ -53,7 +53,7 @@ fn remaps(mesh: &Mesh, simplified: &Simplified, chosen: &[Chosen]) -> Result<Vec
     InputError::check_most("chosen.len", chosen.len(), MAX_LEVELS - 1)?;
     let mut least = 1;
     let most = simplified.collapses().len();
-    for (at, Chosen { collapses, .. }) in chosen.iter().enumerate() {
+    for (at, ChosenLevel { collapses, .. }) in chosen.iter().enumerate() {
         InputError::check_within(format!("chosen[{at}].collapses"), *collapses, least..=most)?;
         least = collapses + 1;
     }

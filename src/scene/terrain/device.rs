@@ -11,7 +11,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh::NOTHING;
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
-use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::config::{HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::{TILES_PERIOD, planes};
 use crate::terrain::fields::Fields;
 use crate::terrain::generator::Generator;
@@ -129,7 +129,7 @@ fn drawable(
 }
 
 /// Patches in shader format; the first one has the first window.
-pub(in crate::scene) fn listed(config: &Config, patches: &[[i32; 2]]) -> Vec<TerrainPatch> {
+pub(in crate::scene) fn listed(config: &TerrainConfig, patches: &[[i32; 2]]) -> Vec<TerrainPatch> {
     let (edge, tiles) = (config.patch_size as i32 - 1, config.tiles_per_patch());
     let patch = |(window, patch): (u32, &[i32; 2])| TerrainPatch {
         origin: patch.map(|index| index.wrapping_mul(edge)),

@@ -14,7 +14,7 @@ use crate::InputError;
 use crate::scene::instances::{self, Instances};
 use crate::scene::placement::Placement;
 use crate::skinning::bounding_sphere::BoundingSphere;
-use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::config::{HEIGHT_ONE, TerrainConfig};
 use crate::terrain::fields::Fields;
 use crate::terrain::ground::Ground;
 use crate::terrain::mesh::GroundPoint;
@@ -152,7 +152,7 @@ fn extremes(heights: &[i32]) -> [f64; 2] {
 /// # Errors
 /// [`InputError`] for a patch beyond the last cell.
 fn placed(
-    config: &Config,
+    config: &TerrainConfig,
     (at, patch): (usize, [i32; 2]),
     [lowest, highest]: [f64; 2],
 ) -> Result<(Placement, BoundingSphere), InputError> {

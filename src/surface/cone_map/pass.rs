@@ -5,7 +5,7 @@ use glam::UVec2;
 use crate::gpu::bindings::surface::cone_map as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::cone_map::ConeParams;
-use crate::surface::height_batch::{HeightBatch, REMEDY};
+use crate::surface::height_batch::{HeightMapBatch, REMEDY};
 use crate::surface::height_pyramid::Pyramids;
 use crate::{Error, InputError};
 
@@ -57,7 +57,7 @@ impl ConeMapPass {
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        maps: &HeightBatch,
+        maps: &HeightMapBatch,
         pyramids: &Pyramids,
         cones: &Cones,
     ) -> Result<Job, Error> {
@@ -94,7 +94,7 @@ impl ConeMapPass {
 mod tests {
     use super::ConeMapPass;
     use crate::gpu::{Gpu, Options};
-    use crate::surface::height_batch::HeightBatch;
+    use crate::surface::height_batch::HeightMapBatch;
     use crate::surface::height_pyramid::Pyramids;
     use crate::surface::{Address, HeightMap};
     use crate::{Error, InputError};
@@ -105,7 +105,7 @@ mod tests {
         let pass = ConeMapPass::new(&gpu).expect("compiled");
         let made = |size: [u32; 2], count: usize| {
             let map = HeightMap::new(size[0], size[1], vec![0.5; (size[0] * size[1]) as usize]);
-            let maps = HeightBatch::new(&gpu, &vec![map.expect("valid"); count]).expect("uploaded");
+            let maps = HeightMapBatch::new(&gpu, &vec![map.expect("valid"); count]).expect("uploaded");
             let pyramids = Pyramids::new(&gpu, &maps, Address::Wrap).expect("allocated");
             let cones = pass.output(&gpu, &pyramids).expect("allocated");
             (maps, pyramids, cones)

@@ -6,7 +6,7 @@ use super::PyramidLayout;
 use crate::gpu::bindings::surface::height_pyramid as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::surface::height_pyramid::PyramidParams;
-use crate::surface::height_batch::{HeightBatch, REMEDY};
+use crate::surface::height_batch::{HeightMapBatch, REMEDY};
 use crate::surface::map::Address;
 use crate::{Error, InputError};
 
@@ -29,7 +29,7 @@ impl Pyramids {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn new(gpu: &Gpu, maps: &HeightBatch, address: Address) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, maps: &HeightMapBatch, address: Address) -> Result<Self, GpuError> {
         let layout = PyramidLayout::new(maps.size, address);
         let nodes = Buffer::new(gpu, "pyramids", layout.len() * maps.count as usize)
             .map_err(|error| error.with_remedy(REMEDY))?;
@@ -37,7 +37,7 @@ impl Pyramids {
     }
 
     /// Refuses pyramids that do not belong to a batch.
-    pub(crate) fn check(&self, maps: &HeightBatch) -> Result<(), InputError> {
+    pub(crate) fn check(&self, maps: &HeightMapBatch) -> Result<(), InputError> {
         if self.layout.size != maps.size {
             let bound = format!("must be {:?} texels, as the height maps'", maps.size);
             return Err(InputError::new("pyramids.layout.size", format!("{:?}", self.layout.size), bound));
@@ -65,7 +65,7 @@ impl HeightPyramidPass {
     ///
     /// # Errors
     /// [`InputError`] when the pyramids do not belong to the batch; [`GpuError`].
-    pub fn prepare(&self, gpu: &Gpu, maps: &HeightBatch, pyramids: &Pyramids) -> Result<Job, Error> {
+    pub fn prepare(&self, gpu: &Gpu, maps: &HeightMapBatch, pyramids: &Pyramids) -> Result<Job, Error> {
         pyramids.check(maps)?;
         let layout = pyramids.layout;
         let step = |level| {

@@ -1,7 +1,7 @@
 //! Height maps on the device: buffers that kernels read, and textures over which shaders march.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::surface::HeightBatch;
+use crate::surface::HeightMapBatch;
 use crate::surface::cone_map::ConeMapPass;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::{Address, HeightMap};
@@ -57,7 +57,7 @@ impl SurfaceTextures {
 }
 
 fn accelerated(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> Result<wgpu::Texture, Error> {
-    let batch = HeightBatch::new(gpu, std::slice::from_ref(map))?;
+    let batch = HeightMapBatch::new(gpu, std::slice::from_ref(map))?;
     let pyramids = Pyramids::new(gpu, &batch, address)?;
     let pyramid_job = HeightPyramidPass::new(gpu)?.prepare(gpu, &batch, &pyramids)?;
     let layout = pyramids.layout;

@@ -87,7 +87,7 @@ pub enum Border {
 
 /// A validated terrain configuration.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Config {
+pub struct TerrainConfig {
     /// Samples along a patch's edge: 2^n + 1, n in 1..=12.
     pub patch_size: u32,
     /// Range of the random offsets at the coarsest level, in height units; ≥ 0.
@@ -124,11 +124,11 @@ pub struct Config {
     pub zones: Vec<Zone>,
 }
 
-impl Config {
+impl TerrainConfig {
     /// A configuration with B's three parameters and every other field at its default.
     ///
     /// # Errors
-    /// [`InputError`] as [`Config::validate`].
+    /// [`InputError`] as [`TerrainConfig::validate`].
     pub fn new(patch_size: u32, scale_factor: f64, seed: &str) -> Result<Self, InputError> {
         let config = Self {
             patch_size,
@@ -154,7 +154,7 @@ impl Config {
     ///
     /// # Errors
     /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] for the errors of
-    /// [`Config::from_json`].
+    /// [`TerrainConfig::from_json`].
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         let text = read_text(path)?;
         let mut config =
@@ -171,7 +171,7 @@ impl Config {
         }
     }
 
-    /// Checks every field. Every function that takes a `Config` calls it.
+    /// Checks every field. Every function that takes a `TerrainConfig` calls it.
     ///
     /// # Errors
     /// [`InputError`] for the first field that is out of bounds.

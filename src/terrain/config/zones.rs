@@ -36,7 +36,7 @@ pub enum BuiltIn {
     Snow,
     /// Dark earth with crumbs and small stones.
     Soil,
-    /// Layers of rock. They lie level on walls if [`Config::triplanar`](super::Config::triplanar) is on.
+    /// Layers of rock. They lie level on walls if [`TerrainConfig::triplanar`](super::TerrainConfig::triplanar) is on.
     Strata,
     /// Broken stones on a slope.
     Scree,

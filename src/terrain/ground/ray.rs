@@ -108,14 +108,14 @@ impl Walk {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::config::Config;
+    use crate::terrain::config::TerrainConfig;
     use crate::terrain::field::field;
     use crate::terrain::recipe::Recipe;
 
     /// Every ray hits the same triangle as a search through all triangles, and the ground has the hit's height there.
     #[test]
     fn rays_hit_the_triangles_that_are_drawn() {
-        let config = Config::new(33, 6.0, "rays").expect("valid");
+        let config = TerrainConfig::new(33, 6.0, "rays").expect("valid");
         let heights = field(&Recipe::new(config.clone()), &[[1, -2]], 0).expect("generated");
         let mut ground = Ground::new(&config).expect("valid");
         ground.insert([1, -2], &heights[0], 0).expect("whole");
@@ -155,7 +155,7 @@ mod tests {
     }
 
     /// Whether a place is so close to an edge that rounding decides which triangle answers.
-    fn is_on_edge(config: &Config, place: DVec3) -> bool {
+    fn is_on_edge(config: &TerrainConfig, place: DVec3) -> bool {
         let [u, v] = [place.x, place.z].map(|at| (at / config.terrain_scale).rem_euclid(1.0));
         [u, v, u + v - 1.0].iter().any(|distance| distance.abs() < 1e-6 || distance.abs() > 1.0 - 1e-6)
     }

@@ -2,7 +2,7 @@
 
 use super::{HeightJob, HeightPass, HeightScratch};
 use crate::gpu::Gpu;
-use crate::terrain::config::Config;
+use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fields::Fields;
 use crate::terrain::window::Window;
@@ -24,7 +24,7 @@ impl HeightBatch {
     pub fn new(
         gpu: &Gpu,
         pass: &HeightPass,
-        config: &Config,
+        config: &TerrainConfig,
         [count, apron]: [u32; 2],
         feature_capacity: usize,
     ) -> Result<Self, Error> {

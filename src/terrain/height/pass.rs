@@ -2,7 +2,7 @@
 
 use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
-use crate::terrain::config::{Border, Config, Interpolation, Offset};
+use crate::terrain::config::{Border, Interpolation, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
 use crate::{Error, InputError};
@@ -33,7 +33,7 @@ impl HeightPass {
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        config: &Config,
+        config: &TerrainConfig,
         [count, apron]: [u32; 2],
         feature_capacity: usize,
         output: &Buffer<i32>,

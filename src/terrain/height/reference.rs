@@ -1,13 +1,13 @@
 //! Heights of a window onto the plane: the CPU reference of `kernels/terrain/height.wgsl`, row by row of coarse points.
 
-use crate::terrain::config::Config;
+use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, mean_of_four};
 use crate::terrain::lattice::{Injected, base_lattice, world};
 use crate::terrain::window::{Span, Window};
 
 /// Heights of a window, in rows of `window.width(config)` samples. The window must be valid.
-pub fn height(config: &Config, features: &Features, window: Window) -> Vec<i32> {
+pub fn height(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
     let levels = window.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();

@@ -1,7 +1,7 @@
 //! A blend of two height fields over time (B section 4.4, `targetHeight`).
 
 use crate::InputError;
-use crate::terrain::config::{Config, finite};
+use crate::terrain::config::{TerrainConfig, finite};
 
 #[cfg(feature = "gpu")]
 mod batch;
@@ -33,7 +33,7 @@ impl Default for Morph {
 ///
 /// # Errors
 /// [`InputError`] that names `patch_size` or `terrain_scale`.
-pub fn check_target(config: &Config, target: &Config) -> Result<(), InputError> {
+pub fn check_target(config: &TerrainConfig, target: &TerrainConfig) -> Result<(), InputError> {
     InputError::check_same("patch_size", target.patch_size, config.patch_size, "as at time 0")?;
     InputError::check_same("terrain_scale", target.terrain_scale, config.terrain_scale, "as at time 0")
 }

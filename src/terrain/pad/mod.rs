@@ -2,7 +2,7 @@
 //! here from the patch itself or from its neighbours, so that the stencils after generation work in every border mode.
 
 use crate::InputError;
-use crate::terrain::config::{Border, Config};
+use crate::terrain::config::{Border, TerrainConfig};
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -16,7 +16,7 @@ pub use pass::PadPass;
 pub type Surround = [Option<usize>; 9];
 
 /// Surroundings of every patch of a batch: for `wrap` the patch itself on every side, for `blend` the patches of the batch.
-pub fn surrounds(config: &Config, patches: &[[i32; 2]]) -> Vec<Surround> {
+pub fn surrounds(config: &TerrainConfig, patches: &[[i32; 2]]) -> Vec<Surround> {
     let index: std::collections::HashMap<_, _> =
         patches.iter().enumerate().map(|(index, patch)| (*patch, index)).collect();
     (patches.iter().enumerate())

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use super::Recipe;
 use crate::InputError;
 use crate::terrain::config::{
-    Border, Config, Interpolation, Object, Offset, Zone, from_json_object, named, whole,
+    Border, Interpolation, Object, Offset, TerrainConfig, Zone, from_json_object, named, whole,
 };
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::thermal::Thermal;
@@ -75,7 +75,7 @@ impl RawBorder {
 
 impl Raw {
     fn recipe(self) -> Result<Recipe, InputError> {
-        let config = Config {
+        let config = TerrainConfig {
             patch_size: self.patch_size,
             scale_factor: self.scale_factor,
             seed: self.seed,
@@ -108,7 +108,7 @@ impl Raw {
     }
 }
 
-impl Config {
+impl TerrainConfig {
     /// Reads a configuration from B's JSON. [`Recipe::from_json`] reads erosion too.
     ///
     /// # Errors

@@ -1,14 +1,14 @@
 //! Heights of a window onto the smooth plane: the CPU reference of `kernels/terrain/smooth.wgsl`. It computes the whole window
 //! at once.
 
-use crate::terrain::config::Config;
+use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, four_point, mean_of_two};
 use crate::terrain::lattice::{Injected, base_lattice, limited, world};
 use crate::terrain::window::{SMOOTH_RIM, Span, Window};
 
 /// Heights of a window, in rows of `window.width(config)` samples. The window must be valid, and the interpolation smooth.
-pub fn smooth(config: &Config, features: &Features, window: Window) -> Vec<i32> {
+pub fn smooth(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
     let levels = window.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();

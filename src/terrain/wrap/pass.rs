@@ -2,7 +2,7 @@
 
 use crate::gpu::bindings::terrain::wrap as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
-use crate::terrain::config::{Border, Config, Offset};
+use crate::terrain::config::{Border, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
 use crate::{Error, InputError};
@@ -32,7 +32,7 @@ impl WrapPass {
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        config: &Config,
+        config: &TerrainConfig,
         count: u32,
         feature_capacity: usize,
         output: &Buffer<i32>,

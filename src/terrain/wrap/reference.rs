@@ -1,13 +1,13 @@
 //! Heights of a patch that wraps around onto itself: the CPU reference of `kernels/terrain/wrap.wgsl`.
 
-use crate::terrain::config::{Config, PATCH_EDGE};
+use crate::terrain::config::{PATCH_EDGE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject, mean_of_four};
 use crate::terrain::lattice::base_lattice;
 use crate::terrain::window::{Lattice, Window};
 
 /// Heights of one patch, in rows of `patch_size` samples.
-pub fn wrap(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
+pub fn wrap(config: &TerrainConfig, features: &Features, patch: [i32; 2]) -> Vec<i32> {
     let size = config.patch_size as usize;
     let torus = Torus {
         last: size - 1,
@@ -29,7 +29,7 @@ pub fn wrap(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<i32> {
     grid
 }
 
-fn injected(config: &Config, features: &Features, patch: [i32; 2]) -> Vec<Option<i32>> {
+fn injected(config: &TerrainConfig, features: &Features, patch: [i32; 2]) -> Vec<Option<i32>> {
     let size = config.patch_size;
     let lattice = Lattice { origin: [0, 0], width: size, spacing: config.sample_spacing() };
     let mut grid = vec![None; (size * size) as usize];

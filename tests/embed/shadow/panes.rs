@@ -5,7 +5,7 @@ use image::{Rgba, RgbaImage};
 use relievo::asset::material::{Alpha, Sampling, Texture};
 use relievo::asset::{Light, Material, Model};
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Quality, Scene, TerrainSource, View};
 use relievo::wgpu;
@@ -158,7 +158,7 @@ fn pieces_and_chunks_cast_what_the_whole_does() {
         for (at, turn) in [([0.0, 9.0, 0.0], 0.4), ([2.0, 12.0, -3.0], 1.4)] {
             scene.spawn(object, Placement::at(at).turned(turn)).expect("room");
         }
-        let config = Config::new(65, 12.0, "chunks").expect("valid");
+        let config = TerrainConfig::new(65, 12.0, "chunks").expect("valid");
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
         let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
         let camera =

@@ -5,7 +5,7 @@ use image::RgbaImage;
 use relievo::asset::Light;
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{InstanceId, Placement, Relief, Scene, View};
 use relievo::wgpu;
@@ -107,7 +107,7 @@ impl Stage {
 
     /// The triangles of the nine patches.
     fn add_ground(&self, occluders: &mut Occluders) {
-        let config = Config::new(33, 6.0, "embed").expect("valid");
+        let config = TerrainConfig::new(33, 6.0, "embed").expect("valid");
         let step = config.terrain_scale;
         let place = |x: i32, z: i32| {
             let [x, z] = [x, z].map(|at| f64::from(at) * step);

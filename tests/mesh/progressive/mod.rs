@@ -6,7 +6,7 @@ mod stored;
 use relievo::InputError;
 use relievo::asset::morph::MorphDelta;
 use relievo::asset::{Influence, Influences, Interpolation, Mesh, MorphTarget, WeightKeys};
-use relievo::ops::mesh::progressive::Chosen;
+use relievo::ops::mesh::progressive::ChosenLevel;
 use relievo::ops::mesh::{Options, ProgressiveMesh, Simplified, simplify};
 
 use crate::measure::distances;
@@ -48,13 +48,13 @@ fn mesh(shape: &Shape, bones: u32) -> Mesh {
 }
 
 /// Levels of half as many triangles each, down to a handful.
-fn halves(simplified: &Simplified, triangles: usize) -> Vec<Chosen> {
-    let mut chosen: Vec<Chosen> = Vec::new();
+fn halves(simplified: &Simplified, triangles: usize) -> Vec<ChosenLevel> {
+    let mut chosen: Vec<ChosenLevel> = Vec::new();
     for halving in 1..16 {
         let collapses = simplified.collapses_to(triangles >> halving);
         let last = chosen.last().map_or(0, |last| last.collapses);
         if collapses > last && collapses < simplified.collapses().len() {
-            chosen.push(Chosen { collapses, error: simplified.collapses()[collapses - 1].error });
+            chosen.push(ChosenLevel { collapses, error: simplified.collapses()[collapses - 1].error });
         }
     }
     chosen
@@ -73,7 +73,7 @@ struct Case {
     shape: Shape,
     mesh: Mesh,
     simplified: Simplified,
-    chosen: Vec<Chosen>,
+    chosen: Vec<ChosenLevel>,
     progressive: ProgressiveMesh,
 }
 
@@ -286,16 +286,16 @@ fn levels_and_partners_must_belong_together() {
 fn chosen_levels_are_checked() {
     let Case { mesh, simplified, chosen, .. } = cases().remove(0);
     let refused =
-        |mesh: &Mesh, chosen: &[Chosen]| error_of(ProgressiveMesh::new(mesh, &simplified, chosen)).path;
-    let none = Chosen { collapses: 0, error: 0.0 };
+        |mesh: &Mesh, chosen: &[ChosenLevel]| error_of(ProgressiveMesh::new(mesh, &simplified, chosen)).path;
+    let none = ChosenLevel { collapses: 0, error: 0.0 };
     assert_eq!(refused(&mesh, &[none]), "chosen[0].collapses");
     assert_eq!(refused(&mesh, &[chosen[1], chosen[0]]), "chosen[1].collapses");
-    let far = Chosen { collapses: simplified.collapses().len() + 1, ..none };
+    let far = ChosenLevel { collapses: simplified.collapses().len() + 1, ..none };
     assert_eq!(refused(&mesh, &[chosen[0], far]), "chosen[1].collapses");
     assert_eq!(refused(&mesh, &[none; 16]), "chosen.len");
-    let falling = [Chosen { error: 1.0, ..chosen[0] }, Chosen { error: 0.5, ..chosen[1] }];
+    let falling = [ChosenLevel { error: 1.0, ..chosen[0] }, ChosenLevel { error: 0.5, ..chosen[1] }];
     assert_eq!(refused(&mesh, &falling), "mesh.levels[1].error");
-    assert_eq!(refused(&mesh, &[Chosen { error: f32::NAN, ..chosen[0] }]), "mesh.levels[0].error");
+    assert_eq!(refused(&mesh, &[ChosenLevel { error: f32::NAN, ..chosen[0] }]), "mesh.levels[0].error");
     let mut other = mesh.clone();
     other.indices.truncate(300);
     assert_eq!(refused(&other, &chosen[..1]), "chosen[0].triangles");

@@ -4,7 +4,7 @@
 use image::{GrayImage, Luma};
 
 use relievo::InputError;
-use relievo::ops::terrain::config::{Border, Config, HEIGHT_ONE};
+use relievo::ops::terrain::config::{Border, HEIGHT_ONE, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::generate;
 
@@ -25,7 +25,7 @@ pub struct Crease {
 /// # Errors
 /// [`InputError`] for a configuration that is out of bounds or not `seamless`, for one with
 /// `coarseLevels`, for flat terrain, and for no seed.
-pub fn creases(config: &Config, seeds: &[String]) -> Result<Vec<Crease>, InputError> {
+pub fn creases(config: &TerrainConfig, seeds: &[String]) -> Result<Vec<Crease>, InputError> {
     config.validate()?;
     if config.border != Border::Seamless {
         return Err(InputError::new(
@@ -47,7 +47,7 @@ pub fn creases(config: &Config, seeds: &[String]) -> Result<Vec<Crease>, InputEr
     let (width, last) = (config.patch_size as usize + 2, config.patch_size as usize);
     let mut sums = vec![(0.0_f64, 0_usize); levels as usize + 1];
     for seed in seeds {
-        let config = Config { seed: seed.clone(), ..config.clone() };
+        let config = TerrainConfig { seed: seed.clone(), ..config.clone() };
         let window = generate(&config, &Features::default(), &[[0, 0]], 1).swap_remove(0);
         for row in window.chunks_exact(width).skip(1).take(last) {
             for (at, heights) in row.windows(3).enumerate() {
@@ -107,14 +107,14 @@ mod tests {
     fn smooth_terrain_has_no_creases() {
         let seeds: Vec<String> = (0..24).map(|seed| format!("crease {seed}")).collect();
         let largest = |interpolation| {
-            let config = Config { interpolation, ..Config::new(257, 40.0, "").expect("valid") };
+            let config = TerrainConfig { interpolation, ..TerrainConfig::new(257, 40.0, "").expect("valid") };
             let all = creases(&config, &seeds).expect("creases");
             println!("{interpolation:?}: {all:?}");
             all.iter().map(|crease| crease.ratio).fold(0.0, f64::max)
         };
         let (linear, smooth) = (largest(Interpolation::Linear), largest(Interpolation::Smooth));
         assert!(linear > 1.5 && smooth <= 1.15, "linear {linear}, smooth {smooth}");
-        let flat = Config::new(257, 0.0, "").expect("valid");
+        let flat = TerrainConfig::new(257, 0.0, "").expect("valid");
         assert_eq!(creases(&flat, &seeds).expect_err("no bends").path, "scale_factor");
     }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::ops::terrain::blend::reference::blend;
 use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, Shading};
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::cover::Cover;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::texture::Texture;
@@ -16,7 +16,7 @@ use relievo::{Error, InputError};
 #[derive(Debug, Clone, Copy)]
 pub struct ColorMaps<'a> {
     /// The configuration: its zones, how their textures lie on the ground, and the distance between samples.
-    pub config: &'a Config,
+    pub config: &'a TerrainConfig,
     /// One texture per zone.
     pub textures: &'a [Texture],
     /// The patches, in the order of the windows.

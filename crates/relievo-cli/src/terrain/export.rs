@@ -4,7 +4,7 @@
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 
-use relievo::ops::terrain::config::{Config, HEIGHT_ONE};
+use relievo::ops::terrain::config::{HEIGHT_ONE, TerrainConfig};
 use relievo::ops::terrain::export::sha256;
 use relievo::ops::terrain::features::FeatureFile;
 use relievo::ops::terrain::mesh::HeightField;
@@ -72,7 +72,7 @@ fn write_png(path: &Path, heights: &[i32], width: u32, range: HeightRange) -> Re
 #[derive(Debug, Clone, Copy)]
 pub struct Batch<'a> {
     /// The configuration that the heights were computed from.
-    pub config: &'a Config,
+    pub config: &'a TerrainConfig,
     /// Coordinates of the patches: column and row.
     pub patches: &'a [[i32; 2]],
     /// The heights of each patch, patchSize² of them in 1/65536 height units.
@@ -201,7 +201,7 @@ impl HeightImage {
     /// [`InputError`] for an `every` of 0.
     pub fn features(
         &self,
-        config: &Config,
+        config: &TerrainConfig,
         origin: [i32; 2],
         patches: [u32; 2],
         every: u32,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use relievo::Error;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::features::{FeatureFile, Features};
 
 use super::Terrain;
@@ -13,7 +13,12 @@ use crate::memory;
 
 impl Terrain {
     /// The features of all files, for windows of `width` samples per row.
-    pub(super) fn read_features(&self, config: &Config, grid: Grid, width: u32) -> Result<Features, Error> {
+    pub(super) fn read_features(
+        &self,
+        config: &TerrainConfig,
+        grid: Grid,
+        width: u32,
+    ) -> Result<Features, Error> {
         let mut features = Features::new(config, &[], self.feature_mode)?;
         let mut add = |path: &PathBuf, file: &FeatureFile| {
             let added = features.add(config, file).and_then(|()| features.check(config));

@@ -7,7 +7,7 @@ use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::ops::terrain::blend::Shading;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::texture::Texture;
 use relievo::render::Offscreen;
@@ -21,7 +21,7 @@ const SKY: [f32; 3] = [0.36, 0.55, 0.80];
 
 /// What is drawn, and how.
 pub struct Look<'a> {
-    pub config: &'a Config,
+    pub config: &'a TerrainConfig,
     /// Columns and rows of patches.
     pub grid: [u32; 2],
     /// The patches, row by row.

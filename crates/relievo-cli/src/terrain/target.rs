@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::Config;
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::field_with;
 use relievo::ops::terrain::fields::Fields;
@@ -45,7 +45,7 @@ impl TargetArguments {
         let time = self.time.unwrap_or(if self.frames.is_some() { 1.0 } else { 0.5 });
         let morph = Morph { time };
         morph.validate()?;
-        let config = Config::from_file(path)?;
+        let config = TerrainConfig::from_file(path)?;
         let of_file = |source: InputError| Error::InputFile { path: path.clone(), source: source.in_json() };
         check_target(&recipe.config, &config).map_err(of_file)?;
         let recipe = Recipe { config, features: Features::default(), ..recipe.clone() };

@@ -8,7 +8,7 @@ use relievo::gpu::{Gpu, Options};
 use relievo::ops::animation::ModelMatrices;
 use relievo::ops::skinning::frame::SkinFrame;
 use relievo::ops::skinning::{Blend, InstanceLod};
-use relievo::ops::terrain::config::{Config, Offset};
+use relievo::ops::terrain::config::{Offset, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::height::{HeightBatch, HeightPass};
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
@@ -43,7 +43,7 @@ fn draw(
 fn scene(
     (device, queue): (&wgpu::Device, &wgpu::Queue),
     (mut encoder, mut pass): (wgpu::CommandEncoder, wgpu::RenderPass<'_>),
-    (config, patches): (Config, Vec<[i32; 2]>),
+    (config, patches): (TerrainConfig, Vec<[i32; 2]>),
     (model, place, at): (Model, Placement, usize),
     camera: Camera,
 ) -> Result<(), Error> {
@@ -79,7 +79,7 @@ fn shadow((mut scene, mut eye): (Scene, View), mut encoder: wgpu::CommandEncoder
 
 /// A scene in a browser.
 #[rustfmt::skip]
-async fn browser(config: Config, mut renderer: Renderer) -> Result<(), Error> {
+async fn browser(config: TerrainConfig, mut renderer: Renderer) -> Result<(), Error> {
     // begin docs/embedding.md
     let gpu = Gpu::headless_async(&Options::default()).await?;            // or Gpu::from_wgpu
     let mut scene = Scene::new_async(&gpu).await?;
@@ -100,7 +100,7 @@ fn heights(
 ) -> Result<(), Error> {
     // begin docs/embedding.md
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());              // yours, or Gpu::headless
-    let config = Config::new(257, 40.0, "any text")?;
+    let config = TerrainConfig::new(257, 40.0, "any text")?;
     let pass = HeightPass::new(&gpu, Offset::Signed, None)?;              // compiles once
     let batch = HeightBatch::new(&gpu, &pass, &config, [64, 1], 0)?;      // 64 patches, a sample of margin; allocates once
     let land = TerrainSource::from_fields(config, batch.fields()[0].clone(), &[]); // a scene shares the heights

@@ -92,7 +92,7 @@ fn members() {
     let _ = TargetFormat::measure; // TargetFormat::measure
     let _ = TargetFormat::new; // TargetFormat::new
     let _ = TargetFormat::surface; // TargetFormat::surface
-    let _ = relievo::ops::terrain::config::Config::from_json; // Config::from_json
+    let _ = relievo::ops::terrain::config::TerrainConfig::from_json; // TerrainConfig::from_json
     let _ = |scene: &mut Scene, encoder: &mut wgpu::CommandEncoder| scene.record_with(encoder, &mut [], |_, _| Ok(())); // Scene::record_with
     let _ = TargetFormat::velocity; // TargetFormat::velocity
     let _ = Extent::fade_range; // Extent::fade_range
@@ -114,7 +114,7 @@ fn decided() {
     let _ = relievo::ops::surface::Method::Parallax; // ops::surface::Method::Parallax
     let _ = |march: relievo::ops::surface::March| march.steps; // ops::surface::March::steps
     let _ = |material: relievo::ops::surface::Material| material.plane; // ops::surface::Material::plane
-    let _ = |config: relievo::ops::terrain::config::Config| config.scale_factor; // ops::terrain::config::Config::scale_factor
+    let _ = |config: relievo::ops::terrain::config::TerrainConfig| config.scale_factor; // ops::terrain::config::TerrainConfig::scale_factor
 }
 
 #[rustfmt::skip]

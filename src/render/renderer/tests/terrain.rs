@@ -12,7 +12,7 @@ use crate::scene::{Camera, Placement, TerrainStyle};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch, TerrainView};
 use crate::shared::render::scene_view::SceneView;
 use crate::terrain::blend::Shading;
-use crate::terrain::config::{Config, HEIGHT_ONE};
+use crate::terrain::config::{HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::{TILES_PERIOD, planes};
 use crate::terrain::fields::Fields;
 use crate::terrain::generator::Generator;
@@ -24,14 +24,14 @@ const PATCHES: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 /// Four patches of terrain.
 pub struct Land {
-    pub config: Config,
+    pub config: TerrainConfig,
     fields: Fields,
 }
 
 impl Land {
     pub fn new(gpu: &Gpu) -> Self {
         let text = r#"{"patchSize": 33, "scaleFactor": 40.0, "seed": "a land"}"#;
-        let config = Config::from_json(text).expect("valid");
+        let config = TerrainConfig::from_json(text).expect("valid");
         let generator = Generator::new(gpu, Recipe::new(config.clone())).expect("compiled");
         let mut parts = generator.generate(gpu, &PATCHES, 1, &mut |_| ()).expect("generated");
         Self { config, fields: parts.remove(0) }
@@ -44,7 +44,7 @@ impl Land {
 
     /// The terrain as a drawable object.
     pub fn drawable(&self, gpu: &Gpu, layouts: &SceneLayouts, style: TerrainStyle) -> (TerrainDrawable, u32) {
-        let Config { patch_size: size, terrain_scale, .. } = self.config;
+        let TerrainConfig { patch_size: size, terrain_scale, .. } = self.config;
         let tiles = self.config.tiles_per_patch();
         let zones = self.zones(gpu);
         let params = TerrainParams {

@@ -5,7 +5,7 @@ use relievo::ops::animation::active::Active;
 use relievo::ops::animation::compact::CompactPass;
 use relievo::ops::animation::compact::reference::{Work, accumulated, compact};
 use relievo::ops::animation::crowd::Crowd;
-use relievo::ops::animation::gate::reference::Chosen;
+use relievo::ops::animation::gate::reference::ChosenBones;
 use relievo::ops::animation::order::Order;
 use relievo::ops::animation::updated_bones::UpdatedBones;
 
@@ -31,7 +31,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         for kind in ["none", "all", "a third", "few", "whole instances"] {
             let bits = random_bits(&mut draw, kind, &order, count);
             let ahead = bits.iter().map(|word| word & draw.word()).collect();
-            let chosen = Chosen { bits, ahead };
+            let chosen = ChosenBones { bits, ahead };
             let name = format!("{bones} bones × {count}, {kind}");
             add(cases, &name, &order, &crowd, &chosen).await?;
         }
@@ -64,7 +64,7 @@ async fn add(
     name: &str,
     order: &Order,
     crowd: &Crowd,
-    chosen: &Chosen,
+    chosen: &ChosenBones,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let mut active = Active::new(gpu, order, crowd)?;
@@ -155,7 +155,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
                 .step_by(order.words())
                 .for_each(|word| *word &= u32::MAX >> unused);
             active.bits.write(gpu, &bits)?;
-            let bits = Chosen { ahead: vec![0; bits.len()], bits };
+            let bits = ChosenBones { ahead: vec![0; bits.len()], bits };
             let job = pass.prepare(gpu, &scene.crowd, &active)?;
             let chosen: u32 = bits.bits.iter().map(|word| word.count_ones()).sum();
             // The kernel reads bits twice and writes them once, and writes a pair and its slot.

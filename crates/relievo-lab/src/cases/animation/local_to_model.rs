@@ -10,7 +10,7 @@ use relievo::ops::animation::active::Active;
 use relievo::ops::animation::compact::CompactPass;
 use relievo::ops::animation::compact::reference::compact;
 use relievo::ops::animation::crowd::{Crowd, packed};
-use relievo::ops::animation::gate::reference::Chosen;
+use relievo::ops::animation::gate::reference::ChosenBones;
 use relievo::ops::animation::local_to_model::reference::{
     local_to_model, local_to_model_into, local_to_model_updated,
 };
@@ -108,7 +108,7 @@ async fn add_updated(
         }
     }
     let mut expected = stale.clone();
-    let chosen = Chosen { ahead: vec![0; bits.len()], bits };
+    let chosen = ChosenBones { ahead: vec![0; bits.len()], bits };
     let work = compact(&order, &chosen);
     for ((updated_bones, locals), model_matrices) in
         work.updated_bones.chunks(order.words()).zip(locals.chunks(bones)).zip(expected.chunks_mut(bones))

@@ -3,7 +3,7 @@
 use relievo::Error;
 use relievo::gpu::Buffer;
 use relievo::ops::terrain::blend::BlendBuffers;
-use relievo::ops::terrain::config::{Config, Zone};
+use relievo::ops::terrain::config::{TerrainConfig, Zone};
 use relievo::ops::terrain::cover::Cover;
 use relievo::ops::terrain::texture::Texture;
 
@@ -54,7 +54,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let (host, windows) = some_windows(gpu, width, count)?;
     let points = windows.points(1);
     let words = Buffer::new(gpu, "words", points)?;
-    let config = Config::new(257, 40.0, "bench")?;
+    let config = TerrainConfig::new(257, 40.0, "bench")?;
     let cover = Cover { triplanar: true, ..Cover::new(&config, &Texture::of_zones(&config.zones)?)? };
     let places = Buffer::from_slice(gpu, "places", &vec![[0_u32; 2]; count as usize])?;
     let buffers = BlendBuffers { windows: &windows, places: &places, pixels: &words };

@@ -1,7 +1,7 @@
 //! Parity and benchmark cases of `kernels/surface/cone_map.wgsl`.
 
 use relievo::Error;
-use relievo::ops::surface::HeightBatch;
+use relievo::ops::surface::HeightMapBatch;
 use relievo::ops::surface::cone_map::reference::cone_map;
 use relievo::ops::surface::cone_map::{ConeMapPass, RADIUS_BOUND};
 use relievo::ops::surface::height_pyramid::reference::height_pyramid;
@@ -29,7 +29,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let maps = (0..count)
                     .map(|map| random_map(case as u32 * 8 + map, size, shape))
                     .collect::<Result<Vec<_>, _>>()?;
-                let batch = HeightBatch::new(gpu, &maps)?;
+                let batch = HeightMapBatch::new(gpu, &maps)?;
                 let pyramids = Pyramids::new(gpu, &batch, address)?;
                 let mut cones = pass.output(gpu, &pyramids)?;
                 let output = Poisoned::new(gpu, cones.cones.len())?;
@@ -79,7 +79,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let (pyramid_pass, pass) = (HeightPyramidPass::new(gpu)?, ConeMapPass::new(gpu)?);
     for edge in [256, 1024] {
         let map = BuiltInMap::Cobbles.height_map(edge)?;
-        let batch = HeightBatch::new(gpu, std::slice::from_ref(&map))?;
+        let batch = HeightMapBatch::new(gpu, std::slice::from_ref(&map))?;
         let pyramids = Pyramids::new(gpu, &batch, Address::Wrap)?;
         let cones = pass.output(gpu, &pyramids)?;
         let jobs =

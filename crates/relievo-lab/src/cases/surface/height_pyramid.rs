@@ -1,7 +1,7 @@
 //! Parity and benchmark cases of `kernels/surface/height_pyramid.wgsl`.
 
 use relievo::Error;
-use relievo::ops::surface::HeightBatch;
+use relievo::ops::surface::HeightMapBatch;
 use relievo::ops::surface::height_pyramid::reference::height_pyramid;
 use relievo::ops::surface::height_pyramid::{HeightPyramidPass, PyramidLayout, Pyramids};
 use relievo::ops::surface::map::{Address, HeightMap};
@@ -29,7 +29,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let maps = (0..count)
                 .map(|map| random_map(case as u32 * 8 + map, size, Shape::Noise))
                 .collect::<Result<Vec<_>, _>>()?;
-            let batch = HeightBatch::new(gpu, &maps)?;
+            let batch = HeightMapBatch::new(gpu, &maps)?;
             let layout = PyramidLayout::new(size, address);
             let output = Poisoned::new(gpu, layout.len() * maps.len())?;
             let pyramids = Pyramids { nodes: output.buffer.clone(), layout, address, count };
@@ -70,7 +70,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pass = HeightPyramidPass::new(gpu)?;
     for (edge, count) in [(256, 64), (512, 64), (1024, 1)] {
         let map = random_map(1, [edge, edge], Shape::Noise)?;
-        let batch = HeightBatch::new(gpu, &vec![map.clone(); count])?;
+        let batch = HeightMapBatch::new(gpu, &vec![map.clone(); count])?;
         let pyramids = Pyramids::new(gpu, &batch, Address::Wrap)?;
         let job = pass.prepare(gpu, &batch, &pyramids)?;
         let texels = (edge * edge) as usize * count;

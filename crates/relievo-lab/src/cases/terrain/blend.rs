@@ -6,7 +6,7 @@ use relievo::Error;
 use relievo::gpu::Buffer;
 use relievo::ops::terrain::blend::reference::{blend, steepness, zone_weight};
 use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL, Shading, WeightMode};
-use relievo::ops::terrain::config::{Config, Slope, Zone};
+use relievo::ops::terrain::config::{Slope, TerrainConfig, Zone};
 use relievo::ops::terrain::cover::{Cover, MapZone};
 use relievo::ops::terrain::normals::reference::normals;
 use relievo::ops::terrain::texture::Texture;
@@ -135,13 +135,13 @@ fn sloped(zone: u32) -> Zone {
 /// # Errors
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
-    let plain = Config::new(257, 40.0, "bench")?;
+    let plain = TerrainConfig::new(257, 40.0, "bench")?;
     case(bench, "257x257 batch 64, 4 zones", &plain)?;
-    let rich = Config { triplanar: true, variation: 0.5, ..plain };
+    let rich = TerrainConfig { triplanar: true, variation: 0.5, ..plain };
     case(bench, "257x257 batch 64, 4 zones, triplanar, variation", &rich)
 }
 
-fn case(bench: &mut Bench<'_>, name: &str, config: &Config) -> Result<(), Error> {
+fn case(bench: &mut Bench<'_>, name: &str, config: &TerrainConfig) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (width, count) = (259_u32, 64);
     let (host, windows) = some_windows(gpu, width, count)?;

@@ -2,7 +2,7 @@
 //! batches of 64 (16 of 1025²).
 
 use relievo::Error;
-use relievo::ops::terrain::config::{Config, Offset};
+use relievo::ops::terrain::config::{Offset, TerrainConfig};
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fixed::FeatureMode;
 
@@ -24,8 +24,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let levels =
                 if exponent <= 8 { 0..=8 } else { 0..=u32::from(offset == Offset::Signed && exponent <= 10) };
             for coarse_levels in levels {
-                let config = Config::new((1 << exponent) + 1, 40.0, &format!("{offset:?}{exponent}"))?;
-                let config = Config { offset, coarse_levels, roughness: 0.9, ..config };
+                let config = TerrainConfig::new((1 << exponent) + 1, 40.0, &format!("{offset:?}{exponent}"))?;
+                let config = TerrainConfig { offset, coarse_levels, roughness: 0.9, ..config };
                 let odd = coarse_levels as i32 * 3 - 7;
                 check(cases, &config, &none, &[[odd, 5 - odd]], 0).await?;
             }
@@ -35,12 +35,12 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (size, coarse_levels, apron) in
         [(3, 0, 1), (5, 1, 2), (17, 2, 3), (33, 3, 40), (65, 8, 7), (129, 0, 64), (257, 0, 1)]
     {
-        let config = Config { coarse_levels, ..Config::new(size, 12.5, "windows")? };
+        let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 12.5, "windows")? };
         check(cases, &config, &none, &seven, apron).await?;
     }
     // The last patches whose world coordinates fit `i32`.
     let far = [[524_285, -524_287], [-524_287, 524_285]];
-    check(cases, &Config::new(9, 40.0, "far")?, &none, &far, 0).await?;
+    check(cases, &TerrainConfig::new(9, 40.0, "far")?, &none, &far, 0).await?;
     with_features(cases).await?;
     large(cases).await
 }
@@ -50,14 +50,14 @@ async fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
         for (case, (size, coarse_levels, apron)) in
             (0..).zip([(3, 0, 0), (5, 0, 1), (17, 1, 0), (33, 0, 0), (33, 2, 5), (129, 0, 3), (257, 0, 0)])
         {
-            let config = Config { coarse_levels, ..Config::new(size, 40.0, "features")? };
+            let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 40.0, "features")? };
             let features = scattered(&config, [2, -3], mode, case)?;
             let patches = [[2, -3], [3, -3], [2, -2], [1, -4], [9, 9]];
             check(cases, &config, &features, &patches, apron).await?;
         }
     }
     for (size, apron) in [(17, 0), (33, 0), (33, 1), (65, 13)] {
-        let config = Config::new(size, 4.0, "dense")?;
+        let config = TerrainConfig::new(size, 4.0, "dense")?;
         check_dense(cases, &config, &[[0, 0], [1, 0], [-1, -1]], apron).await?;
     }
     Ok(())
@@ -75,7 +75,7 @@ async fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
         (1025, 6, 5, Offset::Gaussian, Some(FeatureMode::Keep)),
         (2049, 0, 2, Offset::Signed, Some(FeatureMode::Keep)),
     ] {
-        let config = Config { coarse_levels, offset, ..Config::new(size, 40.0, "large")? };
+        let config = TerrainConfig { coarse_levels, offset, ..TerrainConfig::new(size, 40.0, "large")? };
         let features = match mode {
             Some(mode) => scattered(&config, [2, -3], mode, size + coarse_levels)?,
             None => Features::default(),
@@ -93,16 +93,16 @@ async fn large(cases: &mut Cases<'_>) -> Result<(), Error> {
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     for (size, most) in [(129, 64), (257, 64), (513, 64), (1025, 16)] {
         for count in [1, most] {
-            measure_levels(bench, &Config::new(size, 40.0, "bench")?, &Features::default(), count)?;
+            measure_levels(bench, &TerrainConfig::new(size, 40.0, "bench")?, &Features::default(), count)?;
         }
     }
-    let config = Config::new(257, 40.0, "bench")?;
+    let config = TerrainConfig::new(257, 40.0, "bench")?;
     let valleys = valleys(&config, 64)?;
     measure_levels(bench, &config, &valleys, 64)
 }
 
 /// A valley in the middle of every patch: every fourth sample of the patch's middle half is a feature.
-fn valleys(config: &Config, count: u32) -> Result<Features, Error> {
+fn valleys(config: &TerrainConfig, count: u32) -> Result<Features, Error> {
     let quarter = config.patch_size / 4;
     let lines = || (quarter..3 * quarter).step_by(4);
     let heights: Vec<f64> =

@@ -7,7 +7,7 @@ use std::hint::black_box;
 use rayon::prelude::*;
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
-use relievo::ops::terrain::config::{Border, Config, Interpolation, Offset};
+use relievo::ops::terrain::config::{Border, Interpolation, Offset, TerrainConfig};
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fixed::FeatureMode;
 use relievo::ops::terrain::height::reference::height;
@@ -28,7 +28,7 @@ pub(super) const OFFSETS: [Offset; 3] = [Offset::Signed, Offset::Positive, Offse
 /// Prepares the kernel of a configuration, with scratch of its own.
 fn prepared(
     gpu: &Gpu,
-    config: &Config,
+    config: &TerrainConfig,
     features: &Features,
     [count, apron]: [u32; 2],
     output: &Buffer<i32>,
@@ -49,7 +49,7 @@ fn prepared(
     }
 }
 
-fn reference(config: &Config, features: &Features, window: Window) -> Vec<i32> {
+fn reference(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
     match (config.border, config.interpolation) {
         (Border::Seamless, Interpolation::Linear) => height(config, features, window),
         (Border::Seamless, Interpolation::Smooth) => smooth(config, features, window),
@@ -60,7 +60,7 @@ fn reference(config: &Config, features: &Features, window: Window) -> Vec<i32> {
 /// Compares the windows of `patches` with `apron`.
 pub(super) async fn check(
     cases: &mut Cases<'_>,
-    config: &Config,
+    config: &TerrainConfig,
     features: &Features,
     patches: &[[i32; 2]],
     apron: u32,
@@ -85,7 +85,7 @@ pub(super) async fn check(
 /// and points outside of windows see features.
 pub(super) async fn check_dense(
     cases: &mut Cases<'_>,
-    config: &Config,
+    config: &TerrainConfig,
     patches: &[[i32; 2]],
     apron: u32,
 ) -> Result<(), Error> {
@@ -99,7 +99,7 @@ pub(super) async fn check_dense(
 /// Measures a batch of `count` patches.
 pub(super) fn measure_levels(
     bench: &mut Bench<'_>,
-    config: &Config,
+    config: &TerrainConfig,
     features: &Features,
     count: u32,
 ) -> Result<(), Error> {

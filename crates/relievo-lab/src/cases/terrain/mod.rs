@@ -17,7 +17,7 @@ use std::fmt::Debug;
 
 use relievo::gpu::{Buffer, Gpu, Job};
 use relievo::ops::hash::threefry2x32;
-use relievo::ops::terrain::config::{Config, HEIGHT_LIMIT, Zone};
+use relievo::ops::terrain::config::{HEIGHT_LIMIT, TerrainConfig, Zone};
 use relievo::ops::terrain::cover::{Cover, MapZone, zone_of};
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fields::Fields;
@@ -54,7 +54,7 @@ pub const LIMIT: i32 = HEIGHT_LIMIT as i32;
 /// # Errors
 /// None, for a valid configuration.
 pub(crate) fn scattered(
-    config: &Config,
+    config: &TerrainConfig,
     patch: [i32; 2],
     mode: FeatureMode,
     case: u32,

@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::ops::terrain::config::{Border, Config};
+use relievo::ops::terrain::config::{Border, TerrainConfig};
 use relievo::ops::terrain::pad::reference::pad;
 use relievo::ops::terrain::pad::{PadPass, Surround, surrounds};
 
@@ -25,7 +25,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for border in [Border::Wrap, Border::Blend(1)] {
         for (patches, most) in [(&grid, 9), (&grid, 2), (&holes, 5), (&holes, 2)] {
             for (size, apron) in [(3, 0), (3, 2), (5, 4), (33, 1), (33, 32), (65, 9)] {
-                let config = Config { border, ..Config::new(size, 1.0, "")? };
+                let config = TerrainConfig { border, ..TerrainConfig::new(size, 1.0, "")? };
                 case(cases, &config, apron, patches, most).await?;
             }
         }
@@ -36,7 +36,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 /// Compares patches that are stored with at most `most` to a buffer.
 async fn case(
     cases: &mut Cases<'_>,
-    config: &Config,
+    config: &TerrainConfig,
     apron: u32,
     patches: &[[i32; 2]],
     most: usize,
@@ -74,7 +74,7 @@ fn padded(heights: &[i32], size: u32, apron: u32, around: Surround) -> Vec<i32> 
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let (size, apron, count) = (257, 8, 64);
-    let config = Config { border: Border::Blend(8), ..Config::new(size, 1.0, "")? };
+    let config = TerrainConfig { border: Border::Blend(8), ..TerrainConfig::new(size, 1.0, "")? };
     let around = surrounds(&config, &some_patches(count));
     let heights = some_heights((size * size * count) as usize);
     let total = around.len() * ((size + 2 * apron) as usize).pow(2);

@@ -1,7 +1,7 @@
 //! Parity and benchmark cases of `kernels/terrain/smooth.wgsl`.
 
 use relievo::Error;
-use relievo::ops::terrain::config::{Config, Interpolation, Offset};
+use relievo::ops::terrain::config::{Interpolation, Offset, TerrainConfig};
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fixed::FeatureMode;
 
@@ -22,7 +22,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let levels = if exponent <= 7 { 0..=8 } else { 0..=u32::from(exponent <= 9) };
             for coarse_levels in levels {
                 let config = plain((1 << exponent) + 1, &format!("{offset:?}{exponent}"), coarse_levels)?;
-                let config = Config { offset, roughness: 0.9, ..config };
+                let config = TerrainConfig { offset, roughness: 0.9, ..config };
                 let odd = coarse_levels as i32 * 3 - 7;
                 check(cases, &config, &none, &[[odd, 5 - odd]], 0).await?;
             }
@@ -38,9 +38,9 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     clamped(cases).await
 }
 
-fn plain(size: u32, seed: &str, coarse_levels: u32) -> Result<Config, Error> {
-    let config = Config::new(size, 40.0, seed)?;
-    Ok(Config { coarse_levels, interpolation: Interpolation::Smooth, ..config })
+fn plain(size: u32, seed: &str, coarse_levels: u32) -> Result<TerrainConfig, Error> {
+    let config = TerrainConfig::new(size, 40.0, seed)?;
+    Ok(TerrainConfig { coarse_levels, interpolation: Interpolation::Smooth, ..config })
 }
 
 async fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
@@ -64,8 +64,12 @@ async fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 /// Heights that reach the largest there are.
 async fn clamped(cases: &mut Cases<'_>) -> Result<(), Error> {
-    let steep =
-        Config { scale_factor: 8192.0, roughness: 0.0, offset: Offset::Positive, ..plain(65, "high", 0)? };
+    let steep = TerrainConfig {
+        scale_factor: 8192.0,
+        roughness: 0.0,
+        offset: Offset::Positive,
+        ..plain(65, "high", 0)?
+    };
     let heights = [12.0, 12.0, 8192.0, 40.0, 20.0, -8192.0, 64.0, 64.0, 8192.0].to_vec();
     let file = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: heights };
     let injected = Features::new(&steep, &[file], FeatureMode::Additive)?;

@@ -1,7 +1,7 @@
 //! Parity and benchmark cases of `kernels/terrain/wrap.wgsl`.
 
 use relievo::Error;
-use relievo::ops::terrain::config::{Border, Config, Offset};
+use relievo::ops::terrain::config::{Border, Offset, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::fixed::FeatureMode;
 
@@ -18,7 +18,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let most = if offset == Offset::Signed { 12 } else { 9 };
         for exponent in 1..=most {
             let corners = if exponent % 2 == 0 { [1.5, -20.25, 33.3, 1e-5] } else { [2.5; 4] };
-            let config = Config { offset, corners, ..wrapped((1 << exponent) + 1, "wrap")? };
+            let config = TerrainConfig { offset, corners, ..wrapped((1 << exponent) + 1, "wrap")? };
             let patches: &[_] = if exponent < 10 { &[[0, 0], [-3, 7], [4, 4]] } else { &[[-1, 2]] };
             check(cases, &config, &Features::default(), patches, 0).await?;
         }
@@ -33,8 +33,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn wrapped(size: u32, seed: &str) -> Result<Config, Error> {
-    Ok(Config { border: Border::Wrap, ..Config::new(size, 40.0, seed)? })
+fn wrapped(size: u32, seed: &str) -> Result<TerrainConfig, Error> {
+    Ok(TerrainConfig { border: Border::Wrap, ..TerrainConfig::new(size, 40.0, seed)? })
 }
 
 /// Measures a batch of 64 patches.
