@@ -15,7 +15,7 @@ use relievo::ops::animation::Wrap;
 use relievo::ops::animation::keyframe_cursor::reference::inside_clip;
 use relievo::ops::lod::LodCamera;
 use relievo::ops::skinning::palette::reference::dual;
-use relievo::ops::surface::{Address, HeightMap, Method, SurfaceTextures};
+use relievo::ops::surface::{Address, HeightMap, ReliefMethod, SurfaceTextures};
 use relievo::ops::terrain::blend::WeightMode;
 use relievo::ops::terrain::blend::reference::{
     color_variation, steepness, triplanar_weights, varied, zone_fractions,
@@ -192,16 +192,16 @@ fn every_method_meets_a_flat_surface() {
     let gpu = gpu();
     let map = HeightMap::new(8, 8, vec![0.5; 64]).expect("valid");
     let directions = [0.0_f32, 0.3, -0.6, 0.8];
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let textures = SurfaceTextures::new(&gpu, &map, method, Address::Wrap).expect("made");
         let constants = [("METHOD", method.code().into())];
         let words = run(&gpu, "surface", &constants, Some(&textures), &directions, 3 * directions.len());
         for (own, x) in words.chunks(3).zip(directions) {
             let slope = x / (1.0 - x * x).sqrt();
             let (way, height) = match method {
-                Method::Plain => (0.0, 1.0),
+                ReliefMethod::Plain => (0.0, 1.0),
                 // This method lacks the division by the cosine.
-                Method::ParallaxLimited => (0.5 * x, 0.5),
+                ReliefMethod::ParallaxLimited => (0.5 * x, 0.5),
                 _ => (0.5 * slope, 0.5),
             };
             // The tolerance is that of the binary steps: 2^-17 of the way.

@@ -22,9 +22,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use meshes::Mesh;
-use meshopt::{SimplifyOptions, VertexDataAdapter};
+use meshopt::VertexDataAdapter;
 use peak_alloc::PeakAlloc;
-use relievo::ops::mesh::{Options, Simplified, Surface, simplify, simplify_within};
+use relievo::ops::mesh::{Simplified, SimplifyOptions, Surface, simplify, simplify_within};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -69,7 +69,7 @@ impl Task<'_> {
 type Simplify = fn(&Task<'_>, usize) -> Result<Vec<u32>, Box<dyn Error>>;
 
 fn ours(task: &Task<'_>, triangles: usize) -> Result<Vec<u32>, Box<dyn Error>> {
-    level(task, |surface| simplify(surface, &Options { triangles, ..Options::default() }))
+    level(task, |surface| simplify(surface, &SimplifyOptions { triangles, ..SimplifyOptions::default() }))
 }
 
 /// Within limited distances instead: the smallest that reaches the number of triangles, of those that double from a
@@ -81,7 +81,7 @@ fn within(task: &Task<'_>, triangles: usize) -> Result<Vec<u32>, Box<dyn Error>>
     };
     let extent = along(0).max(along(1)).max(along(2));
     let distances: Vec<f32> = (0..17).map(|doubled| extent * 1e-5 * f32::from(2_u16).powi(doubled)).collect();
-    let options = Options { triangles, ..Options::default() };
+    let options = SimplifyOptions { triangles, ..SimplifyOptions::default() };
     level(task, |surface| simplify_within(surface, &options, &distances))
 }
 
@@ -101,7 +101,7 @@ fn theirs(
     let bytes: Vec<u8> =
         mesh.positions.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
     let vertices = VertexDataAdapter::new(&bytes, 12, 0)?;
-    let (count, error, options) = (triangles * 3, f32::MAX, SimplifyOptions::None);
+    let (count, error, options) = (triangles * 3, f32::MAX, meshopt::SimplifyOptions::None);
     if *stride == 0 {
         return Ok(meshopt::simplify(&mesh.indices, &vertices, count, error, options, None));
     }
@@ -242,7 +242,10 @@ fn of_one_run(task: &Task<'_>, levels: &[Vec<u32>], rounds: usize) -> Result<f64
     let mut times = Vec::new();
     for _ in 0..rounds {
         let start = Instant::now();
-        let simplified = simplify(&task.surface(), &Options { triangles: smallest, ..Options::default() })?;
+        let simplified = simplify(
+            &task.surface(),
+            &SimplifyOptions { triangles: smallest, ..SimplifyOptions::default() },
+        )?;
         let made: Vec<Vec<u32>> = targets
             .iter()
             .map(|&target| simplified.triangles(&task.mesh.indices, simplified.collapses_to(target)))

@@ -19,12 +19,12 @@ pub struct Lod {
     /// screen.
     pub weight: u32,
     /// Bones that a frame samples.
-    pub sampling: Sampling,
+    pub sampling: BoneSampling,
 }
 
 /// Choice of the bones of an instance that a frame samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Sampling {
+pub enum BoneSampling {
     /// The bones that the gate chooses.
     #[default]
     Gated,
@@ -37,14 +37,14 @@ pub enum Sampling {
 impl Lod {
     /// Full detail.
     pub const FULL: Self =
-        Self { omega: OMEGA_ONE, allowed: 0, weight: FULL_WEIGHT, sampling: Sampling::Gated };
+        Self { omega: OMEGA_ONE, allowed: 0, weight: FULL_WEIGHT, sampling: BoneSampling::Gated };
 
     /// The packed level of detail that kernels read.
     pub fn packed(&self) -> PackedLod {
         let flags = match self.sampling {
-            Sampling::Gated => 0,
-            Sampling::Hidden => gate_state::LOD_HIDDEN,
-            Sampling::Forced => gate_state::LOD_FORCED,
+            BoneSampling::Gated => 0,
+            BoneSampling::Hidden => gate_state::LOD_HIDDEN,
+            BoneSampling::Forced => gate_state::LOD_FORCED,
         };
         PackedLod { omega: self.omega, allowed: self.allowed, weight: self.weight, flags }
     }

@@ -32,7 +32,7 @@ pub mod sample;
 pub mod updated_bones;
 
 pub use crate::asset::keyframe::RotationPath;
-pub use bounds::Bounds;
+pub use bounds::MotionBounds;
 pub use clip_set::ClipSet;
 pub use gate::{Frame, Gate};
 #[cfg(feature = "gpu")]
@@ -40,7 +40,7 @@ pub use gate_state::GateState;
 pub use gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 pub use instance::{Instance, Wrap};
 pub use layers::Layer;
-pub use lod::{Lod, Projection, Range, Sampling};
+pub use lod::{BoneSampling, Lod, Projection, Range};
 #[cfg(feature = "gpu")]
 pub use model_matrices::ModelMatrices;
 pub use order::Order;

@@ -7,4 +7,6 @@ pub mod ray;
 pub mod simplify;
 
 pub use progressive::ProgressiveMesh;
-pub use simplify::{Collapse, Cost, Options, Seams, Simplified, Stopped, Surface, simplify, simplify_within};
+pub use simplify::{
+    Collapse, Cost, Seams, Simplified, SimplifyOptions, Stopped, Surface, simplify, simplify_within,
+};

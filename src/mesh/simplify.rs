@@ -21,7 +21,7 @@
 //!
 //! # Parts
 //!
-//! A closed part keeps four triangles, however small it is. Unless [`Options::prune`] is off, parts vanish as a whole. A part
+//! A closed part keeps four triangles, however small it is. Unless [`SimplifyOptions::prune`] is off, parts vanish as a whole. A part
 //! vanishes when the next collapse would cost more than half of its distance to the other parts. That distance is taken over
 //! its points, and over the points of neighbouring parts that vanished before. (meshoptimizer's option `Prune` compares the
 //! radius of a part.)
@@ -130,7 +130,7 @@ pub enum Seams {
 
 /// Cost function and limits. Simplification stops at the first limit that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct SimplifyOptions {
     /// The cost function of collapses.
     pub cost: Cost,
     /// Treatment of seams.
@@ -147,7 +147,7 @@ pub struct Options {
     pub prune: bool,
 }
 
-impl Default for Options {
+impl Default for SimplifyOptions {
     /// Quadrics without limits; seams are held, parts may vanish.
     fn default() -> Self {
         Self { cost: Cost::Quadric, seams: Seams::Held, triangles: 0, error: f32::INFINITY, prune: true }
@@ -171,9 +171,9 @@ pub struct Collapse {
 /// Why simplification stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stopped {
-    /// At most [`Options::triangles`] are left.
+    /// At most [`SimplifyOptions::triangles`] are left.
     Triangles,
-    /// The next collapse costs more than [`Options::error`].
+    /// The next collapse costs more than [`SimplifyOptions::error`].
     Error,
     /// No collapse is legal. Reducers other than half-edge collapses give no closer reason.
     Exhausted,
@@ -343,7 +343,7 @@ impl Simplified {
 /// [`InputError`] for no pose, poses of different lengths, indices that are out of range or not three per
 /// triangle, attributes that are not `stride` per vertex, numbers that are not finite, an error that is
 /// negative or NaN, and [`Seams::Crossed`] of more attributes than there are.
-pub fn simplify(surface: &Surface<'_>, options: &Options) -> Result<Simplified, InputError> {
+pub fn simplify(surface: &Surface<'_>, options: &SimplifyOptions) -> Result<Simplified, InputError> {
     simplify_within(surface, options, &[f32::INFINITY])
 }
 
@@ -351,14 +351,14 @@ pub fn simplify(surface: &Surface<'_>, options: &Options) -> Result<Simplified, 
 /// distance of the remaining surface, in every pose. Each removed point is close to one triangle, the same in all poses. No
 /// part vanishes.
 ///
-/// These distances are measured, whereas [`Options::error`] is an average. At the same number of triangles, [`simplify()`] has
+/// These distances are measured, whereas [`SimplifyOptions::error`] is an average. At the same number of triangles, [`simplify()`] has
 /// the smaller average error and this function the smaller largest one. It takes a few times longer.
 ///
 /// # Errors
 /// As [`simplify()`], and [`InputError`] for distances that are negative or that decrease.
 pub fn simplify_within(
     surface: &Surface<'_>,
-    options: &Options,
+    options: &SimplifyOptions,
     distances: &[f32],
 ) -> Result<Simplified, InputError> {
     let mut watch = |_| ControlFlow::<Infallible>::Continue(());
@@ -374,7 +374,7 @@ pub fn simplify_within(
 /// As [`simplify_within`].
 pub(crate) fn simplify_watched<B>(
     surface: &Surface<'_>,
-    options: &Options,
+    options: &SimplifyOptions,
     distances: &[f32],
     bodies: &[u32],
     watch: &mut dyn FnMut(f64) -> ControlFlow<B>,

@@ -72,7 +72,7 @@ pub use crate::skinning::bounding_sphere::BoundingSphere;
 pub use crate::skinning::{MeshLevels, add_levels, add_levels_with_progress};
 #[doc(inline)]
 pub use crate::surface::{
-    Address, Green, HeightMap, March, Material as ReliefMaterial, Method as ReliefMethod, Mips, ReliefMaps,
+    Address, Green, HeightMap, March, Material as ReliefMaterial, Mips, ReliefMaps, ReliefMethod,
     ReliefOptions, Shadow as ReliefShadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
 };
 #[doc(inline)]

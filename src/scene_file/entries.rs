@@ -7,7 +7,7 @@ use glam::{DVec3, Quat, Vec3};
 use crate::animation::Wrap;
 use crate::scene::Transition;
 use crate::surface::Shadow;
-use crate::surface::relief::Method;
+use crate::surface::relief::ReliefMethod;
 use crate::terrain::morph::Morph;
 use crate::terrain::recipe::Recipe;
 
@@ -81,7 +81,7 @@ pub(super) struct ReliefEntry {
     pub scale: f32,
     /// Factor of the mesh's texture coordinates.
     pub tiles: f32,
-    pub method: Method,
+    pub method: ReliefMethod,
     pub shadow: Shadow,
 }
 

@@ -13,7 +13,7 @@ use crate::animation::Wrap;
 use crate::asset::import::ENDINGS;
 use crate::scene::Transition;
 use crate::surface::Shadow;
-use crate::surface::relief::{MAX_SCALE, Method};
+use crate::surface::relief::{MAX_SCALE, ReliefMethod};
 
 /// The largest number of instances of a mesh, and of a character, whose bones take memory.
 const MAX_MESHES: usize = 1 << 20;
@@ -99,7 +99,7 @@ fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
     let known = ["relief", "channel", "albedo", "normal", "scale", "tiles", "method", "shadow"];
     let fields = at.fields(&known)?;
     let heights = image(fields.need("relief", "the image of its heights")?)?;
-    let all = Method::ALL.map(|method| (method.name(), method));
+    let all = ReliefMethod::ALL.map(|method| (method.name(), method));
     Ok(ReliefEntry {
         heights,
         is_alpha: fields.one_of("channel", [("brightness", false), ("alpha", true)], false)?,
@@ -107,7 +107,7 @@ fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
         normals: fields.maybe("normal", image)?,
         scale: fields.number("scale", 0.0, MAX_SCALE.into(), 0.1)? as f32,
         tiles: fields.number("tiles", 1e-3, 1e3, 1.0)? as f32,
-        method: fields.one_of("method", all, Method::Quadtree)?,
+        method: fields.one_of("method", all, ReliefMethod::Quadtree)?,
         shadow: fields.one_of("shadow", SHADOWS, Shadow::default())?,
     })
 }

@@ -14,7 +14,7 @@ use crate::InputError;
 use crate::asset::Model;
 use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
 use crate::mesh::progressive::{Became, partners};
-use crate::mesh::simplify::{Options, Simplified, Surface, simplify_watched};
+use crate::mesh::simplify::{Simplified, SimplifyOptions, Surface, simplify_watched};
 use bodies::Bodies;
 use errors::{Suspects, errors};
 use keys::{Keys, key_moments};
@@ -337,7 +337,7 @@ fn simplified(
     let surface = Surface { poses: &keys.poses, indices: &indices, attributes: &attributes, stride: 5 };
     let distances: Vec<f32> =
         successors(Some(FIRST * keys.size), |last| Some(STEP * last)).take(MAX_LEVELS - 1).collect();
-    Ok(simplify_watched(&surface, &Options::default(), &distances, bodies, watch)?.continue_value())
+    Ok(simplify_watched(&surface, &SimplifyOptions::default(), &distances, bodies, watch)?.continue_value())
 }
 
 /// A level under construction.

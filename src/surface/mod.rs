@@ -31,4 +31,4 @@ pub use options::ReliefMaps;
 pub use options::ReliefOptions;
 #[cfg(feature = "gpu")]
 pub use relief::textures::SurfaceTextures;
-pub use relief::{Hit, March, Method, Outcome, Ray};
+pub use relief::{Hit, March, Outcome, Ray, ReliefMethod};

@@ -3,19 +3,19 @@
 #[cfg(feature = "gpu")]
 use crate::surface::color::ColorTexture;
 use crate::surface::material::{Green, Shadow};
-use crate::surface::relief::Method;
+use crate::surface::relief::ReliefMethod;
 #[cfg(feature = "gpu")]
 use crate::surface::relief::textures::SurfaceTextures;
 
 /// Options that are fixed when a pipeline is compiled. [`Material`](crate::surface::Material) has the parameters that may
 /// change without a new pipeline.
 ///
-/// The default is [`Method::Quadtree`], with no shadow, normals from the heights, no silhouette, the polygon's depth, and mip
+/// The default is [`ReliefMethod::Quadtree`], with no shadow, normals from the heights, no silhouette, the polygon's depth, and mip
 /// level 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReliefOptions {
     /// Method that finds the surface; the [`SurfaceTextures`] must be made for it.
-    pub method: Method,
+    pub method: ReliefMethod,
     /// Self-shadow.
     pub shadow: Shadow,
     /// Green direction of the normal map that provides the normals; `None` derives normals from the heights.
@@ -32,7 +32,7 @@ pub struct ReliefOptions {
 impl Default for ReliefOptions {
     fn default() -> Self {
         Self {
-            method: Method::Quadtree,
+            method: ReliefMethod::Quadtree,
             shadow: Shadow::None,
             normal_map: None,
             silhouette: false,
@@ -46,7 +46,7 @@ impl Default for ReliefOptions {
 impl ReliefOptions {
     /// Whether the mip level of the heights follows the size of a pixel. Methods with acceleration maps always use level 0.
     pub(crate) fn chooses_mip(&self) -> bool {
-        self.mip && !matches!(self.method, Method::Cone | Method::Quadtree)
+        self.mip && !matches!(self.method, ReliefMethod::Cone | ReliefMethod::Quadtree)
     }
 }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{border, despike, height, hydraulic, pad, smooth, thermal, wrap};
 use crate::InputError;
 use crate::terrain::border::neighbours;
-use crate::terrain::config::{Border, Interpolation, TerrainConfig};
+use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::pad::surrounds;
@@ -63,8 +63,8 @@ pub fn generate(
 ) -> Vec<Vec<i32>> {
     if config.border == Border::Seamless {
         let made = match config.interpolation {
-            Interpolation::Linear => height::reference::height,
-            Interpolation::Smooth => smooth::reference::smooth,
+            HeightInterpolation::Linear => height::reference::height,
+            HeightInterpolation::Smooth => smooth::reference::smooth,
         };
         let window = |patch: &[i32; 2]| made(config, features, Window { patch: *patch, apron });
         return patches.par_iter().map(window).collect();

@@ -9,7 +9,7 @@ mod erosion;
 use crate::Error;
 use crate::gpu::{Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
-use crate::terrain::config::{Border, Interpolation};
+use crate::terrain::config::{Border, HeightInterpolation};
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
@@ -48,8 +48,8 @@ impl Generator {
         let (offset, injection) = (recipe.config.offset, recipe.features.injection());
         Ok(Self {
             levels: match (recipe.config.border, recipe.config.interpolation) {
-                (Border::Seamless, Interpolation::Linear) => HeightPass::new(gpu, offset, injection)?.0,
-                (Border::Seamless, Interpolation::Smooth) => SmoothPass::new(gpu, offset, injection)?.0,
+                (Border::Seamless, HeightInterpolation::Linear) => HeightPass::new(gpu, offset, injection)?.0,
+                (Border::Seamless, HeightInterpolation::Smooth) => SmoothPass::new(gpu, offset, injection)?.0,
                 _ => WrapPass::new(gpu, offset, injection)?.0,
             },
             border: BorderPass::new(gpu)?,

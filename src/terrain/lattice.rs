@@ -1,6 +1,6 @@
 //! Lattices of points in world coordinates: the base lattice, where subdivision starts, and the features of a lattice.
 
-use crate::terrain::config::{Border, HEIGHT_LIMIT, Interpolation, PATCH_EDGE, TerrainConfig};
+use crate::terrain::config::{Border, HEIGHT_LIMIT, HeightInterpolation, PATCH_EDGE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject};
 use crate::terrain::window::{Lattice, Span};
@@ -26,7 +26,7 @@ pub(crate) fn base_lattice(
         draw.add_row(heights, config.level_range(0), x, spacing as u32, world_y);
         injected.inject_row(features, y, spans[0].first, 1, heights);
     }
-    if config.interpolation == Interpolation::Smooth {
+    if config.interpolation == HeightInterpolation::Smooth {
         grid.iter_mut().for_each(|height| *height = limited(*height));
     }
     grid

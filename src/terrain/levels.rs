@@ -3,7 +3,7 @@
 
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::level::Level;
-use crate::terrain::config::{Border, Interpolation, TerrainConfig};
+use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
 use crate::terrain::lattice::base_lattice;
@@ -86,8 +86,8 @@ impl LevelPass {
 /// Points along an edge at every level, the base lattice first; enough for windows of any alignment.
 fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     let halo = match (config.border, config.interpolation) {
-        (Border::Seamless, Interpolation::Linear) => 3,
-        (Border::Seamless, Interpolation::Smooth) => 8,
+        (Border::Seamless, HeightInterpolation::Linear) => 3,
+        (Border::Seamless, HeightInterpolation::Smooth) => 8,
         _ => 1,
     };
     let mut widths = vec![config.patch_size + 2 * apron];
@@ -101,8 +101,8 @@ fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
 /// Number of points around a window whose features a level sees. The grids of an index already have room for one.
 fn rim(config: &TerrainConfig) -> u32 {
     match config.interpolation {
-        Interpolation::Linear => 1,
-        Interpolation::Smooth => SMOOTH_RIM,
+        HeightInterpolation::Linear => 1,
+        HeightInterpolation::Smooth => SMOOTH_RIM,
     }
 }
 
@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(points(5, 0, 0), [3 * 5 * 5, 0], "two");
         // With smooth interpolation, the levels before the last of 3 points are 9, 12, 13, 14, 14, … points wide.
         let smooth = TerrainConfig {
-            interpolation: Interpolation::Smooth,
+            interpolation: HeightInterpolation::Smooth,
             coarse_levels: 8,
             ..TerrainConfig::new(3, 1.0, "").expect("valid")
         };

@@ -3,7 +3,7 @@
 use std::iter::successors;
 
 use crate::InputError;
-use crate::terrain::config::{Border, Interpolation, TerrainConfig};
+use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 
 /// Largest number of samples by which a window may extend beyond its patch.
 pub const MAX_APRON: u32 = 4096;
@@ -70,8 +70,8 @@ impl Window {
     /// the apron.
     pub(crate) fn levels(&self, config: &TerrainConfig) -> Vec<[Span; 2]> {
         let (apron, coarser): (_, fn(Span) -> Span) = match (config.border, config.interpolation) {
-            (Border::Seamless, Interpolation::Linear) => (self.apron, Span::coarser),
-            (Border::Seamless, Interpolation::Smooth) => (self.apron, Span::coarser_smooth),
+            (Border::Seamless, HeightInterpolation::Linear) => (self.apron, Span::coarser),
+            (Border::Seamless, HeightInterpolation::Smooth) => (self.apron, Span::coarser_smooth),
             _ => (0, Span::halved),
         };
         let finest = Self { apron, ..*self }.spans(config);

@@ -3,7 +3,7 @@
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::AFFINE_IDENTITY;
 use relievo::asset::{Affine, Bone, Skeleton, Transform};
-use relievo::ops::animation::Bounds;
+use relievo::ops::animation::MotionBounds;
 use relievo::ops::animation::bounds::bone_radii;
 use relievo::ops::animation::bounds::reference::bounds;
 use relievo::ops::animation::local_to_model::reference::local_to_model;
@@ -20,7 +20,7 @@ fn moved(model: &Affine, point: [f64; 3]) -> [f64; 3] {
     })
 }
 
-fn contains(found: &Bounds, point: [f64; 3]) -> bool {
+fn contains(found: &MotionBounds, point: [f64; 3]) -> bool {
     (0..3).all(|i| (f64::from(found.low[i])..=f64::from(found.high[i])).contains(&point[i]))
 }
 

@@ -12,7 +12,7 @@ use relievo::ops::animation::lod::OMEGA_ONE;
 use relievo::ops::animation::order::Order;
 use relievo::ops::animation::priority::{Priorities, USER_DEFAULT, Weights};
 use relievo::ops::animation::{
-    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable, Sampling,
+    AnimatedBones, BoneSampling, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Lod, PriorityTable,
 };
 use relievo_lab::cases::animation::{Draw, random_clips, random_skeleton};
 use relievo_lab::crowd::Crowd;
@@ -310,13 +310,13 @@ fn hidden_instances_cost_nothing_and_come_back_whole() {
             crowd.advance(&frame(number), number as f32 / 60.0).pairs.len()
         };
         assert_eq!(done(&mut crowd, 0), 2 * 153);
-        crowd.lods[0].sampling = Sampling::Hidden;
+        crowd.lods[0].sampling = BoneSampling::Hidden;
         assert_eq!(done(&mut crowd, 1), 0);
-        crowd.lods[0].sampling = Sampling::Gated;
+        crowd.lods[0].sampling = BoneSampling::Gated;
         assert_eq!(done(&mut crowd, 2), 153, "came back");
-        crowd.lods[1].sampling = Sampling::Forced;
+        crowd.lods[1].sampling = BoneSampling::Forced;
         assert_eq!(done(&mut crowd, 3), 153, "asked for");
-        crowd.lods[1].sampling = Sampling::Gated;
+        crowd.lods[1].sampling = BoneSampling::Gated;
         crowd.instances[1].clip = 1;
         assert_eq!(done(&mut crowd, 4), 153, "another clip");
         assert_eq!(done(&mut crowd, 5), 0);

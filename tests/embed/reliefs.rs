@@ -4,7 +4,7 @@ use glam::Vec3;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::{
-    Address, ColorTexture, Green, HeightMap, March, Material, Method, Mips, ReliefMaps, ReliefOptions,
+    Address, ColorTexture, Green, HeightMap, March, Material, Mips, ReliefMaps, ReliefMethod, ReliefOptions,
     Shadow, SurfaceMesh, SurfaceTextures,
 };
 use relievo::render::{Offscreen, TargetFormat};
@@ -57,7 +57,7 @@ fn textures_of_the_caller_look_like_images() {
     let (heights, colors, bumps) = images();
     let mesh = SurfaceMesh::square(2.0);
     let mut last: Option<RgbaImage> = None;
-    for (method, address) in [(Method::Quadtree, Address::Wrap), (Method::Cone, Address::Clamp)] {
+    for (method, address) in [(ReliefMethod::Quadtree, Address::Wrap), (ReliefMethod::Cone, Address::Clamp)] {
         let textures = SurfaceTextures::new(&gpu, &heights, method, address).expect("uploaded");
         let wraps = address == Address::Wrap;
         let albedo = ColorTexture::new(&gpu, &Mips::of_color(colors.clone()), wraps).expect("uploaded");
@@ -86,7 +86,8 @@ fn textures_of_the_caller_look_like_images() {
 fn linear_light_is_encoded_to_the_same_picture() {
     let gpu = device();
     let (heights, colors, _) = images();
-    let textures = SurfaceTextures::new(&gpu, &heights, Method::Quadtree, Address::Wrap).expect("uploaded");
+    let textures =
+        SurfaceTextures::new(&gpu, &heights, ReliefMethod::Quadtree, Address::Wrap).expect("uploaded");
     let albedo = ColorTexture::linear(&gpu, &Mips::of_color(colors.clone()), true).expect("uploaded");
     let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: None };
     let mesh = SurfaceMesh::square(2.0);
@@ -115,13 +116,13 @@ fn linear_light_is_encoded_to_the_same_picture() {
 fn mistakes_about_maps_are_told() {
     let gpu = device();
     let (heights, colors, bumps) = images();
-    let textures = SurfaceTextures::new(&gpu, &heights, Method::Cone, Address::Wrap).expect("uploaded");
+    let textures = SurfaceTextures::new(&gpu, &heights, ReliefMethod::Cone, Address::Wrap).expect("uploaded");
     let albedo = ColorTexture::new(&gpu, &Mips::of_color(colors), true).expect("uploaded");
     let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: None };
     let good = Relief::of_maps(SurfaceMesh::square(1.0), maps);
-    assert_eq!((good.options.method, good.march.address), (Method::Cone, Address::Wrap));
+    assert_eq!((good.options.method, good.march.address), (ReliefMethod::Cone, Address::Wrap));
     let refused = |relief: Relief| path(scene_of(&gpu, &relief).expect_err("refused"));
-    let options = ReliefOptions { method: Method::Quadtree, ..good.options };
+    let options = ReliefOptions { method: ReliefMethod::Quadtree, ..good.options };
     assert_eq!(refused(Relief { options, ..good.clone() }), "relief.options.method");
     let march = March { address: Address::Clamp, ..good.march };
     assert_eq!(refused(Relief { march, ..good.clone() }), "relief.march.address");

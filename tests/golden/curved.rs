@@ -6,7 +6,7 @@ use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::tangent::Mesh;
 use relievo::ops::surface::tangent::reference::tangents;
-use relievo::ops::surface::{Green, Method, ReliefOptions, Shadow, SurfaceMesh, SurfaceVertex};
+use relievo::ops::surface::{Green, ReliefMethod, ReliefOptions, Shadow, SurfaceMesh, SurfaceVertex};
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
 use relievo_samples::BuiltInMap;
@@ -46,7 +46,7 @@ fn barrel() -> SurfaceMesh {
     SurfaceMesh { vertices: vertices.collect(), indices }
 }
 
-fn options(method: Method, depth: bool, silhouette: bool) -> ReliefOptions {
+fn options(method: ReliefMethod, depth: bool, silhouette: bool) -> ReliefOptions {
     let (shadow, normal_map) = (Shadow::Hard, None);
     ReliefOptions { method, shadow, normal_map, silhouette, depth, mip: true }
 }
@@ -80,7 +80,7 @@ fn in_perspective() -> Camera {
 #[test]
 fn a_barrel_of_cobbles() {
     let gpu = harness::gpu();
-    let views = [("barrel_quadtree", Method::Quadtree), ("barrel_relief", Method::Relief)];
+    let views = [("barrel_quadtree", ReliefMethod::Quadtree), ("barrel_relief", ReliefMethod::Relief)];
     let wrong = views.into_iter().filter_map(|(name, method)| {
         let mut scene = scene_of(&gpu, &[barrel()], options(method, false, true)).expect("a scene");
         let image = drawn(&gpu, &mut scene, in_perspective());
@@ -149,7 +149,7 @@ fn reliefs_intersect_by_their_own_depth() {
         mesh
     };
     let look = |depth: bool, meshes: &[SurfaceMesh]| {
-        let options = options(Method::Quadtree, depth, false);
+        let options = options(ReliefMethod::Quadtree, depth, false);
         let mut scene = scene_of(&gpu, meshes, options).expect("a scene");
         drawn(&gpu, &mut scene, from_below())
     };

@@ -1,7 +1,7 @@
 //! The same sequence of collapses on every machine: hashes of meshes that are made without functions that differ. The
 //! crate of `relievo-web-scene` computes the same hashes in a browser.
 
-use relievo::ops::mesh::{Options, Surface, simplify, simplify_within};
+use relievo::ops::mesh::{SimplifyOptions, Surface, simplify, simplify_within};
 use relievo_lab::reduce::{Limits, Reducer};
 
 /// A whole number below `most` for a place.
@@ -58,7 +58,7 @@ pub fn hashes() -> [String; 4] {
     let squeezed = round.iter().map(|[x, y, z]| [x * 0.5, y + 0.25 * x, *z]).collect();
     let both = [round, squeezed];
     let seams = Surface { poses: &both, indices: &corners, attributes: &[], stride: 0 };
-    let all = Options::default();
+    let all = SimplifyOptions::default();
     [
         simplify(&plain, &all),
         simplify(&valued, &all),

@@ -1,6 +1,6 @@
 //! Attributes of simplified meshes, and their seams.
 
-use relievo::ops::mesh::{Cost, Options, Surface, simplify};
+use relievo::ops::mesh::{Cost, SimplifyOptions, Surface, simplify};
 
 use crate::measure::topology;
 use crate::shapes::{Shape, cube, ground, sheet, sphere, torus};
@@ -22,7 +22,8 @@ fn seams_hold() {
     let shape = torus(20, 12);
     for cost in [Cost::Quadric, Cost::Melax { check_normals: false }] {
         for surface in [shape.bare(), shape.with_uv()] {
-            let simplified = simplify(&surface, &Options { cost, ..Options::default() }).expect("valid");
+            let simplified =
+                simplify(&surface, &SimplifyOptions { cost, ..SimplifyOptions::default() }).expect("valid");
             assert!(simplified.triangles_left() < 40, "{cost:?} {}", simplified.triangles_left());
             for collapses in 0..=simplified.collapses().len() {
                 let area = uv_area(&shape, &simplified.triangles(&shape.indices, collapses));
@@ -38,7 +39,7 @@ fn seams_hold() {
 fn every_wedge_finds_an_heir() {
     for (shape, poles) in [(torus(14, 8), 0), (sphere(14, 8), 2), (cube(4), 0)] {
         let points = shape.points();
-        let simplified = simplify(&shape.with_uv(), &Options::default()).expect("valid");
+        let simplified = simplify(&shape.with_uv(), &SimplifyOptions::default()).expect("valid");
         let mut strangers = 0;
         for collapse in 0..simplified.collapses().len() {
             let before = simplified.triangles(&shape.indices, collapse);
@@ -67,7 +68,7 @@ fn poles_go_too() {
         let radius = row as f64;
         [radius * turn.cos(), radius * turn.sin(), 0.0]
     });
-    let simplified = shape.simplified(&Options { error: 1e-6, ..Options::default() });
+    let simplified = shape.simplified(&SimplifyOptions { error: 1e-6, ..SimplifyOptions::default() });
     assert_eq!(simplified.triangles_left(), 10);
     let gone =
         (0..simplified.collapses().len()).map(|at| simplified.moved(at)).find(|moved| moved[0][0] < 13);
@@ -79,7 +80,7 @@ fn what_attributes_say_counts() {
     let flat = ground(16, |_, _| 0.0);
     let simplified = |values: &[f32], stride, error| {
         let surface = Surface { attributes: values, stride, ..flat.bare() };
-        simplify(&surface, &Options { error, ..Options::default() }).expect("valid")
+        simplify(&surface, &SimplifyOptions { error, ..SimplifyOptions::default() }).expect("valid")
     };
     // The attribute is linear over the surface, so that two triangles represent it.
     let linear: Vec<f32> =

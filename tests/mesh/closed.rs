@@ -1,6 +1,6 @@
 //! The topology of every level of detail.
 
-use relievo::ops::mesh::{Cost, Options, Simplified, Stopped, simplify};
+use relievo::ops::mesh::{Cost, Simplified, SimplifyOptions, Stopped, simplify};
 
 use crate::measure::{Topology, area, topology};
 use crate::shapes::{Shape, bare, bumps, cube, ground, shuffled, sphere, torus};
@@ -11,7 +11,7 @@ const COSTS: [Cost; 3] =
 /// Checks a shape that is simplified with texture coordinates and without.
 fn each_way(shape: &Shape, mut check: impl FnMut(&Simplified, Cost)) {
     for cost in COSTS {
-        let options = Options { cost, prune: false, ..Options::default() };
+        let options = SimplifyOptions { cost, prune: false, ..SimplifyOptions::default() };
         check(&shape.simplified(&options), cost);
         check(&simplify(&shape.with_uv(), &options).expect("valid"), cost);
     }
@@ -87,7 +87,7 @@ fn tetrahedra_have_no_legal_collapse() {
         vec![[1.0, 0.0, 0.0], [-0.5, 0.0, 0.9], [-0.5, 0.0, -0.9], [0.0, 0.1, 0.0], [0.0, -2.0, 0.0]];
     let double = bare(places, vec![0, 3, 1, 1, 3, 2, 2, 3, 0, 1, 4, 0, 2, 4, 1, 0, 4, 2]);
     keeps_topology(&double, Topology { is_manifold: true, most_uses: 1, border: 0, euler: 2 });
-    let simplified = double.simplified(&Options::default());
+    let simplified = double.simplified(&SimplifyOptions::default());
     assert_eq!(simplified.collapses().len(), 1);
     assert_eq!(simplified.moved(0)[0][0], 3);
     assert_eq!(simplified.triangles_left(), 4);

@@ -5,7 +5,7 @@ use std::time::Instant;
 use relievo::asset::keyframe::RotationPath;
 use relievo::ops::animation::local_to_model::reference::local_to_model;
 use relievo::ops::animation::sample::reference::sample;
-use relievo::ops::mesh::{Options, Stopped, Surface, simplify};
+use relievo::ops::mesh::{SimplifyOptions, Stopped, Surface, simplify};
 use relievo::ops::skinning::instance_lod::InstanceLod;
 use relievo::ops::skinning::morph::reference::morph;
 use relievo::ops::skinning::palette::reference::palette_for;
@@ -42,7 +42,8 @@ fn it_keeps_its_shape_in_every_pose() {
     let surface = Surface { attributes: &uv, ..shape.with_uv() };
     let start = Instant::now();
     let simplified =
-        simplify(&surface, &Options { triangles, prune: false, ..Options::default() }).expect("valid");
+        simplify(&surface, &SimplifyOptions { triangles, prune: false, ..SimplifyOptions::default() })
+            .expect("valid");
     let taken = start.elapsed();
     assert!(taken.as_secs_f64() < 1.0, "{taken:?}");
     assert_eq!(simplified.stopped(), Stopped::Triangles);
@@ -64,7 +65,7 @@ fn it_keeps_its_shape_in_every_pose() {
 #[test]
 fn it_is_simplified_alike_everywhere() {
     let shape = walking(1);
-    let simplified = simplify(&shape.with_uv(), &Options::default()).expect("valid");
+    let simplified = simplify(&shape.with_uv(), &SimplifyOptions::default()).expect("valid");
     let moved = (0..simplified.collapses().len()).flat_map(|at| simplified.moved(at)).flatten();
     let errors = simplified.collapses().iter().map(|collapse| collapse.error.to_bits());
     let words: Vec<i32> = moved.copied().chain(errors).map(|word| word as i32).collect();

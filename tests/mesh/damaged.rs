@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use relievo::ops::mesh::{Cost, Options, simplify};
+use relievo::ops::mesh::{Cost, SimplifyOptions, simplify};
 
 use crate::measure::topology;
 use crate::shapes::{Shape, bumps, ground, sphere, torus};
@@ -62,7 +62,7 @@ fn damaged_meshes_are_refused_or_valid() {
         let is_finite = shape.poses[0].as_flattened().iter().all(|x| x.is_finite());
         let cost = [Cost::Quadric, Cost::Melax { check_normals: true }][(seed % 5 == 0) as usize];
         let surface = if seed % 2 == 0 { shape.bare() } else { shape.with_uv() };
-        let Ok(found) = simplify(&surface, &Options { cost, ..Options::default() }) else {
+        let Ok(found) = simplify(&surface, &SimplifyOptions { cost, ..SimplifyOptions::default() }) else {
             assert!(!is_finite, "{seed} was refused");
             refused += 1;
             continue;

@@ -1,7 +1,7 @@
 //! What is decided where thesis B contradicts itself on simplification (`docs/sources.md`).
 
 use glam::DVec3;
-use relievo::ops::mesh::{Cost, Options, Seams, Simplified};
+use relievo::ops::mesh::{Cost, Seams, Simplified, SimplifyOptions};
 use relievo_lab::reduce::{Limits, Reducer};
 
 use crate::shapes::{Shape, sphere};
@@ -19,7 +19,7 @@ fn spiky() -> Shape {
 }
 
 fn simplified(shape: &Shape, check_normals: bool) -> Simplified {
-    shape.simplified(&Options { cost: Cost::Melax { check_normals }, ..Options::default() })
+    shape.simplified(&SimplifyOptions { cost: Cost::Melax { check_normals }, ..SimplifyOptions::default() })
 }
 
 /// For each collapse, the cosines between the normals of its two points as it found them: with triangles that weigh equally,

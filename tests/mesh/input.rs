@@ -1,10 +1,10 @@
 //! Which input of simplification is refused, and which is accepted.
 
-use relievo::ops::mesh::{Cost, Options, Stopped, Surface, simplify};
+use relievo::ops::mesh::{Cost, SimplifyOptions, Stopped, Surface, simplify};
 
 use crate::shapes::{bare, bumps, ground, shuffled, sphere};
 
-fn refused(surface: Surface<'_>, options: &Options) -> String {
+fn refused(surface: Surface<'_>, options: &SimplifyOptions) -> String {
     simplify(&surface, options).expect_err("bad").to_string()
 }
 
@@ -12,7 +12,7 @@ fn refused(surface: Surface<'_>, options: &Options) -> String {
 fn bad_input_is_named() {
     let shape = ground(2, bumps);
     let good = shape.with_uv();
-    let all = Options::default();
+    let all = SimplifyOptions::default();
     assert_eq!(refused(Surface { poses: &[], ..good }, &all), "poses.len = 0: must be at least 1");
     let mut poses = vec![shape.poses[0].clone(), vec![[0.0; 3]; 8]];
     assert_eq!(
@@ -35,7 +35,7 @@ fn bad_input_is_named() {
     uv[5] = f32::INFINITY;
     assert_eq!(refused(Surface { attributes: &uv, ..good }, &all), "attributes[2][1] = inf: must be finite");
     for error in [-1.0, f32::NAN] {
-        let options = Options { error, ..all };
+        let options = SimplifyOptions { error, ..all };
         assert_eq!(refused(good, &options), format!("error = {error}: must be at least 0"));
     }
 }
@@ -43,14 +43,14 @@ fn bad_input_is_named() {
 #[test]
 fn nothing_to_do_is_fine() {
     let empty = bare(Vec::new(), Vec::new());
-    let simplified = empty.simplified(&Options { triangles: 10, ..Options::default() });
+    let simplified = empty.simplified(&SimplifyOptions { triangles: 10, ..SimplifyOptions::default() });
     assert_eq!((simplified.stopped(), simplified.triangles(&[], 0)), (Stopped::Triangles, Vec::new()));
     let shape = ground(4, bumps);
-    let simplified = shape.simplified(&Options { triangles: 32, ..Options::default() });
+    let simplified = shape.simplified(&SimplifyOptions { triangles: 32, ..SimplifyOptions::default() });
     assert_eq!((simplified.stopped(), simplified.collapses().len()), (Stopped::Triangles, 0));
     assert_eq!(simplified.triangles(&shape.indices, 0), shape.indices);
     let loose = bare(vec![[0.0; 3]; 5], Vec::new());
-    assert_eq!(loose.simplified(&Options::default()).remap(0), [0, 1, 2, 3, 4]);
+    assert_eq!(loose.simplified(&SimplifyOptions::default()).remap(0), [0, 1, 2, 3, 4]);
 }
 
 #[test]
@@ -64,34 +64,35 @@ fn triangles_without_area_do_no_harm() {
         shape.uv.extend([[0.5; 2]; 3]);
         shape.indices.extend([81, 82, 83]);
         shape.indices.extend([0, 1, 0]);
-        let simplified = shape.simplified(&Options { cost, ..Options::default() });
+        let simplified = shape.simplified(&SimplifyOptions { cost, ..SimplifyOptions::default() });
         assert!(simplified.triangles_left() < 16, "{cost:?}");
         assert_eq!(simplified.triangles(&shape.indices, 0).len(), 128 * 3);
         // All vertices are at one place in one pose.
         let poses = [vec![[1.0; 3]; 84], shape.poses[0].clone()];
         let surface = Surface { poses: &poses, ..shape.bare() };
-        let simplified = simplify(&surface, &Options { cost, ..Options::default() }).expect("valid");
+        let simplified =
+            simplify(&surface, &SimplifyOptions { cost, ..SimplifyOptions::default() }).expect("valid");
         assert!(simplified.triangles_left() < 16, "{cost:?}");
     }
     let line: Vec<[f32; 3]> = (0..9).map(|at| [at as f32, at as f32 * 2.0, 0.1]).collect();
     let indices = (0..7).flat_map(|at| [at, at + 1, at + 2]).collect();
-    let simplified = bare(line, indices).simplified(&Options::default());
+    let simplified = bare(line, indices).simplified(&SimplifyOptions::default());
     assert_eq!(simplified.error(), 0.0);
 }
 
 #[test]
 fn the_limits_are_kept() {
     let shape = ground(24, bumps);
-    let all = shape.simplified(&Options::default());
+    let all = shape.simplified(&SimplifyOptions::default());
     for triangles in [1151, 700, 301, 40] {
-        let some = shape.simplified(&Options { triangles, ..Options::default() });
+        let some = shape.simplified(&SimplifyOptions { triangles, ..SimplifyOptions::default() });
         assert!((triangles - 1..=triangles).contains(&some.triangles_left()));
         assert_eq!(some.stopped(), Stopped::Triangles);
         // The shorter list of collapses is the beginning of the longer one.
         assert_eq!(some.collapses(), &all.collapses()[..all.collapses_to(triangles)]);
     }
     for error in [2e-3, 5e-3, 1e-2] {
-        let some = shape.simplified(&Options { error, ..Options::default() });
+        let some = shape.simplified(&SimplifyOptions { error, ..SimplifyOptions::default() });
         assert_eq!(some.stopped(), Stopped::Error);
         let within = all.collapses_within(error);
         assert_eq!(some.collapses(), &all.collapses()[..within]);
@@ -104,7 +105,7 @@ fn levels_agree_with_heirs() {
     let shape = sphere(12, 8);
     let points = shape.points();
     for surface in [shape.bare(), shape.with_uv()] {
-        let simplified = simplify(&surface, &Options::default()).expect("valid");
+        let simplified = simplify(&surface, &SimplifyOptions::default()).expect("valid");
         let mut remap: Vec<u32> = (0..shape.uv.len() as u32).collect();
         for collapses in 0..=simplified.collapses().len() {
             if let Some(last) = collapses.checked_sub(1) {
@@ -131,12 +132,12 @@ fn levels_agree_with_heirs() {
 #[test]
 fn the_same_mesh_gives_the_same_collapses() {
     let shape = ground(24, |x, z| bumps(x, z) + 0.01 * (x * x * 31.0 + z * 17.0).sin());
-    let whole = shape.simplified(&Options::default());
-    assert_eq!(shape.simplified(&Options::default()), whole);
+    let whole = shape.simplified(&SimplifyOptions::default());
+    assert_eq!(shape.simplified(&SimplifyOptions::default()), whole);
     let mut other = shape.clone();
     let order = shuffled(shape.triangles(), 3);
     other.indices = order.iter().flat_map(|at| shape.indices[*at as usize * 3..][..3].to_vec()).collect();
-    let again = other.simplified(&Options { triangles: 300, ..Options::default() });
+    let again = other.simplified(&SimplifyOptions { triangles: 300, ..SimplifyOptions::default() });
     for (at, collapse) in again.collapses().iter().enumerate() {
         assert_eq!(again.moved(at), whole.moved(at));
         assert!((collapse.error - whole.collapses()[at].error).abs() <= 1e-5 * collapse.error);
@@ -148,7 +149,7 @@ fn the_same_mesh_gives_the_same_collapses() {
 fn size_does_not_matter() {
     let shape = ground(12, bumps);
     for cost in [Cost::Quadric, Cost::Melax { check_normals: true }] {
-        let options = Options { cost, ..Options::default() };
+        let options = SimplifyOptions { cost, ..SimplifyOptions::default() };
         let whole = shape.simplified(&options);
         for exponent in [-100, 120] {
             let scale = 2.0_f32.powi(exponent);

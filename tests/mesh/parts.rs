@@ -1,6 +1,6 @@
 //! Parts of a mesh vanish where the others are near enough, and only there.
 
-use relievo::ops::mesh::{Cost, Options, Simplified, simplify_within};
+use relievo::ops::mesh::{Cost, Simplified, SimplifyOptions, simplify_within};
 
 use crate::measure::{distances, distances_between};
 use crate::shapes::{Shape, sphere};
@@ -40,7 +40,7 @@ fn knob() -> [Shape; 3] {
 #[test]
 fn a_part_vanishes_where_another_is_near() {
     let shapes = knob();
-    let simplified = all(&shapes).simplified(&Options::default());
+    let simplified = all(&shapes).simplified(&SimplifyOptions::default());
     let known = |part: usize| {
         (0..=simplified.collapses().len()).find(|at| left(&shapes, &simplified, *at)[part] == 0)
     };
@@ -63,7 +63,7 @@ fn the_distance_is_that_of_what_is_left() {
     let mut shapes = vec![ball(1.0, [0.0; 3])];
     shapes.extend((0..12).map(|at| ball(0.1, [1.15 + 0.25 * at as f32, 0.0, 0.0])));
     let shape = all(&shapes);
-    let simplified = shape.simplified(&Options::default());
+    let simplified = shape.simplified(&SimplifyOptions::default());
     let mut vanished = 0;
     for at in 1..=simplified.collapses().len() {
         let parts = left(&shapes, &simplified, at);
@@ -88,7 +88,7 @@ fn poses_may_part_what_is_near_at_rest() {
     let first = knob()[0].uv.len();
     away[first..].iter_mut().for_each(|place| place[0] += 3.0);
     shape.poses.push(away);
-    let simplified = shape.simplified(&Options::default());
+    let simplified = shape.simplified(&SimplifyOptions::default());
     let last = simplified.collapses().last().expect("some");
     assert!(
         simplified.moved(simplified.collapses().len() - 1).len() > 1 && last.error > 1.4,
@@ -105,12 +105,12 @@ fn parts_stay_where_that_is_asked_for() {
         let left = left(&shapes, simplified, simplified.collapses().len());
         left.iter().all(|triangles| *triangles >= 4)
     };
-    assert!(stays(&shape.simplified(&Options { prune: false, ..Options::default() })));
-    assert!(!stays(&shape.simplified(&Options::default())));
+    assert!(stays(&shape.simplified(&SimplifyOptions { prune: false, ..SimplifyOptions::default() })));
+    assert!(!stays(&shape.simplified(&SimplifyOptions::default())));
     // Costs of Melax are no distances, and limited distances are those of each part.
     let cost = Cost::Melax { check_normals: false };
-    assert!(stays(&shape.simplified(&Options { cost, ..Options::default() })));
-    let limited = simplify_within(&shape.bare(), &Options::default(), &[0.5, 100.0]).expect("valid");
+    assert!(stays(&shape.simplified(&SimplifyOptions { cost, ..SimplifyOptions::default() })));
+    let limited = simplify_within(&shape.bare(), &SimplifyOptions::default(), &[0.5, 100.0]).expect("valid");
     assert!(stays(&limited));
 }
 
@@ -123,7 +123,7 @@ fn attributes_keep_parts_longer() {
         let mut surface = shape.with_uv();
         let uv: Vec<f32> = surface.attributes.iter().map(|value| value * weight).collect();
         surface.attributes = &uv;
-        let simplified = relievo::ops::mesh::simplify(&surface, &Options::default()).expect("valid");
+        let simplified = relievo::ops::mesh::simplify(&surface, &SimplifyOptions::default()).expect("valid");
         let count = simplified.collapses().len();
         let at = (0..=count).find(|at| left(shapes, &simplified, *at)[1] == 0).expect("it vanishes");
         simplified.collapses()[at - 1].error
@@ -137,7 +137,7 @@ fn attributes_keep_parts_longer() {
 fn what_is_left_is_a_mesh() {
     let shapes = &knob()[..2];
     let shape = all(shapes);
-    let simplified = shape.simplified(&Options::default());
+    let simplified = shape.simplified(&SimplifyOptions::default());
     let at = (0..=simplified.collapses().len()).find(|at| left(shapes, &simplified, *at)[1] == 0);
     let indices = simplified.triangles(&shape.indices, at.expect("it vanishes"));
     let level = Shape { indices, ..shape.clone() };

@@ -1,6 +1,6 @@
 //! How far simplified meshes are from the original.
 
-use relievo::ops::mesh::{Cost, Options, Stopped, Surface, simplify};
+use relievo::ops::mesh::{Cost, SimplifyOptions, Stopped, Surface, simplify};
 
 use crate::measure::{area, distances, normal};
 use crate::shapes::{Shape, bumps, ground, sheet, torus};
@@ -14,7 +14,7 @@ fn a_flat_square_becomes_two_triangles() {
         [0.6 * x, 0.8 * x, y + 0.3 * x]
     });
     for (shape, error) in [(level, 0.0), (askew, 1e-6)] {
-        let simplified = shape.simplified(&Options { error, ..Options::default() });
+        let simplified = shape.simplified(&SimplifyOptions { error, ..SimplifyOptions::default() });
         assert_eq!((simplified.triangles_left(), simplified.stopped()), (2, Stopped::Error));
         assert!(simplified.error() <= error);
         let whole = area(&shape, 0, &shape.indices);
@@ -28,7 +28,7 @@ fn a_flat_square_becomes_two_triangles() {
 #[test]
 fn a_strip_of_squares_is_one_in_the_end() {
     let strip = sheet([50, 1], |column, row| [column as f64, row as f64, 0.0]);
-    let simplified = strip.simplified(&Options { error: 0.0, ..Options::default() });
+    let simplified = strip.simplified(&SimplifyOptions { error: 0.0, ..SimplifyOptions::default() });
     assert_eq!((simplified.triangles_left(), simplified.error()), (2, 0.0));
 }
 
@@ -36,7 +36,7 @@ fn a_strip_of_squares_is_one_in_the_end() {
 fn quadrics_leave_less_error_than_melax() {
     let shape = ground(48, bumps);
     let [quadric, melax] = [Cost::Quadric, Cost::Melax { check_normals: false }]
-        .map(|cost| shape.simplified(&Options { cost, ..Options::default() }));
+        .map(|cost| shape.simplified(&SimplifyOptions { cost, ..SimplifyOptions::default() }));
     for triangles in [2304, 920, 460, 230] {
         let [[rms, most], [melax_rms, melax_most]] = [&quadric, &melax].map(|simplified| {
             let collapses = simplified.collapses_to(triangles);
@@ -51,7 +51,7 @@ fn quadrics_leave_less_error_than_melax() {
 #[test]
 fn errors_ascend_and_are_those_of_the_surface() {
     for (shape, size) in [(ground(40, bumps), 1.0), (torus(48, 24), 3.0)] {
-        let simplified = shape.simplified(&Options::default());
+        let simplified = shape.simplified(&SimplifyOptions::default());
         let errors = simplified.collapses().iter().map(|collapse| collapse.error);
         assert!(errors.is_sorted());
         for triangles in [1000, 400, 200] {
@@ -89,8 +89,8 @@ fn arm() -> Shape {
 fn all_poses_count() {
     let shape = arm();
     let rest = Surface { poses: &shape.poses[..1], ..shape.bare() };
-    let in_rest = simplify(&rest, &Options::default()).expect("valid");
-    let in_both = shape.simplified(&Options::default());
+    let in_rest = simplify(&rest, &SimplifyOptions::default()).expect("valid");
+    let in_both = shape.simplified(&SimplifyOptions::default());
     for triangles in [600, 300, 150] {
         let [rest, both] = [&in_rest, &in_both].map(|simplified| {
             let collapses = simplified.collapses_to(triangles);
@@ -105,7 +105,7 @@ fn all_poses_count() {
 fn no_triangle_turns_around() {
     for shape in [arm(), ground(16, bumps), ground(10, |_, _| 0.0)] {
         let points = shape.points();
-        let simplified = shape.simplified(&Options::default());
+        let simplified = shape.simplified(&SimplifyOptions::default());
         let mut corners = shape.indices.clone();
         for collapse in 0..simplified.collapses().len() {
             let before = corners.clone();

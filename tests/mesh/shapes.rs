@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use relievo::ops::mesh::{Options, Simplified, Surface, simplify};
+use relievo::ops::mesh::{Simplified, SimplifyOptions, Surface, simplify};
 
 /// A mesh in one or more poses, with texture coordinates.
 #[derive(Clone)]
@@ -27,7 +27,7 @@ impl Shape {
     }
 
     /// Simplifies the mesh by positions alone.
-    pub fn simplified(&self, options: &Options) -> Simplified {
+    pub fn simplified(&self, options: &SimplifyOptions) -> Simplified {
         simplify(&self.bare(), options).expect("valid")
     }
 

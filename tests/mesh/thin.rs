@@ -1,6 +1,6 @@
 //! Thin features: fingers, ears and blades are there at every error that claims it, as the tests' own measure finds.
 
-use relievo::ops::mesh::{Options, simplify, simplify_within};
+use relievo::ops::mesh::{SimplifyOptions, simplify, simplify_within};
 
 use crate::measure::distances;
 use crate::shapes::{Shape, bumps, ground, sheet};
@@ -53,7 +53,7 @@ fn off(shape: &Shape, vertices: &[u32], level: &[u32]) -> f64 {
 fn they_survive_the_distance_that_claims_it() {
     let (shape, tips) = meadow();
     let claimed = [0.002, 0.01, 0.03];
-    let found = simplify_within(&shape.bare(), &Options::default(), &claimed).expect("valid");
+    let found = simplify_within(&shape.bare(), &SimplifyOptions::default(), &claimed).expect("valid");
     let mut last = shape.triangles();
     for distance in claimed {
         let level = found.triangles(&shape.indices, found.collapses_near(distance));
@@ -70,7 +70,7 @@ fn they_survive_the_distance_that_claims_it() {
 #[test]
 fn they_survive_the_error_that_claims_it() {
     let (shape, tips) = meadow();
-    let found = simplify(&shape.bare(), &Options::default()).expect("valid");
+    let found = simplify(&shape.bare(), &SimplifyOptions::default()).expect("valid");
     for error in [0.0005, 0.002, 0.005] {
         let collapses = found.collapses_within(error);
         let level = found.triangles(&shape.indices, collapses);

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::Vec3;
 use relievo::asset::material::{Sampling, Texture};
 use relievo::asset::{Material, Mesh, Model};
-use relievo::ops::mesh::{Cost, Options, Seams, Stopped, Surface, simplify};
+use relievo::ops::mesh::{Cost, Seams, SimplifyOptions, Stopped, Surface, simplify};
 use relievo::ops::skinning::add_levels;
 use relievo_lab::reduce::{Limits, Reducer};
 use relievo_lab::reduce::{Normals, ReducedModel, reduce_model};
@@ -214,7 +214,8 @@ fn seams_of_some_attributes_are_crossed() {
     let run = |second: [f32; 2], seams: Seams| {
         let (positions, indices, attributes) = fold(second);
         let surface = Surface { poses: &[positions], indices: &indices, attributes: &attributes, stride: 2 };
-        let found = simplify(&surface, &Options { seams, ..Options::default() }).expect("valid");
+        let found =
+            simplify(&surface, &SimplifyOptions { seams, ..SimplifyOptions::default() }).expect("valid");
         let left = found.triangles(&indices, found.collapses().len());
         // The first attribute at corners, by the part from which a triangle comes: mixed where a seam was crossed.
         let mixed = left
@@ -239,7 +240,8 @@ fn seams_of_some_attributes_are_crossed() {
     let (positions, indices, attributes) = fold([0.0; 2]);
     let surface = Surface { poses: &[positions], indices: &indices, attributes: &attributes, stride: 2 };
     let seams = Seams::Crossed { attributes: 3 };
-    let refused = simplify(&surface, &Options { seams, ..Options::default() }).expect_err("refused");
+    let refused =
+        simplify(&surface, &SimplifyOptions { seams, ..SimplifyOptions::default() }).expect_err("refused");
     assert_eq!(refused.to_string(), "seams.attributes = 3: must be at most 2, the stride");
 }
 
@@ -262,7 +264,8 @@ fn vertices_that_differ_in_nothing_are_no_seam() {
         .collect();
     let run = |positions: &[[f32; 3]], indices: &[u32], seams: Seams| {
         let surface = Surface { poses: &[positions.to_vec()], indices, attributes: &[], stride: 0 };
-        let found = simplify(&surface, &Options { seams, ..Options::default() }).expect("valid");
+        let found =
+            simplify(&surface, &SimplifyOptions { seams, ..SimplifyOptions::default() }).expect("valid");
         (found.triangles_left(), found.stopped(), found.collapses_to(160), found.error())
     };
     let held = run(&positions, &indices, Seams::Held);

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use relievo::asset::{Mesh, Model};
 use relievo::ops::skinning::at_rest;
-use relievo_lab::distance::Options;
+use relievo_lab::distance::SimplifyOptions;
 use relievo_lab::reduce::{Limits, Reducer};
 use relievo_lab::reduce::{Normals, ReducedModel, reduce_model};
 use relievo_samples::creature;
@@ -72,7 +72,11 @@ fn hard_edges_do_not_hinder_and_stay() {
         let found = reduced(&cube, 12, Normals::Carry);
         assert_eq!((count(&cube), found.triangles()), (6 * 72, 12), "{materials}");
         assert!(
-            found.distance(&at_rest(&cube).expect("valid"), &Options::default()).expect("valid").max() < 1e-8
+            found
+                .distance(&at_rest(&cube).expect("valid"), &SimplifyOptions::default())
+                .expect("valid")
+                .max()
+                < 1e-8
         );
         assert_eq!(found.model.meshes.len(), 1 + usize::from(materials));
         for mesh in &found.model.meshes {

@@ -2,7 +2,7 @@
 
 use relievo::ops::hash::threefry2x32;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, March, Method, Ray};
+use relievo::ops::surface::{Address, HeightMap, March, Ray, ReliefMethod};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::{Shape, random_map, random_rays};
 use relievo_lab::measure::relief::exact::exact;
@@ -17,7 +17,7 @@ struct Scene {
     judged: Vec<Judged>,
 }
 
-fn scenes(method: Method) -> Vec<Scene> {
+fn scenes(method: ReliefMethod) -> Vec<Scene> {
     let sizes = [[5, 4], [64, 64], [33, 100], [129, 127]];
     let all = sizes.into_iter().zip(Shape::ALL).zip(0..);
     let both =
@@ -38,23 +38,23 @@ fn travel(ray: &Ray, map: &HeightMap) -> f64 {
 }
 
 /// The hit that a method finds in f64; `None` for rays from behind the polygon.
-fn in_f64(map: &HeightMap, method: Method, ray: &Ray, march: &March) -> Option<f64> {
+fn in_f64(map: &HeightMap, method: ReliefMethod, ray: &Ray, march: &March) -> Option<f64> {
     let above = |parameter: f64| 1.0 - parameter - height(map, ray, parameter, march.address);
     let (polygon, cosine) = (f64::from(ray.polygon), f64::from(ray.cosine));
     if cosine <= 0.0 {
         return None;
     }
     Some(match method {
-        Method::Plain => polygon,
-        Method::Parallax => polygon + above(polygon),
-        Method::ParallaxLimited => polygon + cosine * above(polygon),
-        Method::Cone | Method::Quadtree => exact(map, ray, march.address)?.parameter,
-        Method::Relief | Method::Occlusion => {
+        ReliefMethod::Plain => polygon,
+        ReliefMethod::Parallax => polygon + above(polygon),
+        ReliefMethod::ParallaxLimited => polygon + cosine * above(polygon),
+        ReliefMethod::Cone | ReliefMethod::Quadtree => exact(map, ray, march.address)?.parameter,
+        ReliefMethod::Relief | ReliefMethod::Occlusion => {
             let [low, high] = march.steps.map(f64::from);
             let steps = (low + (high - low) * (1.0 - cosine.min(1.0))).ceil();
             let stop = (1..).map(f64::from).find(|step| *step >= steps || above(step / steps) <= 0.0)?;
             let (mut start, mut end) = ((stop - 1.0) / steps, stop / steps);
-            if method == Method::Occlusion {
+            if method == ReliefMethod::Occlusion {
                 let (over, below) = (above(start).max(0.0), (-above(end)).max(0.0));
                 let fraction = if over + below > 1e-12 { over / (over + below) } else { 1.0 };
                 return Some(start + fraction * (end - start));
@@ -71,7 +71,7 @@ fn in_f64(map: &HeightMap, method: Method, ray: &Ray, march: &March) -> Option<f
 /// Arithmetic in f64 rounds differently from f32 at every step; the hits of both lie within the bounds.
 #[test]
 fn what_methods_find_in_f64_lies_within_each_rays_bound() {
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let mut largest = 0.0_f64;
         for Scene { map, march, rays, judged } in scenes(method) {
             for (ray, judged) in rays.iter().zip(&judged) {
@@ -83,7 +83,7 @@ fn what_methods_find_in_f64_lies_within_each_rays_bound() {
             }
         }
         assert!(
-            method == Method::Plain || largest > 0.02,
+            method == ReliefMethod::Plain || largest > 0.02,
             "{method:?}: rounding comes to {largest} of the bounds"
         );
     }
@@ -93,7 +93,7 @@ fn what_methods_find_in_f64_lies_within_each_rays_bound() {
 /// as steady also make the same loads.
 #[test]
 fn rays_an_ulp_off_stay_within_bounds_and_steady_ones_make_the_same_loads() {
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let (mut steady, mut others) = (0, 0);
         for Scene { map, march, rays, judged } in scenes(method) {
             let surface = Surface::new(&map, method, march.address);
@@ -135,7 +135,7 @@ fn rays_an_ulp_off_stay_within_bounds_and_steady_ones_make_the_same_loads() {
 /// The bound of an ordinary ray is a few thousandths of a texel.
 #[test]
 fn most_bounds_are_narrow() {
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let mut bounds: Vec<f64> =
             scenes(method).iter().flat_map(|scene| scene.judged.iter().map(|judged| judged.texels)).collect();
         bounds.sort_unstable_by(f64::total_cmp);
@@ -159,7 +159,7 @@ fn a_ray_that_grazes_says_so() {
     // The ray passes the post's tip at height 1/2, above it by 1e-7 or by 1e-3.
     let ray = |by: f32| Ray { origin: [0.0625, 0.5625], slope: [1.0, by], cosine: 0.5, polygon: 0.0 };
     let judged =
-        |by: f32| judge(&map, Method::Quadtree, &march, &[ray(by)], Source::Given).expect("judged")[0];
+        |by: f32| judge(&map, ReliefMethod::Quadtree, &march, &[ray(by)], Source::Given).expect("judged")[0];
     assert!(judged(1e-7).touches() && judged(1e-7).texels > 3.0, "{:?}", judged(1e-7));
     assert!(judged(1e-3).texels < 0.5 * judged(1e-7).texels, "{:?}", judged(1e-3));
 }

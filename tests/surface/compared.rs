@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use relievo::ops::surface::{Green, HeightMap, March, Material, Method, Mips, Shadow};
+use relievo::ops::surface::{Green, HeightMap, March, Material, Mips, ReliefMethod, Shadow};
 use relievo_lab::measure::relief::{Comparison, ReliefSquare, SquareView};
 
 /// Ridges along v, one texel wide, between furrows a quarter as high.
@@ -30,7 +30,7 @@ fn every_method_is_measured_at_every_angle() {
     let Comparison { entries, backend, map, .. } = &comparison;
     assert_eq!((*backend, *map, heard.get()), ("cpu", [16, 16], entries.len()));
     for angle in Comparison::ANGLES {
-        for method in Method::ALL {
+        for method in ReliefMethod::ALL {
             let here: Vec<_> =
                 entries.iter().filter(|entry| entry.angle == angle && entry.method == method).collect();
             assert_eq!(here.len(), if method.is_stepped() { 8 } else { 1 }, "{method:?}");
@@ -40,14 +40,14 @@ fn every_method_is_measured_at_every_angle() {
             );
         }
     }
-    let error = |method: Method, angle: f64| {
+    let error = |method: ReliefMethod, angle: f64| {
         let found = entries.iter().find(|entry| entry.method == method && entry.angle == angle);
         found.expect("measured").measured.mean_error_texels
     };
     // Seen from straight above, all methods are right. At an angle, texture coordinates without relief are far off, and
     // those of the exact patches are not.
-    assert!(error(Method::Plain, 0.0) < 1e-3 && error(Method::Quadtree, 60.0) < 1e-2);
-    assert!(error(Method::Plain, 60.0) > 0.5, "{}", error(Method::Plain, 60.0));
+    assert!(error(ReliefMethod::Plain, 0.0) < 1e-3 && error(ReliefMethod::Quadtree, 60.0) < 1e-2);
+    assert!(error(ReliefMethod::Plain, 60.0) > 0.5, "{}", error(ReliefMethod::Plain, 60.0));
     let table = comparison.table();
     assert_eq!(table.lines().filter(|line| line.contains("° | ")).count(), entries.len() + 4);
 }
@@ -56,14 +56,14 @@ fn every_method_is_measured_at_every_angle() {
 fn a_view_of_nothing_is_refused() {
     let steps = Cell::new(0);
     let count = |_: &str| steps.set(steps.get() + 1);
-    let drawn = square([24, 20]).draw(Method::Quadtree, None, ([0.0; 3], 2), &count).expect("drawn");
+    let drawn = square([24, 20]).draw(ReliefMethod::Quadtree, None, ([0.0; 3], 2), &count).expect("drawn");
     assert_eq!((drawn.picture.dimensions(), drawn.rays.len(), drawn.hits.len()), ((24, 20), 480, 480));
     assert_eq!(steps.get(), 4);
     let mut flat = square([1, 1]);
     (flat.view.angle, flat.view.azimuth) = (89.99, 45.0);
     // The ray through the center of the only pixel meets the middle of the square at every angle.
-    assert!(flat.draw(Method::Plain, None, ([0.0; 3], 1), &count).is_ok());
+    assert!(flat.draw(ReliefMethod::Plain, None, ([0.0; 3], 1), &count).is_ok());
     flat.view.size = [2, 2];
-    let refused = flat.draw(Method::Plain, None, ([0.0; 3], 1), &count).expect_err("nothing is seen");
+    let refused = flat.draw(ReliefMethod::Plain, None, ([0.0; 3], 1), &count).expect_err("nothing is seen");
     assert!(refused.to_string().starts_with("angle = 89.99"), "{refused}");
 }

@@ -1,7 +1,7 @@
 //! What is decided where thesis B contradicts itself on surface mapping (`docs/sources.md`).
 
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, March, Material, Method, Ray};
+use relievo::ops::surface::{Address, HeightMap, March, Material, Ray, ReliefMethod};
 
 /// Towards the eye: 3 across and 4 up.
 const VIEW: [f32; 3] = [0.6, 0.0, 0.8];
@@ -16,7 +16,7 @@ fn flat(height: f32) -> HeightMap {
 }
 
 /// How far a method moves u, in units of `SCALE` · V.x / V.z, where the polygon lies at height `plane`.
-fn shift(method: Method, plane: f32, height: f32) -> f32 {
+fn shift(method: ReliefMethod, plane: f32, height: f32) -> f32 {
     let map = flat(height);
     let surface = Surface::new(&map, method, Address::Wrap);
     let march = March { steps: [256, 256], binary_steps: 16, ..March::default() };
@@ -28,9 +28,9 @@ fn shift(method: Method, plane: f32, height: f32) -> f32 {
 #[test]
 fn the_bias_of_parallax_is_negative() {
     for (plane, height) in [(0.5, 0.0), (0.5, 0.5), (0.5, 0.75), (1.0, 0.25), (0.0, 0.25)] {
-        let found = shift(Method::Parallax, plane, height);
+        let found = shift(ReliefMethod::Parallax, plane, height);
         assert!((found - (height - plane)).abs() < 1e-5, "{found} at {plane}, {height}");
-        let limited = shift(Method::ParallaxLimited, plane, height);
+        let limited = shift(ReliefMethod::ParallaxLimited, plane, height);
         assert!((limited - (height - plane) * VIEW[2]).abs() < 1e-5, "{limited} at {plane}, {height}");
     }
 }
@@ -40,8 +40,8 @@ fn the_bias_of_parallax_is_negative() {
 fn the_polygon_is_the_top_of_the_relief() {
     let top = Material::default().plane;
     assert_eq!(top, 1.0);
-    for method in Method::ALL {
-        if [Method::Plain, Method::ParallaxLimited].contains(&method) {
+    for method in ReliefMethod::ALL {
+        if [ReliefMethod::Plain, ReliefMethod::ParallaxLimited].contains(&method) {
             continue;
         }
         for height in [1.0, 0.75, 0.25] {
@@ -59,7 +59,7 @@ fn the_polygon_is_the_top_of_the_relief() {
 fn linear_steps_grow_with_the_angle() {
     let map = flat(0.0);
     let march = March { steps: [8, 24], binary_steps: 0, ..March::default() };
-    for method in [Method::Relief, Method::Occlusion] {
+    for method in [ReliefMethod::Relief, ReliefMethod::Occlusion] {
         let surface = Surface::new(&map, method, Address::Wrap);
         let loads = |cosine: f32| {
             let view = [(1.0 - cosine * cosine).sqrt(), 0.0, cosine];

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use relievo::Error;
-use relievo::ops::terrain::config::{Interpolation, TerrainConfig};
+use relievo::ops::terrain::config::{HeightInterpolation, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::generate;
 use relievo_lab::files::Staged;
@@ -59,7 +59,7 @@ impl Creases {
             let config = TerrainConfig { roughness: self.roughness, interpolation, ..config };
             config.validate().map(|()| config)
         };
-        let both = [config(Interpolation::Linear)?, config(Interpolation::Smooth)?];
+        let both = [config(HeightInterpolation::Linear)?, config(HeightInterpolation::Smooth)?];
         let [linear, smooth] = [creases(&both[0], &seeds)?, creases(&both[1], &seeds)?];
         let mut staged = Staged::new(&self.out)?;
         for (config, name) in both.iter().zip(["linear.png", "smooth.png"]) {

@@ -8,7 +8,9 @@ use std::time::Instant;
 use clap::Args;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::ops::surface::{Address, Green, HeightMap, March, Material, Method, Mips, Outcome, Shadow};
+use relievo::ops::surface::{
+    Address, Green, HeightMap, March, Material, Mips, Outcome, ReliefMethod, Shadow,
+};
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
 use relievo_lab::measure::relief::{
@@ -71,7 +73,7 @@ pub struct Relief {
     /// The method that intersects rays with the heights: plain, parallax, parallax-limited, relief,
     /// occlusion, cone or quadtree.
     #[arg(long, value_name = "METHOD", default_value = "quadtree")]
-    method: Method,
+    method: ReliefMethod,
     /// Depth of the relief S, in tiles of the texture: 0 to 1.
     #[arg(long, value_name = "S", default_value_t = 0.1, allow_hyphen_values = true)]
     scale: f64,
@@ -128,7 +130,7 @@ pub struct Relief {
 
 #[derive(Serialize)]
 struct Report<'a> {
-    method: Method,
+    method: ReliefMethod,
     #[serde(flatten)]
     measured: Measured,
     /// Equal to `mean_samples`.

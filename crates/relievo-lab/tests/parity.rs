@@ -6,7 +6,7 @@ use glam::Vec4;
 use relievo::gpu::Buffer;
 use relievo::ops::surface::relief::ReliefPass;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{HeightMap, Hit, March, Method, Ray, SurfaceTextures};
+use relievo::ops::surface::{HeightMap, Hit, March, Ray, ReliefMethod, SurfaceTextures};
 use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::relief::hits;
@@ -60,7 +60,7 @@ fn relative_sees_errors_beyond_its_share() {
 }
 
 /// Noise and rays at all angles, with what they hit and how far that may be off.
-fn judged_rays(method: Method) -> (HeightMap, March, Vec<Ray>, Vec<Judged>) {
+fn judged_rays(method: ReliefMethod) -> (HeightMap, March, Vec<Ray>, Vec<Judged>) {
     let map = random_map(4, [64, 64], Shape::Noise).expect("a map");
     let march = March { steps: [6, 28], binary_steps: 14, ..March::default() };
     let rays = random_rays(4, 400);
@@ -72,7 +72,7 @@ fn judged_rays(method: Method) -> (HeightMap, March, Vec<Ray>, Vec<Judged>) {
 /// on every single ray that does not touch, and those are nearly all.
 #[test]
 fn hits_sees_one_ray_a_twentieth_of_a_texel_off() {
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let (.., judged) = judged_rays(method);
         let expected: Vec<Hit> = judged.iter().map(|judged| judged.expected).collect();
         assert!(hits(&expected, &judged, [64, 64]).holds);
@@ -102,7 +102,7 @@ fn hits_sees_one_ray_a_twentieth_of_a_texel_off() {
 
 #[test]
 fn hits_sees_too_many_rays_that_prove_little() {
-    let (.., mut judged) = judged_rays(Method::Quadtree);
+    let (.., mut judged) = judged_rays(ReliefMethod::Quadtree);
     let expected: Vec<Hit> = judged.iter().map(|judged| judged.expected).collect();
     let spread = hits(&expected, &judged, [64, 64]).spread.expect("a spread");
     assert!(spread.touching < spread.may_touch && spread.largest == 0.0, "{spread:?}");
@@ -115,7 +115,7 @@ fn hits_sees_too_many_rays_that_prove_little() {
 #[test]
 fn a_kernel_that_traces_other_rays_fails() {
     let gpu = harness::gpu();
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let (map, march, rays, judged) = judged_rays(method);
         let textures = SurfaceTextures::new(&gpu, &map, method, march.address).expect("uploaded");
         let pass = ReliefPass::new(&gpu, method).expect("compiled");
@@ -145,9 +145,9 @@ fn judged_shades() -> (HeightMap, March, ShadeView, Vec<ShadePoint>, Vec<JudgedS
     let map = random_map(9, [64, 64], Shape::Hills).expect("a map");
     let march = March { binary_steps: 16, ..March::default() };
     let view = ShadeView { softness: 1.0, ..perspective() };
-    let surface = Surface::new(&map, Method::Quadtree, march.address);
-    let points = random_points(9, 400, &surface, Method::Quadtree, &march);
-    let judged = shade::judged(&map, Method::Quadtree, &march, &view, &points).expect("judged");
+    let surface = Surface::new(&map, ReliefMethod::Quadtree, march.address);
+    let points = random_points(9, 400, &surface, ReliefMethod::Quadtree, &march);
+    let judged = shade::judged(&map, ReliefMethod::Quadtree, &march, &view, &points).expect("judged");
     (map, march, view, points, judged)
 }
 
@@ -207,7 +207,7 @@ fn shades_sees_one_point_of_other_light_or_depth() {
 fn a_kernel_that_shades_otherwise_fails() {
     let gpu = harness::gpu();
     let (map, march, view, points, judged) = judged_shades();
-    let method = Method::Quadtree;
+    let method = ReliefMethod::Quadtree;
     let textures = SurfaceTextures::new(&gpu, &map, method, march.address).expect("uploaded");
     let pass = ShadePass::new(&gpu, method).expect("compiled");
     let holds = |view: &ShadeView, points: &[ShadePoint]| {

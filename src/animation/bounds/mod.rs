@@ -31,7 +31,7 @@ pub const BOUNDS_BOUND: f32 = 4e-6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
-pub struct Bounds {
+pub struct MotionBounds {
     /// The smallest x, y, z in metres, and 0.
     pub low: [f32; 4],
     /// The largest x, y, z in metres, and 0.

@@ -1,6 +1,6 @@
 //! The GPU pass of `kernels/animation/bounds.wgsl`.
 
-use super::{Bounds, check_bone_radii};
+use super::{MotionBounds, check_bone_radii};
 use crate::animation::crowd::Crowd;
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::bounds as bindings;
@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::animation::bounds::{BoundsParams, THREADS};
 use crate::{Error, InputError};
 
-impl SeenAs<[f32; 4]> for Bounds {}
+impl SeenAs<[f32; 4]> for MotionBounds {}
 
 /// Computes the bounds of instances.
 #[derive(Debug, Clone)]
@@ -35,7 +35,7 @@ impl BoundsPass {
         gpu: &Gpu,
         crowd: &Crowd,
         bone_radii: &[f32],
-        bounds: &Buffer<Bounds>,
+        bounds: &Buffer<MotionBounds>,
     ) -> Result<Job, Error> {
         check_bone_radii(bone_radii, crowd.bones)?;
         bounds.check_holds("bounds", crowd.len())?;

@@ -1,6 +1,6 @@
 //! Bounds of instances: the CPU reference of `kernels/animation/bounds.wgsl`.
 
-use crate::animation::bounds::Bounds;
+use crate::animation::bounds::MotionBounds;
 use crate::asset::transform::Affine;
 use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTER};
 
@@ -8,15 +8,15 @@ use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTER};
 ///
 /// # Panics
 /// If there are no radii.
-pub fn bounds(model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<Bounds> {
+pub fn bounds(model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<MotionBounds> {
     model_matrices
         .chunks_exact(bone_radii.len())
         .map(|model_matrices| around(model_matrices, bone_radii))
         .collect()
 }
 
-fn around(model_matrices: &[Affine], bone_radii: &[f32]) -> Bounds {
-    let mut bounds = Bounds { low: [f32::MAX; 4], high: [f32::MIN; 4] };
+fn around(model_matrices: &[Affine], bone_radii: &[f32]) -> MotionBounds {
+    let mut bounds = MotionBounds { low: [f32::MAX; 4], high: [f32::MIN; 4] };
     (bounds.low[3], bounds.high[3]) = (0.0, 0.0);
     for (model, bone_radius) in model_matrices.iter().zip(bone_radii) {
         for (axis, [x, y, z, center]) in model.iter().enumerate() {

@@ -5,7 +5,7 @@
 //!
 //! - in their first frame, and after they were hidden;
 //! - when their clip changes;
-//! - when the host asks for it ([`Sampling::Forced`](super::lod::Sampling::Forced));
+//! - when the host asks for it ([`BoneSampling::Forced`](super::lod::BoneSampling::Forced));
 //! - when layers above their clip gain or lose all weight, or change their clips.
 //!
 //! While such layers have weight, accumulated motion cannot be used, because it describes a single clip.

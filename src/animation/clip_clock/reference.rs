@@ -5,7 +5,7 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::animation::layers::Layer;
-use crate::animation::lod::{Lod, Sampling};
+use crate::animation::lod::{BoneSampling, Lod};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::keyframe_cursor;
 use crate::shared::animation::clip_clock::CLIP_HASH_FACTOR;
@@ -39,10 +39,10 @@ pub fn clip_clocks(
         let known = [(instance.clip + 1) | blended, above, now.to_bits(), later.to_bits()];
         let last = std::mem::replace(&mut history[index], known);
         let sampling = lods[index].sampling;
-        let reason = if sampling == Sampling::Hidden {
+        let reason = if sampling == BoneSampling::Hidden {
             history[index] = [0; 4];
             UpdateReason::Hidden
-        } else if sampling == Sampling::Forced || last[..2] != known[..2] {
+        } else if sampling == BoneSampling::Forced || last[..2] != known[..2] {
             UpdateReason::Forced
         } else if blended != 0 {
             UpdateReason::Blended

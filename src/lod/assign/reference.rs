@@ -1,7 +1,7 @@
 //! Assignment of allowed displacements: the CPU reference of `kernels/lod/assign.wgsl`.
 
 use super::AssignParams;
-use crate::animation::{Lod, Sampling};
+use crate::animation::{BoneSampling, Lod};
 use crate::lod::object::level_within;
 use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
 use crate::skinning::instance_lod::InstanceLod;
@@ -10,7 +10,7 @@ use crate::skinning::instance_lod::InstanceLod;
 /// units, negative if no view sees it. With `carries`, the instance carries a mesh, and no bone may be off.
 pub fn assign(params: &AssignParams, allowed: f32, carries: bool) -> (Lod, InstanceLod) {
     if allowed < 0.0 {
-        return (Lod { sampling: Sampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
+        return (Lod { sampling: BoneSampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
     }
     let units = if carries { 0.0 } else { units(params, allowed) };
     let lod = Lod { allowed: units.floor().min(MAX_UNITS) as u32, ..Lod::FULL };

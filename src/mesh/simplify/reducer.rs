@@ -14,7 +14,7 @@ use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
 use super::topology::{Change, Kind, Topology};
 use super::tracked_samples::TrackedSamples;
-use super::{Collapse, Cost, Options, Seams, Simplified, Stopped, Surface};
+use super::{Collapse, Cost, Seams, Simplified, SimplifyOptions, Stopped, Surface};
 
 /// State of a mesh during simplification.
 struct Reducer<'a> {
@@ -48,7 +48,7 @@ const REPORT: usize = 256;
 /// break.
 pub(crate) fn reduce<B>(
     surface: &Surface<'_>,
-    options: &Options,
+    options: &SimplifyOptions,
     distances: &[f32],
     bodies: &[u32],
     watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
@@ -90,7 +90,7 @@ struct Done {
 }
 
 impl<'a> Reducer<'a> {
-    fn new(surface: &Surface<'a>, options: &Options, is_limited: bool, bodies: &[u32]) -> Self {
+    fn new(surface: &Surface<'a>, options: &SimplifyOptions, is_limited: bool, bodies: &[u32]) -> Self {
         let cost = options.cost;
         let points = Points::new(surface.poses);
         let points = match options.seams {
@@ -129,7 +129,7 @@ impl<'a> Reducer<'a> {
     /// reached. `watch` gets the number of triangles that are left.
     fn run<B>(
         &mut self,
-        options: &Options,
+        options: &SimplifyOptions,
         distance: f32,
         done: &mut Done,
         watch: &mut dyn FnMut(usize) -> ControlFlow<B>,

@@ -454,7 +454,7 @@ fn middle(points: &Points, ends: &[u32], pose: usize) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::simplify::{Options, Simplified, Stopped, Surface, simplify, simplify_within};
+    use crate::mesh::simplify::{Simplified, SimplifyOptions, Stopped, Surface, simplify, simplify_within};
 
     const SIDE: u32 = 18;
 
@@ -507,7 +507,7 @@ mod tests {
         let (poses, indices) = sheet();
         let surface = Surface { poses: &poses, indices: &indices, attributes: &[], stride: 0 };
         let distances = [0.0, 0.008, 0.02, 0.05];
-        let found = simplify_within(&surface, &Options::default(), &distances).expect("valid");
+        let found = simplify_within(&surface, &SimplifyOptions::default(), &distances).expect("valid");
         assert_eq!(found.stopped(), Stopped::Distance);
         let level = |found: &Simplified, count| found.triangles(&indices, count);
         let mut last = indices.len();
@@ -523,7 +523,7 @@ mod tests {
         }
         assert!(6 * last < indices.len(), "{last} indices left");
         // Quadrics alone leave more triangles at this distance.
-        let plain = simplify(&surface, &Options::default()).expect("valid");
+        let plain = simplify(&surface, &SimplifyOptions::default()).expect("valid");
         assert!(plain.collapses().iter().all(|collapse| collapse.distance == f32::INFINITY));
         let within = |count| off(&poses, &indices, &level(&plain, count)) <= 0.02;
         let far =
@@ -568,12 +568,12 @@ mod tests {
         let (poses, indices) = sheet();
         let surface = Surface { poses: &poses, indices: &indices, attributes: &[], stride: 0 };
         let refused = |distances: &[f32]| {
-            simplify_within(&surface, &Options::default(), distances).expect_err("refused").path
+            simplify_within(&surface, &SimplifyOptions::default(), distances).expect_err("refused").path
         };
         assert_eq!(refused(&[-1.0]), "distances[0]");
         assert_eq!(refused(&[0.5, 0.25]), "distances[1]");
         assert_eq!(refused(&[0.5, f32::NAN]), "distances[1]");
-        let none = simplify_within(&surface, &Options::default(), &[]).expect("valid");
+        let none = simplify_within(&surface, &SimplifyOptions::default(), &[]).expect("valid");
         assert_eq!((none.collapses().len(), none.stopped()), (0, Stopped::Distance));
     }
 }

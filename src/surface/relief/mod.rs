@@ -35,7 +35,7 @@ pub const MAX_SCALE: f32 = 1.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[repr(u32)]
-pub enum Method {
+pub enum ReliefMethod {
     /// No mapping: the polygon's own texture coordinates.
     Plain = trace::SURFACE_PLAIN,
     /// Parallax mapping: one height sample and one shift (Kaneko 2001).
@@ -55,7 +55,7 @@ pub enum Method {
     Quadtree = trace::SURFACE_QUADTREE,
 }
 
-impl Method {
+impl ReliefMethod {
     /// All methods, in the order of their values in the shaders.
     pub const ALL: [Self; 7] = [
         Self::Plain,
@@ -91,7 +91,7 @@ impl Method {
     }
 }
 
-impl FromStr for Method {
+impl FromStr for ReliefMethod {
     type Err = InputError;
 
     fn from_str(name: &str) -> Result<Self, InputError> {
@@ -205,11 +205,11 @@ mod tests {
 
     #[test]
     fn names_and_numbers_agree() {
-        for (number, method) in Method::ALL.into_iter().enumerate() {
+        for (number, method) in ReliefMethod::ALL.into_iter().enumerate() {
             assert_eq!(method.code() as usize, number);
             assert_eq!(method.name().parse(), Ok(method));
         }
-        assert_eq!("bump".parse::<Method>().expect_err("no such method").path, "method");
+        assert_eq!("bump".parse::<ReliefMethod>().expect_err("no such method").path, "method");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The GPU pass of `kernels/surface/relief.wgsl`.
 
-use super::{Hit, March, Method, Ray};
+use super::{Hit, March, Ray, ReliefMethod};
 use crate::gpu::bindings::surface::relief as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::surface::ray::SurfaceMarch;
@@ -19,7 +19,7 @@ impl From<March> for SurfaceMarch {
 #[derive(Debug, Clone)]
 pub struct ReliefPass {
     kernel: Kernel,
-    method: Method,
+    method: ReliefMethod,
 }
 
 impl ReliefPass {
@@ -27,7 +27,7 @@ impl ReliefPass {
     ///
     /// # Errors
     /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu, method: Method) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, method: ReliefMethod) -> Result<Self, GpuError> {
         let constants = bindings::Constants { method: method.code() };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, method })
     }

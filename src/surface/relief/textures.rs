@@ -5,7 +5,7 @@ use crate::surface::HeightMapBatch;
 use crate::surface::cone_map::ConeMapPass;
 use crate::surface::height_pyramid::{HeightPyramidPass, Pyramids};
 use crate::surface::map::{Address, HeightMap};
-use crate::surface::relief::{March, Method};
+use crate::surface::relief::{March, ReliefMethod};
 use crate::{Error, InputError};
 
 /// Textures of a method: the height map and its acceleration map.
@@ -16,7 +16,7 @@ pub struct SurfaceTextures {
     /// The pyramid (`R32Float`) or the cones (`Rg32Float`); a single texel for methods that need neither.
     pub acceleration: wgpu::Texture,
     /// The method for which the acceleration map was computed.
-    pub method: Method,
+    pub method: ReliefMethod,
     /// The address mode for which the acceleration map was computed.
     pub address: Address,
 }
@@ -27,10 +27,10 @@ impl SurfaceTextures {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn new(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, map: &HeightMap, method: ReliefMethod, address: Address) -> Result<Self, Error> {
         let heights = upload(gpu, map)?;
         let acceleration = match method {
-            Method::Quadtree | Method::Cone => accelerated(gpu, map, method, address)?,
+            ReliefMethod::Quadtree | ReliefMethod::Cone => accelerated(gpu, map, method, address)?,
             _ => texture(gpu, "no acceleration", [1, 1], 1, wgpu::TextureFormat::R32Float)?,
         };
         Ok(Self { heights, acceleration, method, address })
@@ -43,7 +43,7 @@ impl SurfaceTextures {
     }
 
     /// Refuses a method or an address mode for which the textures were not computed.
-    pub fn check(&self, method: Method, march: &March) -> Result<(), InputError> {
+    pub fn check(&self, method: ReliefMethod, march: &March) -> Result<(), InputError> {
         if self.method != method {
             let bound = format!("must be {}, which its maps were made for", self.method.name());
             return Err(InputError::new("method", method.name(), bound));
@@ -56,12 +56,17 @@ impl SurfaceTextures {
     }
 }
 
-fn accelerated(gpu: &Gpu, map: &HeightMap, method: Method, address: Address) -> Result<wgpu::Texture, Error> {
+fn accelerated(
+    gpu: &Gpu,
+    map: &HeightMap,
+    method: ReliefMethod,
+    address: Address,
+) -> Result<wgpu::Texture, Error> {
     let batch = HeightMapBatch::new(gpu, std::slice::from_ref(map))?;
     let pyramids = Pyramids::new(gpu, &batch, address)?;
     let pyramid_job = HeightPyramidPass::new(gpu)?.prepare(gpu, &batch, &pyramids)?;
     let layout = pyramids.layout;
-    if method == Method::Quadtree {
+    if method == ReliefMethod::Quadtree {
         let size = [layout.pitch, layout.rows];
         let plane = texture(gpu, "pyramid", size, 1, wgpu::TextureFormat::R32Float)?;
         gpu.submit("pyramid", |encoder| {

@@ -61,7 +61,7 @@ impl Offset {
 /// Interpolation of a new point from the coarser lattice, before its random offset is added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Interpolation {
+pub enum HeightInterpolation {
     /// Mean of four neighbours, as in B. It leaves creases along the lines of coarse lattices.
     #[default]
     Linear,
@@ -105,7 +105,7 @@ pub struct TerrainConfig {
     /// Distribution of the offsets. Default `signed`.
     pub offset: Offset,
     /// Interpolation of new points. Default `linear`.
-    pub interpolation: Interpolation,
+    pub interpolation: HeightInterpolation,
     /// Border mode. Default `seamless`.
     pub border: Border,
     /// Heights of the corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1). Default 0. `wrap` and `blend` only.
@@ -137,7 +137,7 @@ impl TerrainConfig {
             roughness: 1.0,
             coarse_levels: 0,
             offset: Offset::Signed,
-            interpolation: Interpolation::Linear,
+            interpolation: HeightInterpolation::Linear,
             border: Border::Seamless,
             corners: [0.0; 4],
             terrain_scale: 1.0,
@@ -215,7 +215,7 @@ impl TerrainConfig {
             let bound = "must be 0 unless border is \"seamless\": a patch by itself has nothing coarser";
             return Err(InputError::new("coarse_levels", self.coarse_levels, bound));
         }
-        if self.interpolation == Interpolation::Smooth && self.border != Border::Seamless {
+        if self.interpolation == HeightInterpolation::Smooth && self.border != Border::Seamless {
             let bound =
                 "must be \"linear\" unless border is \"seamless\": a patch by itself has too few neighbours";
             return Err(InputError::new("interpolation", "smooth", bound));
@@ -236,7 +236,7 @@ impl TerrainConfig {
     /// # Errors
     /// [`InputError`] that names `scale_factor` or `precomputed_heights`.
     pub(crate) fn check_overflow(&self, largest_feature: i64, additive: bool) -> Result<(), InputError> {
-        if self.interpolation == Interpolation::Smooth {
+        if self.interpolation == HeightInterpolation::Smooth {
             return self.check_smooth(largest_feature);
         }
         let corner =

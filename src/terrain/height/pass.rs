@@ -2,7 +2,7 @@
 
 use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
-use crate::terrain::config::{Border, Interpolation, Offset, TerrainConfig};
+use crate::terrain::config::{Border, HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
 use crate::{Error, InputError};
@@ -46,7 +46,7 @@ impl HeightPass {
                 InputError::new("border", value, "must be \"seamless\" for windows of the plane").into()
             );
         }
-        if config.interpolation != Interpolation::Linear {
+        if config.interpolation != HeightInterpolation::Linear {
             let bound = "must be \"linear\" in this pass: SmoothPass makes the others";
             return Err(InputError::new("interpolation", "smooth", bound).into());
         }

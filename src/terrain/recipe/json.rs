@@ -5,7 +5,7 @@ use serde::Deserialize;
 use super::Recipe;
 use crate::InputError;
 use crate::terrain::config::{
-    Border, Interpolation, Object, Offset, TerrainConfig, Zone, from_json_object, named, whole,
+    Border, HeightInterpolation, Object, Offset, TerrainConfig, Zone, from_json_object, named, whole,
 };
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::thermal::Thermal;
@@ -24,7 +24,7 @@ struct Raw {
     #[serde(default, deserialize_with = "named")]
     offset: Offset,
     #[serde(default, deserialize_with = "named")]
-    interpolation: Interpolation,
+    interpolation: HeightInterpolation,
     border: Option<RawBorder>,
     corners: Option<RawCorners>,
     terrain_scale: Option<f64>,

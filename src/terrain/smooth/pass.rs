@@ -2,7 +2,7 @@
 
 use crate::gpu::bindings::terrain::smooth as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
-use crate::terrain::config::{Interpolation, Offset, TerrainConfig};
+use crate::terrain::config::{HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
 use crate::{Error, InputError};
@@ -39,7 +39,7 @@ impl SmoothPass {
         scratch: &HeightScratch,
     ) -> Result<HeightJob, Error> {
         config.validate()?;
-        if config.interpolation != Interpolation::Smooth {
+        if config.interpolation != HeightInterpolation::Smooth {
             let bound = "must be \"smooth\" in this pass: HeightPass makes the others";
             return Err(InputError::new("interpolation", "linear", bound).into());
         }

@@ -7,7 +7,7 @@ use relievo::InputError;
 use relievo::asset::morph::MorphDelta;
 use relievo::asset::{Influence, Influences, Interpolation, Mesh, MorphTarget, WeightKeys};
 use relievo::ops::mesh::progressive::ChosenLevel;
-use relievo::ops::mesh::{Options, ProgressiveMesh, Simplified, simplify};
+use relievo::ops::mesh::{ProgressiveMesh, Simplified, SimplifyOptions, simplify};
 
 use crate::measure::distances;
 use crate::shapes::{Shape, bumps, cube, ground, sphere, torus};
@@ -86,7 +86,7 @@ fn cases() -> Vec<Case> {
     ];
     let case = |(name, shape, bones): (&'static str, Shape, u32)| {
         let mesh = mesh(&shape, bones);
-        let simplified = simplify(&shape.with_uv(), &Options::default()).expect("valid");
+        let simplified = simplify(&shape.with_uv(), &SimplifyOptions::default()).expect("valid");
         let chosen = halves(&simplified, shape.triangles());
         let progressive = ProgressiveMesh::new(&mesh, &simplified, &chosen).expect("valid");
         Case { name, shape, mesh, simplified, chosen, progressive }

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::ops::mesh::{Options, ProgressiveMesh, simplify};
+use relievo::ops::mesh::{ProgressiveMesh, SimplifyOptions, simplify};
 use serde_json::Value;
 
 use super::{Case, cases, error_of, halves, mesh};
@@ -80,7 +80,7 @@ fn small() -> Vec<u8> {
     static SMALL: std::sync::OnceLock<Vec<u8>> = std::sync::OnceLock::new();
     let make = || {
         let shape = sphere(8, 6);
-        let simplified = simplify(&shape.with_uv(), &Options::default()).expect("valid");
+        let simplified = simplify(&shape.with_uv(), &SimplifyOptions::default()).expect("valid");
         let chosen = halves(&simplified, shape.triangles());
         let progressive = ProgressiveMesh::new(&mesh(&shape, 3), &simplified, &chosen).expect("valid");
         serde_json::to_vec(&progressive).expect("JSON")

@@ -1,6 +1,6 @@
 //! What holds for every reducer: names, limits, and what is refused.
 
-use relievo::ops::mesh::{Cost, Options, Seams, Stopped, Surface, simplify};
+use relievo::ops::mesh::{Cost, Seams, SimplifyOptions, Stopped, Surface, simplify};
 use relievo_lab::reduce::{Limits, Reducer};
 
 use crate::shapes::{bare, bumps, cube, ground, sphere};
@@ -67,7 +67,8 @@ fn several_limits_give_what_each_gives_alone() {
 fn half_edges_are_those_of_simplify() {
     let shape = cube(5);
     for cost in [Cost::Quadric, Cost::Melax { check_normals: true }] {
-        let simplified = simplify(&shape.with_uv(), &Options { cost, ..Options::default() }).expect("valid");
+        let simplified = simplify(&shape.with_uv(), &SimplifyOptions { cost, ..SimplifyOptions::default() })
+            .expect("valid");
         let reduced = Reducer::HalfEdge { cost, seams: Seams::Held }
             .reduce(&shape.with_uv(), &Limits { triangles: 50, ..Limits::default() })
             .expect("valid");

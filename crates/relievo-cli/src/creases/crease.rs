@@ -94,7 +94,7 @@ pub fn hill_shaded(heights: &[i32], width: usize, spacing: f64) -> Result<GrayIm
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::ops::terrain::config::Interpolation;
+    use relievo::ops::terrain::config::HeightInterpolation;
 
     #[test]
     fn columns_belong_to_the_first_level_that_has_them() {
@@ -112,7 +112,7 @@ mod tests {
             println!("{interpolation:?}: {all:?}");
             all.iter().map(|crease| crease.ratio).fold(0.0, f64::max)
         };
-        let (linear, smooth) = (largest(Interpolation::Linear), largest(Interpolation::Smooth));
+        let (linear, smooth) = (largest(HeightInterpolation::Linear), largest(HeightInterpolation::Smooth));
         assert!(linear > 1.5 && smooth <= 1.15, "linear {linear}, smooth {smooth}");
         let flat = TerrainConfig::new(257, 0.0, "").expect("valid");
         assert_eq!(creases(&flat, &seeds).expect_err("no bends").path, "scale_factor");

@@ -2,7 +2,7 @@
 
 use image::RgbaImage;
 use relievo::InputError;
-use relievo::ops::surface::Method;
+use relievo::ops::surface::ReliefMethod;
 use relievo_lab::measure::relief::Comparison;
 use relievo_lab::measure::relief::Measured;
 use relievo_lab::plot::{Chart, Series, grid};
@@ -10,7 +10,7 @@ use relievo_lab::plot::{Chart, Series, grid};
 /// Draws one panel per angle.
 pub fn plot(comparison: &Comparison) -> Result<RgbaImage, InputError> {
     let chart = |angle: f64| {
-        let series = Method::ALL.into_iter().map(|method| {
+        let series = ReliefMethod::ALL.into_iter().map(|method| {
             let all = comparison.entries.iter();
             let here = all.filter(move |entry| entry.angle == angle && entry.method == method);
             let point = |measured: Measured| (measured.mean_samples, measured.mean_error_texels);

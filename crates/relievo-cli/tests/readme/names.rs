@@ -6,7 +6,7 @@ use relievo::asset::Model;
 use relievo::asset::material::Alpha;
 use relievo::ops::animation::lod::Projection;
 use relievo::ops::lod::LodCamera;
-use relievo::ops::mesh::{Options, Simplified};
+use relievo::ops::mesh::{Simplified, SimplifyOptions};
 use relievo::ops::skinning::Extent;
 use relievo::ops::surface::ReliefOptions;
 use relievo::render::{Layer, OutputProgram, Renderer, TargetFormat};
@@ -60,7 +60,7 @@ fn members() {
     let _ = Model::from_file; // Model::from_file
     let _ = Model::to_glb; // Model::to_glb
     let _ = Model::to_obj; // Model::to_obj
-    let _ = |options: Options| options.prune; // Options::prune
+    let _ = |options: SimplifyOptions| options.prune; // SimplifyOptions::prune
     let _ = OutputProgram::new; // OutputProgram::new
     let _ = Renderer::with_shading; // Renderer::with_shading
     let _ = |format: TargetFormat| format.color; // TargetFormat::color
@@ -111,7 +111,7 @@ fn decided() {
     let _ = relievo_lab::reduce::Reducer::ALL; // reduce::Reducer::ALL
     let _ = |cost| matches!(cost, relievo::ops::mesh::Cost::Melax { .. }); // ops::mesh::Cost::Melax
     let _ = relievo_lab::reduce::Normals::Recompute; // reduce::Normals::Recompute
-    let _ = relievo::ops::surface::Method::Parallax; // ops::surface::Method::Parallax
+    let _ = relievo::ops::surface::ReliefMethod::Parallax; // ops::surface::ReliefMethod::Parallax
     let _ = |march: relievo::ops::surface::March| march.steps; // ops::surface::March::steps
     let _ = |material: relievo::ops::surface::Material| material.plane; // ops::surface::Material::plane
     let _ = |config: relievo::ops::terrain::config::TerrainConfig| config.scale_factor; // ops::terrain::config::TerrainConfig::scale_factor

@@ -17,7 +17,7 @@
 //! cut along the sides of the triangle of the other surface that is nearest to its middle: above one triangle the
 //! distance is nearly linear, so that the bounds meet after a few cuts, however fine the other surface is. Where no side cuts
 //! it, its longest edge is halved. The largest distance that is returned is an upper bound, at most
-//! [`Options::tolerance`] times larger than the distance of a point that was seen.
+//! [`SimplifyOptions::tolerance`] times larger than the distance of a point that was seen.
 //!
 //! # The root mean square
 //!
@@ -52,7 +52,7 @@ pub struct Triangles<'a> {
 
 /// How exact distances are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct SimplifyOptions {
     /// How much larger than the distance of some point the largest distance may be: a fraction of 0.001 to 1. By default 0.01.
     pub tolerance: f64,
     /// The least number of samples of the root mean square on each surface, spread by area: 1 to 2²⁸. Each triangle has at
@@ -60,7 +60,7 @@ pub struct Options {
     pub samples: usize,
 }
 
-impl Default for Options {
+impl Default for SimplifyOptions {
     fn default() -> Self {
         Self { tolerance: 0.01, samples: 1 << 18 }
     }
@@ -119,8 +119,12 @@ impl Distance {
 /// # Errors
 /// [`InputError`] for a surface without triangles, for indices that are out of range or not three per triangle, for positions
 /// that are not finite, and for options out of range. Paths begin with `from` or `to`, or with `options`.
-pub fn distance(from: &Triangles<'_>, to: &Triangles<'_>, options: &Options) -> Result<Distance, InputError> {
-    let Options { tolerance, samples } = *options;
+pub fn distance(
+    from: &Triangles<'_>,
+    to: &Triangles<'_>,
+    options: &SimplifyOptions,
+) -> Result<Distance, InputError> {
+    let SimplifyOptions { tolerance, samples } = *options;
     if !(0.001..=1.0).contains(&tolerance) {
         return Err(InputError::new("options.tolerance", tolerance, "must be in 0.001..=1"));
     }

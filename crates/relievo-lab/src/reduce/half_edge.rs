@@ -1,7 +1,7 @@
 //! The reducers that are [`simplify()`]: stages of its recorded sequence.
 
 use relievo::InputError;
-use relievo::ops::mesh::simplify::{Cost, Options, Seams, Simplified, Stopped, Surface, simplify};
+use relievo::ops::mesh::simplify::{Cost, Seams, Simplified, SimplifyOptions, Stopped, Surface, simplify};
 
 use crate::reduce::{Limits, Reduced};
 
@@ -14,7 +14,8 @@ pub(super) fn reduce(
 ) -> Result<Vec<Reduced>, InputError> {
     let triangles = limits.iter().map(|limit| limit.triangles).min().unwrap_or(usize::MAX);
     let error = limits.iter().map(|limit| limit.error).fold(0.0, f32::max);
-    let simplified = simplify(surface, &Options { cost, seams, triangles, error, ..Options::default() })?;
+    let simplified =
+        simplify(surface, &SimplifyOptions { cost, seams, triangles, error, ..SimplifyOptions::default() })?;
     Ok(limits.iter().map(|limit| level(surface, &simplified, limit)).collect())
 }
 

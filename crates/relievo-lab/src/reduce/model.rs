@@ -61,7 +61,11 @@ impl ReducedModel {
     ///
     /// # Errors
     /// [`InputError`] for a model without triangles, and for options out of range.
-    pub fn distance(&self, whole: &Model, options: &distance::Options) -> Result<Distance, InputError> {
+    pub fn distance(
+        &self,
+        whole: &Model,
+        options: &distance::SimplifyOptions,
+    ) -> Result<Distance, InputError> {
         let [from, to] = [whole, &self.model].map(joined);
         let [from, to] = [&from, &to].map(|(positions, indices)| Triangles { positions, indices });
         distance::distance(&from, &to, options)

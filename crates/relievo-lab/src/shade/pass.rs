@@ -3,7 +3,7 @@
 use relievo::gpu::bindings::surface::shade as bindings;
 use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use relievo::ops::surface::relief::textures::SurfaceTextures;
-use relievo::ops::surface::relief::{March, Method};
+use relievo::ops::surface::relief::{March, ReliefMethod};
 use relievo::shared::surface::ray::SurfaceMarch;
 use relievo::{Error, InputError};
 
@@ -13,7 +13,7 @@ use crate::shade::{Shade, ShadePoint, ShadeView};
 #[derive(Debug, Clone)]
 pub struct ShadePass {
     kernel: Kernel,
-    method: Method,
+    method: ReliefMethod,
 }
 
 impl ShadePass {
@@ -21,7 +21,7 @@ impl ShadePass {
     ///
     /// # Errors
     /// What the driver's compiler reports.
-    pub fn new(gpu: &Gpu, method: Method) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, method: ReliefMethod) -> Result<Self, GpuError> {
         let constants = bindings::Constants { method: method.code() };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, method })
     }

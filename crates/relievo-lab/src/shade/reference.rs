@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::relief::{Hit, LEAST_COSINE, March, Method, Ray};
+use relievo::ops::surface::relief::{Hit, LEAST_COSINE, March, Ray, ReliefMethod};
 
 use crate::shade::shadow::{light_ray, shaded, soft_shadow};
 use crate::shade::{Shade, ShadePoint, ShadeView};
@@ -41,7 +41,7 @@ pub(crate) fn depth(
 /// Shades a point. Hard shadows trace the light's ray with `method`.
 pub fn shade(
     surface: &Surface<'_>,
-    method: Method,
+    method: ReliefMethod,
     march: &March,
     view: &ShadeView,
     point: &ShadePoint,
@@ -60,7 +60,7 @@ pub fn shade(
 /// As [`shade`], for a list of points, on all threads.
 pub fn shade_all(
     surface: &Surface<'_>,
-    method: Method,
+    method: ReliefMethod,
     march: &March,
     view: &ShadeView,
     points: &[ShadePoint],

@@ -38,8 +38,12 @@ fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
 /// Simplifies until nothing is legal, and compares each collapse with those of all other points. Returns three counts: the
 /// steps, the collapses more than a tenth above the cheapest, and the collapses that were not the cheapest of their point.
 fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
-    let mut reducer =
-        Reducer::new(surface, &Options { cost, ..Options::default() }, distance < f32::INFINITY, &[]);
+    let mut reducer = Reducer::new(
+        surface,
+        &SimplifyOptions { cost, ..SimplifyOptions::default() },
+        distance < f32::INFINITY,
+        &[],
+    );
     let most = (f64::from(distance) * reducer.points.scale()) as f32;
     reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(most));
     let mut queue = reducer.queue();

@@ -13,10 +13,10 @@ use crate::render::{Layer, Renderer};
 use crate::scene::TerrainStyle;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::{PartState, Program, Specialization};
-use crate::surface::{Green, Method, ReliefOptions, Shadow};
+use crate::surface::{Green, ReliefMethod, ReliefOptions, Shadow};
 
 /// Parts that cover every entry point and both values of every flag. Reliefs have a method.
-fn parts() -> Vec<(Option<Method>, Specialization)> {
+fn parts() -> Vec<(Option<ReliefMethod>, Specialization)> {
     let flags = || [false, true].into_iter();
     let states = flags().flat_map(|cut_out| {
         flags().map(move |double_sided| PartState { cut_out, double_sided, ..PartState::default() })
@@ -27,7 +27,7 @@ fn parts() -> Vec<(Option<Method>, Specialization)> {
         };
         flags().flat_map(move |textured| flags().map(move |normal_mapped| mesh(textured, normal_mapped)))
     });
-    let reliefs = Method::ALL.into_iter().flat_map(|method| {
+    let reliefs = ReliefMethod::ALL.into_iter().flat_map(|method| {
         [
             (Shadow::None, None, false),
             (Shadow::Hard, Some(Green::Up), true),
@@ -74,7 +74,7 @@ fn every_kind_of_pipeline_compiles_for_every_format() {
             // One format is enough for all methods. Only meshes are ever blended.
             let parts = parts().into_iter().filter(|(method, part)| match layer {
                 Layer::Transparent => *part.program() == Program::Mesh,
-                _ => method.is_none_or(|method| format.samples == 4 || method == Method::Quadtree),
+                _ => method.is_none_or(|method| format.samples == 4 || method == ReliefMethod::Quadtree),
             });
             for (_, part) in parts {
                 let key = PipelineKey::new(layer, &part, true);

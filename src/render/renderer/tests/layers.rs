@@ -14,7 +14,7 @@ use crate::render::TargetFormat;
 use crate::scene::TerrainStyle;
 use crate::scene::drawable::Drawable;
 use crate::scene::layouts::SceneLayouts;
-use crate::surface::{Method, ReliefOptions};
+use crate::surface::{ReliefMethod, ReliefOptions};
 
 /// The number of pixels that a depth prepass changes, at 1 and at 4 samples.
 fn changed(gpu: &Gpu, drawable: &dyn Drawable, stage: &Stage, ground: Option<&Group>) -> [usize; 2] {
@@ -49,7 +49,7 @@ fn meshes_pass_behind_their_prepass() {
 fn reliefs_pass_behind_their_prepass() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
-    let maps = Maps::new(&gpu, Method::Quadtree);
+    let maps = Maps::new(&gpu, ReliefMethod::Quadtree);
     for (depth, plane) in [(true, 1.0), (true, 0.5), (false, 1.0), (false, 0.3)] {
         let options = ReliefOptions { depth, silhouette: true, ..ReliefOptions::default() };
         let square = square(&gpu, &layouts, &maps, options, plane);

@@ -17,7 +17,7 @@ use crate::shared::render::scene_view::SceneView;
 use crate::skinning::vertex::Vertex;
 use crate::surface::mips::Mips;
 use crate::surface::{
-    Address, ColorTexture, March, Material, Method, ReliefMaps, ReliefOptions, Shadow, SurfaceMesh,
+    Address, ColorTexture, March, Material, ReliefMaps, ReliefMethod, ReliefOptions, Shadow, SurfaceMesh,
     SurfaceTextures,
 };
 
@@ -30,7 +30,7 @@ pub struct Maps {
 }
 
 impl Maps {
-    pub fn new(gpu: &Gpu, method: Method) -> Self {
+    pub fn new(gpu: &Gpu, method: ReliefMethod) -> Self {
         let height = BuiltInMap::Cobbles.height_map(64).expect("a map");
         let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(64).expect("a map"));
         Self {
@@ -131,9 +131,9 @@ fn a_scaled_instance_is_a_larger_mesh() {
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let format = TargetFormat::new(FORMAT);
     for (method, shadow, depth, scale) in [
-        (Method::Quadtree, Shadow::Hard, false, 1.0),
-        (Method::Relief, Shadow::Soft, true, 1.7),
-        (Method::Parallax, Shadow::None, true, 0.8),
+        (ReliefMethod::Quadtree, Shadow::Hard, false, 1.0),
+        (ReliefMethod::Relief, Shadow::Soft, true, 1.7),
+        (ReliefMethod::Parallax, Shadow::None, true, 0.8),
     ] {
         let maps = Maps::new(&gpu, method);
         let options = ReliefOptions { method, shadow, silhouette: depth, depth, ..ReliefOptions::default() };
@@ -159,7 +159,7 @@ fn a_scaled_instance_is_a_larger_mesh() {
 fn a_mirrored_relief_is_the_mirror_image() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
-    let maps = Maps::new(&gpu, Method::Quadtree);
+    let maps = Maps::new(&gpu, ReliefMethod::Quadtree);
     let options = ReliefOptions { shadow: Shadow::Hard, depth: true, ..ReliefOptions::default() };
     let square = square(&gpu, &layouts, &maps, options, 1.0);
     let format = TargetFormat::new(FORMAT);

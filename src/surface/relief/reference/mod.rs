@@ -16,7 +16,7 @@ use crate::surface::relief::reference::cone::cone;
 use crate::surface::relief::reference::flat::{parallax, parallax_limited, plain};
 use crate::surface::relief::reference::linear::{occlusion, relief};
 use crate::surface::relief::reference::quadtree::quadtree;
-use crate::surface::relief::{Hit, March, Method, Outcome, Ray};
+use crate::surface::relief::{Hit, March, Outcome, Ray, ReliefMethod};
 
 /// A height map with a method's acceleration map.
 #[derive(Debug, Clone)]
@@ -25,42 +25,42 @@ pub struct Surface<'a> {
     pub map: &'a HeightMap,
     /// Address mode in which the map is traced, and for which its acceleration maps were computed.
     pub address: Address,
-    /// Pyramid of the map, for [`Method::Quadtree`]; empty for other methods.
+    /// Pyramid of the map, for [`ReliefMethod::Quadtree`]; empty for other methods.
     pub pyramid: Vec<f32>,
-    /// Cones of the map, for [`Method::Cone`]; empty for other methods.
+    /// Cones of the map, for [`ReliefMethod::Cone`]; empty for other methods.
     pub cones: Vec<[f32; 2]>,
 }
 
 impl<'a> Surface<'a> {
     /// Computes the acceleration maps that `method` needs.
-    pub fn new(map: &'a HeightMap, method: Method, address: Address) -> Self {
+    pub fn new(map: &'a HeightMap, method: ReliefMethod, address: Address) -> Self {
         let pyramid = match method {
-            Method::Quadtree | Method::Cone => height_pyramid(map, address),
+            ReliefMethod::Quadtree | ReliefMethod::Cone => height_pyramid(map, address),
             _ => Vec::new(),
         };
-        let cones = if method == Method::Cone { cone_map(map, &pyramid, address) } else { Vec::new() };
+        let cones = if method == ReliefMethod::Cone { cone_map(map, &pyramid, address) } else { Vec::new() };
         Self { map, address, pyramid, cones }
     }
 
     /// Traces a ray with `method`, in the surface's own address mode.
-    pub fn trace(&self, method: Method, ray: &Ray, march: &March) -> Hit {
+    pub fn trace(&self, method: ReliefMethod, ray: &Ray, march: &March) -> Hit {
         if ray.cosine.is_nan() || ray.cosine <= 0.0 {
             return Hit::of(ray, ray.polygon, 0, Outcome::Miss);
         }
         let march = &March { address: self.address, ..*march };
         match method {
-            Method::Plain => plain(ray),
-            Method::Parallax => parallax(self.map, ray, march),
-            Method::ParallaxLimited => parallax_limited(self.map, ray, march),
-            Method::Relief => relief(self.map, ray, march),
-            Method::Occlusion => occlusion(self.map, ray, march),
-            Method::Cone => cone(self.map, &self.cones, ray, march),
-            Method::Quadtree => quadtree(self.map, &self.pyramid, ray, march),
+            ReliefMethod::Plain => plain(ray),
+            ReliefMethod::Parallax => parallax(self.map, ray, march),
+            ReliefMethod::ParallaxLimited => parallax_limited(self.map, ray, march),
+            ReliefMethod::Relief => relief(self.map, ray, march),
+            ReliefMethod::Occlusion => occlusion(self.map, ray, march),
+            ReliefMethod::Cone => cone(self.map, &self.cones, ray, march),
+            ReliefMethod::Quadtree => quadtree(self.map, &self.pyramid, ray, march),
         }
     }
 
     /// As [`Surface::trace`], for a list of rays, on all threads.
-    pub fn trace_all(&self, method: Method, rays: &[Ray], march: &March) -> Vec<Hit> {
+    pub fn trace_all(&self, method: ReliefMethod, rays: &[Ray], march: &March) -> Vec<Hit> {
         rays.par_iter().map(|ray| self.trace(method, ray, march)).collect()
     }
 }

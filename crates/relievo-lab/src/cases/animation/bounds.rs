@@ -5,7 +5,7 @@ use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::gpu::Buffer;
 use relievo::ops::animation::bounds::reference::bounds;
-use relievo::ops::animation::bounds::{BOUNDS_BOUND, Bounds, BoundsPass, bone_radii};
+use relievo::ops::animation::bounds::{BOUNDS_BOUND, BoundsPass, MotionBounds, bone_radii};
 use relievo::ops::animation::crowd::Crowd;
 use relievo::ops::animation::keyframe_cursor::reference::cursors;
 use relievo::ops::animation::local_to_model::reference::local_to_model;
@@ -31,14 +31,15 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let crowd = Crowd::new(gpu, &set, &instances)?;
         crowd.model_matrices.buffer().write(gpu, &model_matrices)?;
         let expected = bounds(&model_matrices, &bone_radii);
-        let output = Poisoned::<Bounds>::new(gpu, count)?;
+        let output = Poisoned::<MotionBounds>::new(gpu, count)?;
         let job = BoundsPass::new(gpu)?.prepare(gpu, &crowd, &bone_radii, &output.buffer)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
         let name = format!("{bones} bones × {count}");
-        let sides = |boxes: &[Bounds]| relative_sizes(boxes, &expected);
-        let near = |actual: &[Bounds]| compare::absolute(&sides(actual), &sides(&expected), BOUNDS_BOUND);
+        let sides = |boxes: &[MotionBounds]| relative_sizes(boxes, &expected);
+        let near =
+            |actual: &[MotionBounds]| compare::absolute(&sides(actual), &sides(&expected), BOUNDS_BOUND);
         cases.check(name.clone(), &output, near).await?;
-        let holds = |actual: &[Bounds]| {
+        let holds = |actual: &[MotionBounds]| {
             let inside = contain(actual, &model_matrices, &bone_radii);
             compare::exact(&inside, &vec![true; inside.len()])
         };
@@ -67,9 +68,9 @@ fn random_poses(case: u32, bones: usize, count: usize) -> (Vec<Affine>, Vec<f32>
 }
 
 /// The sides divided by the largest side of the expected box.
-fn relative_sizes(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
-    let each = |(found, expected): (&Bounds, &Bounds)| {
-        let sides = |bounds: &Bounds| [bounds.low, bounds.high].concat();
+fn relative_sizes(boxes: &[MotionBounds], expected: &[MotionBounds]) -> Vec<f32> {
+    let each = |(found, expected): (&MotionBounds, &MotionBounds)| {
+        let sides = |bounds: &MotionBounds| [bounds.low, bounds.high].concat();
         let largest = sides(expected).into_iter().fold(f32::MIN_POSITIVE, |a, b| a.max(b.abs()));
         sides(found).into_iter().map(move |side| side / largest)
     };
@@ -77,7 +78,7 @@ fn relative_sizes(boxes: &[Bounds], expected: &[Bounds]) -> Vec<f32> {
 }
 
 /// For each side of each instance, whether every bone's ellipsoid is inside.
-fn contain(boxes: &[Bounds], model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<bool> {
+fn contain(boxes: &[MotionBounds], model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<bool> {
     let mut inside = Vec::with_capacity(6 * boxes.len());
     for (bounds, model_matrices) in boxes.iter().zip(model_matrices.chunks(bone_radii.len())) {
         for axis in 0..3 {

@@ -8,7 +8,7 @@ use relievo::ops::animation::gate_state::GateState;
 use relievo::ops::animation::instance::Instance;
 use relievo::ops::animation::keyframe_cursor::reference::cursors;
 use relievo::ops::animation::layers::Layer;
-use relievo::ops::animation::lod::{Lod, Sampling};
+use relievo::ops::animation::lod::{BoneSampling, Lod};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};
@@ -41,9 +41,9 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut history = vec![[0; 4]; count];
         for (frame, elapsed) in [0.0, 0.25, 0.5, 300.0, 300.25].into_iter().enumerate() {
             let choose = |draw: &mut Draw| match draw.word() % 8 {
-                0 => Sampling::Hidden,
-                1 => Sampling::Forced,
-                _ => Sampling::Gated,
+                0 => BoneSampling::Hidden,
+                1 => BoneSampling::Forced,
+                _ => BoneSampling::Gated,
             };
             let lods: Vec<Lod> = (0..count)
                 .map(|_| match frame {

@@ -7,7 +7,7 @@ use relievo::ops::animation::drive::reference::drive;
 use relievo::ops::animation::drive::{DrivePass, DrivenWord, driven_words};
 use relievo::ops::animation::gate_state::GateState;
 use relievo::ops::animation::order::Order;
-use relievo::ops::animation::{Lod, Sampling};
+use relievo::ops::animation::{BoneSampling, Lod};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
 use crate::cases::animation::{Draw, SIZES, random_crowd};
@@ -30,7 +30,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut draw = Draw::new(case ^ 0xd12e);
         let state = GateState::new(gpu, &crowd)?;
         let hidden: Vec<bool> = (0..count).map(|_| draw.word().is_multiple_of(3)).collect();
-        let sampling = |hidden: &bool| if *hidden { Sampling::Hidden } else { Sampling::Forced };
+        let sampling = |hidden: &bool| if *hidden { BoneSampling::Hidden } else { BoneSampling::Forced };
         let lods: Vec<Lod> =
             hidden.iter().map(|hidden| Lod { sampling: sampling(hidden), ..Lod::FULL }).collect();
         state.write_lods(gpu, &lods)?;

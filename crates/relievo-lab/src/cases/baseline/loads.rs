@@ -3,7 +3,7 @@
 use relievo::Error;
 use relievo::gpu::Buffer;
 use relievo::ops::surface::map::Address;
-use relievo::ops::surface::relief::Method;
+use relievo::ops::surface::relief::ReliefMethod;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
 
 use crate::baseline::copy::{CopyBuffers, CopyPass};
@@ -25,7 +25,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         [([5, 3], [9, 7], 0), ([5, 3], [8, 8], 11), ([64, 64], [65, 63], 40)].into_iter().enumerate()
     {
         let map = random_map(case as u32, size, Shape::Noise)?;
-        let textures = SurfaceTextures::new(gpu, &map, Method::Plain, Address::Wrap)?;
+        let textures = SurfaceTextures::new(gpu, &map, ReliefMethod::Plain, Address::Wrap)?;
         let output = Poisoned::new(gpu, (threads[0] * threads[1]) as usize)?;
         let job = pass.prepare(gpu, &textures.heights, threads, count, &output.buffer)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
@@ -45,7 +45,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let map = random_map(1, [1024, 1024], Shape::Noise)?;
-    let textures = SurfaceTextures::new(gpu, &map, Method::Plain, Address::Wrap)?;
+    let textures = SurfaceTextures::new(gpu, &map, ReliefMethod::Plain, Address::Wrap)?;
     let sums = Buffer::new(gpu, "sums", 1 << 20)?;
     let job = LoadsPass::new(gpu)?.prepare(gpu, &textures.heights, [1024, 1024], 16, &sums)?;
     let (source, destination) =

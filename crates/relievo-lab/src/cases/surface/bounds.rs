@@ -8,7 +8,7 @@ use relievo::InputError;
 use relievo::ops::surface::cone_map::RADIUS_BOUND;
 use relievo::ops::surface::map::{Address, HeightMap};
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::relief::{Hit, March, Method, Outcome, Ray};
+use relievo::ops::surface::relief::{Hit, March, Outcome, Ray, ReliefMethod};
 
 /// A unit in the last place of 1: sums and products in WGSL are within this relative distance of the exact
 /// result.
@@ -58,7 +58,7 @@ pub enum Source {
 /// None, for maps that [`HeightMap::new`] made.
 pub fn judge(
     map: &HeightMap,
-    method: Method,
+    method: ReliefMethod,
     march: &March,
     rays: &[Ray],
     source: Source,
@@ -73,9 +73,9 @@ pub fn judge(
     }
     let mut judged = vec![None; rays.len()];
     // If the search over cones ends in binary steps, it is close to the crossing that the quadtree finds.
-    let crossing = if method == Method::Cone { Method::Quadtree } else { method };
+    let crossing = if method == ReliefMethod::Cone { ReliefMethod::Quadtree } else { method };
     for (exponent, indices) in classes {
-        let lifted = if method == Method::Cone { CONE_STEP } else { 0.0 };
+        let lifted = if method == ReliefMethod::Cone { CONE_STEP } else { 0.0 };
         let moved = |sign: f64| moved(map, &steepness, sign, f64::from(exponent).exp2(), lifted);
         let (raised, lowered) = (moved(1.0)?, moved(-1.0)?);
         let judge = Judge {
@@ -94,16 +94,19 @@ pub fn judge(
 }
 
 /// How far rounding may move a point of a ray, in texels along x and y.
-fn positions(ray: &Ray, map: &HeightMap, method: Method, address: Address, source: Source) -> [f64; 2] {
+fn positions(ray: &Ray, map: &HeightMap, method: ReliefMethod, address: Address, source: Source) -> [f64; 2] {
     let size = [map.width(), map.height()].map(f64::from);
     [0, 1].map(|axis| {
         let (origin, slope) = (f64::from(ray.origin[axis]), f64::from(ray.slope[axis]));
         let farthest = origin.abs().max((origin + slope).abs());
         let travel = slope.abs() * size[axis];
         // Steps over cones are no longer than the map.
-        let steps = if method == Method::Cone { CONE_STEP * travel.min(size[0].min(size[1])) } else { 0.0 };
+        let steps =
+            if method == ReliefMethod::Cone { CONE_STEP * travel.min(size[0].min(size[1])) } else { 0.0 };
         let ulps = match (method, address) {
-            (Method::Cone | Method::Quadtree, _) => 9.0 * travel + 2.0 * size[axis] * origin.abs() + 12.0,
+            (ReliefMethod::Cone | ReliefMethod::Quadtree, _) => {
+                9.0 * travel + 2.0 * size[axis] * origin.abs() + 12.0
+            }
             (_, Address::Wrap) => 5.0 * travel + size[axis] * (farthest + 3.0),
             (_, Address::Clamp) => 5.0 * travel + 3.0 * size[axis] * farthest + 1.0,
         };
@@ -171,11 +174,11 @@ pub(crate) fn off(steepness: f64, position: f64) -> f64 {
 /// The data that one class of rays shares.
 struct Judge<'a> {
     surface: &'a Surface<'a>,
-    method: Method,
+    method: ReliefMethod,
     march: &'a March,
     source: Source,
     /// The method that finds the crossing on the raised and lowered maps.
-    crossing: Method,
+    crossing: ReliefMethod,
     ends: [Surface<'a>; 2],
 }
 
@@ -229,7 +232,7 @@ impl Judge<'_> {
         let size = [self.surface.map.width(), self.surface.map.height()].map(f64::from);
         let position = self.positions(ray);
         let relative = match self.method {
-            Method::Cone => 128.0 * ULP + CONE_STEP,
+            ReliefMethod::Cone => 128.0 * ULP + CONE_STEP,
             _ => 52.0 * ULP,
         };
         let by = [0, 1].map(|i| position[i] / size[i] + relative * f64::from(ray.slope[i]).abs());
@@ -246,7 +249,7 @@ impl Judge<'_> {
     /// How far the result of a binary search between the last two points of the search over cones may be from
     /// the crossing.
     fn around(&self, ray: &Ray, is_steady: bool) -> f64 {
-        if self.method != Method::Cone {
+        if self.method != ReliefMethod::Cone {
             return 0.0;
         }
         let by_steps = |binary_steps: u32| {

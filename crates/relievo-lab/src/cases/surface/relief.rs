@@ -12,7 +12,7 @@ use relievo::ops::surface::mesh::SurfaceMesh;
 use relievo::ops::surface::mips::Mips;
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
-use relievo::ops::surface::relief::{Hit, March, Method, Ray, ReliefPass};
+use relievo::ops::surface::relief::{Hit, March, Ray, ReliefMethod, ReliefPass};
 use relievo::ops::surface::{Material, ReliefMaps, ReliefOptions};
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{Camera, Depth, Placement, Quality, Relief, Scene, View};
@@ -36,7 +36,7 @@ pub(crate) const TOUCHING: f64 = 0.2;
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let pass = ReliefPass::new(gpu, method)?;
         let all = Shape::ALL.into_iter().cycle();
         let counts = [1, 63, 64, 65, 1000, 2000, 2000, 2000];
@@ -45,7 +45,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             for address in [Address::Wrap, Address::Clamp] {
                 let map = random_map(case as u32, size, shape)?;
                 // The bound of a cone's hit includes what the binary search leaves of the last step.
-                let fewest = if method == Method::Cone { 12 } else { 4 };
+                let fewest = if method == ReliefMethod::Cone { 12 } else { 4 };
                 let march =
                     March { address, steps: [6, 24 + case as u32], binary_steps: fewest + case as u32 };
                 let rays = random_rays(case as u32, count);
@@ -65,7 +65,7 @@ async fn compared(
     gpu: &Gpu,
     pass: &ReliefPass,
     map: &HeightMap,
-    method: Method,
+    method: ReliefMethod,
     march: &March,
     rays: &[Ray],
 ) -> Result<Comparison, Error> {
@@ -131,7 +131,7 @@ const ANGLE: f32 = 60.0;
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let map = BuiltInMap::Cobbles.height_map(TEXELS)?;
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         listed(bench, &map, method)?;
     }
     #[cfg(not(target_arch = "wasm32"))]
@@ -146,9 +146,9 @@ fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
     let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
     let albedo = ColorTexture::new(gpu, &albedo, true)?;
     let target = Offscreen::new(gpu, [EDGE, EDGE])?;
-    let plain = Drawing::new(gpu, &target, (map, &albedo), Method::Plain)?;
+    let plain = Drawing::new(gpu, &target, (map, &albedo), ReliefMethod::Plain)?;
     let (rays, march) = (rays(EDGE, towards()), March::default());
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let drawing = Drawing::new(gpu, &target, (map, &albedo), method)?;
         let surface = Surface::new(map, method, Address::Wrap);
         let contenders = vec![
@@ -170,7 +170,7 @@ fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
 }
 
 /// Measures one method with the compute kernel.
-fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), Error> {
+fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: ReliefMethod) -> Result<(), Error> {
     let gpu = bench.gpu;
     let rays = rays(EDGE, towards());
     let march = March::default();
@@ -194,7 +194,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: Method) -> Result<(), 
     bench.case(format!("{}, {mean:.1} loads a ray", method.name()), (rays.len(), "ray"), bytes, contenders)
 }
 
-fn textures(gpu: &Gpu, map: &HeightMap, method: Method) -> Result<SurfaceTextures, Error> {
+fn textures(gpu: &Gpu, map: &HeightMap, method: ReliefMethod) -> Result<SurfaceTextures, Error> {
     SurfaceTextures::new(gpu, map, method, Address::Wrap)
 }
 
@@ -212,7 +212,7 @@ impl Drawing {
         gpu: &Gpu,
         target: &Offscreen,
         (map, albedo): (&HeightMap, &ColorTexture),
-        method: Method,
+        method: ReliefMethod,
     ) -> Result<Self, Error> {
         let textures = textures(gpu, map, method)?;
         let maps = ReliefMaps { textures: &textures, albedo, normals: None };

@@ -12,7 +12,7 @@ use relievo::ops::surface::map::{Address, HeightMap};
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::reference::height::BILINEAR;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
-use relievo::ops::surface::relief::{March, Method, Ray};
+use relievo::ops::surface::relief::{March, Ray, ReliefMethod};
 use relievo::{Error, InputError};
 use relievo_samples::BuiltInMap;
 
@@ -42,7 +42,7 @@ pub(crate) const AT_EYE: f64 = 0.01;
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    for method in Method::ALL {
+    for method in ReliefMethod::ALL {
         let pass = ShadePass::new(gpu, method)?;
         let sizes =
             [([1, 1], 1), ([5, 4], 63), ([17, 9], 64), ([33, 100], 65), ([64, 64], 1000), ([129, 127], 2000)];
@@ -99,7 +99,7 @@ pub fn random_points(
     case: u32,
     count: usize,
     surface: &Surface<'_>,
-    method: Method,
+    method: ReliefMethod,
     march: &March,
 ) -> Vec<ShadePoint> {
     let words = random_words(case ^ 0x11917, 12 * count);
@@ -150,7 +150,7 @@ pub struct JudgedShade {
 /// As [`judge`].
 pub fn judged(
     map: &HeightMap,
-    method: Method,
+    method: ReliefMethod,
     march: &March,
     view: &ShadeView,
     points: &[ShadePoint],
@@ -242,7 +242,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let map = BuiltInMap::Cobbles.height_map(512)?;
     let (march, view) = (March::default(), crate::shade::from_above());
-    for method in [Method::Quadtree, Method::Relief] {
+    for method in [ReliefMethod::Quadtree, ReliefMethod::Relief] {
         let surface = Surface::new(&map, method, Address::Wrap);
         let points = points(&surface, method, &march);
         let hard: u64 = points
@@ -272,7 +272,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 }
 
 /// One point per texel.
-fn points(surface: &Surface<'_>, method: Method, march: &March) -> Vec<ShadePoint> {
+fn points(surface: &Surface<'_>, method: ReliefMethod, march: &March) -> Vec<ShadePoint> {
     let material = Material::default();
     let rays = rays(EDGE, [0.0, 0.0, 1.0]);
     let hits = surface.trace_all(method, &rays, march);

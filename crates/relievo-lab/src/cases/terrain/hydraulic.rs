@@ -4,7 +4,7 @@
 
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::ops::terrain::config::{Interpolation, TerrainConfig};
+use relievo::ops::terrain::config::{HeightInterpolation, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::generate;
 use relievo::ops::terrain::fields::Fields;
@@ -136,8 +136,10 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 
 fn case(bench: &mut Bench<'_>, name: &str, [size, count]: [u32; 2], iterations: u32) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let config =
-        TerrainConfig { interpolation: Interpolation::Smooth, ..TerrainConfig::new(size, 40.0, "bench")? };
+    let config = TerrainConfig {
+        interpolation: HeightInterpolation::Smooth,
+        ..TerrainConfig::new(size, 40.0, "bench")?
+    };
     let patches: Vec<_> = (0..count as i32).map(|column| [column, 0]).collect();
     let host = generate(&config, &Features::default(), &patches, iterations).concat();
     let width = size + 2 * iterations;

@@ -7,7 +7,7 @@ use std::hint::black_box;
 use rayon::prelude::*;
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
-use relievo::ops::terrain::config::{Border, Interpolation, Offset, TerrainConfig};
+use relievo::ops::terrain::config::{Border, HeightInterpolation, Offset, TerrainConfig};
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fixed::FeatureMode;
 use relievo::ops::terrain::height::reference::height;
@@ -39,10 +39,10 @@ fn prepared(
     let capacity = features.len() * count as usize;
     let shape = [count, apron];
     match (config.border, config.interpolation) {
-        (Border::Seamless, Interpolation::Linear) => {
+        (Border::Seamless, HeightInterpolation::Linear) => {
             HeightPass::new(gpu, offset, mode)?.prepare(gpu, config, shape, capacity, output, &scratch)
         }
-        (Border::Seamless, Interpolation::Smooth) => {
+        (Border::Seamless, HeightInterpolation::Smooth) => {
             SmoothPass::new(gpu, offset, mode)?.prepare(gpu, config, shape, capacity, output, &scratch)
         }
         _ => WrapPass::new(gpu, offset, mode)?.prepare(gpu, config, count, capacity, output, &scratch),
@@ -51,8 +51,8 @@ fn prepared(
 
 fn reference(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
     match (config.border, config.interpolation) {
-        (Border::Seamless, Interpolation::Linear) => height(config, features, window),
-        (Border::Seamless, Interpolation::Smooth) => smooth(config, features, window),
+        (Border::Seamless, HeightInterpolation::Linear) => height(config, features, window),
+        (Border::Seamless, HeightInterpolation::Smooth) => smooth(config, features, window),
         _ => wrap(config, features, window.patch),
     }
 }

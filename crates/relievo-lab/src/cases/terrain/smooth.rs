@@ -1,7 +1,7 @@
 //! Parity and benchmark cases of `kernels/terrain/smooth.wgsl`.
 
 use relievo::Error;
-use relievo::ops::terrain::config::{Interpolation, Offset, TerrainConfig};
+use relievo::ops::terrain::config::{HeightInterpolation, Offset, TerrainConfig};
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fixed::FeatureMode;
 
@@ -40,7 +40,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 fn plain(size: u32, seed: &str, coarse_levels: u32) -> Result<TerrainConfig, Error> {
     let config = TerrainConfig::new(size, 40.0, seed)?;
-    Ok(TerrainConfig { coarse_levels, interpolation: Interpolation::Smooth, ..config })
+    Ok(TerrainConfig { coarse_levels, interpolation: HeightInterpolation::Smooth, ..config })
 }
 
 async fn with_features(cases: &mut Cases<'_>) -> Result<(), Error> {

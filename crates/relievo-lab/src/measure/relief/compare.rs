@@ -1,7 +1,7 @@
 //! Error and cost of every ray-height method, at several angles.
 
 use relievo::gpu::Gpu;
-use relievo::ops::surface::{March, Method, Ray};
+use relievo::ops::surface::{March, Ray, ReliefMethod};
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ pub struct Entry {
     /// Degrees between the eye and the square's normal.
     pub angle: f64,
     /// The ray-height method.
-    pub method: Method,
+    pub method: ReliefMethod,
     /// Number of linear steps; `None` for methods that have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steps: Option<u32>,
@@ -59,12 +59,16 @@ impl ReliefSquare {
     /// # Errors
     /// [`InputError`] for a picture so small that no pixel sees the square; [`relievo::gpu::GpuError`] for
     /// errors of the device.
-    pub fn compare(&self, gpu: Option<&Gpu>, progress: &dyn Fn(Method, usize)) -> Result<Comparison, Error> {
+    pub fn compare(
+        &self,
+        gpu: Option<&Gpu>,
+        progress: &dyn Fn(ReliefMethod, usize),
+    ) -> Result<Comparison, Error> {
         let lists = self.lists()?;
-        let runs = |method: Method| if method.is_stepped() { STEPS.len() } else { 1 };
-        let all = lists.len() * Method::ALL.into_iter().map(runs).sum::<usize>();
+        let runs = |method: ReliefMethod| if method.is_stepped() { STEPS.len() } else { 1 };
+        let all = lists.len() * ReliefMethod::ALL.into_iter().map(runs).sum::<usize>();
         let mut entries = Vec::new();
-        for method in Method::ALL {
+        for method in ReliefMethod::ALL {
             let tracer = Tracer::new(&self.map, method, self.march.address, gpu)?;
             for (angle, rays) in Comparison::ANGLES.into_iter().zip(&lists) {
                 for steps in STEPS.into_iter().take(runs(method)) {

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::ops::surface::{Green, HeightMap, Hit, March, Material, Method, Mips, Ray, Shadow};
+use relievo::ops::surface::{Green, HeightMap, Hit, March, Material, Mips, Ray, ReliefMethod, Shadow};
 use relievo::{Error, InputError};
 use serde::Serialize;
 use tracer::Tracer;
@@ -83,7 +83,7 @@ impl ReliefSquare {
     /// [`relievo::gpu::GpuError`] for errors of the device.
     pub fn draw(
         &self,
-        method: Method,
+        method: ReliefMethod,
         gpu: Option<&Gpu>,
         (background, finer): ([f32; 3], u32),
         progress: &dyn Fn(&'static str),

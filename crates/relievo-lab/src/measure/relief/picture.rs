@@ -10,7 +10,7 @@ use relievo::ops::surface::map::Address;
 use relievo::ops::surface::mips::Mips;
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::reference::height::height;
-use relievo::ops::surface::relief::{Hit, March, Method, Ray};
+use relievo::ops::surface::relief::{Hit, March, Ray, ReliefMethod};
 use relievo::ops::surface::{Green, Material, Shadow};
 use relievo::srgb::linear;
 
@@ -20,7 +20,7 @@ pub struct Scene<'a> {
     /// Heights and acceleration maps.
     pub surface: &'a Surface<'a>,
     /// The method that finds the surface.
-    pub method: Method,
+    pub method: ReliefMethod,
     /// The parameters of its march.
     pub march: &'a March,
     /// Base colours.

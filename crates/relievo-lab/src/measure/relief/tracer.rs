@@ -5,7 +5,7 @@ use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::ops::surface::relief::ReliefPass;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, Hit, March, Method, Ray, SurfaceTextures};
+use relievo::ops::surface::{Address, HeightMap, Hit, March, Ray, ReliefMethod, SurfaceTextures};
 use relievo::render::Offscreen;
 use relievo::render::target::LINEAR_FORMAT;
 
@@ -18,7 +18,7 @@ const LIST: usize = 1 << 22;
 
 /// A method with its acceleration maps, ready to trace rays.
 pub(super) enum Tracer<'a> {
-    Cpu(Method, Surface<'a>),
+    Cpu(ReliefMethod, Surface<'a>),
     Gpu(Box<Device>),
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Device {
 impl<'a> Tracer<'a> {
     pub fn new(
         map: &'a HeightMap,
-        method: Method,
+        method: ReliefMethod,
         address: Address,
         gpu: Option<&Gpu>,
     ) -> Result<Self, Error> {
