@@ -3,7 +3,7 @@
 use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
 use crate::animation::instance::Instance;
 use crate::animation::layers;
-use crate::animation::layers::{Layer, MAX_LAYERS};
+use crate::animation::layers::{AnimationLayer, MAX_LAYERS};
 use crate::animation::model_matrices::ModelMatrices;
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
@@ -104,8 +104,13 @@ impl Crowd {
     ///
     /// # Errors
     /// [`InputError`] for no instances, for instances of a clip that the set does not have, for more than [`MAX_LAYERS`]
-    /// layers, and for layers that do not match ([`Layer::validate`]); [`GpuError`].
-    pub fn layered(gpu: &Gpu, set: &ClipSet, base: &[Instance], layers: &[Layer]) -> Result<Self, Error> {
+    /// layers, and for layers that do not match ([`AnimationLayer::validate`]); [`GpuError`].
+    pub fn layered(
+        gpu: &Gpu,
+        set: &ClipSet,
+        base: &[Instance],
+        layers: &[AnimationLayer],
+    ) -> Result<Self, Error> {
         let (count, bones) = (base.len(), set.bones());
         let pairs = count.saturating_mul(bones);
         // Shaders count vectors in u32.
@@ -181,7 +186,7 @@ impl Crowd {
 }
 
 /// All weights, then all masks.
-fn all_layer_weights(layers: &[Layer], bones: usize) -> Vec<f32> {
+fn all_layer_weights(layers: &[AnimationLayer], bones: usize) -> Vec<f32> {
     let mut layer_weights: Vec<f32> = layers.iter().flat_map(|layer| &layer.weights).copied().collect();
     for layer in layers {
         match &layer.mask {

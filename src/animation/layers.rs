@@ -37,7 +37,7 @@ pub const MAX_LAYERS: usize = 8;
 
 /// A layer above the base.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layer {
+pub struct AnimationLayer {
     /// Clip that each instance plays on this layer.
     pub instances: Vec<Instance>,
     /// Weight for each instance, 0 to 1.
@@ -46,7 +46,7 @@ pub struct Layer {
     pub mask: Option<Vec<f32>>,
 }
 
-impl Layer {
+impl AnimationLayer {
     /// A layer that affects all bones.
     pub fn new(instances: Vec<Instance>, weights: Vec<f32>) -> Self {
         Self { instances, weights, mask: None }
@@ -106,7 +106,7 @@ pub fn mask_below(skeleton: &Skeleton, bone: usize) -> Result<Vec<f32>, InputErr
 }
 
 /// The instances of all layers, the base first: the order of a crowd's buffers.
-pub fn all_instances(base: &[Instance], layers: &[Layer]) -> Vec<Instance> {
+pub fn all_instances(base: &[Instance], layers: &[AnimationLayer]) -> Vec<Instance> {
     base.iter().chain(layers.iter().flat_map(|layer| &layer.instances)).copied().collect()
 }
 
@@ -118,19 +118,28 @@ mod tests {
     #[test]
     fn layers_are_checked_field_by_field() {
         let instance = Instance::new(1, Wrap::Loop, 0.0, 1.0);
-        let good = Layer::new(vec![instance; 2], vec![0.0, 1.0]).masked(vec![0.5; 3]);
+        let good = AnimationLayer::new(vec![instance; 2], vec![0.0, 1.0]).masked(vec![0.5; 3]);
         assert_eq!(good.validate("layers[0]", 2, 2, 3), Ok(()));
         assert_eq!(good.weight(1, 2), 0.5);
-        let refused = |layer: Layer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").path;
-        assert_eq!(refused(Layer { instances: vec![instance], ..good.clone() }), "layers[0].instances.len");
-        assert_eq!(refused(Layer { weights: vec![1.0; 3], ..good.clone() }), "layers[0].weights.len");
+        let refused = |layer: AnimationLayer| layer.validate("layers[0]", 2, 2, 3).expect_err("refused").path;
+        assert_eq!(
+            refused(AnimationLayer { instances: vec![instance], ..good.clone() }),
+            "layers[0].instances.len"
+        );
+        assert_eq!(
+            refused(AnimationLayer { weights: vec![1.0; 3], ..good.clone() }),
+            "layers[0].weights.len"
+        );
         for wrong in [f32::NAN, f32::INFINITY, -0.1, 1.1] {
-            assert_eq!(refused(Layer { weights: vec![0.0, wrong], ..good.clone() }), "layers[0].weights[1]");
+            assert_eq!(
+                refused(AnimationLayer { weights: vec![0.0, wrong], ..good.clone() }),
+                "layers[0].weights[1]"
+            );
             assert_eq!(refused(good.clone().masked(vec![wrong, 0.0, 0.0])), "layers[0].mask[0]");
         }
         assert_eq!(refused(good.clone().masked(vec![1.0; 2])), "layers[0].mask.len");
         let other = Instance { clip: 2, ..instance };
-        assert_eq!(refused(Layer { instances: vec![instance, other], ..good }), "instance.clip");
+        assert_eq!(refused(AnimationLayer { instances: vec![instance, other], ..good }), "instance.clip");
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub use gate::{Frame, Gate};
 pub use gate_state::GateState;
 pub use gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
 pub use instance::{Instance, Wrap};
-pub use layers::Layer;
+pub use layers::AnimationLayer;
 pub use lod::{BoneSampling, Lod, Projection, Range};
 #[cfg(feature = "gpu")]
 pub use model_matrices::ModelMatrices;

@@ -72,14 +72,14 @@ pub use crate::skinning::bounding_sphere::BoundingSphere;
 pub use crate::skinning::{MeshLevels, add_levels, add_levels_with_progress};
 #[doc(inline)]
 pub use crate::surface::{
-    Address, Green, HeightMap, March, Material as ReliefMaterial, Mips, ReliefMaps, ReliefMethod,
-    ReliefOptions, Shadow as ReliefShadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
+    Address, Green, HeightMap, March, Mips, ReliefMaps, ReliefMaterial, ReliefMethod, ReliefOptions,
+    ReliefShadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
 };
 #[doc(inline)]
 pub use crate::terrain::{
     blend::Shading as TerrainShading, config::TerrainConfig, fields::Fields as TerrainFields,
     mesh::GroundPoint, morph::Morph as TerrainMorph, recipe::Recipe as TerrainRecipe,
-    texture::Texture as TerrainTexture,
+    texture::TerrainTexture,
 };
 pub use bounds::Bounds;
 pub use camera::{Camera, Depth};

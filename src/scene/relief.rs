@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::NO_OBJECT;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::{Looks, ReliefLook, ReliefMaterial, check_image};
+use crate::scene::material::{Looks, ReliefBindings, ReliefLook, check_image};
 use crate::scene::mesh::{
     Drawn, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, NOTHING, within_binding,
 };
@@ -22,7 +22,7 @@ use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::mips::Mips;
 use crate::surface::relief::March;
 use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::{Address, Green, Material, ReliefMaps, ReliefOptions};
+use crate::surface::{Address, Green, ReliefMaps, ReliefMaterial, ReliefOptions};
 use crate::{Error, InputError};
 
 /// A relief-mapped mesh, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
@@ -39,7 +39,7 @@ pub struct Relief {
     /// Method, shadows and silhouette. Textures on the device are made for one method.
     pub options: ReliefOptions,
     /// Depth, plane and width of shadows. Its light is not used, because a scene has one light.
-    pub material: Material,
+    pub material: ReliefMaterial,
     /// Ray marching, and the address mode beyond the edges of the maps.
     pub march: March,
     /// Whether both sides of the mesh are visible.
@@ -104,7 +104,7 @@ impl Relief {
             mesh,
             maps,
             options: ReliefOptions { depth: true, ..ReliefOptions::default() },
-            material: Material::default(),
+            material: ReliefMaterial::default(),
             march: March::default(),
             double_sided: false,
         }
@@ -229,7 +229,7 @@ fn check(gpu: &Gpu, Relief { mesh, maps, .. }: &Relief) -> Result<(), InputError
     Ok(())
 }
 
-fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<ReliefMaterial, Error> {
+fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<ReliefBindings, Error> {
     let corners = || relief.mesh.vertices.iter().map(|vertex| Vec2::from(vertex.uv));
     let low = corners().fold(Vec2::MAX, Vec2::min);
     let high = corners().fold(Vec2::MIN, Vec2::max);
@@ -242,7 +242,7 @@ fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<Relief
     };
     let bound = |textures: &SurfaceTextures, albedo: &ColorTexture, normals: Option<&ColorTexture>| {
         let maps = ReliefMaps { textures, albedo, normals };
-        ReliefMaterial::new(gpu, layouts, maps, relief.options, &look)
+        ReliefBindings::new(gpu, layouts, maps, relief.options, &look)
     };
     match &relief.maps {
         ReliefSource::Textures { textures, albedo, normals } => bound(textures, albedo, normals.as_deref()),

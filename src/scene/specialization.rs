@@ -8,7 +8,7 @@ use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_T
 use crate::scene::options::TerrainStyle;
 use crate::scene::program::{self, KindProgram};
 use crate::scene::wgsl::entries::KindText;
-use crate::surface::{Green, ReliefOptions, Shadow};
+use crate::surface::{Green, ReliefOptions, ReliefShadow};
 
 /// The shader of a kind of object.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -170,7 +170,7 @@ impl Specialization {
             // Reliefs have a single level of detail.
             morphed: false,
         };
-        let surface = scene_relief::Constants { shadow: Shadow::None as u32, ..full };
+        let surface = scene_relief::Constants { shadow: ReliefShadow::None as u32, ..full };
         let place = scene_relief::Constants { normal_map: false, green_up: false, ..surface };
         Self::new(Program::Relief, state, [full, surface, place].map(|constants| constants.list()))
     }

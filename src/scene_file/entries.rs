@@ -6,7 +6,7 @@ use glam::{DVec3, Quat, Vec3};
 
 use crate::animation::Wrap;
 use crate::scene::Transition;
-use crate::surface::Shadow;
+use crate::surface::ReliefShadow;
 use crate::surface::relief::ReliefMethod;
 use crate::terrain::morph::Morph;
 use crate::terrain::recipe::Recipe;
@@ -82,7 +82,7 @@ pub(super) struct ReliefEntry {
     /// Factor of the mesh's texture coordinates.
     pub tiles: f32,
     pub method: ReliefMethod,
-    pub shadow: Shadow,
+    pub shadow: ReliefShadow,
 }
 
 /// A character's animation.

@@ -15,9 +15,9 @@ use crate::Error;
 use crate::asset::{Mesh, Model};
 use crate::scene::Relief;
 use crate::skinning::{add_levels, add_levels_and_at_rest, at_rest, poses_of};
-use crate::surface::{Green, HeightMap, Material, ReliefOptions, SurfaceMesh, SurfaceVertex};
+use crate::surface::{Green, HeightMap, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceVertex};
 use crate::terrain::config::ZoneTexture;
-use crate::terrain::texture::Texture;
+use crate::terrain::texture::TerrainTexture;
 use crate::{InputError, srgb};
 
 /// Levels of detail use a quarter of the poses of [`poses_of`], 15 a second, within these bounds, so that a scene loads
@@ -34,7 +34,7 @@ pub struct LoadedScene {
     /// The model of each object.
     pub(super) objects: Vec<Loaded>,
     /// The textures of the terrain's zones.
-    pub(super) textures: Vec<Texture>,
+    pub(super) textures: Vec<TerrainTexture>,
 }
 
 /// The model of an object.
@@ -85,10 +85,10 @@ impl SceneFile {
         let mut files = Files::new(read, built_ins);
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones).enumerate();
         let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
-            ZoneTexture::BuiltIn(kind) => Ok(Texture::built_in(kind)),
+            ZoneTexture::BuiltIn(kind) => Ok(TerrainTexture::built_in(kind)),
             ZoneTexture::File(path) => {
                 let at = format!("terrain.config.zones[{index}].texture");
-                Ok(Texture::from_image(&files.decoded(&at, &path)?))
+                Ok(TerrainTexture::from_image(&files.decoded(&at, &path)?))
             }
         };
         let textures = zones.map(texture).collect::<Result<_, InputError>>()?;
@@ -243,7 +243,7 @@ impl<'a> Files<'a> {
             None => made,
         };
         let options = ReliefOptions { method: relief.method, shadow: relief.shadow, ..made.options };
-        let material = Material { scale: relief.scale, ..made.material };
+        let material = ReliefMaterial { scale: relief.scale, ..made.material };
         let double_sided = rest.meshes.iter().any(|mesh| mesh.double_sided);
         Ok(Relief { options, material, double_sided, ..made })
     }

@@ -12,7 +12,7 @@ use crate::InputError;
 use crate::animation::Wrap;
 use crate::asset::import::ENDINGS;
 use crate::scene::Transition;
-use crate::surface::Shadow;
+use crate::surface::ReliefShadow;
 use crate::surface::relief::{MAX_SCALE, ReliefMethod};
 
 /// The largest number of instances of a mesh, and of a character, whose bones take memory.
@@ -24,7 +24,8 @@ const MAX_SECONDS: f64 = 1e6;
 const MAX_RATE: f64 = 100.0;
 
 const WRAPS: [(&str, Wrap); 2] = [("loop", Wrap::Loop), ("clamp", Wrap::Clamp)];
-const SHADOWS: [(&str, Shadow); 3] = [("none", Shadow::None), ("hard", Shadow::Hard), ("soft", Shadow::Soft)];
+const SHADOWS: [(&str, ReliefShadow); 3] =
+    [("none", ReliefShadow::None), ("hard", ReliefShadow::Hard), ("soft", ReliefShadow::Soft)];
 
 /// An entry of `meshes`.
 pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
@@ -108,7 +109,7 @@ fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
         scale: fields.number("scale", 0.0, MAX_SCALE.into(), 0.1)? as f32,
         tiles: fields.number("tiles", 1e-3, 1e3, 1.0)? as f32,
         method: fields.one_of("method", all, ReliefMethod::Quadtree)?,
-        shadow: fields.one_of("shadow", SHADOWS, Shadow::default())?,
+        shadow: fields.one_of("shadow", SHADOWS, ReliefShadow::default())?,
     })
 }
 

@@ -6,7 +6,7 @@ use crate::surface::relief::{MAX_SCALE, MAX_STEPS};
 /// Self-shadowing of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Shadow {
+pub enum ReliefShadow {
     /// No self-shadowing.
     #[default]
     None,
@@ -30,7 +30,7 @@ pub enum Green {
 /// Parameters of a relief, besides its maps, that may change without a new pipeline. Options such as shadows and silhouettes
 /// are compiled into the pipeline (`surface::ReliefOptions`).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
+pub struct ReliefMaterial {
     /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].
     pub scale: f32,
     /// Height of the polygon within the relief, 0 (bottom) to 1 (top).
@@ -49,7 +49,7 @@ pub struct Material {
     pub softness: f32,
 }
 
-impl Default for Material {
+impl Default for ReliefMaterial {
     fn default() -> Self {
         Self {
             scale: 0.1,
@@ -62,7 +62,7 @@ impl Default for Material {
     }
 }
 
-impl Material {
+impl ReliefMaterial {
     /// Refuses values out of bounds.
     ///
     /// # Errors

@@ -23,7 +23,7 @@ pub use color::ColorTexture;
 pub use height_batch::HeightMapBatch;
 pub use linear_image::LinearImage;
 pub use map::{Address, HeightMap};
-pub use material::{Green, Material, Shadow};
+pub use material::{Green, ReliefMaterial, ReliefShadow};
 pub use mesh::{SurfaceMesh, SurfaceVertex};
 pub use mips::Mips;
 #[cfg(feature = "gpu")]

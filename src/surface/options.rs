@@ -2,12 +2,12 @@
 
 #[cfg(feature = "gpu")]
 use crate::surface::color::ColorTexture;
-use crate::surface::material::{Green, Shadow};
+use crate::surface::material::{Green, ReliefShadow};
 use crate::surface::relief::ReliefMethod;
 #[cfg(feature = "gpu")]
 use crate::surface::relief::textures::SurfaceTextures;
 
-/// Options that are fixed when a pipeline is compiled. [`Material`](crate::surface::Material) has the parameters that may
+/// Options that are fixed when a pipeline is compiled. [`ReliefMaterial`](crate::surface::ReliefMaterial) has the parameters that may
 /// change without a new pipeline.
 ///
 /// The default is [`ReliefMethod::Quadtree`], with no shadow, normals from the heights, no silhouette, the polygon's depth, and mip
@@ -17,7 +17,7 @@ pub struct ReliefOptions {
     /// Method that finds the surface; the [`SurfaceTextures`] must be made for it.
     pub method: ReliefMethod,
     /// Self-shadow.
-    pub shadow: Shadow,
+    pub shadow: ReliefShadow,
     /// Green direction of the normal map that provides the normals; `None` derives normals from the heights.
     pub normal_map: Option<Green>,
     /// Whether to discard points outside the mesh's range of uv, so that silhouettes follow the relief.
@@ -33,7 +33,7 @@ impl Default for ReliefOptions {
     fn default() -> Self {
         Self {
             method: ReliefMethod::Quadtree,
-            shadow: Shadow::None,
+            shadow: ReliefShadow::None,
             normal_map: None,
             silhouette: false,
             depth: false,

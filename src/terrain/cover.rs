@@ -8,7 +8,7 @@ pub use crate::shared::terrain::zones::Zone as ShaderZone;
 use crate::terrain::config::{
     MAX_REPEATS, Slope, TerrainConfig, Zone, check_range, check_terrain_scale, check_zone_count, finite,
 };
-use crate::terrain::texture::{TEXTURE_SIZE, Texture};
+use crate::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 use crate::{InputError, srgb};
 
 /// Fixed-point one of texture tiles, 2^22: a word holds [`TILES_PERIOD`] tiles.
@@ -56,7 +56,7 @@ impl Cover {
     ///
     /// # Errors
     /// [`InputError`] where the numbers of zones and textures differ, and as [`TerrainConfig::validate`].
-    pub fn new(config: &TerrainConfig, textures: &[Texture]) -> Result<Self, InputError> {
+    pub fn new(config: &TerrainConfig, textures: &[TerrainTexture]) -> Result<Self, InputError> {
         config.validate()?;
         if textures.len() != config.zones.len() {
             let bound = format!("must be one for each of the {} zones", config.zones.len());

@@ -3,7 +3,7 @@
 use crate::gpu::{Buffer, Gpu};
 use crate::terrain::config::Zone;
 use crate::terrain::cover::{ShaderZone, zone_of};
-use crate::terrain::texture::{TEXTURE_SIZE, Texture};
+use crate::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 use crate::{Error, InputError};
 
 /// Zones with their textures on the device.
@@ -20,7 +20,7 @@ impl Materials {
     ///
     /// # Errors
     /// [`InputError`] when their numbers differ; [`crate::gpu::GpuError`].
-    pub fn new(gpu: &Gpu, zones: &[Zone], textures: &[Texture]) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, zones: &[Zone], textures: &[TerrainTexture]) -> Result<Self, Error> {
         if zones.is_empty() || zones.len() != textures.len() {
             let bound = format!("must be one for each of the {} zones", zones.len());
             return Err(InputError::new("textures.len", textures.len(), bound).into());
@@ -41,7 +41,7 @@ impl Materials {
     }
 }
 
-fn upload(gpu: &Gpu, layers: &[Texture]) -> wgpu::Texture {
+fn upload(gpu: &Gpu, layers: &[TerrainTexture]) -> wgpu::Texture {
     let (size, levels) = ([TEXTURE_SIZE, TEXTURE_SIZE, layers.len() as u32], TEXTURE_SIZE.ilog2() + 1);
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
     let texture = gpu.sampled_texture("zone textures", size, levels, format);

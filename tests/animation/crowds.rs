@@ -15,7 +15,7 @@ use relievo::ops::animation::local_to_model::reference::local_to_model;
 use relievo::ops::animation::local_to_model::{LOCAL_TO_MODEL_BOUND, LocalToModelPass};
 use relievo::ops::animation::sample::reference::sample_layers;
 use relievo::ops::animation::sample::{SAMPLE_BOUND, SamplePass};
-use relievo::ops::animation::{ClipSet, Layer};
+use relievo::ops::animation::{AnimationLayer, ClipSet};
 use relievo_lab::harness::compare::absolute;
 use relievo_samples::creature;
 
@@ -60,7 +60,8 @@ fn layers_play_from_places_to_poses() {
     let (gpu, (_, set)) = (gpu(), scene());
     let base = plays(0, 5);
     let weights = |shift: usize| (0..5).map(|at| ((at + shift) % 5) as f32 / 4.0).collect::<Vec<_>>();
-    let mut layers = [Layer::new(plays(1, 5), weights(0)), Layer::new(plays(2, 5), weights(2))];
+    let mut layers =
+        [AnimationLayer::new(plays(1, 5), weights(0)), AnimationLayer::new(plays(2, 5), weights(2))];
     let crowd = Crowd::layered(&gpu, &set, &base, &layers).expect("fits");
     assert_eq!((crowd.len(), crowd.layers, crowd.pairs()), (5, 3, 5 * 153));
     for frame in 0..2 {
@@ -85,12 +86,16 @@ fn layers_play_from_places_to_poses() {
 #[test]
 fn layers_that_do_not_fit_are_refused() {
     let (gpu, (_, set)) = (gpu(), scene());
-    let layer = Layer::new(plays(1, 2), vec![1.0; 2]);
+    let layer = AnimationLayer::new(plays(1, 2), vec![1.0; 2]);
     let crowd = Crowd::layered(&gpu, &set, &plays(0, 2), std::slice::from_ref(&layer)).expect("fits");
-    let refused =
-        |layers: &[Layer]| field(Crowd::layered(&gpu, &set, &plays(0, 2), layers).expect_err("refused"));
+    let refused = |layers: &[AnimationLayer]| {
+        field(Crowd::layered(&gpu, &set, &plays(0, 2), layers).expect_err("refused"))
+    };
     assert_eq!(refused(&vec![layer.clone(); MAX_LAYERS]), "layers.len");
-    assert_eq!(refused(&[layer.clone(), Layer { weights: vec![0.0, 2.0], ..layer }]), "layers[1].weights[1]");
+    assert_eq!(
+        refused(&[layer.clone(), AnimationLayer { weights: vec![0.0, 2.0], ..layer }]),
+        "layers[1].weights[1]"
+    );
     let refused =
         |layer, weights: &[f32]| field(crowd.set_weights(&gpu, layer, weights).expect_err("refused"));
     assert_eq!((refused(0, &[1.0; 2]), refused(2, &[1.0; 2])), ("layer".to_owned(), "layer".to_owned()));
@@ -107,7 +112,8 @@ fn layers_that_do_not_fit_are_refused() {
 #[test]
 fn layered_crowds_are_concatenated() {
     let (gpu, (model, set)) = (gpu(), scene());
-    let layers = [Layer::new(plays(1, 5), vec![0.5; 5]), Layer::new(plays(2, 5), vec![0.25; 5])];
+    let layers =
+        [AnimationLayer::new(plays(1, 5), vec![0.5; 5]), AnimationLayer::new(plays(2, 5), vec![0.25; 5])];
     let crowd = Crowd::layered(&gpu, &set, &plays(0, 5), &layers).expect("fits");
     let stale = vec![[f32::NAN; 12]; crowd.pairs()];
     gpu.queue().write_buffer(crowd.model_matrices().raw(), 0, bytemuck::cast_slice(&stale));

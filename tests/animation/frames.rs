@@ -15,7 +15,7 @@ use relievo::ops::animation::local_to_model::LocalToModelPass;
 use relievo::ops::animation::order::Order;
 use relievo::ops::animation::sample::SamplePass;
 use relievo::ops::animation::{
-    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, GateState, Layer, Lod,
+    AnimatedBones, AnimationLayer, BoundTable, ClipSet, ExpectationTable, Frame, Gate, GateState, Lod,
 };
 use relievo_samples::creature;
 
@@ -45,7 +45,7 @@ fn a_gate_that_misses_nothing_changes_nothing() {
     let plays = |clip: u32| -> Vec<Instance> {
         (0..5).map(|at| Instance::new(clip, Wrap::Loop, 0.2 * at as f32, 1.0 - 0.4 * at as f32)).collect()
     };
-    let layers = [Layer::new(plays(2), vec![0.0, 0.5, 1.0, 0.0, 0.25])];
+    let layers = [AnimationLayer::new(plays(2), vec![0.0, 0.5, 1.0, 0.0, 0.25])];
     let crowd = || Crowd::layered(gpu, &set, &plays(0), &layers).expect("fits");
     let (lazy, full) = (crowd(), crowd());
     let gated = GatedFrame::new(gpu, &model.skeleton, &buffers, &lazy, &gate).expect("prepared");

@@ -8,7 +8,7 @@ use relievo::ops::animation::instance::Wrap;
 use relievo::ops::animation::keyframe_cursor::reference::cursors;
 use relievo::ops::animation::layers::{all_instances, mask_below};
 use relievo::ops::animation::sample::reference::{blend, sample, sample_layers};
-use relievo::ops::animation::{ClipSet, Layer};
+use relievo::ops::animation::{AnimationLayer, ClipSet};
 use relievo_samples::creature;
 
 use crate::player::{angle, dot, unit, wide};
@@ -66,7 +66,7 @@ fn masks_confine_a_layer() {
     let shoulder = model.skeleton.bones().iter().position(|bone| bone.name.contains("arm")).expect("an arm");
     let mask = mask_below(&model.skeleton, shoulder).expect("a bone");
     let (walk, wave) = (Instance::new(0, Wrap::Loop, 0.3, 1.0), Instance::new(2, Wrap::Loop, 0.7, 1.0));
-    let layers = |weight| [Layer::new(vec![wave], vec![weight]).masked(mask.clone())];
+    let layers = |weight| [AnimationLayer::new(vec![wave], vec![weight]).masked(mask.clone())];
     let pose = |weight| {
         let layers = layers(weight);
         let found = cursors(&set, &all_instances(&[walk], &layers), 0.0);
@@ -103,8 +103,10 @@ fn layers_fold_upwards() {
     let clips = [at(0.0), at(8.0), at(100.0)];
     let set = ClipSet::new(&clips.iter().collect::<Vec<_>>()).expect("one skeleton");
     let plays = |clip| Instance::new(clip, Wrap::Loop, 0.0, 1.0);
-    let layers =
-        [Layer::new(vec![plays(1)], vec![0.5]), Layer::new(vec![plays(2)], vec![0.25]).masked(vec![0.5])];
+    let layers = [
+        AnimationLayer::new(vec![plays(1)], vec![0.5]),
+        AnimationLayer::new(vec![plays(2)], vec![0.25]).masked(vec![0.5]),
+    ];
     let found = cursors(&set, &all_instances(&[plays(0)], &layers), 0.0);
     let pose = sample_layers(&set, &[plays(0)], &layers, &found, RotationPath::Slerp);
     // The sum grows from 0 to 4, and then to 4 + 96/8.

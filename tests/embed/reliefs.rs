@@ -4,8 +4,8 @@ use glam::Vec3;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::{
-    Address, ColorTexture, Green, HeightMap, March, Material, Mips, ReliefMaps, ReliefMethod, ReliefOptions,
-    Shadow, SurfaceMesh, SurfaceTextures,
+    Address, ColorTexture, Green, HeightMap, March, Mips, ReliefMaps, ReliefMaterial, ReliefMethod,
+    ReliefOptions, ReliefShadow, SurfaceMesh, SurfaceTextures,
 };
 use relievo::render::{Offscreen, TargetFormat};
 use relievo::scene::{Camera, Placement, Relief, ReliefSource, Scene};
@@ -66,7 +66,7 @@ fn textures_of_the_caller_look_like_images() {
             let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals };
             let shared = Relief::of_maps(mesh.clone(), maps);
             let normal_map = normals.map(|_| Green::Up);
-            let options = ReliefOptions { normal_map, shadow: Shadow::Hard, ..shared.options };
+            let options = ReliefOptions { normal_map, shadow: ReliefShadow::Hard, ..shared.options };
             let shared = Relief { options, ..shared };
             let own = Relief::new(mesh.clone(), heights.clone(), colors.clone());
             let own = if normals.is_some() { own.with_normals(bumps.clone(), Green::Up) } else { own };
@@ -128,7 +128,7 @@ fn mistakes_about_maps_are_told() {
     assert_eq!(refused(Relief { march, ..good.clone() }), "relief.march.address");
     let options = ReliefOptions { normal_map: Some(Green::Up), ..good.options };
     assert_eq!(refused(Relief { options, ..good.clone() }), "relief.maps.normals");
-    let material = Material { scale: f32::NAN, ..good.material };
+    let material = ReliefMaterial { scale: f32::NAN, ..good.material };
     assert_eq!(refused(Relief { material, ..good.clone() }), "relief.material.scale");
     let still = good.clone().with_normals(bumps, Green::Up);
     assert!(matches!(still.maps, ReliefSource::Textures { normals: None, .. }));

@@ -6,7 +6,7 @@ use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::tangent::Mesh;
 use relievo::ops::surface::tangent::reference::tangents;
-use relievo::ops::surface::{Green, ReliefMethod, ReliefOptions, Shadow, SurfaceMesh, SurfaceVertex};
+use relievo::ops::surface::{Green, ReliefMethod, ReliefOptions, ReliefShadow, SurfaceMesh, SurfaceVertex};
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
 use relievo_samples::BuiltInMap;
@@ -47,7 +47,7 @@ fn barrel() -> SurfaceMesh {
 }
 
 fn options(method: ReliefMethod, depth: bool, silhouette: bool) -> ReliefOptions {
-    let (shadow, normal_map) = (Shadow::Hard, None);
+    let (shadow, normal_map) = (ReliefShadow::Hard, None);
     ReliefOptions { method, shadow, normal_map, silhouette, depth, mip: true }
 }
 
@@ -97,8 +97,8 @@ fn options_alone_decide_what_is_drawn() {
     let plain = ReliefOptions::default();
     let pictures = [
         plain,
-        ReliefOptions { shadow: Shadow::Hard, ..plain },
-        ReliefOptions { shadow: Shadow::Soft, ..plain },
+        ReliefOptions { shadow: ReliefShadow::Hard, ..plain },
+        ReliefOptions { shadow: ReliefShadow::Soft, ..plain },
         ReliefOptions { silhouette: true, ..plain },
     ]
     .map(|options| {

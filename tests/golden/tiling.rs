@@ -7,7 +7,7 @@ use relievo::gpu::Gpu;
 use relievo::ops::terrain::config::BuiltIn;
 use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::fields::Fields;
-use relievo::ops::terrain::texture::{TEXTURE_SIZE, Texture};
+use relievo::ops::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Placement, Scene, TerrainSource};
 
@@ -18,7 +18,7 @@ const SIZE: u32 = 17;
 
 /// The eastern half of a tile is red, the southern half green.
 fn quarters() -> Texture {
-    let mut texture = Texture::built_in(BuiltIn::Sand);
+    let mut texture = TerrainTexture::built_in(BuiltIn::Sand);
     for (level, texels) in texture.mips.iter_mut().enumerate() {
         let edge = (TEXTURE_SIZE as usize) >> level;
         for (at, texel) in texels.chunks_exact_mut(4).enumerate() {

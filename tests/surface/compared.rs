@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use relievo::ops::surface::{Green, HeightMap, March, Material, Mips, ReliefMethod, Shadow};
+use relievo::ops::surface::{Green, HeightMap, March, Mips, ReliefMaterial, ReliefMethod, ReliefShadow};
 use relievo_lab::measure::relief::{Comparison, ReliefSquare, SquareView};
 
 /// Ridges along v, one texel wide, between furrows a quarter as high.
@@ -14,10 +14,10 @@ fn square(size: [u32; 2]) -> ReliefSquare {
         albedo: Mips::of_color(stone),
         normals: None,
         green: Green::Up,
-        shadow: Shadow::None,
+        shadow: ReliefShadow::None,
         silhouette: false,
         march: March::default(),
-        material: Material::default(),
+        material: ReliefMaterial::default(),
         view: SquareView { angle: 60.0, azimuth: 90.0, tiles: 1.0, size },
     }
 }

@@ -1,7 +1,7 @@
 //! What is decided where thesis B contradicts itself on surface mapping (`docs/sources.md`).
 
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, March, Material, Ray, ReliefMethod};
+use relievo::ops::surface::{Address, HeightMap, March, Ray, ReliefMaterial, ReliefMethod};
 
 /// Towards the eye: 3 across and 4 up.
 const VIEW: [f32; 3] = [0.6, 0.0, 0.8];
@@ -38,7 +38,7 @@ fn the_bias_of_parallax_is_negative() {
 /// By default the highest points lie in the polygon and all others below it, for every method that shifts by the full depth.
 #[test]
 fn the_polygon_is_the_top_of_the_relief() {
-    let top = Material::default().plane;
+    let top = ReliefMaterial::default().plane;
     assert_eq!(top, 1.0);
     for method in ReliefMethod::ALL {
         if [ReliefMethod::Plain, ReliefMethod::ParallaxLimited].contains(&method) {

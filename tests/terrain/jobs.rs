@@ -15,7 +15,7 @@ use relievo::ops::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPas
 use relievo::ops::terrain::morph::{MorphBuffers, MorphPass};
 use relievo::ops::terrain::normals::NormalsPass;
 use relievo::ops::terrain::pad::PadPass;
-use relievo::ops::terrain::texture::Texture;
+use relievo::ops::terrain::texture::TerrainTexture;
 use relievo::ops::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use relievo::ops::terrain::wrap::WrapPass;
 
@@ -79,7 +79,7 @@ fn blend() {
     let gpu = gpu();
     let pass = BlendPass::new(&gpu).expect("compiled");
     let config = TerrainConfig::new(3, 10.0, "").expect("valid");
-    let textures = Texture::of_zones(&config.zones).expect("built in");
+    let textures = TerrainTexture::of_zones(&config.zones).expect("built in");
     refuses(Cover::new(&config, &textures[1..]).map(|_| ()).map_err(Error::from), &["textures.len = 3"]);
     let cover = Cover::new(&config, &textures).expect("valid");
     let good = Shading::default();

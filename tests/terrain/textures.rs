@@ -1,7 +1,7 @@
 //! The textures that relievo generates repeat without a seam, use their height maps, and differ from each other.
 
 use relievo::ops::terrain::config::BuiltIn;
-use relievo::ops::terrain::texture::{TEXTURE_SIZE, Texture};
+use relievo::ops::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 
 const EDGE: usize = TEXTURE_SIZE as usize;
 
@@ -19,7 +19,7 @@ fn step(texels: &[u8], [from, to]: [usize; 2], of_rows: bool) -> f64 {
 #[test]
 fn textures_repeat_without_a_seam() {
     for kind in BuiltIn::ALL {
-        let texture = Texture::built_in(kind);
+        let texture = TerrainTexture::built_in(kind);
         let texels = &texture.mips[0];
         for of_rows in [false, true] {
             let inside: Vec<f64> = (1..EDGE).map(|line| step(texels, [line - 1, line], of_rows)).collect();
@@ -39,7 +39,7 @@ fn textures_repeat_without_a_seam() {
 
 #[test]
 fn textures_have_heights_and_no_dark_or_bright_sides() {
-    let textures = BuiltIn::ALL.map(Texture::built_in);
+    let textures = BuiltIn::ALL.map(TerrainTexture::built_in);
     for (texture, kind) in textures.iter().zip(BuiltIn::ALL) {
         let heights: Vec<u8> = texture.mips[0].chunks_exact(4).map(|texel| texel[3]).collect();
         let mean = heights.iter().map(|height| f64::from(*height)).sum::<f64>() / heights.len() as f64;

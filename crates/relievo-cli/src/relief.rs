@@ -9,7 +9,7 @@ use clap::Args;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::{
-    Address, Green, HeightMap, March, Material, Mips, Outcome, ReliefMethod, Shadow,
+    Address, Green, HeightMap, March, Mips, Outcome, ReliefMaterial, ReliefMethod, ReliefShadow,
 };
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
@@ -33,7 +33,8 @@ const BACKGROUND: [f32; 3] = [0.045, 0.055, 0.07];
 const FINER: u32 = 2;
 
 const GREENS: [(&str, Green); 2] = [("up", Green::Up), ("down", Green::Down)];
-const SHADOWS: [(&str, Shadow); 3] = [("none", Shadow::None), ("hard", Shadow::Hard), ("soft", Shadow::Soft)];
+const SHADOWS: [(&str, ReliefShadow); 3] =
+    [("none", ReliefShadow::None), ("hard", ReliefShadow::Hard), ("soft", ReliefShadow::Soft)];
 const ADDRESSES: [(&str, Address); 2] = [("wrap", Address::Wrap), ("clamp", Address::Clamp)];
 
 /// Draws a square of relief with any ray-height method, and measures the method against the exact intersection.
@@ -101,7 +102,7 @@ pub struct Relief {
     tile: f64,
     /// The self-shadow of the relief.
     #[arg(long, default_value = "none", value_parser = one_of(SHADOWS))]
-    shadow: Shadow,
+    shadow: ReliefShadow,
     /// The direction towards the light, in degrees: around the normal as --azimuth, and above the square.
     #[arg(long, value_name = "AZ,EL", default_value = "225,45", allow_hyphen_values = true,
           value_parser = pair::<f64>("light", ',', "must be azimuth and elevation in degrees, such as 225,45"))]
@@ -144,7 +145,7 @@ struct Report<'a> {
     angle: f64,
     azimuth: f64,
     tile: f64,
-    shadow: Shadow,
+    shadow: ReliefShadow,
     map: [u32; 2],
     size: [u32; 2],
     seconds: Seconds,
@@ -216,7 +217,7 @@ impl Relief {
         })
     }
 
-    fn material(&self) -> Result<Material, InputError> {
+    fn material(&self) -> Result<ReliefMaterial, InputError> {
         if !(0.0..=1.0).contains(&self.scale) {
             return Err(InputError::new("scale", self.scale, "must be in 0..=1 tiles"));
         }
@@ -228,11 +229,11 @@ impl Relief {
         }
         let [azimuth, elevation] = self.light;
         let light = towards_light(azimuth, elevation)?.map(|axis| axis as f32);
-        let material = Material {
+        let material = ReliefMaterial {
             scale: self.scale as f32,
             plane: if self.scale > 0.0 { (-bias / self.scale) as f32 } else { 1.0 },
             light,
-            ..Material::default()
+            ..ReliefMaterial::default()
         };
         material.validate()?;
         Ok(material)

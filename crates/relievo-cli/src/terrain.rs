@@ -22,7 +22,7 @@ use relievo::ops::terrain::field::field_with;
 use relievo::ops::terrain::fixed::FeatureMode;
 use relievo::ops::terrain::generator::Generator;
 use relievo::ops::terrain::recipe::Recipe;
-use relievo::ops::terrain::texture::Texture;
+use relievo::ops::terrain::texture::TerrainTexture;
 use relievo::scene::TerrainStyle;
 use relievo::{Error, InputError};
 use relievo_lab::files::Staged;
@@ -146,7 +146,7 @@ struct Plan {
     patches: Vec<[i32; 2]>,
     size: [u32; 2],
     shading: Shading,
-    textures: Vec<Texture>,
+    textures: Vec<TerrainTexture>,
 }
 
 /// The output of either backend.
@@ -235,7 +235,7 @@ impl Terrain {
         memory::check(&given, words * grid.bytes(width, recipe.features.len() as u64))?;
         recipe.validate(&patches, 1).map_err(InputError::in_json)?;
         let target = self.target.read(&recipe, &patches)?;
-        let textures = Texture::of_zones(&recipe.config.zones)?;
+        let textures = TerrainTexture::of_zones(&recipe.config.zones)?;
         let shading = Shading { weights: self.weights, ..Shading::default() };
         Ok(Plan { recipe, target, grid, patches, size: self.size, shading, textures })
     }

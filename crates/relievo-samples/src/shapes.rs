@@ -8,7 +8,7 @@ use relievo::asset::skeleton::Bone;
 use relievo::asset::{Influences, Material, Mesh, Model, Skeleton, Skin, Transform};
 use relievo::ops::hash::{LANES, threefry2x32};
 use relievo::ops::terrain::config::BuiltIn;
-use relievo::ops::terrain::texture::{TEXTURE_SIZE, Texture as ZoneTexture};
+use relievo::ops::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 
 /// Cells along an edge of each of the six sides of the rock.
 const ROCK_CELLS: u32 = 24;
@@ -37,7 +37,7 @@ pub fn rock() -> Result<Model, InputError> {
             (point(u, v), normal.normalize_or(DVec3::Y), [u, v])
         });
     }
-    let mut texels = ZoneTexture::built_in(BuiltIn::Hill).mips.swap_remove(0);
+    let mut texels = TerrainTexture::built_in(BuiltIn::Hill).mips.swap_remove(0);
     // A rock is opaque, and has no use for the heights of the texture.
     texels.chunks_exact_mut(4).for_each(|texel| texel[3] = 255);
     let image = image::RgbaImage::from_raw(TEXTURE_SIZE, TEXTURE_SIZE, texels);

@@ -4,7 +4,7 @@ use crate::animation::clip_clock::{BLENDED, ClipClock, UpdateReason};
 use crate::animation::clip_set::ClipSet;
 use crate::animation::instance::Instance;
 use crate::animation::keyframe_cursor::reference::inside_clip;
-use crate::animation::layers::Layer;
+use crate::animation::layers::AnimationLayer;
 use crate::animation::lod::{BoneSampling, Lod};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::keyframe_cursor;
@@ -19,7 +19,7 @@ use crate::shared::animation::gate_state::FRACTION_ONE;
 pub fn clip_clocks(
     set: &ClipSet,
     instances: &[Instance],
-    layers: &[Layer],
+    layers: &[AnimationLayer],
     lods: &[Lod],
     elapsed: f32,
     ahead: f32,
@@ -61,7 +61,7 @@ pub fn clip_clocks(
 }
 
 /// Hash of the clips that play above the base; 0 if there are none.
-fn clips_above(layers: &[Layer], instance: usize) -> u32 {
+fn clips_above(layers: &[AnimationLayer], instance: usize) -> u32 {
     layers.iter().fold(0, |clips: u32, layer| {
         let heard = if layer.weights[instance] > 0.0 { layer.instances[instance].clip + 1 } else { 0 };
         clips.wrapping_mul(CLIP_HASH_FACTOR).wrapping_add(heard)

@@ -7,7 +7,7 @@ use crate::Error;
 use crate::animation::compact::CompactJob;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
-use crate::animation::{ClipSet, Gate, Instance, Layer, Wrap};
+use crate::animation::{AnimationLayer, ClipSet, Gate, Instance, Wrap};
 use crate::asset::Model;
 use crate::gpu::{Gpu, GpuError, Job, Uniform};
 use crate::lod::assign::{AssignBuffers, AssignPass};
@@ -112,9 +112,9 @@ impl Runtime {
         let count = slots.len();
         let layer = |mask: &Option<Vec<f32>>| {
             let (instances, weights) = (vec![rest; count], vec![0.0; count]);
-            Layer { instances, weights, mask: mask.clone() }
+            AnimationLayer { instances, weights, mask: mask.clone() }
         };
-        let layers: Vec<Layer> = shared.masks.iter().map(layer).collect();
+        let layers: Vec<AnimationLayer> = shared.masks.iter().map(layer).collect();
         let crowd = Crowd::layered(gpu, &shared.set, &vec![rest; count], &layers)?;
         let frame = GatedFrame::new(gpu, &model.skeleton, &shared.clips, &crowd, &shared.gate)?;
         let every: Vec<usize> = (0..model.clips.len()).collect();

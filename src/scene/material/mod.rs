@@ -5,7 +5,7 @@ mod relief;
 mod textures;
 
 pub(crate) use looks::Looks;
-pub(crate) use relief::{ReliefLook, ReliefMaterial};
+pub(crate) use relief::{ReliefBindings, ReliefLook};
 
 use crate::asset::material::{Alpha, Material, Sampling, Texture};
 use crate::gpu::bindings::render::scene_mesh::Group2;

@@ -6,12 +6,12 @@ use crate::scene::layouts::SceneLayouts;
 use crate::shared::render::scene_relief::ReliefParams;
 use crate::shared::surface::ray::SurfaceMarch;
 use crate::surface::relief::March;
-use crate::surface::{Material, ReliefMaps, ReliefOptions};
+use crate::surface::{ReliefMaps, ReliefMaterial, ReliefOptions};
 use crate::{Error, InputError};
 
 /// A relief that replaces the materials of a part.
 #[derive(Debug, Clone)]
-pub(crate) struct ReliefMaterial {
+pub(crate) struct ReliefBindings {
     /// Bind group 2 of `render/scene_relief`.
     pub group: Group,
     /// Options that pipelines are compiled for.
@@ -22,7 +22,7 @@ pub(crate) struct ReliefMaterial {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReliefLook {
     /// Depth, plane and the width of shadows; the light is the scene's.
-    pub material: Material,
+    pub material: ReliefMaterial,
     /// Ray marching.
     pub march: March,
     /// The mesh's uv range: lower and upper corner.
@@ -33,7 +33,7 @@ pub(crate) struct ReliefLook {
     pub color: [f32; 3],
 }
 
-impl ReliefMaterial {
+impl ReliefBindings {
     /// Binds a relief's maps, each with its own sampler.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl ReliefLook {
     }
 
     fn params(&self) -> ReliefParams {
-        let Material { scale, plane, shadow_steps, softness, .. } = self.material;
+        let ReliefMaterial { scale, plane, shadow_steps, softness, .. } = self.material;
         let [[low_u, low_v], [high_u, high_v]] = self.range;
         ReliefParams {
             range: glam::Vec4::new(low_u, low_v, high_u, high_v),

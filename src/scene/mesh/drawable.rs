@@ -5,7 +5,7 @@ use crate::gpu::bindings::render::scene_mesh;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Staged, Uniform, Upload as _};
 use crate::scene::drawable::{Drawable, NO_OBJECT, Part};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::{PartMaterials, ReliefMaterial};
+use crate::scene::material::{PartMaterials, ReliefBindings};
 use crate::scene::specialization::{OwnDepth, PartState, Specialization};
 use crate::shared::render::scene_instances::SceneObject;
 use crate::shared::render::scene_vertex::MeshParams;
@@ -189,7 +189,7 @@ pub(crate) enum MeshMaterials {
     /// Colours, textures and normal maps.
     Plain(PartMaterials),
     /// A relief, on a static mesh.
-    Relief(ReliefMaterial),
+    Relief(ReliefBindings),
 }
 
 impl MeshMaterials {

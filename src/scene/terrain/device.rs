@@ -18,7 +18,7 @@ use crate::terrain::generator::Generator;
 use crate::terrain::ground::Ground;
 use crate::terrain::materials::Materials;
 use crate::terrain::recipe::Recipe;
-use crate::terrain::texture::Texture;
+use crate::terrain::texture::TerrainTexture;
 use crate::{Error, InputError};
 
 /// Samples around each generated patch; shading reads one.
@@ -54,7 +54,7 @@ pub(in crate::scene) async fn made(
     };
     let textures = match textures {
         Some(textures) => textures.clone(),
-        None => Texture::of_zones(&config.zones)?,
+        None => TerrainTexture::of_zones(&config.zones)?,
     };
     let zones = Materials::new(gpu, &config.zones, &textures)?;
     let mut ground = Ground::new(config)?;

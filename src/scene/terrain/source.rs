@@ -9,7 +9,7 @@ use crate::terrain::config::TerrainConfig;
 use crate::terrain::fields::Fields;
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
-use crate::terrain::texture::Texture;
+use crate::terrain::texture::TerrainTexture;
 
 /// Source of the heights.
 #[derive(Debug, Clone)]
@@ -27,7 +27,7 @@ pub(super) enum Origin {
 pub struct TerrainSource {
     pub(super) origin: Origin,
     pub(super) patches: Vec<[i32; 2]>,
-    pub(super) textures: Option<Vec<Texture>>,
+    pub(super) textures: Option<Vec<TerrainTexture>>,
     pub(super) shading: Shading,
     pub(super) style: TerrainStyle,
     /// The recipe to blend towards, and how far.
@@ -82,7 +82,7 @@ impl TerrainSource {
 
     /// Replaces the textures, one per zone of the configuration.
     #[must_use]
-    pub fn with_textures(self, textures: Vec<Texture>) -> Self {
+    pub fn with_textures(self, textures: Vec<TerrainTexture>) -> Self {
         Self { textures: Some(textures), ..self }
     }
 

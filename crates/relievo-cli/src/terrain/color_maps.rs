@@ -8,7 +8,7 @@ use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, Shading};
 use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::cover::Cover;
 use relievo::ops::terrain::fields::Fields;
-use relievo::ops::terrain::texture::Texture;
+use relievo::ops::terrain::texture::TerrainTexture;
 use relievo::{Error, InputError};
 
 /// The zones, textures and light of colour maps. A map has one sRGB pixel per sample, as RGBA with red in the
@@ -18,7 +18,7 @@ pub struct ColorMaps<'a> {
     /// The configuration: its zones, how their textures lie on the ground, and the distance between samples.
     pub config: &'a TerrainConfig,
     /// One texture per zone.
-    pub textures: &'a [Texture],
+    pub textures: &'a [TerrainTexture],
     /// The patches, in the order of the windows.
     pub patches: &'a [[i32; 2]],
     /// The light, and how zone weights are blended.

@@ -9,7 +9,7 @@ use relievo::gpu::Gpu;
 use relievo::ops::terrain::blend::Shading;
 use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::fields::Fields;
-use relievo::ops::terrain::texture::Texture;
+use relievo::ops::terrain::texture::TerrainTexture;
 use relievo::render::Offscreen;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::scene::{Camera, Scene, TerrainSource, TerrainStyle};
@@ -29,7 +29,7 @@ pub struct Look<'a> {
     /// Pixels.
     pub size: [u32; 2],
     pub shading: Shading,
-    pub textures: &'a [Texture],
+    pub textures: &'a [TerrainTexture],
     pub style: TerrainStyle,
 }
 

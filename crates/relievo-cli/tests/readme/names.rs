@@ -113,7 +113,7 @@ fn decided() {
     let _ = relievo_lab::reduce::Normals::Recompute; // reduce::Normals::Recompute
     let _ = relievo::ops::surface::ReliefMethod::Parallax; // ops::surface::ReliefMethod::Parallax
     let _ = |march: relievo::ops::surface::March| march.steps; // ops::surface::March::steps
-    let _ = |material: relievo::ops::surface::Material| material.plane; // ops::surface::Material::plane
+    let _ = |material: relievo::ops::surface::ReliefMaterial| material.plane; // ops::surface::ReliefMaterial::plane
     let _ = |config: relievo::ops::terrain::config::TerrainConfig| config.scale_factor; // ops::terrain::config::TerrainConfig::scale_factor
 }
 

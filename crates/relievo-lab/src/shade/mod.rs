@@ -9,7 +9,7 @@ pub use relievo::shared::surface::shade::{Shade, ShadePoint, ShadeView};
 
 use glam::{Mat4, Vec3, Vec4};
 use relievo::InputError;
-use relievo::ops::surface::Material;
+use relievo::ops::surface::ReliefMaterial;
 use relievo::ops::surface::relief::MAX_STEPS;
 
 mod pass;
@@ -17,9 +17,9 @@ pub mod reference;
 pub mod shadow;
 
 /// A parallel view straight from above, in which the depth of a point is −z, with the shadows of
-/// [`Material`]'s default.
+/// [`ReliefMaterial`]'s default.
 pub fn from_above() -> ShadeView {
-    let material = Material::default();
+    let material = ReliefMaterial::default();
     ShadeView {
         clip_from_world: Mat4::from_scale(Vec3::new(1.0, 1.0, -1.0)),
         eye: Vec4::Z,

@@ -2,7 +2,7 @@
 
 use crate::animation::clip_set::{ClipSet, SetTrack};
 use crate::animation::instance::Instance;
-use crate::animation::layers::{Layer, all_instances};
+use crate::animation::layers::{AnimationLayer, all_instances};
 use crate::animation::sample::{SLERP_U, SLERP_V};
 use crate::asset::clip::{Clip, Interpolation, Part};
 use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
@@ -180,7 +180,7 @@ pub fn sample_pair(
 pub fn sample_layers(
     set: &ClipSet,
     base: &[Instance],
-    layers: &[Layer],
+    layers: &[AnimationLayer],
     cursors: &[KeyframeCursor],
     path: RotationPath,
 ) -> Vec<Transform> {

@@ -13,7 +13,7 @@ use crate::render::{Layer, Renderer};
 use crate::scene::TerrainStyle;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::{PartState, Program, Specialization};
-use crate::surface::{Green, ReliefMethod, ReliefOptions, Shadow};
+use crate::surface::{Green, ReliefMethod, ReliefOptions, ReliefShadow};
 
 /// Parts that cover every entry point and both values of every flag. Reliefs have a method.
 fn parts() -> Vec<(Option<ReliefMethod>, Specialization)> {
@@ -29,9 +29,9 @@ fn parts() -> Vec<(Option<ReliefMethod>, Specialization)> {
     });
     let reliefs = ReliefMethod::ALL.into_iter().flat_map(|method| {
         [
-            (Shadow::None, None, false),
-            (Shadow::Hard, Some(Green::Up), true),
-            (Shadow::Soft, Some(Green::Down), true),
+            (ReliefShadow::None, None, false),
+            (ReliefShadow::Hard, Some(Green::Up), true),
+            (ReliefShadow::Soft, Some(Green::Down), true),
         ]
         .map(|(shadow, normal_map, set)| {
             let options = ReliefOptions { method, shadow, normal_map, silhouette: set, depth: set, mip: set };

@@ -10,15 +10,15 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::render::{Layer, TargetFormat};
 use crate::samples::maps::BuiltInMap;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::{ReliefLook, ReliefMaterial};
+use crate::scene::material::{ReliefBindings, ReliefLook};
 use crate::scene::mesh::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::shared::render::scene_view::SceneView;
 use crate::skinning::vertex::Vertex;
 use crate::surface::mips::Mips;
 use crate::surface::{
-    Address, ColorTexture, March, Material, ReliefMaps, ReliefMethod, ReliefOptions, Shadow, SurfaceMesh,
-    SurfaceTextures,
+    Address, ColorTexture, March, ReliefMaps, ReliefMaterial, ReliefMethod, ReliefOptions, ReliefShadow,
+    SurfaceMesh, SurfaceTextures,
 };
 
 const TILES: f32 = 2.0;
@@ -45,13 +45,13 @@ impl Maps {
 }
 
 /// The default light as a relief material.
-fn material(plane: f32) -> Material {
+fn material(plane: f32) -> ReliefMaterial {
     let light = Light::default();
-    Material {
+    ReliefMaterial {
         light: light.direction.normalize().into(),
         ambient: light.ambient,
         plane,
-        ..Material::default()
+        ..ReliefMaterial::default()
     }
 }
 
@@ -102,7 +102,7 @@ fn mesh_of(
         material_of: Buffer::from_slice(gpu, "material of", &[0; 4]).expect(up),
         indices: Buffer::from_slice(gpu, "indices", &square.indices).expect(up),
     };
-    let relief = ReliefMaterial::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
+    let relief = ReliefBindings::new(gpu, layouts, maps.maps(), options, &look).expect("bound");
     let part = MeshPart::new(Faces { blended: false, double_sided: true }, MeshMaterials::Relief(relief));
     MeshDrawable::new(gpu, layouts, geometry, 0, vec![part]).expect("bound")
 }
@@ -131,9 +131,9 @@ fn a_scaled_instance_is_a_larger_mesh() {
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let format = TargetFormat::new(FORMAT);
     for (method, shadow, depth, scale) in [
-        (ReliefMethod::Quadtree, Shadow::Hard, false, 1.0),
-        (ReliefMethod::Relief, Shadow::Soft, true, 1.7),
-        (ReliefMethod::Parallax, Shadow::None, true, 0.8),
+        (ReliefMethod::Quadtree, ReliefShadow::Hard, false, 1.0),
+        (ReliefMethod::Relief, ReliefShadow::Soft, true, 1.7),
+        (ReliefMethod::Parallax, ReliefShadow::None, true, 0.8),
     ] {
         let maps = Maps::new(&gpu, method);
         let options = ReliefOptions { method, shadow, silhouette: depth, depth, ..ReliefOptions::default() };
@@ -160,7 +160,7 @@ fn a_mirrored_relief_is_the_mirror_image() {
     let gpu = gpu();
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let maps = Maps::new(&gpu, ReliefMethod::Quadtree);
-    let options = ReliefOptions { shadow: Shadow::Hard, depth: true, ..ReliefOptions::default() };
+    let options = ReliefOptions { shadow: ReliefShadow::Hard, depth: true, ..ReliefOptions::default() };
     let square = square(&gpu, &layouts, &maps, options, 1.0);
     let format = TargetFormat::new(FORMAT);
     // Placement, eye, light and picture mirrored in the plane x = 0.

@@ -18,7 +18,7 @@ use crate::terrain::fields::Fields;
 use crate::terrain::generator::Generator;
 use crate::terrain::materials::Materials;
 use crate::terrain::recipe::Recipe;
-use crate::terrain::texture::Texture;
+use crate::terrain::texture::TerrainTexture;
 
 const PATCHES: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
@@ -38,7 +38,7 @@ impl Land {
     }
 
     fn zones(&self, gpu: &Gpu) -> Materials {
-        let textures = Texture::of_zones(&self.config.zones).expect("built in");
+        let textures = TerrainTexture::of_zones(&self.config.zones).expect("built in");
         Materials::new(gpu, &self.config.zones, &textures).expect("uploaded")
     }
 

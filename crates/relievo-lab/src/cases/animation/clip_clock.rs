@@ -7,7 +7,7 @@ use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
 use relievo::ops::animation::gate_state::GateState;
 use relievo::ops::animation::instance::Instance;
 use relievo::ops::animation::keyframe_cursor::reference::cursors;
-use relievo::ops::animation::layers::Layer;
+use relievo::ops::animation::layers::AnimationLayer;
 use relievo::ops::animation::lod::{BoneSampling, Lod};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
@@ -30,9 +30,12 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let (_, set, mut instances) = random_crowd(case as u32, bones, count)?;
         // Every third case has layers.
         let layer = |draw: &mut Draw| {
-            Layer::new(instances.clone(), (0..count).map(|_| (draw.word() % 3) as f32 / 2.0).collect())
+            AnimationLayer::new(
+                instances.clone(),
+                (0..count).map(|_| (draw.word() % 3) as f32 / 2.0).collect(),
+            )
         };
-        let mut layers: Vec<Layer> = (0..case % 3).map(|_| layer(&mut draw)).collect();
+        let mut layers: Vec<AnimationLayer> = (0..case % 3).map(|_| layer(&mut draw)).collect();
         let crowd = Crowd::layered(gpu, &set, &instances, &layers)?;
         let clips = ClipBuffers::new(gpu, &set)?;
         let mut state = GateState::new(gpu, &crowd)?;

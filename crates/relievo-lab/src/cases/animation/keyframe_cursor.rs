@@ -10,7 +10,7 @@ use relievo::ops::animation::gate_state::GateState;
 use relievo::ops::animation::instance::{Instance, Wrap};
 use relievo::ops::animation::keyframe_cursor::reference::{cursors, cursors_into, inside_clip};
 use relievo::ops::animation::keyframe_cursor::{KEYFRAME_CURSOR_BOUND, KeyframeCursorPass};
-use relievo::ops::animation::layers::{Layer, all_instances};
+use relievo::ops::animation::layers::{AnimationLayer, all_instances};
 use relievo::ops::animation::order::Order;
 
 use crate::cases::animation::edges::{ELAPSED, edges};
@@ -63,7 +63,7 @@ async fn of_a_list(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let (skeleton, set, base) = random_crowd(case as u32, bones, count)?;
-        let layer = Layer::new(random_instances(case as u32 + 50, &set, count), vec![0.5; count]);
+        let layer = AnimationLayer::new(random_instances(case as u32 + 50, &set, count), vec![0.5; count]);
         let layers = vec![layer; case % 3];
         let mut crowd = Crowd::layered(gpu, &set, &base, &layers)?;
         let rooms = crowd.cursors.len();

@@ -11,7 +11,7 @@ use relievo::ops::animation::clip_set::ClipSet;
 use relievo::ops::animation::crowd::{ClipBuffers, Crowd, Local, packed};
 use relievo::ops::animation::instance::Instance;
 use relievo::ops::animation::keyframe_cursor::reference::cursors;
-use relievo::ops::animation::layers::{Layer, MAX_LAYERS, all_instances};
+use relievo::ops::animation::layers::{AnimationLayer, MAX_LAYERS, all_instances};
 use relievo::ops::animation::sample::reference::{blend, sample_layers, sample_set, sample_set_into};
 use relievo::ops::animation::sample::{LAYER_GROWTH, SAMPLE_BOUND, SamplePass};
 
@@ -61,7 +61,7 @@ async fn at_edges(cases: &mut Cases<'_>) -> Result<(), Error> {
     let edges = edges()?;
     let poses: Vec<Local> = edges.poses().iter().map(packed).collect();
     let negated = edges.instances.iter().map(|instance| Instance { clip: instance.clip + 2, ..*instance });
-    let layer = Layer::new(negated.collect(), vec![0.5; edges.instances.len()]);
+    let layer = AnimationLayer::new(negated.collect(), vec![0.5; edges.instances.len()]);
     for (name, layers) in [("edges", vec![]), ("edges under their negatives", vec![layer])] {
         let mut bench = Case::new(cases.gpu, &edges.set, &edges.instances, &layers, RotationPath::Slerp)?;
         bench.expected.clone_from(&poses);
@@ -76,7 +76,7 @@ async fn add(
     name: String,
     set: &ClipSet,
     base: &[Instance],
-    layers: &[Layer],
+    layers: &[AnimationLayer],
     path: RotationPath,
 ) -> Result<(), Error> {
     let bench = Case::new(cases.gpu, set, base, layers, path)?;
@@ -90,7 +90,7 @@ async fn add(
 }
 
 /// Random layers with weights and masks of 0, of 1 and in between; every second layer has no mask.
-fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<Layer> {
+fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<AnimationLayer> {
     let mut draw = Draw::new(case ^ 0x1a7e);
     let mut weight = || match draw.word() % 4 {
         0 => 0.0,
@@ -99,7 +99,7 @@ fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<La
     };
     let layer = |at: usize| {
         let instances = random_instances(case ^ (at as u32 + 1) << 8, set, count);
-        let layer = Layer::new(instances, (0..count).map(|_| weight()).collect());
+        let layer = AnimationLayer::new(instances, (0..count).map(|_| weight()).collect());
         if at.is_multiple_of(2) { layer } else { layer.masked((0..set.bones()).map(|_| weight()).collect()) }
     };
     (0..above).map(layer).collect()
@@ -110,7 +110,7 @@ fn random_layers(case: u32, set: &ClipSet, count: usize, above: usize) -> Vec<La
 fn torn(
     set: &ClipSet,
     base: &[Instance],
-    layers: &[Layer],
+    layers: &[AnimationLayer],
     cursors: &[KeyframeCursor],
     path: RotationPath,
     margin: f32,
@@ -161,7 +161,7 @@ impl<'a> Case<'a> {
         gpu: &'a Gpu,
         set: &ClipSet,
         base: &[Instance],
-        layers: &[Layer],
+        layers: &[AnimationLayer],
         path: RotationPath,
     ) -> Result<Self, Error> {
         let cursors: Vec<KeyframeCursor> = cursors(set, &all_instances(base, layers), ELAPSED);
@@ -287,7 +287,7 @@ fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
     let (gpu, count) = (bench.gpu, CROWDS[1]);
     let scene = Scene::new(gpu, count)?;
     let later = |instance: &Instance| Instance { start: instance.start + 0.3, ..*instance };
-    let layers = [Layer::new(scene.instances.iter().map(later).collect(), vec![0.5; count])];
+    let layers = [AnimationLayer::new(scene.instances.iter().map(later).collect(), vec![0.5; count])];
     let found = cursors(&scene.set, &all_instances(&scene.instances, &layers), 0.4);
     let crowd = Crowd::layered(gpu, &scene.set, &scene.instances, &layers)?;
     crowd.cursors.write(gpu, &found)?;

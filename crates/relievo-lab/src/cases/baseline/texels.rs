@@ -5,7 +5,7 @@ use relievo::gpu::Buffer;
 use relievo::ops::terrain::blend::BlendBuffers;
 use relievo::ops::terrain::config::{TerrainConfig, Zone};
 use relievo::ops::terrain::cover::Cover;
-use relievo::ops::terrain::texture::Texture;
+use relievo::ops::terrain::texture::TerrainTexture;
 
 use crate::baseline::texels::TexelsPass;
 use crate::baseline::texels::reference::texels;
@@ -55,7 +55,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let points = windows.points(1);
     let words = Buffer::new(gpu, "words", points)?;
     let config = TerrainConfig::new(257, 40.0, "bench")?;
-    let cover = Cover { triplanar: true, ..Cover::new(&config, &Texture::of_zones(&config.zones)?)? };
+    let cover = Cover { triplanar: true, ..Cover::new(&config, &TerrainTexture::of_zones(&config.zones)?)? };
     let places = Buffer::from_slice(gpu, "places", &vec![[0_u32; 2]; count as usize])?;
     let buffers = BlendBuffers { windows: &windows, places: &places, pixels: &words };
     let job = TexelsPass::new(gpu)?.prepare(gpu, &cover, buffers)?;

@@ -10,7 +10,7 @@ pub mod shade;
 pub mod tangent;
 
 use relievo::gpu::{Buffer, Gpu, Job};
-use relievo::ops::surface::Material;
+use relievo::ops::surface::ReliefMaterial;
 use relievo::ops::surface::map::HeightMap;
 use relievo::ops::surface::relief::Ray;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
@@ -91,7 +91,7 @@ pub fn random_rays(case: u32, count: usize) -> Vec<Ray> {
 pub(crate) fn rays(edge: u32, view: [f32; 3]) -> Vec<Ray> {
     let at = |index: u32| (index as f32 + 0.5) / edge as f32;
     let places = (0..edge).flat_map(|y| (0..edge).map(move |x| [at(x), at(y)]));
-    places.map(|uv| Ray::new(uv, view, Material::default().scale, 1.0)).collect()
+    places.map(|uv| Ray::new(uv, view, ReliefMaterial::default().scale, 1.0)).collect()
 }
 
 /// As many bare loads of texels as `loads` of `edge`² rays, and nothing else.

@@ -13,7 +13,7 @@ use relievo::ops::surface::mips::Mips;
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
 use relievo::ops::surface::relief::{Hit, March, Ray, ReliefMethod, ReliefPass};
-use relievo::ops::surface::{Material, ReliefMaps, ReliefOptions};
+use relievo::ops::surface::{ReliefMaps, ReliefMaterial, ReliefOptions};
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{Camera, Depth, Placement, Quality, Relief, Scene, View};
 use relievo::{Error, InputError};
@@ -218,7 +218,7 @@ impl Drawing {
         let maps = ReliefMaps { textures: &textures, albedo, normals: None };
         let options = ReliefOptions { method, ..ReliefOptions::default() };
         let relief = Relief { options, ..Relief::of_maps(SurfaceMesh::square(1.0), maps) };
-        let Material { light, ambient, .. } = relief.material;
+        let ReliefMaterial { light, ambient, .. } = relief.material;
         let mut scene = Scene::new(gpu)?;
         scene.set_light(Light { direction: light.into(), color: Vec3::ONE, ambient })?;
         let square = scene.add_relief(&relief, 1)?;

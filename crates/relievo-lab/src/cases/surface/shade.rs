@@ -7,7 +7,7 @@ use crate::shade::shadow::light_ray;
 use crate::shade::{Shade, ShadePass, ShadePoint, ShadeView};
 use glam::{Mat4, Vec3, Vec4, camera};
 use relievo::gpu::Buffer;
-use relievo::ops::surface::Material;
+use relievo::ops::surface::ReliefMaterial;
 use relievo::ops::surface::map::{Address, HeightMap};
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::reference::height::BILINEAR;
@@ -273,7 +273,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 
 /// One point per texel.
 fn points(surface: &Surface<'_>, method: ReliefMethod, march: &March) -> Vec<ShadePoint> {
-    let material = Material::default();
+    let material = ReliefMaterial::default();
     let rays = rays(EDGE, [0.0, 0.0, 1.0]);
     let hits = surface.trace_all(method, &rays, march);
     let points = rays.into_iter().zip(hits).map(|(ray, hit)| ShadePoint {

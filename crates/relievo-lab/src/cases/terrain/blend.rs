@@ -9,7 +9,7 @@ use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, MAP_BOUND, MIN_TOTAL
 use relievo::ops::terrain::config::{Slope, TerrainConfig, Zone};
 use relievo::ops::terrain::cover::{Cover, MapZone};
 use relievo::ops::terrain::normals::reference::normals;
-use relievo::ops::terrain::texture::Texture;
+use relievo::ops::terrain::texture::TerrainTexture;
 
 use crate::baseline::texels::TexelsPass;
 use crate::cases::terrain::{copy_of, random_cover, random_windows, some_windows};
@@ -147,7 +147,7 @@ fn case(bench: &mut Bench<'_>, name: &str, config: &TerrainConfig) -> Result<(),
     let (host, windows) = some_windows(gpu, width, count)?;
     let points = windows.points(1);
     let pixels = Buffer::new(gpu, "pixels", points)?;
-    let cover = Cover::new(config, &Texture::of_zones(&config.zones)?)?;
+    let cover = Cover::new(config, &TerrainTexture::of_zones(&config.zones)?)?;
     let places = Buffer::from_slice(gpu, "places", &vec![[0_u32; 2]; count as usize])?;
     let shading = Shading::default();
     let buffers = BlendBuffers { windows: &windows, places: &places, pixels: &pixels };

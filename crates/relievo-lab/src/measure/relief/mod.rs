@@ -7,7 +7,9 @@ use std::time::Instant;
 
 use image::RgbaImage;
 use relievo::gpu::Gpu;
-use relievo::ops::surface::{Green, HeightMap, Hit, March, Material, Mips, Ray, ReliefMethod, Shadow};
+use relievo::ops::surface::{
+    Green, HeightMap, Hit, March, Mips, Ray, ReliefMaterial, ReliefMethod, ReliefShadow,
+};
 use relievo::{Error, InputError};
 use serde::Serialize;
 use tracer::Tracer;
@@ -33,13 +35,13 @@ pub struct ReliefSquare {
     /// The direction of green in the normal map.
     pub green: Green,
     /// The self-shadow of the relief.
-    pub shadow: Shadow,
+    pub shadow: ReliefShadow,
     /// Whether what leaves the square is cut away.
     pub silhouette: bool,
     /// How rays are marched through the relief.
     pub march: March,
     /// Depth and light; the light's direction is in the square's tangent space.
-    pub material: Material,
+    pub material: ReliefMaterial,
     /// The direction from which the square is seen.
     pub view: SquareView,
 }

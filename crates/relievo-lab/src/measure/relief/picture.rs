@@ -11,7 +11,7 @@ use relievo::ops::surface::mips::Mips;
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::reference::height::height;
 use relievo::ops::surface::relief::{Hit, March, Ray, ReliefMethod};
-use relievo::ops::surface::{Green, Material, Shadow};
+use relievo::ops::surface::{Green, ReliefMaterial, ReliefShadow};
 use relievo::srgb::linear;
 
 /// The scene of a picture.
@@ -30,11 +30,11 @@ pub struct Scene<'a> {
     /// The direction to which the green channel of the normals points.
     pub green: Green,
     /// Self-shadow.
-    pub shadow: Shadow,
+    pub shadow: ReliefShadow,
     /// Whether points beyond the square are cut away.
     pub silhouette: bool,
     /// Depth and light; here the light is in tangent space.
-    pub material: &'a Material,
+    pub material: &'a ReliefMaterial,
     /// The view of the square.
     pub view: SquareView,
 }
@@ -83,12 +83,12 @@ impl Scene<'_> {
             return 1.0;
         }
         match self.shadow {
-            Shadow::None => 1.0,
-            Shadow::Hard => {
+            ReliefShadow::None => 1.0,
+            ReliefShadow::Hard => {
                 let first = self.surface.trace(self.method, &light_ray(hit, light, scale), self.march);
                 if shaded(&first, hit) { 0.0 } else { 1.0 }
             }
-            Shadow::Soft => {
+            ReliefShadow::Soft => {
                 let (steps, softness) = (self.material.shadow_steps, self.material.softness);
                 soft_shadow(self.surface.map, hit, light, scale, self.march, steps, softness)
             }

@@ -5,7 +5,7 @@ use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::{
-    Address, ColorTexture, Material, ReliefMaps, ReliefOptions, SurfaceMesh, SurfaceTextures,
+    Address, ColorTexture, ReliefMaps, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceTextures,
 };
 use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
 
@@ -42,7 +42,7 @@ impl ReliefSquare {
 }
 
 /// The light of a material in the square's tangent space, in the world: v runs along −Y.
-fn light(material: &Material) -> Light {
+fn light(material: &ReliefMaterial) -> Light {
     let [x, y, z] = material.light;
     Light { direction: Vec3::new(x, -y, z), color: Vec3::ONE, ambient: material.ambient }
 }
