@@ -145,7 +145,7 @@ pub fn solved_tangents(
     uv: &[[f32; 2]],
     indices: &[u32],
 ) -> Result<Vec<[f32; 4]>, InputError> {
-    tangents(&tangents::Mesh { positions, normals, uv, indices })
+    tangents(&tangents::TangentMesh { positions, normals, uv, indices })
 }
 
 /// Radius of each bone: the largest distance, in the bone's space, from its origin to a vertex that follows it, wherever morph

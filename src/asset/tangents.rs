@@ -12,14 +12,14 @@ pub use crate::shared::surface::tangent::{DEGENERATE, VANISHING};
 pub const COORDINATE_LIMIT: f32 = 1e18;
 
 /// Largest allowed difference between a component of a tangent and the reference, on any device, for a vertex of sensitivity 1
-/// ([`Frame`]).
+/// ([`TangentFrame`]).
 ///
 /// `docs/rounding-bounds.md` has the derivation.
 pub const TANGENT_BOUND: f32 = 1e-5;
 
 /// A triangle mesh with normals and texture coordinates.
 #[derive(Debug, Clone, Copy)]
-pub struct Mesh<'a> {
+pub struct TangentMesh<'a> {
     /// Positions in any unit, finite, with no component larger than [`COORDINATE_LIMIT`].
     pub positions: &'a [[f32; 3]],
     /// One normal per vertex, of any length.
@@ -30,7 +30,7 @@ pub struct Mesh<'a> {
     pub indices: &'a [u32],
 }
 
-impl Mesh<'_> {
+impl TangentMesh<'_> {
     /// Checks lengths, indices and coordinates.
     ///
     /// # Errors
@@ -111,7 +111,7 @@ const EPSILON: f64 = f32::EPSILON as f64;
 
 /// A tangent frame, and its sensitivity to rounding in f32.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct TangentFrame {
     /// Unit tangent x, y, z, orthogonal to the normal, and the handedness ±1.
     pub tangent: [f32; 4],
     /// Factor of [`TANGENT_BOUND`] at this vertex, 1 or more. Infinite if rounding decides whether something counts as
@@ -122,16 +122,16 @@ pub struct Frame {
 /// Tangent and handedness of every vertex. See [`crate::surface::tangent`].
 ///
 /// # Errors
-/// [`InputError`] as [`Mesh::validate`].
-pub fn tangents(mesh: &Mesh<'_>) -> Result<Vec<[f32; 4]>, InputError> {
+/// [`InputError`] as [`TangentMesh::validate`].
+pub fn tangents(mesh: &TangentMesh<'_>) -> Result<Vec<[f32; 4]>, InputError> {
     Ok(frames(mesh)?.into_iter().map(|frame| frame.tangent).collect())
 }
 
 /// As [`tangents`], with the sensitivity of each frame.
 ///
 /// # Errors
-/// [`InputError`] as [`Mesh::validate`].
-pub fn frames(mesh: &Mesh<'_>) -> Result<Vec<Frame>, InputError> {
+/// [`InputError`] as [`TangentMesh::validate`].
+pub fn frames(mesh: &TangentMesh<'_>) -> Result<Vec<TangentFrame>, InputError> {
     mesh.validate()?;
     let adjacency = Adjacency::new(mesh.positions.len(), mesh.indices);
     Ok((0..mesh.positions.len()).map(|vertex| frame(mesh, &adjacency, vertex)).collect())
@@ -146,11 +146,11 @@ struct Contribution {
     sensitivity: DVec2,
 }
 
-fn position(mesh: &Mesh<'_>, vertex: u32) -> DVec3 {
+fn position(mesh: &TangentMesh<'_>, vertex: u32) -> DVec3 {
     DVec3::from_array(mesh.positions[vertex as usize].map(f64::from))
 }
 
-fn texture_coordinate(mesh: &Mesh<'_>, vertex: u32) -> DVec2 {
+fn texture_coordinate(mesh: &TangentMesh<'_>, vertex: u32) -> DVec2 {
     DVec2::from_array(mesh.uv[vertex as usize].map(f64::from))
 }
 
@@ -164,7 +164,7 @@ fn unit(vector: DVec3) -> DVec3 {
 }
 
 /// Contribution of a triangle to the vertex at one of its corners.
-fn contribution(mesh: &Mesh<'_>, corner: u32, normal: DVec3) -> Contribution {
+fn contribution(mesh: &TangentMesh<'_>, corner: u32, normal: DVec3) -> Contribution {
     let first = corner - corner % 3;
     let [vertex, next, last] = [corner, first + (corner + 1) % 3, first + (corner + 2) % 3]
         .map(|corner| mesh.indices[corner as usize]);
@@ -217,12 +217,12 @@ fn fallback(normal: DVec3, negative_z: bool) -> DVec3 {
     DVec3::new(1.0 + side * normal.x * normal.x * a, side * normal.x * normal.y * a, -side * normal.x)
 }
 
-fn frame(mesh: &Mesh<'_>, adjacency: &Adjacency, vertex: usize) -> Frame {
+fn frame(mesh: &TangentMesh<'_>, adjacency: &Adjacency, vertex: usize) -> TangentFrame {
     let bits = mesh.normals[vertex].map(f32::to_bits);
     let magnitude = bits.map(|bits| bits & 0x7fff_ffff);
     let largest_bits = magnitude[0].max(magnitude[1]).max(magnitude[2]);
     if !(LEAST_BITS..=LARGEST_BITS).contains(&largest_bits) {
-        return Frame { tangent: [1.0, 0.0, 0.0, 1.0], sensitivity: 1.0 };
+        return TangentFrame { tangent: [1.0, 0.0, 0.0, 1.0], sensitivity: 1.0 };
     }
     let normal = DVec3::from_array(mesh.normals[vertex].map(f64::from));
     let normal = unit(normal / f64::from(f32::from_bits(largest_bits)));
@@ -244,28 +244,31 @@ fn frame(mesh: &Mesh<'_>, adjacency: &Adjacency, vertex: usize) -> Frame {
     if flat.dot(flat) <= least * least {
         let [x, y, z] = fallback(normal, bits[2] >> 31 == 1).to_array().map(|component| component as f32);
         let decided = sensitivity.x.is_finite() && vanishing == 0.0;
-        return Frame { tangent: [x, y, z, 1.0], sensitivity: if decided { 1.0 } else { f64::INFINITY } };
+        return TangentFrame {
+            tangent: [x, y, z, 1.0],
+            sensitivity: if decided { 1.0 } else { f64::INFINITY },
+        };
     }
     let tangent = unit(flat);
     let tangent = unit(tangent - normal * normal.dot(tangent));
     let [x, y, z] = tangent.to_array().map(|component| component as f32);
     let handedness = if sum.handedness < -least { -1.0 } else { 1.0 };
     let undecided = vanishing + undecided(sum.handedness, -least, error.y);
-    Frame { tangent: [x, y, z, handedness], sensitivity: sensitivity.x / flat.length() + undecided }
+    TangentFrame { tangent: [x, y, z, handedness], sensitivity: sensitivity.x / flat.length() + undecided }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const MESH: Mesh<'static> = Mesh {
+    const MESH: TangentMesh<'static> = TangentMesh {
         positions: &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         normals: &[[0.0, 0.0, 1.0]; 3],
         uv: &[[0.0; 2], [1.0, 0.0], [0.0, 1.0]],
         indices: &[0, 1, 2],
     };
 
-    fn refused(mesh: &Mesh<'_>, field: &str, value: &str) {
+    fn refused(mesh: &TangentMesh<'_>, field: &str, value: &str) {
         let error = mesh.validate().expect_err("refused");
         assert_eq!((error.path.as_str(), error.value.as_str()), (field, value));
     }
@@ -273,23 +276,23 @@ mod tests {
     #[test]
     fn meshes_are_checked_field_by_field() {
         assert_eq!(MESH.validate(), Ok(()));
-        assert_eq!(Mesh { positions: &[], normals: &[], uv: &[], indices: &[] }.validate(), Ok(()));
-        refused(&Mesh { normals: &MESH.normals[1..], ..MESH }, "normals.len", "2");
-        refused(&Mesh { uv: &MESH.uv[..1], ..MESH }, "uv.len", "1");
-        refused(&Mesh { indices: &[0, 1, 2, 0], ..MESH }, "indices.len", "4");
-        refused(&Mesh { indices: &[0, 1, 3], ..MESH }, "indices[2]", "3");
+        assert_eq!(TangentMesh { positions: &[], normals: &[], uv: &[], indices: &[] }.validate(), Ok(()));
+        refused(&TangentMesh { normals: &MESH.normals[1..], ..MESH }, "normals.len", "2");
+        refused(&TangentMesh { uv: &MESH.uv[..1], ..MESH }, "uv.len", "1");
+        refused(&TangentMesh { indices: &[0, 1, 2, 0], ..MESH }, "indices.len", "4");
+        refused(&TangentMesh { indices: &[0, 1, 3], ..MESH }, "indices[2]", "3");
         for (wrong, value) in [(f32::NAN, "NaN"), (f32::NEG_INFINITY, "-inf"), (2e18, "2000000000000000000")]
         {
             let mut positions = MESH.positions.to_vec();
             positions[1][2] = wrong;
-            refused(&Mesh { positions: &positions, ..MESH }, "positions[1][2]", value);
+            refused(&TangentMesh { positions: &positions, ..MESH }, "positions[1][2]", value);
             let mut uv = MESH.uv.to_vec();
             uv[2][0] = wrong;
-            refused(&Mesh { uv: &uv, ..MESH }, "uv[2][0]", value);
+            refused(&TangentMesh { uv: &uv, ..MESH }, "uv[2][0]", value);
         }
         let limits = [[COORDINATE_LIMIT, -COORDINATE_LIMIT, 0.0]; 3];
         let normals = [[f32::NAN, f32::INFINITY, 0.0]; 3];
-        assert_eq!(Mesh { positions: &limits, normals: &normals, ..MESH }.validate(), Ok(()));
+        assert_eq!(TangentMesh { positions: &limits, normals: &normals, ..MESH }.validate(), Ok(()));
     }
 
     #[test]

@@ -31,4 +31,4 @@ pub use options::ReliefMaps;
 pub use options::ReliefOptions;
 #[cfg(feature = "gpu")]
 pub use relief::textures::SurfaceTextures;
-pub use relief::{Hit, March, Outcome, Ray, ReliefMethod};
+pub use relief::{March, Outcome, ReliefHit, ReliefMethod, ReliefRay};

@@ -33,7 +33,7 @@ fn everything(gpu: &Gpu) -> (World, View) {
     let mut world = World::new(gpu, 6);
     let heights = BuiltInMap::Cobbles.height_map(64).expect("a map");
     let mut relief = Relief::wall(3.0, heights, BuiltInMap::Cobbles.albedo(64).expect("colours"));
-    relief.options.shadow = relievo::ops::surface::Shadow::Hard;
+    relief.options.shadow = relievo::ops::surface::ReliefShadow::Hard;
     let wall = world.scene.add_relief(&relief, 1).expect("added");
     let place = Placement::at([-6.0, 6.0, -4.0]).turned(0.5).scaled(6.0);
     world.scene.spawn(wall, place).expect("room");

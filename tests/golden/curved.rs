@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3};
 use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
-use relievo::ops::surface::tangent::Mesh;
+use relievo::ops::surface::tangent::TangentMesh;
 use relievo::ops::surface::tangent::reference::tangents;
 use relievo::ops::surface::{Green, ReliefMethod, ReliefOptions, ReliefShadow, SurfaceMesh, SurfaceVertex};
 use relievo::render::Offscreen;
@@ -35,7 +35,7 @@ fn barrel() -> SurfaceMesh {
         let below = first + columns + 1;
         indices.extend([first, below, first + 1, first + 1, below, below + 1]);
     }
-    let mesh = Mesh { positions: &positions, normals: &normals, uv: &uv, indices: &indices };
+    let mesh = TangentMesh { positions: &positions, normals: &normals, uv: &uv, indices: &indices };
     let tangents = tangents(&mesh).expect("a valid mesh");
     let vertices = (0..positions.len()).map(|i| SurfaceVertex {
         position: positions[i],

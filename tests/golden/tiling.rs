@@ -17,7 +17,7 @@ const EDGE: u32 = 256;
 const SIZE: u32 = 17;
 
 /// The eastern half of a tile is red, the southern half green.
-fn quarters() -> Texture {
+fn quarters() -> TerrainTexture {
     let mut texture = TerrainTexture::built_in(BuiltIn::Sand);
     for (level, texels) in texture.mips.iter_mut().enumerate() {
         let edge = (TEXTURE_SIZE as usize) >> level;

@@ -2,7 +2,7 @@
 
 use relievo::ops::hash::threefry2x32;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, March, Ray, ReliefMethod};
+use relievo::ops::surface::{Address, HeightMap, March, ReliefMethod, ReliefRay};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::{Shape, random_map, random_rays};
 use relievo_lab::measure::relief::exact::exact;
@@ -13,7 +13,7 @@ use crate::height;
 struct Scene {
     map: HeightMap,
     march: March,
-    rays: Vec<Ray>,
+    rays: Vec<ReliefRay>,
     judged: Vec<Judged>,
 }
 
@@ -32,13 +32,13 @@ fn scenes(method: ReliefMethod) -> Vec<Scene> {
     scenes.collect()
 }
 
-fn travel(ray: &Ray, map: &HeightMap) -> f64 {
+fn travel(ray: &ReliefRay, map: &HeightMap) -> f64 {
     let [x, y] = [f64::from(map.width()), f64::from(map.height())];
     (f64::from(ray.slope[0]) * x).hypot(f64::from(ray.slope[1]) * y)
 }
 
 /// The hit that a method finds in f64; `None` for rays from behind the polygon.
-fn in_f64(map: &HeightMap, method: ReliefMethod, ray: &Ray, march: &March) -> Option<f64> {
+fn in_f64(map: &HeightMap, method: ReliefMethod, ray: &ReliefRay, march: &March) -> Option<f64> {
     let above = |parameter: f64| 1.0 - parameter - height(map, ray, parameter, march.address);
     let (polygon, cosine) = (f64::from(ray.polygon), f64::from(ray.cosine));
     if cosine <= 0.0 {
@@ -108,7 +108,7 @@ fn rays_an_ulp_off_stay_within_bounds_and_steady_ones_make_the_same_loads() {
                     let axes = |values: [f32; 2], at: usize| {
                         [near(values[0], words[at]), near(values[1], words[at + 1])]
                     };
-                    let moved = Ray { origin: axes(ray.origin, 0), slope: axes(ray.slope, 2), ..*ray };
+                    let moved = ReliefRay { origin: axes(ray.origin, 0), slope: axes(ray.slope, 2), ..*ray };
                     let hit = surface.trace(method, &moved, &march);
                     let off = f64::from((hit.parameter - judged.expected.parameter).abs());
                     assert!(
@@ -157,7 +157,7 @@ fn a_ray_that_grazes_says_so() {
     let map = HeightMap::new(8, 8, heights).expect("a map");
     let march = March { address: Address::Clamp, ..March::default() };
     // The ray passes the post's tip at height 1/2, above it by 1e-7 or by 1e-3.
-    let ray = |by: f32| Ray { origin: [0.0625, 0.5625], slope: [1.0, by], cosine: 0.5, polygon: 0.0 };
+    let ray = |by: f32| ReliefRay { origin: [0.0625, 0.5625], slope: [1.0, by], cosine: 0.5, polygon: 0.0 };
     let judged =
         |by: f32| judge(&map, ReliefMethod::Quadtree, &march, &[ray(by)], Source::Given).expect("judged")[0];
     assert!(judged(1e-7).touches() && judged(1e-7).texels > 3.0, "{:?}", judged(1e-7));

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, Hit, March, Outcome, Ray, ReliefMethod};
+use relievo::ops::surface::{Address, HeightMap, March, Outcome, ReliefHit, ReliefMethod, ReliefRay};
 
 use crate::height;
 
@@ -32,7 +32,7 @@ fn maps() -> impl Strategy<Value = HeightMap> {
     })
 }
 
-fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<Ray>> + use<> {
+fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<ReliefRay>> + use<> {
     // Random positions, and positions exactly above texel centers and edges, where cells meet.
     let place = |edge: u32| {
         prop_oneof![
@@ -49,17 +49,17 @@ fn rays(map: &HeightMap) -> impl Strategy<Value = Vec<Ray>> + use<> {
         // Rays at multiples of a quarter turn run exactly along an axis.
         let exact = |part: f32| if part.abs() < 1e-6 { 0.0 } else { part };
         let view = [sine * exact(libm::cosf(turn)), sine * exact(libm::sinf(turn)), cosine];
-        Ray::new([u, v], view, scale, 1.0)
+        ReliefRay::new([u, v], view, scale, 1.0)
     });
     proptest::collection::vec(ray, 40)
 }
 
-fn scenes() -> impl Strategy<Value = (HeightMap, Vec<Ray>)> {
+fn scenes() -> impl Strategy<Value = (HeightMap, Vec<ReliefRay>)> {
     maps().prop_flat_map(|map| (Just(map.clone()), rays(&map)))
 }
 
 /// A hit lies on the surface, and before the hit the ray is nowhere below the surface by more than the bound.
-fn is_first(map: &HeightMap, ray: &Ray, hit: &Hit, address: Address) -> Result<(), String> {
+fn is_first(map: &HeightMap, ray: &ReliefRay, hit: &ReliefHit, address: Address) -> Result<(), String> {
     let found = f64::from(hit.parameter);
     let above = |parameter: f64| 1.0 - parameter - height(map, ray, parameter, address);
     if hit.outcome() != Outcome::Hit {
@@ -117,11 +117,11 @@ proptest! {
 fn wider_cones_are_found_out() {
     let map = relievo_samples::BuiltInMap::Posts.height_map(64).expect("a map");
     let mut surface = Surface::new(&map, ReliefMethod::Cone, Address::Wrap);
-    let rays: Vec<Ray> = (0..2000)
-        .map(|i| Ray::new([i as f32 * 0.017, i as f32 * 0.031], [0.6, 0.6, 0.53], 0.3, 1.0))
+    let rays: Vec<ReliefRay> = (0..2000)
+        .map(|i| ReliefRay::new([i as f32 * 0.017, i as f32 * 0.031], [0.6, 0.6, 0.53], 0.3, 1.0))
         .collect();
     let lost = |surface: &Surface<'_>| {
-        let hit = |ray: &Ray| surface.trace(ReliefMethod::Cone, ray, &march(Address::Wrap));
+        let hit = |ray: &ReliefRay| surface.trace(ReliefMethod::Cone, ray, &march(Address::Wrap));
         rays.iter().filter(|ray| is_first(&map, ray, &hit(ray), Address::Wrap).is_err()).count()
     };
     assert_eq!(lost(&surface), 0);
@@ -135,7 +135,7 @@ fn rays_from_behind_miss() {
     for method in ReliefMethod::ALL {
         let surface = Surface::new(&map, method, Address::Wrap);
         for cosine in [0.0, -0.5, f32::NAN] {
-            let ray = Ray::new([0.3, 0.4], [0.1, 0.1, cosine], 0.1, 1.0);
+            let ray = ReliefRay::new([0.3, 0.4], [0.1, 0.1, cosine], 0.1, 1.0);
             let hit = surface.trace(method, &ray, &March::default());
             assert_eq!((hit.outcome(), hit.samples, hit.uv), (Outcome::Miss, 0, ray.origin), "{method:?}");
         }
@@ -155,7 +155,8 @@ fn rays_along_an_axis_do_not_stall() {
                 for (number, slope) in
                     [[0.0, 0.0], [-1.5e-17, -0.24], [0.0, 0.17]].into_iter().cycle().take(600).enumerate()
                 {
-                    let ray = Ray { origin: [u, number as f32 * 0.0043], slope, cosine: 1.0, polygon: 0.0 };
+                    let ray =
+                        ReliefRay { origin: [u, number as f32 * 0.0043], slope, cosine: 1.0, polygon: 0.0 };
                     let first = is_first(&map, &ray, &surface.trace(method, &ray, &march(address)), address);
                     assert!(first.is_ok(), "{method:?} {address:?} {width} {ray:?}: {first:?}");
                 }
@@ -171,7 +172,7 @@ fn rays_of_nonsense_end() {
         let surface = Surface::new(&map, method, Address::Wrap);
         for odd in [f32::NAN, f32::INFINITY, -1e30] {
             for (origin, slope) in [([odd, 0.5], [0.1, 0.1]), ([0.5, 0.5], [odd, 0.1])] {
-                let ray = Ray { origin, slope, cosine: 1.0, polygon: 0.0 };
+                let ray = ReliefRay { origin, slope, cosine: 1.0, polygon: 0.0 };
                 surface.trace(method, &ray, &March::default());
             }
         }

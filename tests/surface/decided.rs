@@ -1,7 +1,7 @@
 //! What is decided where thesis B contradicts itself on surface mapping (`docs/sources.md`).
 
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, March, Ray, ReliefMaterial, ReliefMethod};
+use relievo::ops::surface::{Address, HeightMap, March, ReliefMaterial, ReliefMethod, ReliefRay};
 
 /// Towards the eye: 3 across and 4 up.
 const VIEW: [f32; 3] = [0.6, 0.0, 0.8];
@@ -20,7 +20,7 @@ fn shift(method: ReliefMethod, plane: f32, height: f32) -> f32 {
     let map = flat(height);
     let surface = Surface::new(&map, method, Address::Wrap);
     let march = March { steps: [256, 256], binary_steps: 16, ..March::default() };
-    let hit = surface.trace(method, &Ray::new(UV, VIEW, SCALE, plane), &march);
+    let hit = surface.trace(method, &ReliefRay::new(UV, VIEW, SCALE, plane), &march);
     (hit.uv[0] - UV[0]) / (SCALE * VIEW[0] / VIEW[2])
 }
 
@@ -63,7 +63,7 @@ fn linear_steps_grow_with_the_angle() {
         let surface = Surface::new(&map, method, Address::Wrap);
         let loads = |cosine: f32| {
             let view = [(1.0 - cosine * cosine).sqrt(), 0.0, cosine];
-            surface.trace(method, &Ray::new(UV, view, SCALE, 1.0), &march).samples
+            surface.trace(method, &ReliefRay::new(UV, view, SCALE, 1.0), &march).samples
         };
         let found = [1.0, 0.75, 0.5, 0.0625].map(loads);
         assert_eq!(found, [8, 12, 16, 23].map(|steps| 4 * steps), "{method:?}");

@@ -2,11 +2,11 @@
 //! is 0.1 tiles deep, and addresses wrap.
 
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, March, Ray, ReliefMethod};
+use relievo::ops::surface::{Address, HeightMap, March, ReliefMethod, ReliefRay};
 use relievo_lab::measure::relief::{Measured, SquareView};
 use relievo_samples::BuiltInMap;
 
-fn rays(angle: f64) -> Vec<Ray> {
+fn rays(angle: f64) -> Vec<ReliefRay> {
     let view = SquareView { angle, azimuth: 25.0, tiles: 1.0, size: [120, 120] };
     view.rays(0.1, 1.0).into_iter().flatten().collect()
 }

@@ -7,10 +7,10 @@ mod decided;
 mod errors;
 mod tangents;
 
-use relievo::ops::surface::{Address, HeightMap, Ray};
+use relievo::ops::surface::{Address, HeightMap, ReliefRay};
 
 /// The bilinear height of a map at a parameter of a ray, in f64.
-fn height(map: &HeightMap, ray: &Ray, parameter: f64, address: Address) -> f64 {
+fn height(map: &HeightMap, ray: &ReliefRay, parameter: f64, address: Address) -> f64 {
     let [x, y] = [0, 1].map(|i| {
         let edge = f64::from([map.width(), map.height()][i]);
         (f64::from(ray.origin[i]) + parameter * f64::from(ray.slope[i])) * edge - 0.5

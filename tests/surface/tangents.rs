@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use relievo::ops::surface::tangent::reference::tangents;
-use relievo::ops::surface::tangent::{Mesh, split_mirrored};
+use relievo::ops::surface::tangent::{TangentMesh, split_mirrored};
 
 /// Random cases that are the same in every run.
 fn settings() -> ProptestConfig {
@@ -28,8 +28,13 @@ struct Owned {
 }
 
 impl Owned {
-    fn mesh(&self) -> Mesh<'_> {
-        Mesh { positions: &self.positions, normals: &self.normals, uv: &self.uv, indices: &self.indices }
+    fn mesh(&self) -> TangentMesh<'_> {
+        TangentMesh {
+            positions: &self.positions,
+            normals: &self.normals,
+            uv: &self.uv,
+            indices: &self.indices,
+        }
     }
 
     /// Tangent, bitangent and handedness of every vertex.

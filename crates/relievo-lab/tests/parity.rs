@@ -6,7 +6,7 @@ use glam::Vec4;
 use relievo::gpu::Buffer;
 use relievo::ops::surface::relief::ReliefPass;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{HeightMap, Hit, March, Ray, ReliefMethod, SurfaceTextures};
+use relievo::ops::surface::{HeightMap, March, ReliefHit, ReliefMethod, ReliefRay, SurfaceTextures};
 use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::relief::hits;
@@ -60,7 +60,7 @@ fn relative_sees_errors_beyond_its_share() {
 }
 
 /// Noise and rays at all angles, with what they hit and how far that may be off.
-fn judged_rays(method: ReliefMethod) -> (HeightMap, March, Vec<Ray>, Vec<Judged>) {
+fn judged_rays(method: ReliefMethod) -> (HeightMap, March, Vec<ReliefRay>, Vec<Judged>) {
     let map = random_map(4, [64, 64], Shape::Noise).expect("a map");
     let march = March { steps: [6, 28], binary_steps: 14, ..March::default() };
     let rays = random_rays(4, 400);
@@ -74,20 +74,20 @@ fn judged_rays(method: ReliefMethod) -> (HeightMap, March, Vec<Ray>, Vec<Judged>
 fn hits_sees_one_ray_a_twentieth_of_a_texel_off() {
     for method in ReliefMethod::ALL {
         let (.., judged) = judged_rays(method);
-        let expected: Vec<Hit> = judged.iter().map(|judged| judged.expected).collect();
+        let expected: Vec<ReliefHit> = judged.iter().map(|judged| judged.expected).collect();
         assert!(hits(&expected, &judged, [64, 64]).holds);
         let ordinary: Vec<usize> = (0..judged.len()).filter(|index| !judged[*index].touches()).collect();
         assert!(ordinary.len() > 340, "{method:?}: only {} rays of 400", ordinary.len());
         for index in ordinary {
             let hit = expected[index];
             let faults = [
-                Hit { uv: [hit.uv[0] + 0.05 / 64.0, hit.uv[1]], ..hit },
-                Hit { uv: [hit.uv[0], hit.uv[1] - 0.05 / 64.0], ..hit },
-                Hit { uv: [hit.uv[0], f32::NAN], ..hit },
-                Hit { height: hit.height + 2.0 * judged[index].height as f32, ..hit },
-                Hit { parameter: hit.parameter + 2.0 * judged[index].parameter as f32, ..hit },
-                Hit { samples: hit.samples + 1, ..hit },
-                Hit { outcome_code: hit.outcome_code + 1, ..hit },
+                ReliefHit { uv: [hit.uv[0] + 0.05 / 64.0, hit.uv[1]], ..hit },
+                ReliefHit { uv: [hit.uv[0], hit.uv[1] - 0.05 / 64.0], ..hit },
+                ReliefHit { uv: [hit.uv[0], f32::NAN], ..hit },
+                ReliefHit { height: hit.height + 2.0 * judged[index].height as f32, ..hit },
+                ReliefHit { parameter: hit.parameter + 2.0 * judged[index].parameter as f32, ..hit },
+                ReliefHit { samples: hit.samples + 1, ..hit },
+                ReliefHit { outcome_code: hit.outcome_code + 1, ..hit },
             ];
             for fault in faults {
                 let mut actual = expected.clone();
@@ -103,7 +103,7 @@ fn hits_sees_one_ray_a_twentieth_of_a_texel_off() {
 #[test]
 fn hits_sees_too_many_rays_that_prove_little() {
     let (.., mut judged) = judged_rays(ReliefMethod::Quadtree);
-    let expected: Vec<Hit> = judged.iter().map(|judged| judged.expected).collect();
+    let expected: Vec<ReliefHit> = judged.iter().map(|judged| judged.expected).collect();
     let spread = hits(&expected, &judged, [64, 64]).spread.expect("a spread");
     assert!(spread.touching < spread.may_touch && spread.largest == 0.0, "{spread:?}");
     judged.iter_mut().take(100).for_each(|judged| judged.is_steady = false);
@@ -119,7 +119,7 @@ fn a_kernel_that_traces_other_rays_fails() {
         let (map, march, rays, judged) = judged_rays(method);
         let textures = SurfaceTextures::new(&gpu, &map, method, march.address).expect("uploaded");
         let pass = ReliefPass::new(&gpu, method).expect("compiled");
-        let compared = |rays: &[Ray], march: &March| {
+        let compared = |rays: &[ReliefRay], march: &March| {
             let input = Buffer::from_slice(&gpu, "rays", rays).expect("uploaded");
             let output = Buffer::new(&gpu, "hits", rays.len()).expect("allocated");
             let job = pass.prepare(&gpu, &textures, march, &input, &output).expect("prepared");
@@ -128,9 +128,9 @@ fn a_kernel_that_traces_other_rays_fails() {
         };
         let same = compared(&rays, &march);
         assert!(same.holds, "{method:?}: {same:?}");
-        let shifted: Vec<Ray> = rays
+        let shifted: Vec<ReliefRay> = rays
             .iter()
-            .map(|ray| Ray { origin: [ray.origin[0] + 0.05 / 64.0, ray.origin[1]], ..*ray })
+            .map(|ray| ReliefRay { origin: [ray.origin[0] + 0.05 / 64.0, ray.origin[1]], ..*ray })
             .collect();
         let off = compared(&shifted, &march);
         assert!(!off.holds && off.error > 5.0, "{method:?}: {off:?}");

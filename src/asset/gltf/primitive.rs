@@ -17,7 +17,7 @@ use crate::asset::influences::{Influence, Influences, MAX_INFLUENCES};
 use crate::asset::mesh::{MAX_VERTICES, Mesh, in_range, smooth_normals, unit_normal};
 use crate::asset::morph::{MorphDelta, MorphTarget};
 use crate::asset::skeleton::Skin;
-use crate::asset::tangents::Mesh as Surface;
+use crate::asset::tangents::TangentMesh as Surface;
 
 /// Elements charged per vertex for data that the import adds where the file lacks it: normal, tangent, texture coordinates and
 /// influence.

@@ -7,7 +7,7 @@ use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 
 use crate::InputError;
 use crate::asset::mesh::Mesh;
-use crate::asset::tangents::{Mesh as Surface, tangents};
+use crate::asset::tangents::{TangentMesh as Surface, tangents};
 
 /// Largest number of triangles around a vertex for which MikkTSpace is used. Its time grows with the square of that number, and
 /// it visits the triangles by recursion. Surfaces with more triangles around a vertex get the tangents that

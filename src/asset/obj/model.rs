@@ -12,7 +12,7 @@ use crate::asset::gltf::Beside;
 use crate::asset::gltf::tangents::{generated, solved};
 use crate::asset::mesh::{MAX_VERTICES, Mesh, smooth_normals, unit_normal};
 use crate::asset::skeleton::{Bone, Skeleton, Skin};
-use crate::asset::tangents::Mesh as Surface;
+use crate::asset::tangents::TangentMesh as Surface;
 use crate::asset::{Influences, Model, Transform};
 
 /// Largest number of meshes of a file.

@@ -15,7 +15,7 @@ pub use pass::ReliefPass;
 use std::str::FromStr;
 
 use crate::InputError;
-pub use crate::shared::surface::ray::{SurfaceHit as Hit, SurfaceRay as Ray};
+pub use crate::shared::surface::ray::{SurfaceHit as ReliefHit, SurfaceRay as ReliefRay};
 use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
@@ -102,7 +102,7 @@ impl FromStr for ReliefMethod {
     }
 }
 
-impl Ray {
+impl ReliefRay {
     /// The ray through a polygon at `uv`. `view` is the unit vector towards the eye in tangent space. `scale` is the depth of
     /// the relief in uv units. `plane` is the polygon's height in the volume, 0 (bottom) to 1 (top).
     pub fn new(uv: [f32; 2], view: [f32; 3], scale: f32, plane: f32) -> Self {
@@ -169,7 +169,7 @@ pub enum Outcome {
     Exhausted = ray::SURFACE_EXHAUSTED,
 }
 
-impl Default for Hit {
+impl Default for ReliefHit {
     /// A miss, at the corner of the tile.
     fn default() -> Self {
         let outcome_code = Outcome::Miss as u32;
@@ -177,9 +177,9 @@ impl Default for Hit {
     }
 }
 
-impl Hit {
+impl ReliefHit {
     /// The result at a parameter of the ray.
-    pub fn of(ray: &Ray, parameter: f32, samples: u32, outcome: Outcome) -> Self {
+    pub fn of(ray: &ReliefRay, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self {
             uv: ray.at(parameter),
             height: 1.0 - parameter,
@@ -230,11 +230,11 @@ mod tests {
 
     #[test]
     fn a_ray_meets_the_polygon_where_it_was_sent() {
-        let ray = Ray::new([0.25, 0.5], [0.6, 0.0, 0.8], 0.1, 0.5);
+        let ray = ReliefRay::new([0.25, 0.5], [0.6, 0.0, 0.8], 0.1, 0.5);
         let at = ray.at(ray.polygon);
         assert!((at[0] - 0.25).abs() < 1e-7 && at[1] == 0.5, "{at:?}");
         assert!(ray.slope[0] < 0.0, "rays go away from the eye");
         // The slope is bounded at the horizon.
-        assert!(Ray::new([0.0; 2], [1.0, 0.0, 1e-9], 0.1, 1.0).slope[0] >= -12.8);
+        assert!(ReliefRay::new([0.0; 2], [1.0, 0.0, 1e-9], 0.1, 1.0).slope[0] >= -12.8);
     }
 }

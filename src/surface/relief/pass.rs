@@ -1,6 +1,6 @@
 //! The GPU pass of `kernels/surface/relief.wgsl`.
 
-use super::{Hit, March, Ray, ReliefMethod};
+use super::{March, ReliefHit, ReliefMethod, ReliefRay};
 use crate::gpu::bindings::surface::relief as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::surface::ray::SurfaceMarch;
@@ -42,8 +42,8 @@ impl ReliefPass {
         gpu: &Gpu,
         textures: &SurfaceTextures,
         march: &March,
-        rays: &Buffer<Ray>,
-        hits: &Buffer<Hit>,
+        rays: &Buffer<ReliefRay>,
+        hits: &Buffer<ReliefHit>,
     ) -> Result<Job, Error> {
         march.validate()?;
         textures.check(self.method, march)?;

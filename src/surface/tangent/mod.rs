@@ -26,7 +26,9 @@
 
 use crate::InputError;
 use crate::asset::indices::check_triangles;
-pub use crate::asset::tangents::{Adjacency, COORDINATE_LIMIT, DEGENERATE, Mesh, TANGENT_BOUND, VANISHING};
+pub use crate::asset::tangents::{
+    Adjacency, COORDINATE_LIMIT, DEGENERATE, TANGENT_BOUND, TangentMesh, VANISHING,
+};
 
 #[cfg(feature = "gpu")]
 mod pass;

@@ -1,13 +1,13 @@
 //! The GPU pass of `kernels/surface/tangent.wgsl`.
 
-use super::{Adjacency, Mesh};
+use super::{Adjacency, TangentMesh};
 use crate::gpu::bindings::surface::tangent as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::surface::tangent::TangentParams;
 use crate::{Error, InputError};
 
 /// A mesh on the device. Positions, normals and uv may be rewritten, by other kernels too, as long as positions
-/// and uv stay within the bounds of [`Mesh`].
+/// and uv stay within the bounds of [`TangentMesh`].
 #[derive(Debug, Clone)]
 pub struct TangentBuffers {
     /// One position per vertex.
@@ -25,8 +25,8 @@ impl TangentBuffers {
     /// Checks and uploads a mesh, with its [`Adjacency`].
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`]; [`GpuError`].
-    pub fn new(gpu: &Gpu, mesh: &Mesh<'_>) -> Result<Self, Error> {
+    /// [`InputError`] as [`TangentMesh::validate`]; [`GpuError`].
+    pub fn new(gpu: &Gpu, mesh: &TangentMesh<'_>) -> Result<Self, Error> {
         mesh.validate()?;
         let adjacency = Adjacency::new(mesh.positions.len(), mesh.indices);
         Ok(Self {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use relievo::ops::surface::{Address, HeightMap, Ray};
+use relievo::ops::surface::{Address, HeightMap, ReliefRay};
 use relievo_lab::measure::relief::exact::exact;
 use serde_json::Value;
 
@@ -86,7 +86,7 @@ fn rays_hits_and_errors_fit_together() {
             }
             assert_eq!([top, dh, met], [1.0, -1.0, 1.0]);
             assert!((0.0..=1.5).contains(&u) && (0.0..=1.5).contains(&v) && (0.0..=1.0).contains(&height));
-            let ray = Ray { origin: [u, v], slope: [du, dv], cosine: 1.0, polygon: 0.0 };
+            let ray = ReliefRay { origin: [u, v], slope: [du, dv], cosine: 1.0, polygon: 0.0 };
             let exact = exact(&heights, &ray, Address::Wrap).expect("from above");
             let [x, y] = [f64::from(hit_u) - exact.uv[0], f64::from(hit_v) - exact.uv[1]];
             errors.push((x * 16.0).hypot(y * 12.0));

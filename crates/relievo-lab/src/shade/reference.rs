@@ -3,14 +3,14 @@
 
 use rayon::prelude::*;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::relief::{Hit, LEAST_COSINE, March, Ray, ReliefMethod};
+use relievo::ops::surface::relief::{LEAST_COSINE, March, ReliefHit, ReliefMethod, ReliefRay};
 
 use crate::shade::shadow::{light_ray, shaded, soft_shadow};
 use crate::shade::{Shade, ShadePoint, ShadeView};
 
 /// The distance of a hit behind the polygon along the eye's ray, in uv units. `scale` is the relief's depth in
 /// uv units.
-pub(crate) fn distance(ray: &Ray, hit: &Hit, scale: f32) -> f32 {
+pub(crate) fn distance(ray: &ReliefRay, hit: &ReliefHit, scale: f32) -> f32 {
     (hit.parameter - ray.polygon) * scale / ray.cosine.max(LEAST_COSINE)
 }
 
@@ -76,9 +76,9 @@ mod tests {
     /// In a parallel view straight from above, a hit is as deep as the relief is there.
     #[test]
     fn depth_is_that_of_the_hit_rather_than_the_polygon() {
-        let ray = Ray::new([0.5, 0.5], [0.0, 0.0, 1.0], 0.2, 0.75);
+        let ray = ReliefRay::new([0.5, 0.5], [0.0, 0.0, 1.0], 0.2, 0.75);
         for height in [0.0, 0.25, 0.75, 1.0] {
-            let hit = Hit::of(&ray, 1.0 - height, 0, Outcome::Hit);
+            let hit = ReliefHit::of(&ray, 1.0 - height, 0, Outcome::Hit);
             let behind = distance(&ray, &hit, 0.2) * 3.0;
             assert!((behind - (0.75 - height) * 0.6).abs() < 1e-6, "{height}: {behind}");
             let view = crate::shade::from_above();

@@ -2,30 +2,30 @@
 
 use relievo::ops::surface::map::HeightMap;
 use relievo::ops::surface::relief::reference::height::height;
-use relievo::ops::surface::relief::{Hit, LEAST_COSINE, MAX_STEPS, March, Ray};
+use relievo::ops::surface::relief::{LEAST_COSINE, MAX_STEPS, March, ReliefHit, ReliefRay};
 use relievo::shared::surface::shadow::{
     SURFACE_LEAST_OCCLUSION as LEAST_OCCLUSION, SURFACE_SHADOW_BIAS as BIAS,
 };
 
 /// The ray from the light to a point of the surface. `light` is the unit vector towards the light, in tangent
 /// space.
-pub fn light_ray(hit: &Hit, light: [f32; 3], scale: f32) -> Ray {
+pub fn light_ray(hit: &ReliefHit, light: [f32; 3], scale: f32) -> ReliefRay {
     let steepness = -scale / light[2].max(LEAST_COSINE);
     let slope = [light[0] * steepness, light[1] * steepness];
     let rise = 1.0 - hit.height;
     let origin = [hit.uv[0] - rise * slope[0], hit.uv[1] - rise * slope[1]];
-    Ray { origin, slope, cosine: light[2], polygon: 0.0 }
+    ReliefRay { origin, slope, cosine: light[2], polygon: 0.0 }
 }
 
 /// Whether the light's ray ended above the point at which it was aimed.
-pub fn shaded(first: &Hit, hit: &Hit) -> bool {
+pub fn shaded(first: &ReliefHit, hit: &ReliefHit) -> bool {
     first.parameter < 1.0 - hit.height - BIAS
 }
 
 /// The light that reaches a point, 0 in full shadow to 1 in full light.
 pub fn soft_shadow(
     map: &HeightMap,
-    hit: &Hit,
+    hit: &ReliefHit,
     light: [f32; 3],
     scale: f32,
     march: &March,
@@ -36,7 +36,7 @@ pub fn soft_shadow(
         return 0.0;
     }
     let own = height(map, hit.uv, march.address);
-    let start = Hit { height: hit.height.max(own), ..*hit };
+    let start = ReliefHit { height: hit.height.max(own), ..*hit };
     let ray = light_ray(&start, light, scale);
     let rise = 1.0 - start.height;
     let count = steps.clamp(1, MAX_STEPS);

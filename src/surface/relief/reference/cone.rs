@@ -3,11 +3,11 @@
 use super::grid::Grid;
 use super::linear::narrowed;
 use crate::surface::map::HeightMap;
-use crate::surface::relief::{Hit, March, Outcome, Ray};
+use crate::surface::relief::{March, Outcome, ReliefHit, ReliefRay};
 
 /// Cone stepping over the map's cones, which must have been computed for the march's address mode. `cones` has highest corner
 /// and radius of each cell, row by row.
-pub(crate) fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March) -> Hit {
+pub(crate) fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &ReliefRay, march: &March) -> ReliefHit {
     let grid = Grid::new(map, ray, march.address);
     let distance = (grid.travel[0] * grid.travel[0] + grid.travel[1] * grid.travel[1]).sqrt();
     let (mut cell, mut parameter, mut above, mut samples) = ([0, 0], 0.0, 0.0, 0);
@@ -30,18 +30,18 @@ pub(crate) fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &Ray, march: &March
             samples += 4;
             let found = grid.patch(grid.corners(map, node.index), node.corner(), parameter, leave);
             if found > parameter || (found == parameter && above == parameter) {
-                return Hit::of(ray, found, samples, Outcome::Hit);
+                return ReliefHit::of(ray, found, samples, Outcome::Hit);
             }
             if found >= 0.0 {
                 return narrowed(map, ray, march, [above, parameter], samples);
             }
             if leave >= 1.0 {
-                return Hit::of(ray, 1.0, samples, Outcome::Hit);
+                return ReliefHit::of(ray, 1.0, samples, Outcome::Hit);
             }
             above = parameter;
         }
         cell = grid.beyond(&node, exits, leave);
         parameter = leave;
     }
-    Hit::of(ray, parameter, samples, Outcome::Exhausted)
+    ReliefHit::of(ray, parameter, samples, Outcome::Exhausted)
 }

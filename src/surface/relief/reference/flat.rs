@@ -2,25 +2,25 @@
 
 use super::height::{BILINEAR, height};
 use crate::surface::map::HeightMap;
-use crate::surface::relief::{Hit, March, Outcome, Ray};
+use crate::surface::relief::{March, Outcome, ReliefHit, ReliefRay};
 
 /// The polygon's own texture coordinates.
-pub(crate) fn plain(ray: &Ray) -> Hit {
-    Hit::of(ray, ray.polygon, 0, Outcome::Hit)
+pub(crate) fn plain(ray: &ReliefRay) -> ReliefHit {
+    ReliefHit::of(ray, ray.polygon, 0, Outcome::Hit)
 }
 
 /// Kaneko's parallax mapping.
-pub(crate) fn parallax(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn parallax(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     shifted(map, ray, march, 1.0)
 }
 
 /// Parallax mapping with Welsh's offset limiting.
-pub(crate) fn parallax_limited(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn parallax_limited(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     shifted(map, ray, march, ray.cosine)
 }
 
-fn shifted(map: &HeightMap, ray: &Ray, march: &March, limit: f32) -> Hit {
+fn shifted(map: &HeightMap, ray: &ReliefRay, march: &March, limit: f32) -> ReliefHit {
     let height = height(map, ray.at(ray.polygon), march.address);
     let parameter = ray.polygon - (height - (1.0 - ray.polygon)) * limit;
-    Hit { height, ..Hit::of(ray, parameter, BILINEAR, Outcome::Hit) }
+    ReliefHit { height, ..ReliefHit::of(ray, parameter, BILINEAR, Outcome::Hit) }
 }

@@ -4,7 +4,7 @@ use crate::shared::surface::grid::{
     SURFACE_FAR as FAR, SURFACE_LEAST_TRAVEL as LEAST_TRAVEL, SURFACE_MAX_CROSSED, SURFACE_NEVER as NEVER,
 };
 use crate::surface::map::{Address, HeightMap};
-use crate::surface::relief::Ray;
+use crate::surface::relief::ReliefRay;
 
 /// The grid of bilinear cells under a ray.
 pub(crate) struct Grid {
@@ -25,7 +25,7 @@ pub(crate) struct Node {
 }
 
 impl Grid {
-    pub(crate) fn new(map: &HeightMap, ray: &Ray, address: Address) -> Self {
+    pub(crate) fn new(map: &HeightMap, ray: &ReliefRay, address: Address) -> Self {
         let size = [map.width(), map.height()];
         let texel = [0, 1].map(|i| ray.origin[i] * size[i] as f32 - 0.5);
         let travel = [0, 1].map(|i| ray.slope[i] * size[i] as f32);

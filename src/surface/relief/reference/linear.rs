@@ -3,7 +3,7 @@
 use super::height::{BILINEAR, height};
 use crate::shared::surface::linear::SURFACE_LEAST_SPAN as LEAST_SPAN;
 use crate::surface::map::HeightMap;
-use crate::surface::relief::{Hit, MAX_BINARY, MAX_STEPS, March, Outcome, Ray};
+use crate::surface::relief::{MAX_BINARY, MAX_STEPS, March, Outcome, ReliefHit, ReliefRay};
 
 /// The two points between which a linear search stopped.
 struct Bracket {
@@ -20,7 +20,7 @@ fn steps(march: &March, cosine: f32) -> u32 {
     (steps as u32).clamp(1, MAX_STEPS)
 }
 
-fn search(map: &HeightMap, ray: &Ray, march: &March) -> Bracket {
+fn search(map: &HeightMap, ray: &ReliefRay, march: &March) -> Bracket {
     let steps = steps(march, ray.cosine);
     let width = 1.0 / steps as f32;
     let mut bracket = Bracket { above: 0.0, under: 1.0, height_above: 0.0, height_under: 0.0, samples: 0 };
@@ -40,7 +40,7 @@ fn search(map: &HeightMap, ray: &Ray, march: &March) -> Bracket {
 }
 
 /// Linear search, then binary search.
-pub(crate) fn relief(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn relief(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     let bracket = search(map, ray, march);
     narrowed(map, ray, march, [bracket.above, bracket.under], bracket.samples)
 }
@@ -48,11 +48,11 @@ pub(crate) fn relief(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
 /// Binary search between a point above the surface and one on or below it.
 pub(crate) fn narrowed(
     map: &HeightMap,
-    ray: &Ray,
+    ray: &ReliefRay,
     march: &March,
     [mut above, mut under]: [f32; 2],
     mut samples: u32,
-) -> Hit {
+) -> ReliefHit {
     for _ in 0..march.binary_steps.min(MAX_BINARY) {
         let middle = 0.5 * (above + under);
         samples += BILINEAR;
@@ -62,11 +62,11 @@ pub(crate) fn narrowed(
             above = middle;
         }
     }
-    Hit::of(ray, 0.5 * (above + under), samples, Outcome::Hit)
+    ReliefHit::of(ray, 0.5 * (above + under), samples, Outcome::Hit)
 }
 
 /// Linear search, then the intersection with the segment between the last two samples.
-pub(crate) fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
+pub(crate) fn occlusion(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     let mut bracket = search(map, ray, march);
     if bracket.above == 0.0 {
         bracket.height_above = height(map, ray.origin, march.address);
@@ -76,5 +76,5 @@ pub(crate) fn occlusion(map: &HeightMap, ray: &Ray, march: &March) -> Hit {
     let below = (bracket.height_under - (1.0 - bracket.under)).max(0.0);
     let fraction = if over + below > LEAST_SPAN { over / (over + below).max(LEAST_SPAN) } else { 1.0 };
     let parameter = bracket.above + fraction * (bracket.under - bracket.above);
-    Hit::of(ray, parameter, bracket.samples, Outcome::Hit)
+    ReliefHit::of(ray, parameter, bracket.samples, Outcome::Hit)
 }

@@ -16,7 +16,7 @@ use crate::surface::relief::reference::cone::cone;
 use crate::surface::relief::reference::flat::{parallax, parallax_limited, plain};
 use crate::surface::relief::reference::linear::{occlusion, relief};
 use crate::surface::relief::reference::quadtree::quadtree;
-use crate::surface::relief::{Hit, March, Outcome, Ray, ReliefMethod};
+use crate::surface::relief::{March, Outcome, ReliefHit, ReliefMethod, ReliefRay};
 
 /// A height map with a method's acceleration map.
 #[derive(Debug, Clone)]
@@ -43,9 +43,9 @@ impl<'a> Surface<'a> {
     }
 
     /// Traces a ray with `method`, in the surface's own address mode.
-    pub fn trace(&self, method: ReliefMethod, ray: &Ray, march: &March) -> Hit {
+    pub fn trace(&self, method: ReliefMethod, ray: &ReliefRay, march: &March) -> ReliefHit {
         if ray.cosine.is_nan() || ray.cosine <= 0.0 {
-            return Hit::of(ray, ray.polygon, 0, Outcome::Miss);
+            return ReliefHit::of(ray, ray.polygon, 0, Outcome::Miss);
         }
         let march = &March { address: self.address, ..*march };
         match method {
@@ -60,7 +60,7 @@ impl<'a> Surface<'a> {
     }
 
     /// As [`Surface::trace`], for a list of rays, on all threads.
-    pub fn trace_all(&self, method: ReliefMethod, rays: &[Ray], march: &March) -> Vec<Hit> {
+    pub fn trace_all(&self, method: ReliefMethod, rays: &[ReliefRay], march: &March) -> Vec<ReliefHit> {
         rays.par_iter().map(|ray| self.trace(method, ray, march)).collect()
     }
 }

@@ -3,10 +3,10 @@
 use super::grid::{Grid, Node};
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::HeightMap;
-use crate::surface::relief::{Hit, March, Outcome, Ray};
+use crate::surface::relief::{March, Outcome, ReliefHit, ReliefRay};
 
 /// Max-mip traversal over the map's pyramid, which must have been computed for the march's address mode.
-pub(crate) fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &March) -> Hit {
+pub(crate) fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &ReliefRay, march: &March) -> ReliefHit {
     let layout = PyramidLayout::new([map.width(), map.height()], march.address);
     let grid = Grid::new(map, ray, march.address);
     let top = layout.levels - 1;
@@ -30,10 +30,10 @@ pub(crate) fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &Marc
             samples += 4;
             let found = grid.patch(corners, node.corner(), parameter, leave);
             if found >= 0.0 {
-                return Hit::of(ray, found, samples, Outcome::Hit);
+                return ReliefHit::of(ray, found, samples, Outcome::Hit);
             }
             if leave >= 1.0 {
-                return Hit::of(ray, 1.0, samples, Outcome::Hit);
+                return ReliefHit::of(ray, 1.0, samples, Outcome::Hit);
             }
         }
         cell = grid.beyond(&node, exits, leave);
@@ -42,7 +42,7 @@ pub(crate) fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &Ray, march: &Marc
             level = (level + 1).min(top);
         }
     }
-    Hit::of(ray, parameter, samples, Outcome::Exhausted)
+    ReliefHit::of(ray, parameter, samples, Outcome::Exhausted)
 }
 
 fn leaves_parent(grid: &Grid, node: &Node, exits: [f32; 2], level: u32) -> bool {

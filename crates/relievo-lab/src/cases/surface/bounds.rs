@@ -8,7 +8,7 @@ use relievo::InputError;
 use relievo::ops::surface::cone_map::RADIUS_BOUND;
 use relievo::ops::surface::map::{Address, HeightMap};
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::relief::{Hit, March, Outcome, Ray, ReliefMethod};
+use relievo::ops::surface::relief::{March, Outcome, ReliefHit, ReliefMethod, ReliefRay};
 
 /// A unit in the last place of 1: sums and products in WGSL are within this relative distance of the exact
 /// result.
@@ -24,7 +24,7 @@ const CONE_STEP: f64 = RADIUS_BOUND as f64 + 12.0 * ULP;
 #[derive(Debug, Clone, Copy)]
 pub struct Judged {
     /// The reference's hit.
-    pub expected: Hit,
+    pub expected: ReliefHit,
     /// The largest error allowed for the parameter.
     pub parameter: f64,
     /// The largest error allowed for the height.
@@ -60,7 +60,7 @@ pub fn judge(
     map: &HeightMap,
     method: ReliefMethod,
     march: &March,
-    rays: &[Ray],
+    rays: &[ReliefRay],
     source: Source,
 ) -> Result<Vec<Judged>, InputError> {
     let surface = Surface::new(map, method, march.address);
@@ -94,7 +94,13 @@ pub fn judge(
 }
 
 /// How far rounding may move a point of a ray, in texels along x and y.
-fn positions(ray: &Ray, map: &HeightMap, method: ReliefMethod, address: Address, source: Source) -> [f64; 2] {
+fn positions(
+    ray: &ReliefRay,
+    map: &HeightMap,
+    method: ReliefMethod,
+    address: Address,
+    source: Source,
+) -> [f64; 2] {
     let size = [map.width(), map.height()].map(f64::from);
     [0, 1].map(|axis| {
         let (origin, slope) = (f64::from(ray.origin[axis]), f64::from(ray.slope[axis]));
@@ -120,7 +126,7 @@ fn positions(ray: &Ray, map: &HeightMap, method: ReliefMethod, address: Address,
 
 /// How far rounding may move a point in a direction in which heights change: an axis along which the whole ray
 /// is beyond the edge of a clamped map does not count.
-fn felt(ray: &Ray, map: &HeightMap, address: Address, positions: [f64; 2]) -> f64 {
+fn felt(ray: &ReliefRay, map: &HeightMap, address: Address, positions: [f64; 2]) -> f64 {
     let size = [map.width(), map.height()].map(f64::from);
     let felt = |axis: usize| {
         let ends =
@@ -183,13 +189,13 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn ray(&self, ray: &Ray) -> Judged {
+    fn ray(&self, ray: &ReliefRay) -> Judged {
         let march = self.march;
         let expected = self.surface.trace(self.method, ray, march);
         let ends = self.ends.each_ref().map(|surface| surface.trace(self.crossing, ray, march));
         let shifted = self.shifted(ray).map(|ray| self.surface.trace(self.method, &ray, march));
         let is_same =
-            |hit: &Hit| hit.samples == expected.samples && hit.outcome_code == expected.outcome_code;
+            |hit: &ReliefHit| hit.samples == expected.samples && hit.outcome_code == expected.outcome_code;
         let is_steady =
             shifted.iter().all(is_same) && (!self.method.is_stepped() || ends.iter().all(is_same));
         let mut farthest = [0.0_f64; 2];
@@ -214,12 +220,12 @@ impl Judge<'_> {
         }
     }
 
-    fn positions(&self, ray: &Ray) -> [f64; 2] {
+    fn positions(&self, ray: &ReliefRay) -> [f64; 2] {
         positions(ray, self.surface.map, self.method, self.march.address, self.source)
     }
 
     /// Whether rounding cannot change the number of linear steps, ⌈mix(min, max, 1 − V.z)⌉.
-    fn has_steps(&self, ray: &Ray) -> bool {
+    fn has_steps(&self, ray: &ReliefRay) -> bool {
         let [low, high] = self.march.steps.map(f64::from);
         let flatness = (1.0 - f64::from(ray.cosine)).max(0.0);
         let (steps, off) = (low + (high - low) * flatness, 4.0 * ULP * high);
@@ -228,7 +234,7 @@ impl Judge<'_> {
 
     /// The ray shifted slightly to every side, steeper and flatter: whatever rounding does to a branch, one of
     /// these rays takes it.
-    fn shifted(&self, ray: &Ray) -> [Ray; 4] {
+    fn shifted(&self, ray: &ReliefRay) -> [ReliefRay; 4] {
         let size = [self.surface.map.width(), self.surface.map.height()].map(f64::from);
         let position = self.positions(ray);
         let relative = match self.method {
@@ -238,7 +244,7 @@ impl Judge<'_> {
         let by = [0, 1].map(|i| position[i] / size[i] + relative * f64::from(ray.slope[i]).abs());
         [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|signs: [f64; 2]| {
             let steeper = 1.0 + 4.0 * ULP * signs[0];
-            Ray {
+            ReliefRay {
                 origin: [0, 1].map(|i| (f64::from(ray.origin[i]) + signs[i] * by[i]) as f32),
                 slope: ray.slope.map(|slope| (f64::from(slope) * steeper) as f32),
                 ..*ray
@@ -248,7 +254,7 @@ impl Judge<'_> {
 
     /// How far the result of a binary search between the last two points of the search over cones may be from
     /// the crossing.
-    fn around(&self, ray: &Ray, is_steady: bool) -> f64 {
+    fn around(&self, ray: &ReliefRay, is_steady: bool) -> f64 {
         if self.method != ReliefMethod::Cone {
             return 0.0;
         }

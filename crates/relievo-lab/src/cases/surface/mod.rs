@@ -12,7 +12,7 @@ pub mod tangent;
 use relievo::gpu::{Buffer, Gpu, Job};
 use relievo::ops::surface::ReliefMaterial;
 use relievo::ops::surface::map::HeightMap;
-use relievo::ops::surface::relief::Ray;
+use relievo::ops::surface::relief::ReliefRay;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
 use relievo::{Error, InputError};
 
@@ -63,7 +63,7 @@ pub fn random_map(case: u32, [width, height]: [u32; 2], shape: Shape) -> Result<
 
 /// Random rays: from straight down to flatter than the marching limit, along the axes, from behind, and
 /// starting far outside the tile.
-pub fn random_rays(case: u32, count: usize) -> Vec<Ray> {
+pub fn random_rays(case: u32, count: usize) -> Vec<ReliefRay> {
     let words = random_words(case ^ 0x5eed, 6 * count);
     let rays = words.chunks_exact(6).map(|words| {
         let unit = |word: u32| (word >> 8) as f32 / 16_777_216.0;
@@ -82,16 +82,16 @@ pub fn random_rays(case: u32, count: usize) -> Vec<Ray> {
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let scale = [0.0, 0.02, 0.1, 0.3][words[4] as usize % 4];
         let plane = [1.0, 0.5, 0.0][words[5] as usize % 3];
-        Ray::new(uv, [turn.cos() * sine, turn.sin() * sine, cosine], scale, plane)
+        ReliefRay::new(uv, [turn.cos() * sine, turn.sin() * sine, cosine], scale, plane)
     });
     rays.collect()
 }
 
 /// Rays that meet a tile in `edge` places along each edge, row by row; `view` is the unit vector towards the eye.
-pub(crate) fn rays(edge: u32, view: [f32; 3]) -> Vec<Ray> {
+pub(crate) fn rays(edge: u32, view: [f32; 3]) -> Vec<ReliefRay> {
     let at = |index: u32| (index as f32 + 0.5) / edge as f32;
     let places = (0..edge).flat_map(|y| (0..edge).map(move |x| [at(x), at(y)]));
-    places.map(|uv| Ray::new(uv, view, ReliefMaterial::default().scale, 1.0)).collect()
+    places.map(|uv| ReliefRay::new(uv, view, ReliefMaterial::default().scale, 1.0)).collect()
 }
 
 /// As many bare loads of texels as `loads` of `edge`² rays, and nothing else.

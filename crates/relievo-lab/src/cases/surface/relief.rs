@@ -12,7 +12,7 @@ use relievo::ops::surface::mesh::SurfaceMesh;
 use relievo::ops::surface::mips::Mips;
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
-use relievo::ops::surface::relief::{Hit, March, Ray, ReliefMethod, ReliefPass};
+use relievo::ops::surface::relief::{March, ReliefHit, ReliefMethod, ReliefPass, ReliefRay};
 use relievo::ops::surface::{ReliefMaps, ReliefMaterial, ReliefOptions};
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{Camera, Depth, Placement, Quality, Relief, Scene, View};
@@ -67,7 +67,7 @@ async fn compared(
     map: &HeightMap,
     method: ReliefMethod,
     march: &March,
-    rays: &[Ray],
+    rays: &[ReliefRay],
 ) -> Result<Comparison, Error> {
     let textures = SurfaceTextures::new(gpu, map, method, march.address)?;
     let input = Buffer::from_slice(gpu, "rays", rays)?;
@@ -80,7 +80,7 @@ async fn compared(
 
 /// Compares hits: outcomes must be equal, numbers of loads must be equal where rounding changes no branch, and
 /// errors must be within each ray's own bound. At most the fraction `TOUCHING` of the rays may touch.
-pub fn hits(actual: &[Hit], judged: &[Judged], size: [u32; 2]) -> Comparison {
+pub fn hits(actual: &[ReliefHit], judged: &[Judged], size: [u32; 2]) -> Comparison {
     if actual.len() != judged.len() {
         let fault = format!("{} hits instead of {}", actual.len(), judged.len());
         return Comparison::failed(actual.len(), fault);
@@ -92,7 +92,7 @@ pub fn hits(actual: &[Hit], judged: &[Judged], size: [u32; 2]) -> Comparison {
     })
 }
 
-fn judgement(hit: &Hit, judged: &Judged, size: [u32; 2]) -> Judgement {
+fn judgement(hit: &ReliefHit, judged: &Judged, size: [u32; 2]) -> Judgement {
     let expected = &judged.expected;
     let off = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
     let [du, dv] = [0, 1].map(|i| off(hit.uv[i], expected.uv[i]) * f64::from(size[i]));
@@ -190,7 +190,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: ReliefMethod) -> Resul
             drop(std::hint::black_box(surface.trace_all(method, &rays, &march)));
         }),
     ];
-    let bytes = 4 * samples + (rays.len() * (size_of::<Ray>() + size_of::<Hit>())) as u64;
+    let bytes = 4 * samples + (rays.len() * (size_of::<ReliefRay>() + size_of::<ReliefHit>())) as u64;
     bench.case(format!("{}, {mean:.1} loads a ray", method.name()), (rays.len(), "ray"), bytes, contenders)
 }
 

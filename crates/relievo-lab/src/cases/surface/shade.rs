@@ -12,7 +12,7 @@ use relievo::ops::surface::map::{Address, HeightMap};
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::reference::height::BILINEAR;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
-use relievo::ops::surface::relief::{March, Ray, ReliefMethod};
+use relievo::ops::surface::relief::{March, ReliefMethod, ReliefRay};
 use relievo::{Error, InputError};
 use relievo_samples::BuiltInMap;
 
@@ -111,7 +111,8 @@ pub fn random_points(
         };
         let scale = [0.02, 0.1, 0.3][words[0] as usize % 3];
         let plane = [1.0, 0.5, 0.0][words[1] as usize % 3];
-        let ray = Ray::new([unit(2) - 0.25, unit(3) - 0.25], direction(4, 0.1 + 0.9 * unit(5)), scale, plane);
+        let ray =
+            ReliefRay::new([unit(2) - 0.25, unit(3) - 0.25], direction(4, 0.1 + 0.9 * unit(5)), scale, plane);
         let cosine = match words[6] % 16 {
             0 => 1.0,
             1 => -unit(6),
@@ -157,7 +158,8 @@ pub fn judged(
 ) -> Result<Vec<JudgedShade>, InputError> {
     let surface = Surface::new(map, method, march.address);
     let shades = shade_all(&surface, method, march, view, points);
-    let rays: Vec<Ray> = points.iter().map(|point| light_ray(&point.hit, point.light, point.scale)).collect();
+    let rays: Vec<ReliefRay> =
+        points.iter().map(|point| light_ray(&point.hit, point.light, point.scale)).collect();
     let firsts = judge(map, method, march, &rays, Source::Computed)?;
     let steepness = steepness(map, march.address);
     let terrain = Terrain { map, steepness: &steepness, address: march.address };

@@ -1,7 +1,7 @@
 //! Error and cost of every ray-height method, at several angles.
 
 use relievo::gpu::Gpu;
-use relievo::ops::surface::{March, Ray, ReliefMethod};
+use relievo::ops::surface::{March, ReliefMethod, ReliefRay};
 use relievo::{Error, InputError};
 use serde::Serialize;
 
@@ -95,10 +95,10 @@ impl ReliefSquare {
     }
 
     /// The rays of the picture at each angle.
-    fn lists(&self) -> Result<[Vec<Ray>; 4], InputError> {
+    fn lists(&self) -> Result<[Vec<ReliefRay>; 4], InputError> {
         let lists = Comparison::ANGLES.map(|angle| {
             let rays = SquareView { angle, ..self.view }.rays(self.material.scale, self.material.plane);
-            rays.into_iter().flatten().collect::<Vec<Ray>>()
+            rays.into_iter().flatten().collect::<Vec<ReliefRay>>()
         });
         match lists.iter().position(Vec::is_empty) {
             None => Ok(lists),

@@ -3,7 +3,7 @@
 //! methods.
 
 use relievo::ops::surface::map::{Address, HeightMap};
-use relievo::ops::surface::relief::{Hit, Ray};
+use relievo::ops::surface::relief::{ReliefHit, ReliefRay};
 
 /// The first intersection of a ray with the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Exact {
 
 impl Exact {
     /// The distance of a hit from the exact one, in texels.
-    pub(crate) fn error(&self, hit: &Hit, map: &HeightMap) -> f64 {
+    pub(crate) fn error(&self, hit: &ReliefHit, map: &HeightMap) -> f64 {
         let du = (f64::from(hit.uv[0]) - self.uv[0]) * f64::from(map.width());
         let dv = (f64::from(hit.uv[1]) - self.uv[1]) * f64::from(map.height());
         du.hypot(dv)
@@ -25,7 +25,7 @@ impl Exact {
 
 /// The first intersection of a ray, or `None` for a ray that comes from behind. Heights are at least 0, so that
 /// every other ray meets the surface at a parameter of at most 1.
-pub fn exact(map: &HeightMap, ray: &Ray, address: Address) -> Option<Exact> {
+pub fn exact(map: &HeightMap, ray: &ReliefRay, address: Address) -> Option<Exact> {
     if ray.cosine.is_nan() || ray.cosine <= 0.0 {
         return None;
     }
@@ -98,8 +98,8 @@ fn roots(a: f64, b: f64, c: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    fn ray(origin: [f32; 2], slope: [f32; 2]) -> Ray {
-        Ray { origin, slope, cosine: 1.0, polygon: 0.0 }
+    fn ray(origin: [f32; 2], slope: [f32; 2]) -> ReliefRay {
+        ReliefRay { origin, slope, cosine: 1.0, polygon: 0.0 }
     }
 
     #[test]

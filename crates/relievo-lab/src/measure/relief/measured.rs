@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::exact::exact;
 use relievo::ops::surface::map::{Address, HeightMap};
-use relievo::ops::surface::relief::{Hit, Outcome, Ray};
+use relievo::ops::surface::relief::{Outcome, ReliefHit, ReliefRay};
 
 /// Statistics of a list of traced rays.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -29,7 +29,7 @@ pub struct Measured {
 
 impl Measured {
     /// Measures results against the exact intersections of their rays.
-    pub fn of(map: &HeightMap, address: Address, rays: &[Ray], hits: &[Hit]) -> Self {
+    pub fn of(map: &HeightMap, address: Address, rays: &[ReliefRay], hits: &[ReliefHit]) -> Self {
         let found = rays.par_iter().zip(hits).filter_map(|(ray, hit)| {
             exact(map, ray, address).map(|exact| (exact.error(hit, map), hit.outcome() != Outcome::Hit))
         });

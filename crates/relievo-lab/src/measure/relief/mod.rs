@@ -8,7 +8,7 @@ use std::time::Instant;
 use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::{
-    Green, HeightMap, Hit, March, Mips, Ray, ReliefMaterial, ReliefMethod, ReliefShadow,
+    Green, HeightMap, March, Mips, ReliefHit, ReliefMaterial, ReliefMethod, ReliefRay, ReliefShadow,
 };
 use relievo::{Error, InputError};
 use serde::Serialize;
@@ -53,9 +53,9 @@ pub struct Drawn {
     pub picture: RgbaImage,
     /// For each pixel, row by row, the ray through its center; `None` where the pixel does not see the
     /// square.
-    pub rays: Vec<Option<Ray>>,
+    pub rays: Vec<Option<ReliefRay>>,
     /// For each pixel, the hit of its ray; the default where there is no ray.
-    pub hits: Vec<Hit>,
+    pub hits: Vec<ReliefHit>,
     /// Error and cost of these rays.
     pub measured: Measured,
     /// The time that each step took.
@@ -91,7 +91,7 @@ impl ReliefSquare {
         progress: &dyn Fn(&'static str),
     ) -> Result<Drawn, Error> {
         let rays = self.view.rays(self.material.scale, self.material.plane);
-        let seen: Vec<Ray> = rays.iter().flatten().copied().collect();
+        let seen: Vec<ReliefRay> = rays.iter().flatten().copied().collect();
         if seen.is_empty() {
             let bound = "must be smaller, or size larger: no pixel sees the square";
             return Err(InputError::new("angle", self.view.angle, bound).into());

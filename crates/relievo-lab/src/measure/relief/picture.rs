@@ -10,7 +10,7 @@ use relievo::ops::surface::map::Address;
 use relievo::ops::surface::mips::Mips;
 use relievo::ops::surface::relief::reference::Surface;
 use relievo::ops::surface::relief::reference::height::height;
-use relievo::ops::surface::relief::{Hit, March, Ray, ReliefMethod};
+use relievo::ops::surface::relief::{March, ReliefHit, ReliefMethod, ReliefRay};
 use relievo::ops::surface::{Green, ReliefMaterial, ReliefShadow};
 use relievo::srgb::linear;
 
@@ -52,7 +52,7 @@ impl Scene<'_> {
     }
 
     /// The linear colour that a ray sees, or `None` beyond the silhouette.
-    fn shade(&self, ray: &Ray) -> Option<[f32; 3]> {
+    fn shade(&self, ray: &ReliefRay) -> Option<[f32; 3]> {
         let hit = self.surface.trace(self.method, ray, self.march);
         let tiles = self.view.tiles as f32;
         if self.silhouette && !hit.uv.iter().all(|axis| (0.0..=tiles).contains(axis)) {
@@ -77,7 +77,7 @@ impl Scene<'_> {
         Some(color.map(|channel| channel * (ambient + (1.0 - ambient) * direct)))
     }
 
-    fn sunlit(&self, hit: &Hit) -> f32 {
+    fn sunlit(&self, hit: &ReliefHit) -> f32 {
         let (light, scale) = (self.material.light, self.material.scale);
         if light[2] <= 0.0 {
             return 1.0;
@@ -95,7 +95,7 @@ impl Scene<'_> {
         }
     }
 
-    fn normal(&self, hit: &Hit) -> [f32; 3] {
+    fn normal(&self, hit: &ReliefHit) -> [f32; 3] {
         let map = self.surface.map;
         let size = [map.width() as f32, map.height() as f32];
         let at = |du: f32, dv: f32| height(map, [hit.uv[0] + du, hit.uv[1] + dv], self.march.address);

@@ -5,7 +5,7 @@ use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::ops::surface::relief::ReliefPass;
 use relievo::ops::surface::relief::reference::Surface;
-use relievo::ops::surface::{Address, HeightMap, Hit, March, Ray, ReliefMethod, SurfaceTextures};
+use relievo::ops::surface::{Address, HeightMap, March, ReliefHit, ReliefMethod, ReliefRay, SurfaceTextures};
 use relievo::render::Offscreen;
 use relievo::render::target::LINEAR_FORMAT;
 
@@ -41,7 +41,7 @@ impl<'a> Tracer<'a> {
         Ok(Self::Gpu(Box::new(Device { gpu: gpu.clone(), textures, pass })))
     }
 
-    pub fn trace(&self, rays: &[Ray], march: &March) -> Result<Vec<Hit>, Error> {
+    pub fn trace(&self, rays: &[ReliefRay], march: &March) -> Result<Vec<ReliefHit>, Error> {
         match self {
             Self::Cpu(method, surface) => Ok(surface.trace_all(*method, rays, march)),
             Self::Gpu(device) => device.trace(rays, march),
@@ -77,7 +77,7 @@ impl<'a> Tracer<'a> {
 }
 
 impl Device {
-    fn trace(&self, rays: &[Ray], march: &March) -> Result<Vec<Hit>, Error> {
+    fn trace(&self, rays: &[ReliefRay], march: &March) -> Result<Vec<ReliefHit>, Error> {
         let mut all = Vec::with_capacity(rays.len());
         for list in rays.chunks(LIST) {
             let input = Buffer::from_slice(&self.gpu, "rays", list)?;

@@ -2,7 +2,7 @@
 //! costs can be attributed to that angle.
 
 use relievo::InputError;
-use relievo::ops::surface::relief::Ray;
+use relievo::ops::surface::relief::ReliefRay;
 
 /// The view of a textured square. In tangent space u points right, v down the image, and the normal towards the
 /// viewer.
@@ -94,13 +94,13 @@ impl SquareView {
 
     /// The ray through a point of the picture, if that sees the square. The relief has a depth of `scale` (uv
     /// units), and the square lies at height `plane` in it.
-    pub(crate) fn ray(&self, x: f64, y: f64, scale: f32, plane: f32) -> Option<Ray> {
+    pub(crate) fn ray(&self, x: f64, y: f64, scale: f32, plane: f32) -> Option<ReliefRay> {
         let view = self.towards().map(|axis| axis as f32);
-        self.uv(x, y).map(|uv| Ray::new(uv.map(|axis| axis as f32), view, scale, plane))
+        self.uv(x, y).map(|uv| ReliefRay::new(uv.map(|axis| axis as f32), view, scale, plane))
     }
 
     /// The rays through the centers of all pixels, row by row.
-    pub fn rays(&self, scale: f32, plane: f32) -> Vec<Option<Ray>> {
+    pub fn rays(&self, scale: f32, plane: f32) -> Vec<Option<ReliefRay>> {
         let [width, height] = self.size;
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         pixels.map(|(x, y)| self.ray(f64::from(x) + 0.5, f64::from(y) + 0.5, scale, plane)).collect()

@@ -1,26 +1,31 @@
 //! The meshes of the parity cases: literal ones, ones on either side of a threshold, and large ones.
 
-use relievo::ops::surface::tangent::{DEGENERATE, Mesh, VANISHING};
+use relievo::ops::surface::tangent::{DEGENERATE, TangentMesh, VANISHING};
 
 use crate::cases::terrain::random_words;
 
 /// A mesh that owns its data.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Owned {
-    /// See [`Mesh`].
+    /// See [`TangentMesh`].
     pub positions: Vec<[f32; 3]>,
-    /// See [`Mesh`].
+    /// See [`TangentMesh`].
     pub normals: Vec<[f32; 3]>,
-    /// See [`Mesh`].
+    /// See [`TangentMesh`].
     pub uv: Vec<[f32; 2]>,
-    /// See [`Mesh`].
+    /// See [`TangentMesh`].
     pub indices: Vec<u32>,
 }
 
 impl Owned {
     /// The mesh in the form that the pass and the reference take.
-    pub(crate) fn mesh(&self) -> Mesh<'_> {
-        Mesh { positions: &self.positions, normals: &self.normals, uv: &self.uv, indices: &self.indices }
+    pub(crate) fn mesh(&self) -> TangentMesh<'_> {
+        TangentMesh {
+            positions: &self.positions,
+            normals: &self.normals,
+            uv: &self.uv,
+            indices: &self.indices,
+        }
     }
 }
 

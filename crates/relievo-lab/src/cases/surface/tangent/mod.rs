@@ -6,7 +6,7 @@ use meshes::{
 };
 use relievo::Error;
 use relievo::gpu::Buffer;
-use relievo::ops::surface::tangent::reference::{Frame, frames, tangents};
+use relievo::ops::surface::tangent::reference::{TangentFrame, frames, tangents};
 use relievo::ops::surface::tangent::{TANGENT_BOUND, TangentBuffers, TangentPass};
 
 use crate::cases::terrain::copy_of;
@@ -24,7 +24,7 @@ mod meshes;
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = TangentPass::new(cases.gpu)?;
     for (name, mesh, expected) in literals() {
-        let expected = expected.map(|tangent| Frame { tangent, sensitivity: 1.0 });
+        let expected = expected.map(|tangent| TangentFrame { tangent, sensitivity: 1.0 });
         check(cases, &pass, name, &mesh, &expected, None).await?;
     }
     let mut meshes = Vec::new();
@@ -53,9 +53,9 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 
 /// Replaces the normals of vertices where rounding decides between a frame and the fallback by one for which it
 /// does not. These vertices count as left out; one in 500 is allowed, and one in any case.
-fn settled(mut mesh: Owned) -> Result<(Owned, Vec<Frame>, LeftOut), Error> {
+fn settled(mut mesh: Owned) -> Result<(Owned, Vec<TangentFrame>, LeftOut), Error> {
     let expected = frames(&mesh.mesh())?;
-    let open = |frame: &Frame| !frame.sensitivity.is_finite();
+    let open = |frame: &TangentFrame| !frame.sensitivity.is_finite();
     let count = expected.iter().filter(|frame| open(frame)).count();
     for (normal, _) in mesh.normals.iter_mut().zip(&expected).filter(|(_, frame)| open(frame)) {
         *normal = [0.0; 3];
@@ -70,7 +70,7 @@ async fn check(
     pass: &TangentPass,
     name: &str,
     mesh: &Owned,
-    expected: &[Frame],
+    expected: &[TangentFrame],
     left_out: Option<LeftOut>,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
@@ -93,7 +93,7 @@ async fn check(
 }
 
 /// Compares tangents after dividing each error by its sensitivity.
-fn directions(actual: &[[f32; 4]], expected: &[Frame]) -> Comparison {
+fn directions(actual: &[[f32; 4]], expected: &[TangentFrame]) -> Comparison {
     if let Some(vertex) = expected.iter().position(|frame| !frame.sensitivity.is_finite()) {
         let fault = format!("rounding decides at vertex {vertex}: a case that proves nothing");
         return Comparison::failed(actual.len(), fault);
@@ -133,16 +133,17 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::ops::surface::tangent::Mesh;
+    use relievo::ops::surface::tangent::TangentMesh;
 
     #[test]
     fn a_turned_tangent_and_an_open_decision_fail() {
-        let expected = [1.0, 50.0].map(|sensitivity| Frame { tangent: [0.6, 0.0, 0.8, 1.0], sensitivity });
+        let expected =
+            [1.0, 50.0].map(|sensitivity| TangentFrame { tangent: [0.6, 0.0, 0.8, 1.0], sensitivity });
         let turned = |by: f32| [[0.6, 0.0, 0.8, 1.0], [0.6, by, 0.8, 1.0]];
         assert!(directions(&turned(49.0 * TANGENT_BOUND), &expected).holds);
         assert!(!directions(&turned(51.0 * TANGENT_BOUND), &expected).holds);
         assert!(!directions(&turned(f32::NAN), &expected).holds);
-        let open = expected.map(|frame| Frame { sensitivity: f64::INFINITY, ..frame });
+        let open = expected.map(|frame| TangentFrame { sensitivity: f64::INFINITY, ..frame });
         assert!(!directions(&turned(0.0), &open).holds);
     }
 
@@ -162,7 +163,7 @@ mod tests {
         assert_eq!(handed.collect::<Vec<_>>(), [1.0, -1.0]);
     }
 
-    fn frames_without_triangles(mesh: &Owned) -> Vec<Frame> {
-        frames(&Mesh { indices: &[], ..mesh.mesh() }).expect("a valid mesh")
+    fn frames_without_triangles(mesh: &Owned) -> Vec<TangentFrame> {
+        frames(&TangentMesh { indices: &[], ..mesh.mesh() }).expect("a valid mesh")
     }
 }
