@@ -22,14 +22,14 @@
 //! ```
 //! # #[cfg(feature = "gpu")] {
 //! use relievo::gpu::{Buffer, Gpu, Options};
-//! use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
+//! use relievo::ops::terrain::morph::{Morph, MorphBuffers, HeightMorphPass};
 //!
 //! let gpu = Gpu::headless(&Options::default())?; // or Gpu::from_wgpu(device, queue)
 //! let from = Buffer::from_slice(&gpu, "from", &[0, 65_536])?; // heights in 1/65536 units
 //! let to = Buffer::from_slice(&gpu, "to", &[65_536, 0])?;
 //! let heights = Buffer::new(&gpu, "heights", 2)?;
 //!
-//! let pass = MorphPass::new(&gpu)?;
+//! let pass = HeightMorphPass::new(&gpu)?;
 //! let job = pass.prepare(&gpu, MorphBuffers { from: &from, to: &to, heights: &heights })?;
 //! job.set(&gpu, Morph { time: 0.25 })?;
 //! gpu.run("morph", |encoder| job.record(encoder))?; // or record it into your own encoder

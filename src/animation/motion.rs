@@ -6,7 +6,7 @@
 
 use super::clip_set::{ClipEntry, ClipSet};
 use crate::asset::Bone;
-use crate::asset::clip::{Clip, Interpolation, Part, Track};
+use crate::asset::clip::{Clip, Interpolation, Track, TransformPart};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
@@ -61,7 +61,7 @@ pub fn motions(set: &ClipSet, entry: &ClipEntry, clip: &Clip, path: RotationPath
 }
 
 fn bone_motion(clip: &Clip, bone: usize, times: &[f32], path: RotationPath) -> BoneMotion {
-    let keys = Part::ALL.map(|part| Keys::new(clip, clip.track(bone, part), part, path));
+    let keys = TransformPart::ALL.map(|part| Keys::new(clip, clip.track(bone, part), part, path));
     let parts = keys.each_ref().map(|keys| keys.path(times));
     let [translations, _, scales] = keys;
     let longest = |points: &[Value], norm: fn(&Value) -> f64| points.iter().map(norm).fold(0.0, f64::max);
@@ -76,7 +76,7 @@ type Value = [f64; 4];
 
 /// A track's keys in f64.
 struct Keys<'a> {
-    part: Part,
+    part: TransformPart,
     path: RotationPath,
     interpolation: Interpolation,
     times: &'a [f32],
@@ -85,7 +85,7 @@ struct Keys<'a> {
 }
 
 impl<'a> Keys<'a> {
-    fn new(clip: &'a Clip, track: &Track, part: Part, path: RotationPath) -> Self {
+    fn new(clip: &'a Clip, track: &Track, part: TransformPart, path: RotationPath) -> Self {
         let interpolation = track.interpolation;
         let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         let count = each * track.keys.max(1) as usize;
@@ -106,15 +106,15 @@ impl<'a> Keys<'a> {
     fn distance(&self, a: &Value, b: &Value) -> f64 {
         let minus = |a: &Value, b: &Value| std::array::from_fn(|i| a[i] - b[i]);
         match self.part {
-            Part::Translation => length(&minus(a, b)),
-            Part::Rotation => {
+            TransformPart::Translation => length(&minus(a, b)),
+            TransformPart::Rotation => {
                 let [a, b] = [a, b].map(normalized);
                 // Distance along the chord to the nearer of q and −q.
                 let plus: Value = std::array::from_fn(|i| a[i] + b[i]);
                 let (near, far) = (length(&minus(&a, &b)), length(&plus));
                 4.0 * near.min(far).atan2(near.max(far))
             }
-            Part::Scale => largest(&minus(a, b)),
+            TransformPart::Scale => largest(&minus(a, b)),
         }
     }
 
@@ -154,13 +154,13 @@ impl<'a> Keys<'a> {
             let longest =
                 |norm: fn(&Value) -> f64| 3.0 * edges.each_ref().map(norm).into_iter().fold(0.0, f64::max);
             return match self.part {
-                Part::Scale => Some(longest(largest)),
-                Part::Translation => Some(longest(length)),
-                Part::Rotation => turn_of_spline(&bezier, longest(length)),
+                TransformPart::Scale => Some(longest(largest)),
+                TransformPart::Translation => Some(longest(length)),
+                TransformPart::Rotation => turn_of_spline(&bezier, longest(length)),
             };
         }
         let quarter = way / 4.0;
-        let is_chord = self.part == Part::Rotation && self.path == RotationPath::Nlerp;
+        let is_chord = self.part == TransformPart::Rotation && self.path == RotationPath::Nlerp;
         Some(if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way })
     }
 

@@ -48,7 +48,7 @@ pub struct BoneKeys {
 
 /// The part of a transform that a track animates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Part {
+pub enum TransformPart {
     /// The first track of a bone.
     Translation = 0,
     /// The second track.
@@ -57,7 +57,7 @@ pub enum Part {
     Scale = 2,
 }
 
-impl Part {
+impl TransformPart {
     /// All parts, in the order of a bone's tracks.
     pub const ALL: [Self; 3] = [Self::Translation, Self::Rotation, Self::Scale];
 }
@@ -166,7 +166,7 @@ impl Clip {
     }
 
     /// One track of a bone.
-    pub fn track(&self, bone: usize, part: Part) -> &Track {
+    pub fn track(&self, bone: usize, part: TransformPart) -> &Track {
         &self.tracks[3 * bone + part as usize]
     }
 
@@ -227,7 +227,7 @@ mod tests {
         let identity = [0.0, 0.0, 0.0, 1.0];
         assert_eq!(clip.values()[2..4], [identity; 2], "unit, and the short way");
         assert_eq!(clip.values()[7..], [[1.0, 2.0, 3.0, 0.0], identity, [4.0, 5.0, 6.0, 0.0]]);
-        assert_eq!(clip.key(clip.track(0, Part::Scale), 0), [7.0; 4]);
+        assert_eq!(clip.key(clip.track(0, TransformPart::Scale), 0), [7.0; 4]);
         assert_eq!(clip.bytes(), 6 * 16 + 3 * 4 + 10 * 16);
         assert_eq!(Clip::new("a", &skeleton(), &bones, 2.0).expect("valid").duration(), 2.0);
     }

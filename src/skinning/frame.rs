@@ -6,7 +6,7 @@ use super::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use super::clusters::Clusters;
 use super::morph::MorphPass;
 use super::palette::PalettePass;
-use super::select::{SelectBuffers, SelectPass};
+use super::select::{ClusterSelectBuffers, ClusterSelectPass};
 use super::skin::SkinPass;
 use crate::animation::model_matrices::Consumer;
 use crate::animation::updated_bones::UpdatedBonesReader;
@@ -27,7 +27,7 @@ pub struct SkinFrame {
     pub crowd: SkinnedCrowd,
     /// The updated bones: those that the model matrices record, or, if they record none, those that the caller writes.
     /// [`SkinFrame::record_updated_bones`] clears the caller's.
-    pub select: SelectBuffers,
+    pub select: ClusterSelectBuffers,
     /// The clusters selected by the last [`SkinFrame::record_updated_bones`].
     pub active: ActiveClusters,
     /// Skinned vertices, at `instance · vertices + slot`. Clusters beyond an instance's level of detail are out of
@@ -63,7 +63,7 @@ impl SkinFrame {
         InputError::check_below("mesh", mesh, model.meshes.len())?;
         let (mesh, clusters) = MeshBuffers::new(gpu, model, &model.meshes[mesh])?;
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
-        let mut select = SelectBuffers::new(gpu, &mesh, &crowd)?;
+        let mut select = ClusterSelectBuffers::new(gpu, &mesh, &crowd)?;
         let updated = match matrices.updated_bones() {
             Some(updated) => updated.clone(),
             None => UpdatedBones::over(select.updated_bones),
@@ -72,7 +72,7 @@ impl SkinFrame {
         let reader = Arc::new(updated.reader());
         let active = ActiveClusters::new(gpu, &mesh, &crowd)?;
         let skinned = Buffer::new(gpu, "skinned vertices", instances * mesh.vertices.len())?;
-        let selections = SelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
+        let selections = ClusterSelectPass::new(gpu)?.prepare(gpu, &mesh, &crowd, &select, &active)?;
         let skin = SkinPass::new(gpu, blend)?.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
         let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
         let jobs = morph.into_iter().chain([skin]).collect();
@@ -86,7 +86,7 @@ impl SkinFrame {
     /// - clusters beyond the level of the frame before;
     /// - all clusters of instances whose influences changed, or that were not visible in the frame before.
     ///
-    /// The first recording therefore skins everything visible. It counts frames ([`SelectBuffers::skinned`]): record it
+    /// The first recording therefore skins everything visible. It counts frames ([`ClusterSelectBuffers::skinned`]): record it
     /// at most once per frame; frames may skip it. If several skinning frames share model matrices, the last of them
     /// clears the updated bones ([`UpdatedBones`]).
     pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {

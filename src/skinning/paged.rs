@@ -7,7 +7,7 @@ use super::clusters::Clusters;
 use super::morph::MorphPass;
 use super::pages::{PageBuffers, PagesPass};
 use super::palette::PalettePass;
-use super::select::{SelectBuffers, SelectPass};
+use super::select::{ClusterSelectBuffers, ClusterSelectPass};
 use super::skin::SkinPass;
 use crate::Error;
 use crate::InputError;
@@ -37,7 +37,7 @@ pub struct PagedSkin {
 #[derive(Debug, Clone)]
 struct Paging {
     pages: PageBuffers,
-    select: SelectBuffers,
+    select: ClusterSelectBuffers,
     deal: Job,
     /// Two selections: one keeps the updated bones, the other clears them.
     selections: [Job; 2],
@@ -49,13 +49,13 @@ impl Paging {
     fn new(
         gpu: &Gpu,
         (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
-        (select, active): (SelectBuffers, &ActiveClusters),
+        (select, active): (ClusterSelectBuffers, &ActiveClusters),
         pages: u32,
     ) -> Result<Self, Error> {
         let allocated = if active.keeps_last { PageBuffers::keeping } else { PageBuffers::new };
         let pages = allocated(gpu, mesh, crowd, pages)?;
         let deal = PagesPass::new(gpu)?.prepare(gpu, mesh, crowd, &pages)?;
-        let selections = SelectPass::new(gpu)?.prepare(gpu, mesh, crowd, &select, active)?;
+        let selections = ClusterSelectPass::new(gpu)?.prepare(gpu, mesh, crowd, &select, active)?;
         let morph = MorphPass::new(gpu)?.prepare_paged(gpu, mesh, crowd, &pages, active)?;
         let skin = SkinPass::new(gpu, Blend::Linear)?.prepare_paged(gpu, mesh, crowd, &pages, active)?;
         let after = morph.into_iter().chain([skin]).collect();
@@ -85,7 +85,7 @@ impl PagedSkin {
         };
         let crowd = SkinnedCrowd::paged(gpu, &mesh, instances, Blend::Linear)?;
         let updated_bones = updated.bits().clone();
-        let select = SelectBuffers { updated_bones, ..SelectBuffers::new(gpu, &mesh, &crowd)? };
+        let select = ClusterSelectBuffers { updated_bones, ..ClusterSelectBuffers::new(gpu, &mesh, &crowd)? };
         let listed = if keeps_last { ActiveClusters::keeping } else { ActiveClusters::new };
         let active = listed(gpu, &mesh, &crowd)?;
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
@@ -105,8 +105,8 @@ impl PagedSkin {
     /// [`crate::gpu::GpuError`].
     pub fn set_pages(&mut self, gpu: &Gpu, pages: u32) -> Result<(), Error> {
         // A new record of skinned instances, because frames that are already recorded keep using the old one.
-        let skinned = SelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
-        let select = SelectBuffers { skinned, ..self.paging.select.clone() };
+        let skinned = ClusterSelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
+        let select = ClusterSelectBuffers { skinned, ..self.paging.select.clone() };
         self.paging = Paging::new(gpu, (&self.mesh, &self.crowd), (select, &self.active), pages)?;
         Ok(())
     }

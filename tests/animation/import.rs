@@ -1,6 +1,6 @@
 //! Valid glTF documents of many kinds.
 
-use relievo::asset::clip::{Interpolation, Part};
+use relievo::asset::clip::{Interpolation, TransformPart};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::Affine;
 use relievo::asset::{Model, Transform};
@@ -107,8 +107,8 @@ fn interpolations_names_and_durations() {
     let [hop, unnamed] = &model.clips[..] else { panic!("two clips") };
     assert_eq!((hop.name(), hop.duration()), ("hop", 9.0));
     assert_eq!((unnamed.name(), unnamed.duration()), ("animation_1", 2.0));
-    assert_eq!(hop.track(0, Part::Translation).interpolation, Interpolation::Step);
-    assert_eq!(unnamed.track(1, Part::Scale).interpolation, Interpolation::CubicSpline);
+    assert_eq!(hop.track(0, TransformPart::Translation).interpolation, Interpolation::Step);
+    assert_eq!(unnamed.track(1, TransformPart::Scale).interpolation, Interpolation::CubicSpline);
     assert_eq!(place(&pose(&model, 0, 1.9)[0]), [0.0; 3]);
     assert_eq!(place(&pose(&model, 0, 2.0)[0]), [4.0, 0.0, 0.0]);
     assert_eq!(model.clip("hop").expect("by name").duration(), 9.0);

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use glam::{DAffine3, DVec3};
-use relievo::asset::clip::{Clip, Interpolation, Part};
+use relievo::asset::clip::{Clip, Interpolation, TransformPart};
 use relievo::asset::{Model, Transform};
 use relievo::ops::skinning::collapse::{CollapseOptions, Collapsed, KeptBones, collapse_bones};
 
@@ -82,7 +82,8 @@ fn kept_bones_are_where_they_were_at_key_times() {
                 assert_eq!((clip.name(), clip.duration()), (reduced.name(), reduced.duration()));
                 for (old, new) in kept(&model, &collapsed) {
                     let chain = chain(&model, &collapsed, old);
-                    let tracks = chain.iter().flat_map(|bone| Part::ALL.map(|part| clip.track(*bone, part)));
+                    let tracks =
+                        chain.iter().flat_map(|bone| TransformPart::ALL.map(|part| clip.track(*bone, part)));
                     let times = tracks.flat_map(|track| clip.times_of(track));
                     composed += usize::from(chain.len() > 1);
                     for time in times.map(|time| f64::from(*time)) {
@@ -247,10 +248,10 @@ fn below_bones_that_stand_still_keys_stay() {
         let collapsed = collapse_bones(&model, &options).expect("valid");
         let palm = kept(&model, &collapsed).into_iter().find(|(old, _)| *old == 8).expect("named").1;
         let clip = &collapsed.model.clips[0];
-        let track = clip.track(palm, Part::Rotation);
+        let track = clip.track(palm, TransformPart::Rotation);
         assert_eq!(track.interpolation, Interpolation::CubicSpline);
         assert_eq!(clip.times_of(track), [0.0, 0.2, 0.7]);
-        for part in [Part::Translation, Part::Scale] {
+        for part in [TransformPart::Translation, TransformPart::Scale] {
             assert_eq!(clip.track(palm, part).keys, 0);
         }
         for time in (0..=70).map(|at| f64::from(at) / 100.0) {

@@ -1,7 +1,7 @@
 //! Small characters made by these tests, and the places of their bones and vertices in double precision.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
-use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, Part};
+use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, TransformPart};
 use relievo::asset::skeleton::{Bone, Skeleton};
 use relievo::asset::{Influence, Influences, Mesh, Model, Skin, Transform};
 
@@ -239,11 +239,11 @@ pub fn posed(skeleton: &Skeleton, clip: &Clip, time: f64) -> Vec<DAffine3> {
 
 /// The transform of a bone in its parent's space at a time of a clip.
 pub fn local(clip: &Clip, bone: usize, time: f64) -> DAffine3 {
-    let [translation, rotation, scale] = Part::ALL.map(|part| value(clip, bone, part, time));
+    let [translation, rotation, scale] = TransformPart::ALL.map(|part| value(clip, bone, part, time));
     affine(translation.truncate(), DQuat::from_vec4(rotation), scale.truncate())
 }
 
-fn value(clip: &Clip, bone: usize, part: Part, time: f64) -> DVec4 {
+fn value(clip: &Clip, bone: usize, part: TransformPart, time: f64) -> DVec4 {
     let track = clip.track(bone, part);
     let times: Vec<f64> = clip.times_of(track).iter().map(|time| f64::from(*time)).collect();
     let stored = |at: usize| DVec4::from_array(clip.values()[track.first_value as usize + at].map(f64::from));
@@ -262,7 +262,7 @@ fn value(clip: &Clip, bone: usize, part: Part, time: f64) -> DVec4 {
             + to * (3.0 * t.powi(2) - 2.0 * t.powi(3))
             + arriving * (t.powi(3) - t.powi(2));
     }
-    if part != Part::Rotation {
+    if part != TransformPart::Rotation {
         return from.lerp(to, t);
     }
     let angle = from.normalize().dot(to.normalize()).abs().min(1.0).acos();

@@ -1,6 +1,6 @@
 //! Levels of detail of a model that is larger or smaller, or was bound in other units.
 
-use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, Part};
+use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys, TransformPart};
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::skeleton::{Bone, Skeleton};
 use relievo::asset::{MeshLevel, bone_radii};
@@ -100,14 +100,14 @@ fn rebuilt(model: &Model, translations: f32, above: Option<f32>) -> (Skeleton, V
 
 /// The keys of a bone, with translations scaled by `translations`.
 fn bone_keys(clip: &Clip, bone: usize, translations: f32) -> BoneKeys {
-    let [mut translation, rotation, scale] = Part::ALL.map(|part| keys(clip, bone, part));
+    let [mut translation, rotation, scale] = TransformPart::ALL.map(|part| keys(clip, bone, part));
     let values = translation.iter_mut().flat_map(|keys| keys.values.as_flattened_mut());
     values.for_each(|x| *x *= translations);
     BoneKeys { translation, rotation, scale }
 }
 
 /// The keys as they were given: a clip stores tangents multiplied by the seconds of their segment.
-fn keys(clip: &Clip, bone: usize, part: Part) -> Option<Keys> {
+fn keys(clip: &Clip, bone: usize, part: TransformPart) -> Option<Keys> {
     let track = clip.track(bone, part);
     let (times, interpolation) = (clip.times_of(track).to_vec(), track.interpolation);
     let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };

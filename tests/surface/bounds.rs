@@ -1,7 +1,7 @@
 //! The bounds that parity cases give each ray hold for other roundings than the reference's, and they are narrow.
 
 use relievo::ops::hash::threefry2x32;
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::{Address, HeightMap, March, ReliefMethod, ReliefRay};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::{Shape, random_map, random_rays};
@@ -96,7 +96,7 @@ fn rays_an_ulp_off_stay_within_bounds_and_steady_ones_make_the_same_loads() {
     for method in ReliefMethod::ALL {
         let (mut steady, mut others) = (0, 0);
         for Scene { map, march, rays, judged } in scenes(method) {
-            let surface = Surface::new(&map, method, march.address);
+            let surface = ReliefSurface::new(&map, method, march.address);
             for (index, (ray, judged)) in rays.iter().zip(&judged).enumerate() {
                 for turn in 0..4 {
                     let words = threefry2x32([turn, 7], [index as u32; 8], [0, 1, 2, 3, 4, 5, 6, 7]).0;

@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::{Address, HeightMap, March, Outcome, ReliefHit, ReliefMethod, ReliefRay};
 
 use crate::height;
@@ -91,7 +91,7 @@ proptest! {
     #[test]
     fn quadtree_and_cone_find_the_first_crossing((map, rays) in scenes(), address in address()) {
         for method in [ReliefMethod::Quadtree, ReliefMethod::Cone] {
-            let surface = Surface::new(&map, method, address);
+            let surface = ReliefSurface::new(&map, method, address);
             for ray in &rays {
                 let hit = surface.trace(method, ray, &march(address));
                 let first = is_first(&map, ray, &hit, address);
@@ -103,7 +103,7 @@ proptest! {
     /// Linear search may miss what is thinner than a step, but the hits that it returns lie on the surface.
     #[test]
     fn relief_ends_on_the_surface((map, rays) in scenes(), address in address()) {
-        let surface = Surface::new(&map, ReliefMethod::Relief, address);
+        let surface = ReliefSurface::new(&map, ReliefMethod::Relief, address);
         for ray in &rays {
             let hit = surface.trace(ReliefMethod::Relief, ray, &march(address));
             let over = 1.0 - f64::from(hit.parameter) - height(&map, ray, f64::from(hit.parameter), address);
@@ -116,11 +116,11 @@ proptest! {
 #[test]
 fn wider_cones_are_found_out() {
     let map = relievo_samples::BuiltInMap::Posts.height_map(64).expect("a map");
-    let mut surface = Surface::new(&map, ReliefMethod::Cone, Address::Wrap);
+    let mut surface = ReliefSurface::new(&map, ReliefMethod::Cone, Address::Wrap);
     let rays: Vec<ReliefRay> = (0..2000)
         .map(|i| ReliefRay::new([i as f32 * 0.017, i as f32 * 0.031], [0.6, 0.6, 0.53], 0.3, 1.0))
         .collect();
-    let lost = |surface: &Surface<'_>| {
+    let lost = |surface: &ReliefSurface<'_>| {
         let hit = |ray: &ReliefRay| surface.trace(ReliefMethod::Cone, ray, &march(Address::Wrap));
         rays.iter().filter(|ray| is_first(&map, ray, &hit(ray), Address::Wrap).is_err()).count()
     };
@@ -133,7 +133,7 @@ fn wider_cones_are_found_out() {
 fn rays_from_behind_miss() {
     let map = HeightMap::new(2, 2, vec![0.5; 4]).expect("a map");
     for method in ReliefMethod::ALL {
-        let surface = Surface::new(&map, method, Address::Wrap);
+        let surface = ReliefSurface::new(&map, method, Address::Wrap);
         for cosine in [0.0, -0.5, f32::NAN] {
             let ray = ReliefRay::new([0.3, 0.4], [0.1, 0.1, cosine], 0.1, 1.0);
             let hit = surface.trace(method, &ray, &March::default());
@@ -151,7 +151,7 @@ fn rays_along_an_axis_do_not_stall() {
         let u = (column as f32 + 0.5) / width as f32;
         for address in [Address::Wrap, Address::Clamp] {
             for method in [ReliefMethod::Quadtree, ReliefMethod::Cone] {
-                let surface = Surface::new(&map, method, address);
+                let surface = ReliefSurface::new(&map, method, address);
                 for (number, slope) in
                     [[0.0, 0.0], [-1.5e-17, -0.24], [0.0, 0.17]].into_iter().cycle().take(600).enumerate()
                 {
@@ -169,7 +169,7 @@ fn rays_along_an_axis_do_not_stall() {
 fn rays_of_nonsense_end() {
     let map = HeightMap::new(5, 3, vec![0.5; 15]).expect("a map");
     for method in ReliefMethod::ALL {
-        let surface = Surface::new(&map, method, Address::Wrap);
+        let surface = ReliefSurface::new(&map, method, Address::Wrap);
         for odd in [f32::NAN, f32::INFINITY, -1e30] {
             for (origin, slope) in [([odd, 0.5], [0.1, 0.1]), ([0.5, 0.5], [odd, 0.1])] {
                 let ray = ReliefRay { origin, slope, cosine: 1.0, polygon: 0.0 };

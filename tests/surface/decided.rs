@@ -1,6 +1,6 @@
 //! What is decided where thesis B contradicts itself on surface mapping (`docs/sources.md`).
 
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::{Address, HeightMap, March, ReliefMaterial, ReliefMethod, ReliefRay};
 
 /// Towards the eye: 3 across and 4 up.
@@ -18,7 +18,7 @@ fn flat(height: f32) -> HeightMap {
 /// How far a method moves u, in units of `SCALE` · V.x / V.z, where the polygon lies at height `plane`.
 fn shift(method: ReliefMethod, plane: f32, height: f32) -> f32 {
     let map = flat(height);
-    let surface = Surface::new(&map, method, Address::Wrap);
+    let surface = ReliefSurface::new(&map, method, Address::Wrap);
     let march = March { steps: [256, 256], binary_steps: 16, ..March::default() };
     let hit = surface.trace(method, &ReliefRay::new(UV, VIEW, SCALE, plane), &march);
     (hit.uv[0] - UV[0]) / (SCALE * VIEW[0] / VIEW[2])
@@ -60,7 +60,7 @@ fn linear_steps_grow_with_the_angle() {
     let map = flat(0.0);
     let march = March { steps: [8, 24], binary_steps: 0, ..March::default() };
     for method in [ReliefMethod::Relief, ReliefMethod::Occlusion] {
-        let surface = Surface::new(&map, method, Address::Wrap);
+        let surface = ReliefSurface::new(&map, method, Address::Wrap);
         let loads = |cosine: f32| {
             let view = [(1.0 - cosine * cosine).sqrt(), 0.0, cosine];
             surface.trace(method, &ReliefRay::new(UV, view, SCALE, 1.0), &march).samples

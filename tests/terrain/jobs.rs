@@ -12,7 +12,7 @@ use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::fixed::FeatureMode;
 use relievo::ops::terrain::height::{HeightJob, HeightPass, HeightScratch};
 use relievo::ops::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
-use relievo::ops::terrain::morph::{MorphBuffers, MorphPass};
+use relievo::ops::terrain::morph::{HeightMorphPass, MorphBuffers};
 use relievo::ops::terrain::normals::NormalsPass;
 use relievo::ops::terrain::pad::PadPass;
 use relievo::ops::terrain::texture::TerrainTexture;
@@ -212,7 +212,7 @@ fn border() {
 #[test]
 fn morph() {
     let gpu = gpu();
-    let pass = MorphPass::new(&gpu).expect("compiled");
+    let pass = HeightMorphPass::new(&gpu).expect("compiled");
     let prepare = |from, to, heights| {
         let [from, to, heights] = [from, to, heights].map(|len| buffer(&gpu, len));
         pass.prepare(&gpu, MorphBuffers { from: &from, to: &to, heights: &heights }).map(|_| ())

@@ -5,9 +5,9 @@ use relievo_testing as harness;
 use glam::Vec4;
 use relievo::gpu::Buffer;
 use relievo::ops::surface::relief::ReliefPass;
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::{HeightMap, March, ReliefHit, ReliefMethod, ReliefRay, SurfaceTextures};
-use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
+use relievo::ops::terrain::morph::{HeightMorphPass, Morph, MorphBuffers};
 use relievo_lab::cases::surface::bounds::{Judged, Source, judge};
 use relievo_lab::cases::surface::relief::hits;
 use relievo_lab::cases::surface::shade;
@@ -145,7 +145,7 @@ fn judged_shades() -> (HeightMap, March, ShadeView, Vec<ShadePoint>, Vec<JudgedS
     let map = random_map(9, [64, 64], Shape::Hills).expect("a map");
     let march = March { binary_steps: 16, ..March::default() };
     let view = ShadeView { softness: 1.0, ..perspective() };
-    let surface = Surface::new(&map, ReliefMethod::Quadtree, march.address);
+    let surface = ReliefSurface::new(&map, ReliefMethod::Quadtree, march.address);
     let points = random_points(9, 400, &surface, ReliefMethod::Quadtree, &march);
     let judged = shade::judged(&map, ReliefMethod::Quadtree, &march, &view, &points).expect("judged");
     (map, march, view, points, judged)
@@ -274,7 +274,7 @@ fn a_kernel_that_computes_something_else_fails() {
     let (from, to) = (from.expect("uploaded"), to.expect("uploaded"));
     let heights = Buffer::from_slice(&gpu, "heights", &[POISON as i32; 64]).expect("uploaded");
     let buffers = MorphBuffers { from: &from, to: &to, heights: &heights };
-    let job = MorphPass::new(&gpu).expect("compiled").prepare(&gpu, buffers).expect("prepared");
+    let job = HeightMorphPass::new(&gpu).expect("compiled").prepare(&gpu, buffers).expect("prepared");
     job.set(&gpu, Morph { time: 0.5 }).expect("set");
     gpu.run("test", |encoder| job.record(encoder)).expect("run");
     let actual = heights.read_blocking(&gpu).expect("read");

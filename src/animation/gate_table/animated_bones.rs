@@ -3,7 +3,7 @@
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::order::Order;
-use crate::asset::clip::{Clip, Interpolation, Part};
+use crate::asset::clip::{Clip, Interpolation, TransformPart};
 
 /// The bones that each clip of a set moves. [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` decide by this
 /// table, and every other gate table contains it.
@@ -104,14 +104,14 @@ pub(crate) fn bits_of(word: u32) -> impl Iterator<Item = usize> {
 
 /// Whether a clip changes the translation, rotation or scale of a bone.
 fn moves(clip: &Clip, bone: usize) -> bool {
-    Part::ALL.iter().any(|part| {
+    TransformPart::ALL.iter().any(|part| {
         let track = clip.track(bone, *part);
         let is_spline = track.interpolation == Interpolation::CubicSpline;
         let each = if is_spline { 3 } else { 1 };
         let keys = track.keys as usize;
         let values = &clip.values()[track.first_value as usize..][..each * keys];
         let same = |value: [f32; 4], other: [f32; 4]| {
-            value == other || *part == Part::Rotation && value == other.map(|component| -component)
+            value == other || *part == TransformPart::Rotation && value == other.map(|component| -component)
         };
         keys > 1
             && values.chunks_exact(each).enumerate().any(|(at, key)| {

@@ -4,7 +4,7 @@ use super::NOISE;
 use crate::InputError;
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample_bone;
-use crate::asset::clip::{Clip, Part};
+use crate::asset::clip::{Clip, TransformPart};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
@@ -75,7 +75,7 @@ impl Differences {
 
 /// The distinct times of a bone's keys.
 pub fn key_times(clip: &Clip, bone: usize) -> Vec<f32> {
-    let tracks = Part::ALL.map(|part| clip.times_of(clip.track(bone, part)));
+    let tracks = TransformPart::ALL.map(|part| clip.times_of(clip.track(bone, part)));
     let mut times = tracks.concat();
     times.sort_by(f32::total_cmp);
     times.dedup();

@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use super::{PIECE, RootMotion, SPLINE_PIECES, Taken, rigid::Rigid};
 use crate::InputError;
 use crate::animation::sample::reference::{rotation_at, sample_bone};
-use crate::asset::clip::{Clip, Interpolation, Keys, Part, Track};
+use crate::asset::clip::{Clip, Interpolation, Keys, Track, TransformPart};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
@@ -51,7 +51,7 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
     let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
     for ancestor in std::iter::successors(parent(bone as u32), |bone| parent(*bone)) {
         let ancestor = ancestor as usize;
-        if Part::ALL.iter().any(|part| moves(clip, clip.track(ancestor, *part))) {
+        if TransformPart::ALL.iter().any(|part| moves(clip, clip.track(ancestor, *part))) {
             let bound = format!("must not move: it is above bone {bone}, whose motion is taken");
             return Err(InputError::new(
                 format!("clip.bones[{ancestor}]"),
@@ -106,7 +106,7 @@ fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Tak
     let (horizontal, vertical) = (part(taken.horizontal), part(taken.vertical));
     let into_model = DMat3::from_diagonal(DVec3::new(horizontal, vertical, horizontal)) * *above;
     let into_parent = above.inverse() * into_model;
-    let keys = clip.stored_keys(clip.track(bone, Part::Translation));
+    let keys = clip.stored_keys(clip.track(bone, TransformPart::Translation));
     let is_spline = keys.interpolation == Interpolation::CubicSpline;
     let (mut path, mut rest) = (keys.clone(), keys.clone());
     for (at, [x, y, z, _]) in keys.values.into_iter().enumerate() {
@@ -138,7 +138,7 @@ fn split_turn(
         return Err(wrong_scale(skeleton, clip, bone, bound));
     }
     let up = (matrix.inverse() * DVec3::Y).normalize();
-    let samples = samples(&clip.stored_keys(clip.track(bone, Part::Rotation)));
+    let samples = samples(&clip.stored_keys(clip.track(bone, TransformPart::Rotation)));
     if samples.is_empty() {
         return Ok(None);
     }

@@ -1,6 +1,6 @@
 //! Copies of clips with replaced keys in some tracks.
 
-use super::{Clip, Keys, Layout, Part, Track};
+use super::{Clip, Keys, Layout, Track, TransformPart};
 use crate::InputError;
 
 impl Clip {
@@ -25,7 +25,7 @@ impl Clip {
         rotation: Option<Keys>,
     ) -> Result<Self, InputError> {
         let rotation = rotation.map(|keys| keys.stored("rotation", true)).transpose()?;
-        let mut changed = [(Part::Translation, translation), (Part::Rotation, rotation)];
+        let mut changed = [(TransformPart::Translation, translation), (TransformPart::Rotation, rotation)];
         let tracks = self.tracks.iter().enumerate().map(|(index, track)| {
             let change = changed.iter_mut().find(|(part, _)| index == 3 * bone + *part as usize);
             let change = change.and_then(|(_, keys)| keys.take());

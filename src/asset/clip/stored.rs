@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Clip, LONGEST, Part, Track, check_times};
+use super::{Clip, LONGEST, Track, TransformPart, check_times};
 use crate::InputError;
 use crate::asset::transform::{finite, unit};
 
@@ -24,7 +24,7 @@ impl TryFrom<StoredClip> for Clip {
     /// that are not finite, and rotations without a direction.
     fn try_from(stored: StoredClip) -> Result<Self, InputError> {
         let StoredClip { name, duration, tracks, times, values } = stored;
-        if !tracks.len().is_multiple_of(Part::ALL.len()) {
+        if !tracks.len().is_multiple_of(TransformPart::ALL.len()) {
             return Err(InputError::new("clip.tracks.len", tracks.len(), "must be three a bone"));
         }
         // Shaders compute byte offsets of values in u32.
@@ -60,7 +60,7 @@ fn check_track(at: usize, track: &Track, times: &[f32], values: &[[f32; 4]]) -> 
     let each = track.interpolation.values_a_key();
     let own_times = of_track(track.first_time, keys, times.len(), "times")?;
     let own_values = of_track(track.first_value, each * keys.max(1), values.len(), "values")?;
-    if at % Part::ALL.len() == Part::Rotation as usize {
+    if at % TransformPart::ALL.len() == TransformPart::Rotation as usize {
         for (key, value) in values[own_values].iter().enumerate().filter(|(key, _)| each == 1 || key % 3 == 1)
         {
             unit(&format!("clip.tracks[{at}].values[{key}]"), *value)?;

@@ -7,7 +7,7 @@ use super::compose::{is_constant, signs, signs_in};
 use super::rest::{Follower, Rest, bind};
 use super::{CollapseOptions, looked_at};
 use crate::InputError;
-use crate::asset::clip::{Clip, Part};
+use crate::asset::clip::{Clip, TransformPart};
 use crate::asset::transform::column_major;
 use crate::asset::{Model, Skeleton};
 use crate::skinning::pose::{Moment, bones_at};
@@ -216,7 +216,7 @@ fn stays(model: &Model, options: &CollapseOptions) -> Result<Vec<bool>, InputErr
     let bones = model.skeleton.bones();
     let mut stays: Vec<bool> = bones.iter().map(|bone| bone.parent.is_none()).collect();
     let moves = |bone: usize| {
-        let tracks = |clip: &Clip| Part::ALL.iter().any(|part| !is_constant(clip, bone, *part));
+        let tracks = |clip: &Clip| TransformPart::ALL.iter().any(|part| !is_constant(clip, bone, *part));
         model.clips.iter().any(tracks)
     };
     let mut is_moved = vec![false; bones.len()];

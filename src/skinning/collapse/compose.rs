@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::asset::clip::{Clip, Interpolation, Part};
+use crate::asset::clip::{Clip, Interpolation, TransformPart};
 use crate::asset::{Skeleton, Transform};
 
 /// Tolerance for uniform scale: the largest difference between the scales along the axes, as a fraction of the largest.
@@ -71,11 +71,16 @@ pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3>
 
 /// The signs of a bone's scales in a clip, also between its keys; `None` if the scales are not uniform.
 pub(super) fn signs_in(clip: &Clip, bone: usize) -> Option<DVec3> {
-    signs(clip.stored_keys(clip.track(bone, Part::Scale)).values.into_iter().map(|[x, y, z, _]| [x, y, z]))
+    signs(
+        clip.stored_keys(clip.track(bone, TransformPart::Scale))
+            .values
+            .into_iter()
+            .map(|[x, y, z, _]| [x, y, z]),
+    )
 }
 
 /// Whether a bone's translation, rotation or scale is constant in a clip.
-pub(super) fn is_constant(clip: &Clip, bone: usize, part: Part) -> bool {
+pub(super) fn is_constant(clip: &Clip, bone: usize, part: TransformPart) -> bool {
     let keys = clip.stored_keys(clip.track(bone, part));
     let is_spline = keys.interpolation == Interpolation::CubicSpline && !keys.times.is_empty();
     let first = keys.values[usize::from(is_spline)];

@@ -8,7 +8,7 @@ use super::compose::{Composed, is_constant, signs_in};
 use super::rest::Rest;
 use crate::InputError;
 use crate::animation::sample::reference::{sample_parts, slerp};
-use crate::asset::clip::{Clip, Interpolation, Keys, Part};
+use crate::asset::clip::{Clip, Interpolation, Keys, TransformPart};
 use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::finite;
 use crate::asset::{Model, Skeleton, Transform};
@@ -38,12 +38,15 @@ pub(super) fn clip(
     for (bone, reduced) in remap.kept().zip(skeleton.bones()) {
         let chain = remap.chain(bone);
         if chain.len() == 1 {
-            tracks.extend(Part::ALL.map(|part| clip.stored_keys(clip.track(bone, part))));
+            tracks.extend(TransformPart::ALL.map(|part| clip.stored_keys(clip.track(bone, part))));
             continue;
         }
         let composed = Chain::new(model, clip, &chain, rest).tracks()?;
         tracks.extend(
-            Part::ALL.into_iter().zip(composed).map(|(part, keys)| settled(keys, part, &reduced.rest)),
+            TransformPart::ALL
+                .into_iter()
+                .zip(composed)
+                .map(|(part, keys)| settled(keys, part, &reduced.rest)),
         );
     }
     Clip::of_stored(clip.name(), clip.duration(), tracks)
@@ -51,7 +54,7 @@ pub(super) fn clip(
 
 /// Adds a key to a track without keys if its constant value differs from the rest transform, because a track without
 /// keys means the rest transform.
-fn settled(mut keys: Keys, part: Part, rest: &Transform) -> Keys {
+fn settled(mut keys: Keys, part: TransformPart, rest: &Transform) -> Keys {
     if keys.times.is_empty() {
         let rest = value(rest, part);
         let length = rest.iter().fold(0.0_f32, |largest, value| largest.max(value.abs()));
@@ -102,7 +105,7 @@ impl<'a> Chain<'a> {
     fn tracks(&self) -> Result<[Keys; 3], InputError> {
         let is_rigid = self.moving(self.collapsed.iter().map(|(bone, _)| *bone)).is_empty();
         let [translation, mut rotation, scale] =
-            if is_rigid { Part::ALL.map(|part| self.mapped(part)) } else { self.sampled() };
+            if is_rigid { TransformPart::ALL.map(|part| self.mapped(part)) } else { self.sampled() };
         if rotation.interpolation != Interpolation::CubicSpline {
             rotation = rotation.stored("rotation", true)?;
         }
@@ -113,7 +116,7 @@ impl<'a> Chain<'a> {
 
     /// The keys of those tracks of these bones that are not constant.
     fn moving(&self, bones: impl Iterator<Item = usize>) -> Vec<Keys> {
-        let tracks = bones.flat_map(|bone| Part::ALL.map(|part| (bone, part)));
+        let tracks = bones.flat_map(|bone| TransformPart::ALL.map(|part| (bone, part)));
         let moving = tracks.filter(|(bone, part)| !is_constant(self.clip, *bone, *part));
         moving.map(|(bone, part)| self.clip.stored_keys(self.clip.track(bone, part))).collect()
     }
@@ -132,7 +135,7 @@ impl<'a> Chain<'a> {
 
     /// The bone's own keys, mapped through collapsed bones that do not move. This is exact, because the map is linear
     /// in the values.
-    fn mapped(&self, part: Part) -> Keys {
+    fn mapped(&self, part: TransformPart) -> Keys {
         let above = self.above(0.0, Side::After);
         let mut keys = self.clip.stored_keys(self.clip.track(self.bone, part));
         let is_spline = keys.interpolation == Interpolation::CubicSpline;
@@ -141,10 +144,10 @@ impl<'a> Chain<'a> {
             let [x, y, z, w] = value.map(f64::from);
             let vector = DVec3::new(x, y, z);
             *value = match part {
-                Part::Translation if is_tangent => above.vector(vector).extend(0.0),
-                Part::Translation => above.point(vector).extend(0.0),
-                Part::Rotation => above.turned(DQuat::from_xyzw(x, y, z, w)).into(),
-                Part::Scale => (above.scale * vector).extend(0.0),
+                TransformPart::Translation if is_tangent => above.vector(vector).extend(0.0),
+                TransformPart::Translation => above.point(vector).extend(0.0),
+                TransformPart::Rotation => above.turned(DQuat::from_xyzw(x, y, z, w)).into(),
+                TransformPart::Scale => (above.scale * vector).extend(0.0),
             }
             .as_vec4()
             .to_array();
@@ -171,7 +174,7 @@ impl<'a> Chain<'a> {
             poses.push(after);
         }
         let interpolation = if is_step { Interpolation::Step } else { Interpolation::Linear };
-        Part::ALL.map(|part| keys(&poses, part, interpolation))
+        TransformPart::ALL.map(|part| keys(&poses, part, interpolation))
     }
 
     /// Adds keys between two keys if linear interpolation is too far off.
@@ -181,7 +184,7 @@ impl<'a> Chain<'a> {
         let middle = at(0.5);
         let is_off = |fraction: f32| {
             let pose = self.at(at(fraction), Side::After);
-            Part::ALL.into_iter().zip(self.levers).any(|(part, lever)| {
+            TransformPart::ALL.into_iter().zip(self.levers).any(|(part, lever)| {
                 let straight = between(part, value(&start, part), value(&end, part), fraction);
                 lever * distance(part, straight, value(&pose, part)) > self.tolerance
             })
@@ -197,7 +200,7 @@ impl<'a> Chain<'a> {
 }
 
 /// The keys of one part of poses; none if the part is the same in all poses.
-fn keys(poses: &[(f32, Transform)], part: Part, interpolation: Interpolation) -> Keys {
+fn keys(poses: &[(f32, Transform)], part: TransformPart, interpolation: Interpolation) -> Keys {
     let (times, values): (Vec<f32>, Vec<[f32; 4]>) =
         poses.iter().map(|(time, pose)| (*time, value(pose, part))).unzip();
     if values.windows(2).all(|pair| pair[0] == pair[1]) {
@@ -207,12 +210,12 @@ fn keys(poses: &[(f32, Transform)], part: Part, interpolation: Interpolation) ->
 }
 
 /// The value of a part as tracks store it.
-fn value(transform: &Transform, part: Part) -> [f32; 4] {
+fn value(transform: &Transform, part: TransformPart) -> [f32; 4] {
     let vector = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
     match part {
-        Part::Translation => vector(transform.translation),
-        Part::Rotation => transform.rotation,
-        Part::Scale => vector(transform.scale),
+        TransformPart::Translation => vector(transform.translation),
+        TransformPart::Rotation => transform.rotation,
+        TransformPart::Scale => vector(transform.scale),
     }
 }
 
@@ -240,8 +243,8 @@ fn cursor_before(times: &[f32], interpolation: Interpolation, time: f32) -> Keyf
     KeyframeCursor { key: key as u32, fraction: 0.0 }
 }
 
-fn between(part: Part, start: [f32; 4], end: [f32; 4], fraction: f32) -> [f32; 4] {
-    if part != Part::Rotation {
+fn between(part: TransformPart, start: [f32; 4], end: [f32; 4], fraction: f32) -> [f32; 4] {
+    if part != TransformPart::Rotation {
         return std::array::from_fn(|i| start[i] + (end[i] - start[i]) * fraction);
     }
     let dot: f32 = start.iter().zip(end).map(|(a, b)| a * b).sum();
@@ -250,15 +253,15 @@ fn between(part: Part, start: [f32; 4], end: [f32; 4], fraction: f32) -> [f32; 4
 
 /// The distance between two values of a part: Euclidean for translation, in radians for rotation, the largest component
 /// difference for scale.
-fn distance(part: Part, a: [f32; 4], b: [f32; 4]) -> f64 {
+fn distance(part: TransformPart, a: [f32; 4], b: [f32; 4]) -> f64 {
     let [a, b] = [a, b].map(|value| glam::DVec4::from_array(value.map(f64::from)));
     match part {
-        Part::Translation => a.distance(b),
+        TransformPart::Translation => a.distance(b),
         // The angle follows from the chord between a and the nearer of ±b.
-        Part::Rotation => {
+        TransformPart::Rotation => {
             let (near, far) = (a.distance(b).min((a + b).length()), a.distance(b).max((a + b).length()));
             4.0 * near.atan2(far)
         }
-        Part::Scale => (a - b).abs().max_element(),
+        TransformPart::Scale => (a - b).abs().max_element(),
     }
 }

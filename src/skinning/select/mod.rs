@@ -15,4 +15,4 @@ mod state;
 pub use state::ClusterState;
 
 #[cfg(feature = "gpu")]
-pub use pass::{SKINNED_WORDS, SelectBuffers, SelectPass};
+pub use pass::{ClusterSelectBuffers, ClusterSelectPass, SKINNED_WORDS};

@@ -8,7 +8,7 @@ use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, Sk
 
 /// The inputs of a selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
-pub struct SelectBuffers {
+pub struct ClusterSelectBuffers {
     /// The bones of each instance that were updated since the last selection, in [`MeshBuffers::mask_words`] words per
     /// instance: one bit per slot of the skeleton's order.
     ///
@@ -24,10 +24,10 @@ pub struct SelectBuffers {
     pub skinned: Buffer<u32>,
 }
 
-/// Words per instance in [`SelectBuffers::skinned`], before its weights.
+/// Words per instance in [`ClusterSelectBuffers::skinned`], before its weights.
 pub const SKINNED_WORDS: usize = select::SKINNED_WORDS as usize;
 
-impl SelectBuffers {
+impl ClusterSelectBuffers {
     /// Allocates the buffers for a crowd, with no updated bone.
     ///
     /// # Errors
@@ -42,13 +42,13 @@ impl SelectBuffers {
 
 /// Selects the clusters to skin.
 #[derive(Debug, Clone)]
-pub struct SelectPass {
+pub struct ClusterSelectPass {
     select: Kernel,
     finish: Kernel,
     finish_and_clear: Kernel,
 }
 
-impl SelectPass {
+impl ClusterSelectPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl SelectPass {
         gpu: &Gpu,
         mesh: &MeshBuffers,
         crowd: &SkinnedCrowd,
-        buffers: &SelectBuffers,
+        buffers: &ClusterSelectBuffers,
         active: &ActiveClusters,
     ) -> Result<[Job; 2], Error> {
         let pairs = crowd.instances * mesh.clusters();

@@ -21,7 +21,7 @@ pub struct Skinned {
     /// Its LOD in that frame.
     pub instance_lod: InstanceLod,
     /// Visibility: the number of frames for which it has been visible, at most 2; see
-    /// [`SelectBuffers::skinned`](crate::skinning::select::SelectBuffers::skinned).
+    /// [`ClusterSelectBuffers::skinned`](crate::skinning::select::ClusterSelectBuffers::skinned).
     pub seen: u32,
     /// Its weights in that frame.
     pub weights: Vec<f32>,

@@ -1,6 +1,6 @@
 //! Blends over time of whole batches of fields, part by part.
 
-use super::{Morph, MorphBuffers, MorphJob, MorphPass};
+use super::{HeightMorphPass, Morph, MorphBuffers, MorphJob};
 use crate::gpu::{Gpu, Upload};
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
@@ -22,7 +22,7 @@ impl MorphedFields {
     /// [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, from: &[Fields], to: &[Fields]) -> Result<Self, Error> {
         InputError::check_same("to.len", to.len(), from.len(), "as from.len")?;
-        let pass = MorphPass::new(gpu)?;
+        let pass = HeightMorphPass::new(gpu)?;
         let (mut fields, mut jobs) = (Vec::new(), Vec::new());
         for (part, (from, to)) in from.iter().zip(to).enumerate() {
             let sizes = [("width", from.width, to.width), ("count", from.count, to.count)];

@@ -12,7 +12,7 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use batch::MorphedFields;
 #[cfg(feature = "gpu")]
-pub use pass::{MorphBuffers, MorphJob, MorphPass};
+pub use pass::{HeightMorphPass, MorphBuffers, MorphJob};
 
 /// A blend of two fields at one time: `from + ⌊(to − from)·time⌋`, in integers. It is exact at both ends, and every device
 /// computes the same bits in between.

@@ -19,11 +19,11 @@ pub struct MorphBuffers<'a> {
 
 /// Blends two height fields.
 #[derive(Debug, Clone)]
-pub struct MorphPass {
+pub struct HeightMorphPass {
     kernel: Kernel,
 }
 
-impl MorphPass {
+impl HeightMorphPass {
     /// Compiles the pipeline.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //! `wgsl/surface/shade.wgsl`.
 
 use rayon::prelude::*;
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::relief::{LEAST_COSINE, March, ReliefHit, ReliefMethod, ReliefRay};
 
 use crate::shade::shadow::{light_ray, shaded, soft_shadow};
@@ -40,7 +40,7 @@ pub(crate) fn depth(
 
 /// Shades a point. Hard shadows trace the light's ray with `method`.
 pub fn shade(
-    surface: &Surface<'_>,
+    surface: &ReliefSurface<'_>,
     method: ReliefMethod,
     march: &March,
     view: &ShadeView,
@@ -59,7 +59,7 @@ pub fn shade(
 
 /// As [`shade`], for a list of points, on all threads.
 pub fn shade_all(
-    surface: &Surface<'_>,
+    surface: &ReliefSurface<'_>,
     method: ReliefMethod,
     march: &March,
     view: &ShadeView,

@@ -67,7 +67,7 @@ fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo::asset::clip::Part as TrackPart;
+    use relievo::asset::clip::TransformPart as TrackPart;
     use relievo::asset::keyframe::RotationPath;
     use relievo::asset::transform::Affine;
     use relievo::ops::animation::local_to_model::reference::local_to_model;

@@ -4,7 +4,7 @@ use crate::animation::clip_set::{ClipSet, SetTrack};
 use crate::animation::instance::Instance;
 use crate::animation::layers::{AnimationLayer, all_instances};
 use crate::animation::sample::{SLERP_U, SLERP_V};
-use crate::asset::clip::{Clip, Interpolation, Part};
+use crate::asset::clip::{Clip, Interpolation, TransformPart};
 use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::Transform;
 use crate::shared::animation::sample::VANISHING;
@@ -28,15 +28,19 @@ pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> T
 pub(crate) type Found<'a> = (&'a [[f32; 4]], Interpolation, KeyframeCursor);
 
 /// Samples the three tracks of a bone into a transform.
-pub(crate) fn sample_parts<'a>(track: impl Fn(Part) -> Found<'a>, path: RotationPath) -> Transform {
+pub(crate) fn sample_parts<'a>(track: impl Fn(TransformPart) -> Found<'a>, path: RotationPath) -> Transform {
     let vector = |part| {
         let (values, interpolation, cursor) = track(part);
         let [x, y, z, _] = vector_at(values, interpolation, cursor);
         [x, y, z]
     };
-    let (values, interpolation, cursor) = track(Part::Rotation);
+    let (values, interpolation, cursor) = track(TransformPart::Rotation);
     let rotation = rotation_at(values, interpolation, cursor, path);
-    Transform { translation: vector(Part::Translation), rotation, scale: vector(Part::Scale) }
+    Transform {
+        translation: vector(TransformPart::Translation),
+        rotation,
+        scale: vector(TransformPart::Scale),
+    }
 }
 
 pub(crate) fn vector_at(

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::binary::Binary;
-use crate::asset::clip::{Clip, Interpolation, Keys, Part};
+use crate::asset::clip::{Clip, Interpolation, Keys, TransformPart};
 use crate::asset::{Mesh, Model};
 
 /// Animations of a model's clips, except clips without keys. `weighted` lists the nodes whose meshes have keys of weights, each
@@ -13,7 +13,7 @@ pub(super) fn clips(model: &Model, weighted: &[(usize, usize)], binary: &mut Bin
     for (index, clip) in model.clips.iter().enumerate() {
         let mut animation = Animation { samplers: Vec::new(), channels: Vec::new(), binary };
         for bone in 0..clip.bones() {
-            for part in Part::ALL {
+            for part in TransformPart::ALL {
                 animation.add_track(clip, bone, part);
             }
         }
@@ -35,7 +35,7 @@ struct Animation<'a> {
 }
 
 impl Animation<'_> {
-    fn add_track(&mut self, clip: &Clip, bone: usize, part: Part) {
+    fn add_track(&mut self, clip: &Clip, bone: usize, part: TransformPart) {
         let track = clip.track(bone, part);
         let Keys { times, mut values, interpolation } = clip.stored_keys(track);
         if times.is_empty() {
@@ -46,9 +46,9 @@ impl Animation<'_> {
         }
         let three = || values.iter().map(|[x, y, z, _]| [*x, *y, *z]).collect::<Vec<_>>();
         let (path, output) = match part {
-            Part::Translation => ("translation", self.binary.floats(&three(), false)),
-            Part::Rotation => ("rotation", self.binary.floats(&values, false)),
-            Part::Scale => ("scale", self.binary.floats(&three(), false)),
+            TransformPart::Translation => ("translation", self.binary.floats(&three(), false)),
+            TransformPart::Rotation => ("rotation", self.binary.floats(&values, false)),
+            TransformPart::Scale => ("scale", self.binary.floats(&three(), false)),
         };
         self.add(&times, output, interpolation, bone, path);
     }

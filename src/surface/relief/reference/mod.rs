@@ -20,7 +20,7 @@ use crate::surface::relief::{March, Outcome, ReliefHit, ReliefMethod, ReliefRay}
 
 /// A height map with a method's acceleration map.
 #[derive(Debug, Clone)]
-pub struct Surface<'a> {
+pub struct ReliefSurface<'a> {
     /// The heights.
     pub map: &'a HeightMap,
     /// Address mode in which the map is traced, and for which its acceleration maps were computed.
@@ -31,7 +31,7 @@ pub struct Surface<'a> {
     pub cones: Vec<[f32; 2]>,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> ReliefSurface<'a> {
     /// Computes the acceleration maps that `method` needs.
     pub fn new(map: &'a HeightMap, method: ReliefMethod, address: Address) -> Self {
         let pyramid = match method {
@@ -59,7 +59,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// As [`Surface::trace`], for a list of rays, on all threads.
+    /// As [`ReliefSurface::trace`], for a list of rays, on all threads.
     pub fn trace_all(&self, method: ReliefMethod, rays: &[ReliefRay], march: &March) -> Vec<ReliefHit> {
         rays.par_iter().map(|ray| self.trace(method, ray, march)).collect()
     }

@@ -6,7 +6,7 @@ use relievo::ops::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd}
 use relievo::ops::skinning::clusters::{CLUSTER, Clusters};
 use relievo::ops::skinning::instance_lod::InstanceLod;
 use relievo::ops::skinning::select::reference::{Now, Skinned, remember, select, select_keeping};
-use relievo::ops::skinning::select::{ClusterState, SKINNED_WORDS, SelectBuffers, SelectPass};
+use relievo::ops::skinning::select::{ClusterSelectBuffers, ClusterSelectPass, ClusterState, SKINNED_WORDS};
 use relievo::ops::skinning::vertex::Blend;
 use relievo::{Error, InputError};
 
@@ -86,13 +86,13 @@ impl Frame {
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = SelectPass::new(gpu)?;
+    let pass = ClusterSelectPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {
         let model = model(case, shape)?;
         let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
         let instances = 1 + 29 * (case as usize % 3);
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
-        let mut buffers = SelectBuffers::new(gpu, &mesh, &crowd)?;
+        let mut buffers = ClusterSelectBuffers::new(gpu, &mesh, &crowd)?;
         let words = instances * (SKINNED_WORDS + shape.targets);
         let remembered = Poisoned::<u32>::new(gpu, words)?;
         remembered.buffer.write(gpu, &vec![0; words])?;
@@ -134,14 +134,14 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 /// The same frames where last positions are kept: what moved is selected once more, and every state is compared.
 async fn keeping_cases(
     cases: &mut Cases<'_>,
-    pass: &SelectPass,
+    pass: &ClusterSelectPass,
     case: u32,
     (mesh, clusters): (&MeshBuffers, &Clusters),
     crowd: &SkinnedCrowd,
 ) -> Result<(), Error> {
     let (gpu, instances) = (cases.gpu, crowd.instances);
     let count = clusters.len() * instances;
-    let buffers = SelectBuffers::new(gpu, mesh, crowd)?;
+    let buffers = ClusterSelectBuffers::new(gpu, mesh, crowd)?;
     let mut active = ActiveClusters::keeping(gpu, mesh, crowd)?;
     let output = Poisoned::<u32>::new(gpu, 2 * count)?;
     active.pairs = output.buffer.clone();
@@ -220,10 +220,10 @@ fn model(case: u32, shape: Shape) -> Result<Model, InputError> {
 /// What the device reports.
 pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
-    let pass = SelectPass::new(gpu)?;
+    let pass = ClusterSelectPass::new(gpu)?;
     for (instances, seen) in CROWDS.map(|count| (count, 1)).into_iter().chain([(CROWDS[2], 4)]) {
         let scene = Scene::new(gpu, 4, 0, instances)?;
-        let buffers = SelectBuffers::new(gpu, &scene.mesh, &scene.crowd)?;
+        let buffers = ClusterSelectBuffers::new(gpu, &scene.mesh, &scene.crowd)?;
         let active = ActiveClusters::new(gpu, &scene.mesh, &scene.crowd)?;
         let updated_bones = vec![0x0101_0101; instances * scene.mesh.mask_words];
         buffers.updated_bones.write(gpu, &updated_bones)?;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use relievo::InputError;
 use relievo::ops::surface::cone_map::RADIUS_BOUND;
 use relievo::ops::surface::map::{Address, HeightMap};
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::relief::{March, Outcome, ReliefHit, ReliefMethod, ReliefRay};
 
 /// A unit in the last place of 1: sums and products in WGSL are within this relative distance of the exact
@@ -63,7 +63,7 @@ pub fn judge(
     rays: &[ReliefRay],
     source: Source,
 ) -> Result<Vec<Judged>, InputError> {
-    let surface = Surface::new(map, method, march.address);
+    let surface = ReliefSurface::new(map, method, march.address);
     let steepness = steepness(map, march.address);
     // Rays with about the same position error share their raised and lowered maps.
     let mut classes: BTreeMap<i32, Vec<usize>> = BTreeMap::new();
@@ -84,7 +84,7 @@ pub fn judge(
             march,
             source,
             crossing,
-            ends: [&raised, &lowered].map(|map| Surface::new(map, crossing, march.address)),
+            ends: [&raised, &lowered].map(|map| ReliefSurface::new(map, crossing, march.address)),
         };
         let found: Vec<Judged> = indices.par_iter().map(|index| judge.ray(&rays[*index])).collect();
         indices.into_iter().zip(found).for_each(|(index, found)| judged[index] = Some(found));
@@ -179,13 +179,13 @@ pub(crate) fn off(steepness: f64, position: f64) -> f64 {
 
 /// The data that one class of rays shares.
 struct Judge<'a> {
-    surface: &'a Surface<'a>,
+    surface: &'a ReliefSurface<'a>,
     method: ReliefMethod,
     march: &'a March,
     source: Source,
     /// The method that finds the crossing on the raised and lowered maps.
     crossing: ReliefMethod,
-    ends: [Surface<'a>; 2],
+    ends: [ReliefSurface<'a>; 2],
 }
 
 impl Judge<'_> {

@@ -10,7 +10,7 @@ use relievo::ops::surface::color::ColorTexture;
 use relievo::ops::surface::map::{Address, HeightMap};
 use relievo::ops::surface::mesh::SurfaceMesh;
 use relievo::ops::surface::mips::Mips;
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
 use relievo::ops::surface::relief::{March, ReliefHit, ReliefMethod, ReliefPass, ReliefRay};
 use relievo::ops::surface::{ReliefMaps, ReliefMaterial, ReliefOptions};
@@ -150,7 +150,7 @@ fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
     let (rays, march) = (rays(EDGE, towards()), March::default());
     for method in ReliefMethod::ALL {
         let drawing = Drawing::new(gpu, &target, (map, &albedo), method)?;
-        let surface = Surface::new(map, method, Address::Wrap);
+        let surface = ReliefSurface::new(map, method, Address::Wrap);
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| drawing.record(encoder, &target)),
             Contender::recorded(Backend::Limit, |encoder| plain.record(encoder, &target)),
@@ -174,7 +174,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: ReliefMethod) -> Resul
     let gpu = bench.gpu;
     let rays = rays(EDGE, towards());
     let march = March::default();
-    let surface = Surface::new(map, method, Address::Wrap);
+    let surface = ReliefSurface::new(map, method, Address::Wrap);
     let samples: u64 =
         (surface.trace_all(method, &rays, &march).iter()).map(|hit| u64::from(hit.samples)).sum();
     let mean = samples as f64 / rays.len() as f64;

@@ -9,7 +9,7 @@ use glam::{Mat4, Vec3, Vec4, camera};
 use relievo::gpu::Buffer;
 use relievo::ops::surface::ReliefMaterial;
 use relievo::ops::surface::map::{Address, HeightMap};
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::relief::reference::height::BILINEAR;
 use relievo::ops::surface::relief::textures::SurfaceTextures;
 use relievo::ops::surface::relief::{March, ReliefMethod, ReliefRay};
@@ -55,7 +55,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 let march = March { address, steps: [8, 32], binary_steps: 16 };
                 let view =
                     ShadeView { shadow_steps: 1 + 12 * case, softness: 0.1 * (1 << case) as f32, ..camera };
-                let points = random_points(case, count, &Surface::new(&map, method, address), method, &march);
+                let points =
+                    random_points(case, count, &ReliefSurface::new(&map, method, address), method, &march);
                 let textures = SurfaceTextures::new(gpu, &map, method, address)?;
                 let input = Buffer::from_slice(gpu, "points", &points)?;
                 let output = Poisoned::new(gpu, points.len())?;
@@ -98,7 +99,7 @@ pub(crate) fn parallel() -> ShadeView {
 pub fn random_points(
     case: u32,
     count: usize,
-    surface: &Surface<'_>,
+    surface: &ReliefSurface<'_>,
     method: ReliefMethod,
     march: &March,
 ) -> Vec<ShadePoint> {
@@ -156,7 +157,7 @@ pub fn judged(
     view: &ShadeView,
     points: &[ShadePoint],
 ) -> Result<Vec<JudgedShade>, InputError> {
-    let surface = Surface::new(map, method, march.address);
+    let surface = ReliefSurface::new(map, method, march.address);
     let shades = shade_all(&surface, method, march, view, points);
     let rays: Vec<ReliefRay> =
         points.iter().map(|point| light_ray(&point.hit, point.light, point.scale)).collect();
@@ -245,7 +246,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let map = BuiltInMap::Cobbles.height_map(512)?;
     let (march, view) = (March::default(), crate::shade::from_above());
     for method in [ReliefMethod::Quadtree, ReliefMethod::Relief] {
-        let surface = Surface::new(&map, method, Address::Wrap);
+        let surface = ReliefSurface::new(&map, method, Address::Wrap);
         let points = points(&surface, method, &march);
         let hard: u64 = points
             .iter()
@@ -274,7 +275,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 }
 
 /// One point per texel.
-fn points(surface: &Surface<'_>, method: ReliefMethod, march: &March) -> Vec<ShadePoint> {
+fn points(surface: &ReliefSurface<'_>, method: ReliefMethod, march: &March) -> Vec<ShadePoint> {
     let material = ReliefMaterial::default();
     let rays = rays(EDGE, [0.0, 0.0, 1.0]);
     let hits = surface.trace_all(method, &rays, march);

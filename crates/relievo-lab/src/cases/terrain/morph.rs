@@ -3,7 +3,7 @@
 use relievo::Error;
 use relievo::gpu::Buffer;
 use relievo::ops::terrain::morph::reference::morph;
-use relievo::ops::terrain::morph::{Morph, MorphBuffers, MorphPass};
+use relievo::ops::terrain::morph::{HeightMorphPass, Morph, MorphBuffers};
 
 use crate::cases::terrain::{LIMIT, check_exact, measure, random_heights, some_heights};
 use crate::harness::poison::{POISON, Poisoned};
@@ -15,7 +15,7 @@ use crate::harness::{Bench, Cases};
 /// What the device reports.
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let pass = MorphPass::new(gpu)?;
+    let pass = HeightMorphPass::new(gpu)?;
     for len in [1, 63, 64, 65, 5000, 300_000] {
         let (from, to) =
             (random_heights(len, len as usize, LIMIT), random_heights(len + 1, len as usize, LIMIT));
@@ -50,7 +50,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let buffers = [Buffer::from_slice(gpu, "from", &from)?, Buffer::from_slice(gpu, "to", &to)?];
     let heights = Buffer::new(gpu, "heights", points)?;
     let buffers = MorphBuffers { from: &buffers[0], to: &buffers[1], heights: &heights };
-    let job = MorphPass::new(gpu)?.prepare(gpu, buffers)?;
+    let job = HeightMorphPass::new(gpu)?.prepare(gpu, buffers)?;
     let params = Morph { time: 0.3 };
     job.set(gpu, params)?;
     measure(

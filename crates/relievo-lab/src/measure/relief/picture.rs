@@ -8,7 +8,7 @@ use crate::shade::shadow::{light_ray, shaded, soft_shadow};
 use relievo::ops::surface::linear_image::LinearImage;
 use relievo::ops::surface::map::Address;
 use relievo::ops::surface::mips::Mips;
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::relief::reference::height::height;
 use relievo::ops::surface::relief::{March, ReliefHit, ReliefMethod, ReliefRay};
 use relievo::ops::surface::{Green, ReliefMaterial, ReliefShadow};
@@ -18,7 +18,7 @@ use relievo::srgb::linear;
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
     /// Heights and acceleration maps.
-    pub surface: &'a Surface<'a>,
+    pub surface: &'a ReliefSurface<'a>,
     /// The method that finds the surface.
     pub method: ReliefMethod,
     /// The parameters of its march.

@@ -4,7 +4,7 @@ use image::RgbaImage;
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::ops::surface::relief::ReliefPass;
-use relievo::ops::surface::relief::reference::Surface;
+use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::{Address, HeightMap, March, ReliefHit, ReliefMethod, ReliefRay, SurfaceTextures};
 use relievo::render::Offscreen;
 use relievo::render::target::LINEAR_FORMAT;
@@ -18,7 +18,7 @@ const LIST: usize = 1 << 22;
 
 /// A method with its acceleration maps, ready to trace rays.
 pub(super) enum Tracer<'a> {
-    Cpu(ReliefMethod, Surface<'a>),
+    Cpu(ReliefMethod, ReliefSurface<'a>),
     Gpu(Box<Device>),
 }
 
@@ -35,7 +35,7 @@ impl<'a> Tracer<'a> {
         address: Address,
         gpu: Option<&Gpu>,
     ) -> Result<Self, Error> {
-        let Some(gpu) = gpu else { return Ok(Self::Cpu(method, Surface::new(map, method, address))) };
+        let Some(gpu) = gpu else { return Ok(Self::Cpu(method, ReliefSurface::new(map, method, address))) };
         let textures = SurfaceTextures::new(gpu, map, method, address)?;
         let pass = ReliefPass::new(gpu, method)?;
         Ok(Self::Gpu(Box::new(Device { gpu: gpu.clone(), textures, pass })))
