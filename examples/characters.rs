@@ -6,9 +6,9 @@
 use glam::Vec3;
 use relievo::asset::Model;
 use relievo::gpu::{Gpu, Options};
-use relievo::ops::skinning::{add_levels, poses_of};
+use relievo::ops::skinning::poses_of;
 use relievo::render::{Layer, Offscreen, Renderer, TargetFormat};
-use relievo::scene::{BoundingSphere, Camera, Placement, Play, Quality, Scene};
+use relievo::scene::{BoundingSphere, Camera, Placement, Play, Quality, Scene, add_levels};
 use relievo_samples::creature;
 
 /// Number of instances of each character.

@@ -1,7 +1,8 @@
 //! Operations: GPU passes over buffers of the caller's, each beside a CPU reference. The scene is built from them.
 //!
 //! **This storey may change in a minor release**; the scene and the modules beside it may not. The types of operations that the
-//! scene's functions take and return are re-exported by [`scene`](crate::scene) and [`render`](crate::render): use them from there.
+//! scene's functions take and return are re-exported by `scene` and `render`: use them from there. The parts of a terrain's configuration (`terrain::config`) are as stable
+//! as `scene::TerrainConfig`.
 //!
 //! | module | operations |
 //! |---|---|

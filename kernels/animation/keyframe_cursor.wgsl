@@ -22,7 +22,8 @@ struct KeyframeCursorParams {
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 @group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
-// Binding 4 holds the key times. After the cursors of all layers come those of the base layer ahead.
+// After the cursors of all layers come those of the base layer at the look-ahead time. (Binding 4 has the key times: module
+// `animation`.)
 @group(0) @binding(5) var<storage, read_write> cursors: array<KeyframeCursor>;
 @group(0) @binding(6) var<storage, read> updated_instances: array<u32>;
 // In the first vector, w is the number of listed instances.

@@ -4,7 +4,7 @@ import package::wgsl::terrain::tiles::{MapZone, plane_tiles, texel_index, tiles_
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
 struct TexelsParams {
-    // As in the colour map.
+    // These fields are as in `kernels/terrain/blend.wgsl`.
     width: u32,
     zone_count: u32,
     planes: u32,

@@ -131,6 +131,7 @@ fn main(
     workgroupBarrier();
     let index = BLOCK * block + lane;
     let decision = decide(index, objects[owner]);
+    // Written without motion history too: a branch over uniforms alone would let lavapipe compile the kernel anew.
     last_decisions[index] = select(0u, decisions[index], view.is_next != 0u);
     decisions[index] = decision;
     if decision > 0u {

@@ -34,7 +34,7 @@ impl Path {
         Self { rises: vec![0.0; times], jumps: vec![0.0; times], wrap: 0.0, is_boundless: false }
     }
 
-    /// Length of the whole clip, including the way back to its start.
+    /// Accumulated motion over the whole clip, including the way back to its start.
     pub fn total(&self) -> f64 {
         self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
     }

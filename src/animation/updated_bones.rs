@@ -139,7 +139,7 @@ mod tests {
         assert!(readers.read(a));
         readers.update();
         assert!(!readers.read(a));
-        // Reader a read the bits before this update, so it is behind again.
+        // The first reader has read the bits before this update, so it is behind again.
         readers.update();
         assert!(!readers.read(b) && !readers.read(b) && readers.read(a));
         // Readers that take turns never clear.

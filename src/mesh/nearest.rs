@@ -13,7 +13,7 @@ macro_rules! nearest_on_triangle {
                 let ratio = one / all;
                 if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
             };
-            // Fraction of the sum.
+            // Fraction of `one` in the sum of both.
             let part = |one: $number, other: $number| ratio(one, one + other);
             let (ab, ac, ap) = (b - a, c - a, point - a);
             let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));

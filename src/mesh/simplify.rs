@@ -352,7 +352,7 @@ pub fn simplify(surface: &Surface<'_>, options: &SimplifyOptions) -> Result<Simp
 /// part vanishes.
 ///
 /// These distances are measured, whereas [`SimplifyOptions::error`] is an average. At the same number of triangles, [`simplify()`] has
-/// the smaller average error and this function the smaller largest one. It takes a few times longer.
+/// the smaller average error, and this function the smaller maximum. It takes a few times longer.
 ///
 /// # Errors
 /// As [`simplify()`], and [`InputError`] for distances that are negative or that decrease.

@@ -50,7 +50,7 @@ impl Scene {
         let placed = self.placed_instance(instance)?;
         match self.object_of(instance)?.kind.wide_box(&placed)? {
             Some(corners) => Ok(placed.enlarged(corners, MARGIN)),
-            None => self.tight_bounds(instance),
+            None => Ok(placed.enlarged(self.object_of(instance)?.kind.tight_box(&placed)?, TIGHT)),
         }
     }
 

@@ -77,7 +77,7 @@ impl Scene {
     /// In one call, pass every view that the frame draws. Characters are posed and skinned once, for the instances that
     /// these views see, at the finest level that any of the views needs. Each frame may have other views than the one
     /// before. [`Renderer::draw`](crate::render::Renderer::draw) refuses a view that the last frame left out: its lists may
-    /// refer to vertices whose memory was reused. vertices whose memory others have taken.
+    /// refer to vertices whose memory was reused.
     ///
     /// Each call is a frame, even if one submission holds two of them: every draw uses the frame recorded before it. A
     /// recording takes one of [`FRAMES_IN_FLIGHT`] places. The place becomes free when the device has executed the

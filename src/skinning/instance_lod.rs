@@ -41,7 +41,7 @@ impl InstanceLod {
     /// No skinning, for an instance that is not visible.
     pub const UNSEEN: Self = Self { influence_fade: 0.0, max_influences: 0, mesh_lod: 0 };
 
-    /// The `most` strongest influences.
+    /// At most `most` influences per vertex: the strongest ones.
     ///
     /// # Errors
     /// [`InputError`] unless `most` is in 1 to [`MAX_INFLUENCES`].

@@ -33,7 +33,7 @@ pub fn zone_of(zone: &Zone) -> ShaderZone {
     }
 }
 
-/// Ground cover of colour maps.
+/// Ground that a colour map shows: zones, and the texels of their textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cover {
     /// Zones, 1 to 32. Each has 4^`edge_log2` texels in `texels`, starting at `first`.

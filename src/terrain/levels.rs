@@ -31,7 +31,8 @@ pub(in crate::terrain) struct LevelBuffers<'a> {
 }
 
 impl LevelPass {
-    /// Prepares the generation of `count` windows with `apron`. The configuration must be valid and of the kernel's kind.
+    /// Prepares the generation of `count` windows with `apron`. The configuration must be valid, with the borders that
+    /// the kernel was compiled for.
     ///
     /// # Errors
     /// [`InputError`] for an apron out of bounds, and for buffers that are too short; [`GpuError`].

@@ -12,7 +12,7 @@ fn motion_at(row: vec2<u32>, fraction: u32) -> u32 {
     return row.x + scale_by_fraction(row.y, fraction);
 }
 
-// The smaller difference between two sums: direct, or across the clip's end. `period` is the sum of the whole clip.
+// The smaller difference between two accumulated motions: direct, or across the clip's end. `period` is the sum of the whole clip.
 fn motion_between(now: u32, last: u32, period: u32) -> u32 {
     let direct = max(now, last) - min(now, last);
     return min(direct, max(period, direct) - direct);

@@ -51,7 +51,7 @@ impl ActivePairs {
 #[derive(Debug, Clone)]
 pub struct Active {
     /// Three bit masks, each with one bit per slot and [`Order::words`] words per instance. First: the sampled bones. Second:
-    /// the bones among them that are sampled ahead. A gate or the caller writes both. Third ([`Active::updated_words`]): the
+    /// the bones among them that are sampled at the look-ahead time, for later frames. A gate or the caller writes both. Third ([`Active::updated_words`]): the
     /// bones whose model matrices the frame updates.
     pub bits: Buffer<u32>,
     /// Bones whose model matrices this or an earlier frame updated and that skinning has not followed yet.

@@ -68,7 +68,7 @@ impl Meshopt {
             document.slice(&format!("{path}.byteLength"), buffer, self.byte_offset, self.byte_length)?;
         let size = self.count.saturating_mul(self.byte_stride);
         document.budget.spend(&format!("{path}.count"), size.div_ceil(BYTES_AN_ELEMENT))?;
-        // The crate refuses sizes and strides that contradict each other.
+        // meshoptimizer-rs refuses sizes and strides that contradict each other.
         self.decode(bytes).map_err(|error| {
             let value = format!("[{} bytes]", bytes.len());
             let bound =

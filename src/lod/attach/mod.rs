@@ -20,8 +20,8 @@ pub use pass::{AttachBuffers, AttachPass};
 
 pub use crate::shared::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 
-/// Parity bound for an entry of a row on any device: 3e-6, relative to the same entry of the product of the three
-/// transforms with the absolute values of all their entries.
+/// Parity bound for an entry of a placement on any device, as a fraction. It is relative to the entry that results if all three
+/// transforms are multiplied with the absolute values of their entries.
 ///
 /// Every operation on a device may round to ε = 2⁻²³. An entry of the placement's axes carries 7ε. Each of the two
 /// products multiplies (ε), adds twice (2ε), and adds the translation (ε). Their sum is 15ε, and half of it again on

@@ -17,7 +17,7 @@ pub struct ListBuffers<'a> {
     pub decisions: &'a Buffer<u32>,
     /// In: instance count per block and list, [`OBJECT_LISTS`] for each block. Overwritten.
     pub counts: &'a Buffer<u32>,
-    /// Out: instance indices relative to the object's first one, from [`LodObject::list_begin`] on.
+    /// Out: list entries, from [`LodObject::list_begin`] on: the index of an instance in its object, and its morph.
     pub lists: &'a Buffer<u32>,
     /// The draws of all objects ([`LodObject::draw`]). Only their instance counts are written.
     pub arguments: &'a Buffer<SceneDraw>,

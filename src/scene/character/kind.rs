@@ -44,9 +44,10 @@ impl ObjectKind for Character {
         chunks: &mut Vec<Chunk>,
     ) -> Result<(), Error> {
         let model = &self.merged.model;
-        self.runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
+        let runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
+        *chunks = Self::chunks(gpu, layouts, chunks, &runtimes)?;
+        self.runtimes = runtimes;
         self.start_afresh(capacity);
-        *chunks = Self::chunks(gpu, layouts, chunks, &self.runtimes)?;
         Ok(())
     }
 

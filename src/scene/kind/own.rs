@@ -223,11 +223,11 @@ fn check_taken<'a>(
         record(&mut encoder);
         encoder.finish(&wgpu::RenderBundleDescriptor::default());
     });
+    let refused = |bound: String| Err(InputError::new(path, "not usable", bound).into());
     match bundled {
         Ok(Some(())) => Ok(()),
-        Ok(None) | Err(GpuError::Validation { .. }) => {
-            Err(InputError::new(path, "of another device", "must be of the scene's device").into())
-        }
+        Ok(None) => refused("must be of the scene's device".to_owned()),
+        Err(GpuError::Validation { reason }) => refused(format!("must be of the scene's device: {reason}")),
         Err(error) => Err(error.into()),
     }
 }
@@ -265,6 +265,9 @@ fn check(kind: &dyn Kind) -> Result<(), InputError> {
         return Err(InputError::new("kind.indices.usage", value, "must have INDEX"));
     }
     let count = indices.size() / size_of::<u32>() as u64;
+    if count == 0 {
+        return Err(InputError::new("kind.indices.len", 0, "must be at least 3 indices"));
+    }
     for (at, part) in kind.parts().iter().enumerate() {
         if part.levels.len() != errors.len() {
             let bound = format!("must be {}, as many as errors", errors.len());

@@ -80,6 +80,7 @@ impl Object {
                 stage_params(staged, chunk, self.handle)?;
             }
         }
+        let thresholds = if is_new { self.thresholds() } else { Vec::new() };
         let fitted = Fitted {
             layout,
             is_new,
@@ -87,7 +88,7 @@ impl Object {
             budget,
             mesh_fraction: self.lod_bias * self.mesh_fraction,
             chunks: &self.chunks,
-            thresholds: &self.thresholds(),
+            thresholds: &thresholds,
         };
         self.kind.fit(gpu, &fitted, staged)?;
         self.fitted = layout.version;

@@ -53,12 +53,12 @@ impl TerrainSource {
     /// terrain of its own.
     ///
     /// ```no_run
-    /// use relievo::scene::{Scene, TerrainSource};
-    /// use relievo::ops::terrain::{config::TerrainConfig, generator::Generator, recipe::Recipe};
+    /// use relievo::ops::terrain::generator::Generator;
+    /// use relievo::scene::{Scene, TerrainConfig, TerrainRecipe, TerrainSource};
     ///
     /// # fn load(gpu: &relievo::gpu::Gpu, scene: &mut Scene) -> Result<(), relievo::Error> {
     /// let (config, patches) = (TerrainConfig::new(129, 40.0, "any text")?, [[0, 0], [1, 0]]);
-    /// let generator = Generator::new(gpu, Recipe::new(config.clone()))?;
+    /// let generator = Generator::new(gpu, TerrainRecipe::new(config.clone()))?;
     /// let fields = generator.generate(gpu, &patches, 1, &mut |_| ())?.remove(0); // and further passes over them
     /// let land = scene.add_terrain(&TerrainSource::from_fields(config, fields, &patches))?;
     /// # Ok(())

@@ -50,7 +50,7 @@ impl Fine<'_> {
         let mut between = upper.clone();
         let mut beside = upper.clone();
         let x = coarse_spans[0].first;
-        // The first row of squares lies outside the window and has no upper diamonds. It is not stored.
+        // The first row of squares lies outside the window, and no diamonds lie above it: that row is computed and not stored.
         for y in coarse_spans[1].first..coarse_spans[1].last {
             let (here, below) = (coarse_row(y), coarse_row(y + 1));
             self.diamonds(here, below, x, y, &mut lower);

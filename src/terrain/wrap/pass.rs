@@ -25,7 +25,7 @@ impl WrapPass {
     }
 
     /// Prepares the generation of `count` patches into `output`, which must hold patchSize² heights per patch.
-    /// `feature_capacity` is the largest number of injected points. `scratch` is for windows without an apron.
+    /// `feature_capacity` is the largest number of injected points. `scratch` must have been made for windows without an apron.
     ///
     /// # Errors
     /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short; [`GpuError`].

@@ -30,7 +30,7 @@ impl Model {
     /// - Bones that neither skins, meshes nor clips need are not read again, and bones may have another order.
     /// - Tangents of cubic splines, and rotations, may differ in the last bit.
     /// - A clip lasts until its last key. Clips without keys are left out.
-    /// - [`Alpha::Blended`](crate::asset::material::Alpha::Blended) comes back as the pattern of `BLEND`.
+    /// - [`Alpha::Blended`](crate::asset::material::Alpha::Blended) is read back as [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered), which is what `BLEND` becomes.
     /// - Levels of detail and lights are not written.
     ///
     /// Images are PNG. Models have no metal and roughness; these are written as 0 and 1.

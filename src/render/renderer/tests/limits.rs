@@ -97,7 +97,7 @@ fn every_kind_stays_within_its_part_of_the_limits_in_every_output() {
     let least = Taken { storage: 3, uniforms: 2, textures: 1, samplers: 1, locations: 7 };
     let own = taken(KindProgram::least().expect("valid").text());
     assert!(own.iter().all(|(_, _, taken)| taken.is_within(&least)), "{own:?}");
-    // The documented use is not larger than the actual one, so the caller gets everything that kinds leave.
+    // The documented use is the actual one: a larger one would keep bindings from the caller.
     assert_eq!((largest[0].storage, largest[0].locations), (VERTEX.storage, VERTEX.locations));
     assert_eq!((largest[1].textures, largest[1].samplers), (FRAGMENT.textures, FRAGMENT.samplers));
     // A kind that uses one resource too many is detected.

@@ -103,7 +103,7 @@ impl Stage {
             lists: Buffer::from_slice(gpu, "lists", &lists).expect(up),
             arguments: Buffer::from_slice(gpu, "draws", &draws).expect(up),
             lod,
-            // An infinite far plane lies at depth 0. Its row then has only the near plane left.
+            // With an infinite far plane at depth 0, the matrix's z row is constant.
             reversed: z.truncate() == Vec3::ZERO,
         }
     }
