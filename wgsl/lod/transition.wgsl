@@ -7,6 +7,7 @@ const TRANSITION_HARD = 0u;
 // Vertices move to their partners in the next coarser level.
 const TRANSITION_GEOMORPH = 1u;
 
+// Smallest metric at which a level is drawn.
 fn threshold_of(object: LodObject, level: u32) -> f32 {
     return object.errors[level >> 2u][level & 3u];
 }
