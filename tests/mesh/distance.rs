@@ -2,19 +2,19 @@
 
 use glam::DVec3;
 use relievo::ops::mesh::{Cost, SimplifyOptions as Limits};
-use relievo_lab::distance::{Distance, OneWay, SimplifyOptions, Triangles, distance};
+use relievo_lab::distance::{Distance, DistanceOptions, OneWay, Triangles, distance};
 
 use crate::measure;
 use crate::shapes::{Shape, bare, bumps, cube, ground, sheet, shuffled, sphere, torus};
 
 /// Few samples: the largest distance does not depend on them.
-const FEW: SimplifyOptions = SimplifyOptions { tolerance: 0.01, samples: 2000 };
+const FEW: DistanceOptions = DistanceOptions { tolerance: 0.01, samples: 2000 };
 
 fn triangles<'a>(shape: &'a Shape, indices: &'a [u32]) -> Triangles<'a> {
     Triangles { positions: &shape.poses[0], indices }
 }
 
-fn between(a: &Shape, b: &Shape, options: &SimplifyOptions) -> Distance {
+fn between(a: &Shape, b: &Shape, options: &DistanceOptions) -> Distance {
     distance(&triangles(a, &a.indices), &triangles(b, &b.indices), options).expect("valid")
 }
 
@@ -89,14 +89,14 @@ fn wrong(found: &OneWay, dense: [f64; 3]) -> Option<String> {
 
 /// Checks both directions between two shapes against samples at `steps` of each.
 fn check(name: &str, a: &Triangles<'_>, b: &Triangles<'_>, steps: [u32; 2]) -> Distance {
-    let found = distance(a, b, &SimplifyOptions { samples: 60_000, ..FEW }).expect(name);
+    let found = distance(a, b, &DistanceOptions { samples: 60_000, ..FEW }).expect(name);
     for (found, dense) in [(&found.forward, dense(a, b, steps[0])), (&found.backward, dense(b, a, steps[1]))]
     {
         if let Some(fault) = wrong(found, dense) {
             panic!("{name}: {fault}");
         }
     }
-    let back = distance(b, a, &SimplifyOptions { samples: 60_000, ..FEW }).expect(name);
+    let back = distance(b, a, &DistanceOptions { samples: 60_000, ..FEW }).expect(name);
     assert_eq!((back.forward, back.backward), (found.backward, found.forward), "{name}");
     found
 }
@@ -175,7 +175,7 @@ fn known_distances() {
     // inside of triangles, and no vertex is off at all: in the middle of the ridge, ½ · cos 45°.
     let ridge = ground(2, |x, _| if x == 0.5 { 0.5 } else { 0.0 });
     let flat = plane(1, 0.0);
-    let found = between(&ridge, &flat, &SimplifyOptions::default());
+    let found = between(&ridge, &flat, &DistanceOptions::default());
     assert!((0.5..0.505).contains(&found.forward.max), "{found:?}");
     assert!((found.forward.rms - 0.5 / 3.0_f64.sqrt()).abs() < 1e-6, "{found:?}");
     let sine = 0.5_f64.sqrt();
@@ -202,7 +202,7 @@ fn planted_faults_are_found() {
     let (fine, coarse) = (triangles(&shape, &shape.indices), triangles(&shape, &coarse));
     let samples = dense(&coarse, &fine, 40);
     let right =
-        distance(&fine, &coarse, &SimplifyOptions { samples: 60_000, ..FEW }).expect("valid").backward;
+        distance(&fine, &coarse, &DistanceOptions { samples: 60_000, ..FEW }).expect("valid").backward;
     assert_eq!(wrong(&right, samples), None);
     // The corners of the coarse mesh lie on the fine one.
     assert_eq!(samples[2], 0.0);
@@ -251,12 +251,12 @@ fn surfaces_without_area_have_distances() {
 fn what_cannot_be_measured_is_refused() {
     let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let good = Triangles { positions: &positions, indices: &[0, 1, 2] };
-    let refused = |from: &Triangles<'_>, to: &Triangles<'_>, options: &SimplifyOptions| {
+    let refused = |from: &Triangles<'_>, to: &Triangles<'_>, options: &DistanceOptions| {
         let error = distance(from, to, options).expect_err("refused");
         (error.path, error.value)
     };
     let text = |path: &str, value: &str| (path.to_owned(), value.to_owned());
-    let all = SimplifyOptions::default();
+    let all = DistanceOptions::default();
     assert_eq!(refused(&Triangles { indices: &[], ..good }, &good, &all), text("from.indices.len", "0"));
     assert_eq!(refused(&good, &Triangles { indices: &[0, 1], ..good }, &all), text("to.indices.len", "2"));
     assert_eq!(refused(&good, &Triangles { indices: &[0, 1, 3], ..good }, &all), text("to.indices[2]", "3"));
@@ -267,8 +267,8 @@ fn what_cannot_be_measured_is_refused() {
         text("from.positions[1][2]", "NaN")
     );
     for tolerance in [0.0, 1.5, f64::NAN] {
-        let path = refused(&good, &good, &SimplifyOptions { tolerance, ..all }).0;
+        let path = refused(&good, &good, &DistanceOptions { tolerance, ..all }).0;
         assert_eq!(path, "options.tolerance");
     }
-    assert_eq!(refused(&good, &good, &SimplifyOptions { samples: 0, ..all }), text("options.samples", "0"));
+    assert_eq!(refused(&good, &good, &DistanceOptions { samples: 0, ..all }), text("options.samples", "0"));
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use relievo::asset::{Mesh, Model};
 use relievo::ops::skinning::at_rest;
-use relievo_lab::distance::SimplifyOptions;
+use relievo_lab::distance::DistanceOptions;
 use relievo_lab::reduce::{Limits, Reducer};
 use relievo_lab::reduce::{Normals, ReducedModel, reduce_model};
 use relievo_samples::creature;
@@ -73,7 +73,7 @@ fn hard_edges_do_not_hinder_and_stay() {
         assert_eq!((count(&cube), found.triangles()), (6 * 72, 12), "{materials}");
         assert!(
             found
-                .distance(&at_rest(&cube).expect("valid"), &SimplifyOptions::default())
+                .distance(&at_rest(&cube).expect("valid"), &DistanceOptions::default())
                 .expect("valid")
                 .max()
                 < 1e-8

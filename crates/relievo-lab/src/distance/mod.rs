@@ -17,7 +17,7 @@
 //! cut along the sides of the triangle of the other surface that is nearest to its middle: above one triangle the
 //! distance is nearly linear, so that the bounds meet after a few cuts, however fine the other surface is. Where no side cuts
 //! it, its longest edge is halved. The largest distance that is returned is an upper bound, at most
-//! [`SimplifyOptions::tolerance`] times larger than the distance of a point that was seen.
+//! [`DistanceOptions::tolerance`] times larger than the distance of a point that was seen.
 //!
 //! # The root mean square
 //!
@@ -52,7 +52,7 @@ pub struct Triangles<'a> {
 
 /// How exact distances are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SimplifyOptions {
+pub struct DistanceOptions {
     /// How much larger than the distance of some point the largest distance may be: a fraction of 0.001 to 1. By default 0.01.
     pub tolerance: f64,
     /// The least number of samples of the root mean square on each surface, spread by area: 1 to 2²⁸. Each triangle has at
@@ -60,7 +60,7 @@ pub struct SimplifyOptions {
     pub samples: usize,
 }
 
-impl Default for SimplifyOptions {
+impl Default for DistanceOptions {
     fn default() -> Self {
         Self { tolerance: 0.01, samples: 1 << 18 }
     }
@@ -105,13 +105,13 @@ impl Distance {
 /// Measures how far two surfaces are apart.
 ///
 /// ```
-/// use relievo_lab::distance::{Options, Triangles, distance};
+/// use relievo_lab::distance::{DistanceOptions, Triangles, distance};
 ///
 /// // Two parallel triangles; a corner of the second leans away.
 /// let low = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 /// let high = [[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [0.0, 1.0, 2.0]];
 /// let [from, to] = [&low, &high].map(|positions| Triangles { positions, indices: &[0, 1, 2] });
-/// let found = distance(&from, &to, &Options::default())?;
+/// let found = distance(&from, &to, &DistanceOptions::default())?;
 /// assert!((2.0..2.0201).contains(&found.backward.max) && found.backward.reached <= 2.0);
 /// # Ok::<(), relievo::InputError>(())
 /// ```
@@ -122,9 +122,9 @@ impl Distance {
 pub fn distance(
     from: &Triangles<'_>,
     to: &Triangles<'_>,
-    options: &SimplifyOptions,
+    options: &DistanceOptions,
 ) -> Result<Distance, InputError> {
-    let SimplifyOptions { tolerance, samples } = *options;
+    let DistanceOptions { tolerance, samples } = *options;
     if !(0.001..=1.0).contains(&tolerance) {
         return Err(InputError::new("options.tolerance", tolerance, "must be in 0.001..=1"));
     }

@@ -64,7 +64,7 @@ impl ReducedModel {
     pub fn distance(
         &self,
         whole: &Model,
-        options: &distance::SimplifyOptions,
+        options: &distance::DistanceOptions,
     ) -> Result<Distance, InputError> {
         let [from, to] = [whole, &self.model].map(joined);
         let [from, to] = [&from, &to].map(|(positions, indices)| Triangles { positions, indices });

@@ -2,7 +2,7 @@
 
 use std::io::Write as _;
 
-use crate::distance::SimplifyOptions;
+use crate::distance::DistanceOptions;
 use crate::reduce::Normals;
 use crate::reduce::Reducer;
 use flate2::Compression;
@@ -81,7 +81,7 @@ impl ReducerComparison {
         if all == 0 {
             return Err(InputError::new("model.triangles.len", 0, "must be at least 1"));
         }
-        let (options, mut reducers) = (SimplifyOptions::default(), Vec::new());
+        let (options, mut reducers) = (DistanceOptions::default(), Vec::new());
         for (reducer, parameters) in Reducer::ALL {
             let mut run = Run { whole: &whole, reducer: &parameters, normals, listener, seconds: 0.0 };
             let counts: Vec<usize> =

@@ -4,7 +4,7 @@
 pub use compare::{ReducerComparison, ReducerLevel, ReducerRow};
 use std::time::Instant;
 
-use crate::distance::{Distance, SimplifyOptions};
+use crate::distance::{Distance, DistanceOptions};
 use crate::reduce::{Limits, Reducer};
 use crate::reduce::{Normals, ReducedModel, reduce_model};
 use relievo::InputError;
@@ -70,7 +70,7 @@ pub fn reduction(
     }
     let mut run = Run { whole: &whole, reducer, normals, listener, seconds: 0.0 };
     let counts: Vec<usize> = targets.iter().filter_map(|target| target.count(all)).collect();
-    let mut counted = run.measured(&counts, &SimplifyOptions::default())?.into_iter();
+    let mut counted = run.measured(&counts, &DistanceOptions::default())?.into_iter();
     let errors: Vec<f64> = targets.iter().filter_map(Target::error).collect();
     let mut found = search::within(&mut run, &errors, all)?.into_iter();
     let next = |target: &Target| if target.error().is_some() { found.next() } else { counted.next() };
@@ -131,7 +131,7 @@ impl Run<'_> {
     fn measured(
         &mut self,
         counts: &[usize],
-        options: &SimplifyOptions,
+        options: &DistanceOptions,
     ) -> Result<Vec<MeasuredLevel>, InputError> {
         if counts.is_empty() {
             return Ok(Vec::new());

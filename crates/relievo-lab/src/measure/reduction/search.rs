@@ -1,6 +1,6 @@
 //! The search for levels within an error.
 
-use crate::distance::SimplifyOptions;
+use crate::distance::DistanceOptions;
 use relievo::InputError;
 
 use crate::measure::reduction::{MeasuredLevel, Run};
@@ -9,7 +9,7 @@ use crate::measure::reduction::{MeasuredLevel, Run};
 const STEP: f64 = 0.75;
 
 /// How trials are measured: the largest distance does not need the samples of a root mean square.
-const TRIAL: SimplifyOptions = SimplifyOptions { tolerance: 0.01, samples: 1 };
+const TRIAL: DistanceOptions = DistanceOptions { tolerance: 0.01, samples: 1 };
 
 /// The number of trials between two of them.
 const BETWEEN: usize = 6;
@@ -31,7 +31,7 @@ pub(super) fn within(
     let trials = run.measured(&counts, &TRIAL)?;
     let found = errors.iter().map(|error| best(run, &trials, *error)).collect::<Result<Vec<_>, _>>()?;
     let measured = found.into_iter().map(|MeasuredLevel { reduced, .. }| {
-        let distance = reduced.distance(run.whole, &SimplifyOptions::default())?;
+        let distance = reduced.distance(run.whole, &DistanceOptions::default())?;
         Ok(MeasuredLevel { reduced, distance })
     });
     measured.collect()
