@@ -14,13 +14,13 @@
 //! ([`mask_below`]).
 //!
 //! ```
-//! use relievo::ops::animation::{ClipSet, Instance, Layer, Wrap, layers::mask_below};
+//! use relievo::ops::animation::{AnimationLayer, ClipSet, Instance, Wrap, layers::mask_below};
 //! use relievo_samples::creature;
 //!
 //! let model = creature()?;
 //! let set = ClipSet::new(&model.clips.iter().collect::<Vec<_>>())?;
 //! let walk = vec![Instance::new(0, Wrap::Loop, 0.0, 1.0); 100];
-//! let wave = Layer::new(vec![Instance::new(2, Wrap::Loop, 0.0, 1.0); 100], vec![1.0; 100]);
+//! let wave = AnimationLayer::new(vec![Instance::new(2, Wrap::Loop, 0.0, 1.0); 100], vec![1.0; 100]);
 //! let arm = model.skeleton.bones().iter().position(|bone| bone.name == "upper_arm_left").expect("there");
 //! let layers = [wave.masked(mask_below(&model.skeleton, arm)?)];
 //! // Crowd::layered(&gpu, &set, &walk, &layers)?, sampled by SamplePass::layered; later crowd.set_weights(&gpu, 1, …)?

@@ -327,13 +327,13 @@ impl Simplified {
 /// Simplifies a mesh until a limit of `options` is reached, and records every collapse.
 ///
 /// ```
-/// use relievo::ops::mesh::{Options, Stopped, Surface, simplify};
+/// use relievo::ops::mesh::{SimplifyOptions, Stopped, Surface, simplify};
 ///
 /// // A square of four triangles around its middle.
 /// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.0]];
 /// let indices = [0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4];
 /// let surface = Surface { poses: &[positions], indices: &indices, attributes: &[], stride: 0 };
-/// let simplified = simplify(&surface, &Options { error: 0.01, ..Options::default() })?;
+/// let simplified = simplify(&surface, &SimplifyOptions { error: 0.01, ..SimplifyOptions::default() })?;
 /// assert_eq!(simplified.triangles(&indices, 1).len(), 2 * 3);
 /// assert_eq!((simplified.error(), simplified.stopped()), (0.0, Stopped::Error));
 /// # Ok::<(), relievo::InputError>(())

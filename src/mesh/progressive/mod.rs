@@ -37,12 +37,12 @@ use stored::Stored;
 ///
 /// ```
 /// use relievo::ops::mesh::progressive::ChosenLevel;
-/// use relievo::ops::mesh::{Options, ProgressiveMesh, Surface, simplify};
+/// use relievo::ops::mesh::{SimplifyOptions, ProgressiveMesh, Surface, simplify};
 ///
 /// let rock = relievo_samples::rock()?.meshes.remove(0);
 /// let surface =
 ///     Surface { poses: &[rock.positions.clone()], indices: &rock.indices, attributes: &[], stride: 0 };
-/// let simplified = simplify(&surface, &Options::default())?;
+/// let simplified = simplify(&surface, &SimplifyOptions::default())?;
 /// let chosen = [0.5, 0.1].map(|share| {
 ///     let collapses = simplified.collapses_to((share * rock.indices.len() as f64 / 3.0) as usize);
 ///     ChosenLevel { collapses, error: simplified.collapses()[collapses - 1].error }
