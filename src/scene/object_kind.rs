@@ -69,13 +69,7 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
     }
 
     /// Creates the kind's resources on another device, with the object's materials and room for `capacity` instances.
-    fn made_on<'a>(
-        &'a self,
-        gpu: &'a Gpu,
-        layouts: &'a SceneLayouts,
-        looks: Option<&'a Looks>,
-        capacity: usize,
-    ) -> Making<'a>;
+    fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a>;
 
     /// Takes the resources besides chunks that were made on another device: [`OnDevice::other`].
     fn adopt(&mut self, other: Box<dyn Made>) {
@@ -211,6 +205,17 @@ pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>
 /// A future that creates resources on another device.
 #[cfg(target_arch = "wasm32")]
 pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>> + 'a>>;
+
+/// Where the resources of an object are made again.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MakeOn<'a> {
+    pub gpu: &'a Gpu,
+    pub layouts: &'a SceneLayouts,
+    /// Materials of the object, if it has any.
+    pub looks: Option<&'a Looks>,
+    /// Number of instances that there is room for.
+    pub capacity: usize,
+}
 
 /// Any resource made on a device.
 pub(super) trait Made: Any + Debug + wgpu::WasmNotSend {}

@@ -6,11 +6,11 @@ use crate::gpu::{Buffer, Gpu, Uniform};
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::NO_OBJECT;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::{Looks, ReliefBindings, ReliefLook, check_image};
+use crate::scene::material::{ReliefBindings, ReliefLook, check_image};
 use crate::scene::mesh::{
     Drawn, Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart, NOTHING, within_binding,
 };
-use crate::scene::object_kind::{Making, ObjectKind, OnDevice};
+use crate::scene::object_kind::{MakeOn, Making, ObjectKind, OnDevice};
 use crate::scene::ray::Surface;
 use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
@@ -145,13 +145,8 @@ impl ObjectKind for Relief {
         true
     }
 
-    fn made_on<'a>(
-        &'a self,
-        gpu: &'a Gpu,
-        layouts: &'a SceneLayouts,
-        _: Option<&'a Looks>,
-        capacity: usize,
-    ) -> Making<'a> {
+    fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
+        let MakeOn { gpu, layouts, capacity, .. } = target;
         Box::pin(async move {
             self.check_can_be_rebuilt()?;
             let (_, (drawables, _)) = drawn(gpu, layouts, self)?;

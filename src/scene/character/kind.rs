@@ -11,7 +11,7 @@ use crate::scene::chunk::Chunk;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
 use crate::scene::object_kind::{
-    Fitted, Made, Making, ObjectKind, OnDevice, Placed, Provided, Replaced, SeenBy,
+    Fitted, Made, MakeOn, Making, ObjectKind, OnDevice, Placed, Provided, Replaced, SeenBy,
 };
 use crate::scene::ray::Surface;
 use crate::scene::stage::Stage;
@@ -51,13 +51,8 @@ impl ObjectKind for Character {
         Ok(())
     }
 
-    fn made_on<'a>(
-        &'a self,
-        gpu: &'a Gpu,
-        layouts: &'a SceneLayouts,
-        looks: Option<&'a Looks>,
-        capacity: usize,
-    ) -> Making<'a> {
+    fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
+        let MakeOn { gpu, layouts, looks, capacity } = target;
         Box::pin(async move {
             let model = &self.merged.model;
             let shared = self.shared.on(gpu, model)?;

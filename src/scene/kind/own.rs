@@ -10,9 +10,8 @@ use crate::gpu::{Gpu, GpuError, Group, Staged, Uniform, Upload as _};
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::{Drawable, NO_OBJECT, Part};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::Looks;
 use crate::scene::mesh::{Drawn, NOTHING};
-use crate::scene::object_kind::{Made, Making, ObjectKind, OnDevice, Placed, UnitRay};
+use crate::scene::object_kind::{Made, MakeOn, Making, ObjectKind, OnDevice, Placed, UnitRay};
 use crate::scene::ray::SurfaceHit;
 use crate::scene::specialization::{OwnDepth, PartState, Specialization};
 use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
@@ -102,13 +101,8 @@ impl ObjectKind for OwnKind {
         Ok(())
     }
 
-    fn made_on<'a>(
-        &'a self,
-        gpu: &'a Gpu,
-        layouts: &'a SceneLayouts,
-        _: Option<&'a Looks>,
-        capacity: usize,
-    ) -> Making<'a> {
+    fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
+        let MakeOn { gpu, layouts, capacity, .. } = target;
         Box::pin(async move {
             let own = self.rebuilt(gpu)?;
             let chunks = vec![Chunk::new(0..capacity, own.drawn(gpu, layouts)?.0)];

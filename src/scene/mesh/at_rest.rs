@@ -2,11 +2,9 @@
 
 use super::drawn;
 use crate::InputError;
-use crate::gpu::Gpu;
 use crate::scene::chunk::Chunk;
-use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
-use crate::scene::object_kind::{Making, ObjectKind, OnDevice};
+use crate::scene::object_kind::{MakeOn, Making, ObjectKind, OnDevice};
 use crate::scene::ray::Surface;
 use crate::skinning::merged::Merged;
 
@@ -23,13 +21,8 @@ impl ObjectKind for MeshAtRest {
         true
     }
 
-    fn made_on<'a>(
-        &'a self,
-        gpu: &'a Gpu,
-        layouts: &'a SceneLayouts,
-        looks: Option<&'a Looks>,
-        capacity: usize,
-    ) -> Making<'a> {
+    fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
+        let MakeOn { gpu, layouts, looks, capacity } = target;
         Box::pin(async move {
             let (drawables, _) = drawn(gpu, layouts, (&self.0, looks.unwrap_or(&Looks::NONE)))?;
             Ok(OnDevice::chunks(vec![Chunk::new(0..capacity, drawables)]))

@@ -4,7 +4,7 @@ use super::{MAX_CAPACITY, Object};
 use crate::gpu::Gpu;
 use crate::scene::instances;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::object_kind::OnDevice;
+use crate::scene::object_kind::{MakeOn, OnDevice};
 use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::{Error, InputError};
 
@@ -31,7 +31,8 @@ impl Object {
 
     /// Creates the object's resources on another device.
     pub(in crate::scene) async fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
-        self.kind.made_on(gpu, layouts, self.looks.as_ref(), self.instances.capacity()).await
+        let (looks, capacity) = (self.looks.as_ref(), self.instances.capacity());
+        self.kind.made_on(MakeOn { gpu, layouts, looks, capacity }).await
     }
 
     /// Takes resources made on another device. Everything starts afresh.

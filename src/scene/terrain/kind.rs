@@ -10,8 +10,7 @@ use crate::animation::Frame;
 use crate::gpu::{Gpu, Staged};
 use crate::scene::chunk::Chunk;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::material::Looks;
-use crate::scene::object_kind::{KindInView, Made, Making, ObjectKind, OnDevice, Placed, UnitRay};
+use crate::scene::object_kind::{KindInView, Made, MakeOn, Making, ObjectKind, OnDevice, Placed, UnitRay};
 use crate::scene::placement::Placement;
 use crate::scene::ray::SurfaceHit;
 use crate::{Error, InputError};
@@ -48,13 +47,8 @@ impl ObjectKind for Terrain {
         Ok(())
     }
 
-    fn made_on<'a>(
-        &'a self,
-        gpu: &'a Gpu,
-        layouts: &'a SceneLayouts,
-        _: Option<&'a Looks>,
-        _: usize,
-    ) -> Making<'a> {
+    fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
+        let MakeOn { gpu, layouts, .. } = target;
         Box::pin(async move {
             self.check_can_be_rebuilt()?;
             let (terrain, _, (chunks, _)) = made(gpu, layouts, &self.source).await?;

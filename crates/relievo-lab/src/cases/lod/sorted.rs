@@ -12,7 +12,7 @@ use crate::cases::measure;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Bench, Cases, compare};
 
-/// Random sorted with decisions of which a part sees nothing, and random draws.
+/// Random sorted draws, decisions (some of unseen instances), and indirect draws.
 pub(crate) struct Given {
     pub sorted: Vec<SortedDraw>,
     pub decisions: Vec<u32>,
@@ -20,7 +20,7 @@ pub(crate) struct Given {
 }
 
 impl Given {
-    /// So many sorted of as many instances and a few parts.
+    /// `count` sorted draws of as many instances and a few parts.
     pub(crate) fn new(count: usize) -> Self {
         let mut draw = Draw::new(count as u32 ^ 0x51b1);
         let parts = 7;
