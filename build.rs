@@ -79,7 +79,7 @@ mod shaders {
         let (outputs, _) = outputs(&files, root, true);
         let outputs: Vec<_> = outputs.iter().map(|output| (&*output.name, output.moves)).collect();
         let file = root.join(CORE);
-        let kind = KindText { name: "least", discards: true, blends: true, deep: true, moves: false };
+        let kind = KindText { name: "least", blends: true, deep: true, moves: false };
         let entries = composed(&kind, core, &outputs);
         let least = "fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
     return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
@@ -162,8 +162,8 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         let files = output_files(root);
         let (outputs, imports) = outputs(&files, root, kind.blends);
         let mut text = String::from(
-            "import package::wgsl::render::scene_kind::{SceneFragment, scene_words, words_instance, words_outside};\n\
-             import package::wgsl::render::scene_view::view;\n",
+            "import package::wgsl::render::scene_fade::{is_left_out, scene_clip};\n\
+             import package::wgsl::render::scene_kind::{SceneFragment, scene_words, words_fade, words_instance, words_level, words_outside};\n",
         );
         if kind.deep {
             text += "import package::wgsl::render::output_depth::depth_behind;\n";
@@ -249,7 +249,8 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         let (_, imports) = outputs(&files, root, true);
         let core = "import package::wgsl::render::output_depth::depth_behind;
 import package::wgsl::render::scene_instances::{scene_last_placed, scene_last_rigid, scene_placed, scene_surface};
-import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, scene_words, words_instance, words_outside};
+import package::wgsl::render::scene_fade::{is_left_out, scene_clip};
+import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, scene_words, words_fade, words_instance, words_level, words_outside};
 import package::wgsl::render::scene_view::view;
 ";
         resolver.add_module(module_path(Path::new(CORE)), format!("{core}{imports}").into());

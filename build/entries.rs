@@ -2,7 +2,7 @@
 //! kinds, and at run time for those of callers.
 //!
 //! A kind exports `mesh_place`, `mesh_surface` and, unless it moves as a rigid body, `mesh_last_position`
-//! (`wgsl/render/scene_kind.wgsl`). The crate's own say with a line such as `// kind mesh: discards, blends` what their parts
+//! (`wgsl/render/scene_kind.wgsl`). The crate's own say with a line such as `// kind mesh: blends` what their parts
 //! may need. An output exports a struct of its targets and a function: `SurfaceTargets` and
 //! `surface_write(Surface) -> SurfaceTargets`.
 
@@ -13,8 +13,6 @@ use std::fmt::Write as _;
 pub struct KindText<'a> {
     /// What the names of its exports begin with.
     pub name: &'a str,
-    /// Whether parts may leave out pixels whose alpha is below `Surface.cutoff`.
-    pub discards: bool,
     /// Whether parts may be blended with what is behind them.
     pub blends: bool,
     /// Whether parts may write `Surface.depth`.
@@ -31,13 +29,12 @@ impl<'a> KindText<'a> {
     pub fn declared(text: &'a str) -> Result<Option<Self>, String> {
         let Some(line) = text.lines().find_map(|line| line.strip_prefix("// kind ")) else { return Ok(None) };
         let (name, properties) = line.split_once(':').ok_or("// kind NAME: needs a colon")?;
-        let mut kind = Self { name, discards: false, blends: false, deep: false, moves: true };
+        let mut kind = Self { name, blends: false, deep: false, moves: true };
         for property in properties.split(',').map(str::trim).filter(|property| !property.is_empty()) {
             match property {
-                "discards" => kind.discards = true,
                 "blends" => kind.blends = true,
                 "deep" => kind.deep = true,
-                other => return Err(format!("// kind {name}: `{other}` is not discards, blends or deep")),
+                other => return Err(format!("// kind {name}: `{other}` is not blends or deep")),
             }
         }
         Ok(Some(kind))
@@ -104,7 +101,8 @@ pub fn targets_of(name: &str) -> String {
     format!("{}{rest}Targets", first.to_uppercase())
 }
 
-/// The name of the fragment entry of an output: for parts that discard, and for those that write their own depth.
+/// The name of the fragment entry of an output: for parts that discard (cut out, or dithered), and for those that write their
+/// own depth.
 pub fn fragment_entry(output: &str, discards: bool, deep: bool) -> String {
     format!("{output}{}{}", if discards { "_cut" } else { "" }, if deep { "_deep" } else { "" })
 }
@@ -143,7 +141,7 @@ pub fn entries(kind: &KindText<'_>, outputs: &[OutputText]) -> String {
 fn {entry}(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> {varyings} {{
     let placed = {name}_place(entry, vertex);
     return {varyings}(
-        view.clip_from_world * vec4<f32>(placed.position, 1.0), placed.position, placed.normal, placed.tangent, placed.uv,
+        scene_clip(entry, placed.position), placed.position, placed.normal, placed.tangent, placed.uv,
         placed.values, scene_words(placed, entry){last});
 }}
 
@@ -159,7 +157,7 @@ fn {entry}(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> {vary
 
 @vertex
 fn vertex_depth(@builtin(vertex_index) vertex: u32, @location(0) entry: u32) -> Position {{
-    return Position(view.clip_from_world * vec4<f32>({name}_place(entry, vertex).position, 1.0));
+    return Position(scene_clip(entry, {name}_place(entry, vertex).position));
 }}
 
 @fragment
@@ -168,10 +166,8 @@ fn depth() {{}}
 "
     )
     .expect("a string");
-    if kind.discards {
-        let seen = seen(name, false);
-        write!(text, "@fragment\nfn depth_cut({ARGUMENTS}) {{\n{seen}{DISCARD}}}\n\n").expect("a string");
-    }
+    let seen_whole = seen(name, false);
+    write!(text, "@fragment\nfn depth_cut({ARGUMENTS}) {{\n{seen_whole}{DISCARD}}}\n\n").expect("a string");
     if kind.deep {
         for discards in [false, true] {
             let entry = fragment_entry("depth", discards, true);
@@ -194,9 +190,8 @@ fn depth() {{}}
 pub fn fragments(kind: &KindText<'_>, output: &OutputText) -> String {
     let mut text = String::new();
     for deep in [false, true].into_iter().filter(|deep| kind.deep || !deep) {
-        for discards in [false, true].into_iter().filter(|discards| kind.discards || !discards) {
-            text += &fragment(kind, output, discards, deep);
-        }
+        text += &fragment(kind, output, false, deep);
+        text += &fragment(kind, output, true, deep);
     }
     text
 }
@@ -228,7 +223,7 @@ fn seen(kind: &str, moves: bool) -> String {
     format!(
         "    let surface = {kind}_surface(SceneFragment(
         in.position, in.normal, in.tangent, in.uv, in.values, in.words.xyz, words_instance(in.words), {last}, in.clip,
-        words_outside(in.words, is_front)));
+        words_outside(in.words, is_front), words_level(in.words), words_fade(in.words)));
 "
     )
 }
@@ -236,7 +231,7 @@ fn seen(kind: &str, moves: bool) -> String {
 const ARGUMENTS: &str = "in: Varyings, @builtin(front_facing) is_front: bool";
 
 /// After everything that needs derivatives.
-const DISCARD: &str = "    if surface.alpha < surface.cutoff {\n        discard;\n    }\n";
+const DISCARD: &str = "    if surface.alpha < surface.cutoff || is_left_out(in.words.w, in.clip.xy) {\n        discard;\n    }\n";
 
 /// What every vertex hands over. Pipelines of one view give equal bits.
 const VARYINGS: &str = "

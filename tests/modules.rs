@@ -249,8 +249,8 @@ fn cameras_allow_what_the_reference_says() {
         pixels: 2.0,
         near: 0.25,
         perspective: 1.0,
-        unused_a: 0.0,
-        unused_b: 0.0,
+        pixel_count: 1e6,
+        unused: 0.0,
     };
     let spheres =
         [[1.0, 2.0, -97.0, 0.0], [11.0, -6.0, -7.0, 1.0], [1.0, 2.0, 2.0, 0.9], [4.0, 6.0, 15.0, 1.0]];

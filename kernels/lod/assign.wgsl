@@ -1,8 +1,7 @@
-// Shares out the allowed displacement of each instance of a character: among its bones (for gates), its influences (for
-// skinning) and its mesh. A thread handles one instance.
+// Shares out the allowed displacement of each instance of a character: among its bones (for gates) and its influences (for
+// skinning). The mesh is skinned at the finest level that is drawn. A thread handles one instance.
 import package::wgsl::animation::gate_state::{FULL_WEIGHT, LOD_HIDDEN, Lod, OMEGA_ONE};
 import package::wgsl::lod::instance::{INSTANCE_CARRIES, SceneInstance};
-import package::wgsl::lod::object::OBJECT_LEVELS;
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
 // Steps to which the influence fade is rounded: an instance that hardly moves keeps its fade.
@@ -15,11 +14,7 @@ struct AssignParams {
     first: u32,
     // Number of instances.
     instances: u32,
-    // Number of levels, 1 to 8.
-    levels: u32,
-    // The fraction of the allowed displacement that levels of detail of the mesh may use, 0 to 1.
-    mesh_fraction: f32,
-    // The fraction that unsampled bones may use, 0 to 1.
+    // The fraction of the allowed displacement that unsampled bones may use, 0 to 1.
     bone_fraction: f32,
     // The fraction that influence fades may use, 0 to 1.
     influence_fraction: f32,
@@ -29,8 +24,6 @@ struct AssignParams {
     stray: f32,
     // Largest number of influences of a visible instance, 1 to 8.
     max_influences: u32,
-    // The error of each level in the model's units, ascending from 0.
-    errors: array<vec4<f32>, 2>,
 }
 
 @group(0) @binding(0) var<uniform> params: AssignParams;
@@ -46,19 +39,9 @@ struct AssignParams {
 // All instances of the scene.
 // length: instances
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
-
-// The coarsest level whose error is at most its fraction of `within`. Driver workaround: where uniforms alone decide loops and
-// branches, lavapipe compiles the kernel again in each submission. The loop therefore also depends on `within`, which is at
-// least 0.
-fn level_within(within: f32) -> u32 {
-    var level = 0u;
-    for (var coarser = 1u; coarser < select(0u, min(params.levels, OBJECT_LEVELS), within >= 0.0); coarser++) {
-        if params.errors[coarser >> 2u][coarser & 3u] <= params.mesh_fraction * within {
-            level = coarser;
-        }
-    }
-    return level;
-}
+// Per instance of the scene: the finest level that the frame's views draw.
+// length: instances
+@group(0) @binding(5) var<storage, read> finest: array<u32>;
 
 // Influence fade that the budget permits, 0 to 1; 1 if a complete fade displaces nothing.
 fn fade_within(within: f32) -> f32 {
@@ -83,5 +66,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let carries = (instances[params.first + instance].flags & INSTANCE_CARRIES) != 0u;
     let units = u32(min(floor(params.bone_fraction * within / params.unit), MAX_UNITS));
     lods[instance] = Lod(OMEGA_ONE, select(units, 0u, carries), FULL_WEIGHT, 0u);
-    instance_lods[instance] = InstanceLod(fade_within(within), params.max_influences, level_within(within));
+    instance_lods[instance] = InstanceLod(fade_within(within), params.max_influences, finest[params.first + instance]);
 }

@@ -1,7 +1,8 @@
 // Lists of the instances that a view sees, per level of detail and orientation (mirrored or not), in ascending order. In the
 // first stage, a workgroup per object computes prefix sums of its blocks' counts, and the instance counts of its draws. In the
 // second stage, a thread per instance writes its list entry.
-import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw, decision_list, decision_morph, list_entry_word};
+import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw};
+import package::wgsl::lod::transition::{NO_LIST, transition_entries};
 
 // One of the constants below.
 override STAGE: u32 = 0u;
@@ -12,7 +13,7 @@ const SUM: u32 = 0u;
 const PLACE: u32 = 1u;
 
 // Runs of an object's blocks that are summed in parallel, with one thread per run and list.
-const RUNS: u32 = 16u;
+const RUNS: u32 = 8u;
 // Number of blocks per workgroup in the stage `PLACE`.
 const PLACED_BLOCKS: u32 = 4u;
 
@@ -39,7 +40,7 @@ struct ListParams {
 // The sum per run and list.
 var<workgroup> sums: array<u32, 256>;
 // Per block and list: one bit per instance of the block, in two words.
-var<workgroup> members: array<atomic<u32>, 128>;
+var<workgroup> members: array<atomic<u32>, 256>;
 
 // Computes the prefix sums of an object's blocks, and the instance counts of its draws.
 fn sum(object: LodObject, lane: u32) {
@@ -73,42 +74,47 @@ fn sum(object: LodObject, lane: u32) {
     }
 }
 
-fn entry_of(index: u32, decision: u32) -> u32 {
-    return list_entry_word(index, decision_morph(decision));
+// Marks an instance of a block as a member of a list.
+fn mark(list: u32, lane: u32) {
+    if list != NO_LIST {
+        atomicOr(&members[2u * (OBJECT_LISTS * (lane / BLOCK) + list) + lane % BLOCK / 32u], 1u << (lane % 32u));
+    }
 }
 
-// Writes the list entry of an instance.
-fn place(block: u32, lane: u32) {
-    if lane < 2u * OBJECT_LISTS * PLACED_BLOCKS {
-        atomicStore(&members[lane], 0u);
+// Writes an instance's entry into a list.
+fn write_entry(object: LodObject, block: u32, lane: u32, list: u32, entry: u32) {
+    if list == NO_LIST {
+        return;
     }
+    let own = 2u * (OBJECT_LISTS * (lane / BLOCK) + list);
+    let word = lane % BLOCK / 32u;
+    var rank = countOneBits(atomicLoad(&members[own + word]) & ((1u << (lane % 32u)) - 1u));
+    if word > 0u {
+        rank += countOneBits(atomicLoad(&members[own]));
+    }
+    lists[object.first_list + list * object.instances + counts[OBJECT_LISTS * block + list] + rank] = entry;
+}
+
+// Writes the list entries of an instance.
+fn place(block: u32, lane: u32) {
+    atomicStore(&members[lane], 0u);
     workgroupBarrier();
     let index = BLOCK * block + lane % BLOCK;
     var owner = NO_OBJECT;
     if block < params.blocks {
         owner = block_objects[block];
     }
+    let object = objects[select(owner, 0u, owner == NO_OBJECT)];
     var decision = 0u;
     if owner != NO_OBJECT {
         decision = decisions[index];
     }
-    let bit = lane % 32u;
-    let word = lane % BLOCK / 32u;
-    let list = max(decision_list(decision), 1u) - 1u;
-    let own = 2u * (OBJECT_LISTS * (lane / BLOCK) + list);
-    if decision > 0u {
-        atomicOr(&members[own + word], 1u << bit);
-    }
+    let entries = transition_entries(object, decision, index - object.first);
+    mark(entries.first, lane);
+    mark(entries.second, lane);
     workgroupBarrier();
-    if decision > 0u {
-        let object = objects[owner];
-        var rank = countOneBits(atomicLoad(&members[own + word]) & ((1u << bit) - 1u));
-        if word > 0u {
-            rank += countOneBits(atomicLoad(&members[own]));
-        }
-        let to = object.first_list + list * object.instances + counts[OBJECT_LISTS * block + list] + rank;
-        lists[to] = entry_of(index - object.first, decision);
-    }
+    write_entry(object, block, lane, entries.first, entries.first_entry);
+    write_entry(object, block, lane, entries.second, entries.second_entry);
 }
 
 @compute @workgroup_size(256)

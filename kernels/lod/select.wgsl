@@ -1,16 +1,15 @@
-// Decides for each instance of a scene whether a view sees it, and at which level of detail. A workgroup handles a block of
-// instances, a thread one instance.
+// Finds the instances of a scene that a view sees: their metric, placement and allowed displacement. A thread handles one
+// instance. `lod/decide` then chooses their levels of detail.
 import package::wgsl::lod::allowed::{MAX_ALLOWED, allowed_in_model, camera_allows};
-import package::wgsl::lod::criterion::criterion_metric;
+import package::wgsl::lod::criterion::{MAX_METRIC, Placed, criterion_metric};
 import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, Axes, SceneInstance, instance_axes, instance_flags_mask, instance_position};
-import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, decision_list, object_flags_shown};
-import package::wgsl::lod::transition::transition_decision;
+import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, UNSEEN_METRIC, decision_seen, metric_word, object_flags_never_culled, object_flags_shown};
 import package::wgsl::lod::view::{POSITION_SLACK, SelectView, VIEW_CAMERAS};
 
 // Allowed displacement of an instance that no view of the frame has seen.
 const UNSEEN_ALLOWED: f32 = -1.0;
-// Upper bound of all metrics.
-const MAX_METRIC: f32 = 3e38;
+// Largest motion that counts, in picture heights per second.
+const MAX_MOTION: f32 = 4.0;
 
 // The view. Its `blocks` may be fewer than `block_objects` has.
 @group(0) @binding(0) var<uniform> view: SelectView;
@@ -26,22 +25,16 @@ const MAX_METRIC: f32 = 3e38;
 // `UNSEEN_ALLOWED` if none sees it.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
-// Out, per instance: 0 if the view does not see it, else the decision word with list 2 · level + mirrored. In: the decisions of
-// the last frame, if `SelectView::is_next` is 1.
+// Out, per instance: its metric word; `UNSEEN_METRIC` if the view does not see it.
 // length: BLOCK * blocks
-@group(0) @binding(5) var<storage, read_write> decisions: array<u32>;
+@group(0) @binding(5) var<storage, read_write> metrics: array<u32>;
 // Out, per visible instance: three rows of the transform from model space to positions relative to the corner of the view's
-// cell.
+// cell. In: those of the last frame, if `SelectView::is_next` is 1.
 // length: BLOCK * blocks
 @group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
-// Out, per block: the number of its instances in each of `OBJECT_LISTS` lists.
-// length: OBJECT_LISTS * blocks
-@group(0) @binding(7) var<storage, read_write> counts: array<u32>;
-// Out, per instance: the decision of the last frame; 0 if the view was not in it.
+// Per instance: the decision of the last frame, if `SelectView::is_next` is 1.
 // length: BLOCK * blocks
-@group(0) @binding(8) var<storage, read_write> last_decisions: array<u32>;
-
-var<workgroup> tally: array<atomic<u32>, 16>;
+@group(0) @binding(7) var<storage, read> decisions: array<u32>;
 
 // Whether the view may see the instance at all, regardless of its position.
 fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
@@ -61,6 +54,33 @@ fn is_inside(center: vec3<f32>, radius: f32) -> bool {
     return least >= 0.0;
 }
 
+// Position of a point in the picture, from the middle, in units of half the picture's height; far outside for a point behind
+// the eye.
+fn in_picture(rows: array<vec4<f32>, 3>, point: vec3<f32>) -> vec2<f32> {
+    let at = vec4<f32>(point, 1.0);
+    let w = dot(rows[2], at);
+    return select(vec2<f32>(1e4), vec2<f32>(dot(rows[0], at), dot(rows[1], at)) / w, w > 0.0);
+}
+
+// Factor of the metric for what is perceived poorly (A section 6.4): an instance that crosses the picture, and one away from its
+// middle.
+fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
+    if object.motion == 0.0 && object.periphery == 0.0 {
+        return 1.0;
+    }
+    let now = in_picture(view.clip_rows, center);
+    var speed = 0.0;
+    if view.is_next != 0u && view.seconds > 0.0 && decision_seen(decisions[index]) != 0u {
+        let sphere = instances[index].bounding_sphere;
+        let last = placements[index];
+        let point = vec4<f32>(sphere.xyz, 1.0);
+        let last_center = vec3<f32>(dot(last[0], point), dot(last[1], point), dot(last[2], point));
+        // In heights of the picture.
+        speed = 0.5 * distance(now, in_picture(view.last_clip_rows, last_center)) / view.seconds;
+    }
+    return 1.0 + object.motion * min(speed, MAX_MOTION) + object.periphery * min(length(now), 1.0);
+}
+
 // A view's result for a visible sphere.
 struct Seen {
     // Smallest displacement that the view's cameras allow, in model units.
@@ -71,20 +91,20 @@ struct Seen {
 
 // Driver workaround: where uniforms alone decide loops and branches, lavapipe compiles the kernel again in each submission. The
 // loop therefore also depends on `seen`.
-fn seen_by(object: LodObject, center: vec3<f32>, radius: f32, scale: f32) -> Seen {
+fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
     let cameras = min(view.camera_count, VIEW_CAMERAS);
     var seen = Seen(MAX_ALLOWED, MAX_METRIC);
     for (var index = 0u; index < select(0u, cameras, seen.allowed >= 0.0); index++) {
         let camera = view.cameras[index];
-        let allowed = allowed_in_model(camera_allows(camera, center, radius), scale);
+        let allowed = allowed_in_model(camera_allows(camera, placed.center, placed.radius), scale);
         seen.allowed = min(seen.allowed, allowed);
-        seen.metric = min(seen.metric, criterion_metric(object, camera, center, allowed));
+        seen.metric = min(seen.metric, criterion_metric(object, camera, placed, allowed));
     }
     return seen;
 }
 
-// The decision word of an instance. Writes its placement and its allowed displacement.
-fn decide(index: u32, object: LodObject) -> u32 {
+// The metric word of an instance. Writes its placement and its allowed displacement.
+fn metric_of(index: u32, object: LodObject) -> u32 {
     let instance = instances[index];
     let before = select(allowed[index], UNSEEN_ALLOWED, view.is_first != 0u);
     if is_shown(instance, object) {
@@ -95,20 +115,21 @@ fn decide(index: u32, object: LodObject) -> u32 {
         let scale = max(max(abs(instance.scale.x), abs(instance.scale.y)), abs(instance.scale.z));
         // Grows by the rounding error of the center, so that the sphere still contains the instance.
         let radius = sphere.w * scale + POSITION_SLACK * (length(at) + scale * length(sphere.xyz));
-        if is_inside(center, radius) {
+        if object_flags_never_culled(object.flags) != 0u || is_inside(center, radius) {
+            let seen = seen_by(object, Placed(axes, at, center, radius), scale);
+            let factor = object.metric_scale * perceptual_factor(object, index, center);
             placements[index] = array<vec4<f32>, 3>(
                 vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x),
                 vec4<f32>(axes.x.y, axes.y.y, axes.z.y, at.y),
                 vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z));
-            let seen = seen_by(object, center, radius, scale);
             allowed[index] = select(seen.allowed, min(before, seen.allowed), before >= 0.0);
             let s = instance.scale;
             let is_mirrored = ((s.x < 0.0) != (s.y < 0.0)) != (s.z < 0.0);
-            return transition_decision(object, is_mirrored, seen.metric);
+            return metric_word(bitcast<u32>(min(factor * seen.metric, MAX_METRIC)), u32(is_mirrored));
         }
     }
     allowed[index] = before;
-    return 0u;
+    return UNSEEN_METRIC;
 }
 
 @compute @workgroup_size(64)
@@ -125,20 +146,6 @@ fn main(
     if owner == NO_OBJECT {
         return;
     }
-    if lane < OBJECT_LISTS {
-        atomicStore(&tally[lane], 0u);
-    }
-    workgroupBarrier();
     let index = BLOCK * block + lane;
-    let decision = decide(index, objects[owner]);
-    // Written without motion history too: a branch over uniforms alone would let lavapipe compile the kernel anew.
-    last_decisions[index] = select(0u, decisions[index], view.is_next != 0u);
-    decisions[index] = decision;
-    if decision > 0u {
-        atomicAdd(&tally[decision_list(decision) - 1u], 1u);
-    }
-    workgroupBarrier();
-    if lane < OBJECT_LISTS {
-        counts[OBJECT_LISTS * block + lane] = atomicLoad(&tally[lane]);
-    }
+    metrics[index] = metric_of(index, objects[owner]);
 }

@@ -1,6 +1,7 @@
 // Sorted draws, of objects that are drawn instance by instance. A thread writes the draw of one part of one instance, and the
 // draw's list. The level of detail is the one at which the view sees the instance.
-import package::wgsl::lod::object::{SceneDraw, decision_list, decision_morph, list_entry_word};
+import package::wgsl::lod::object::{LodObject, SceneDraw};
+import package::wgsl::lod::transition::sorted_entry;
 
 // A part of an instance.
 struct SortedDraw {
@@ -10,6 +11,8 @@ struct SortedDraw {
     first_draw: u32,
     // The index of the instance in its object.
     slot: u32,
+    // The index of the object.
+    object: u32,
 }
 
 struct SortedParams {
@@ -18,7 +21,7 @@ struct SortedParams {
 }
 
 @group(0) @binding(0) var<uniform> params: SortedParams;
-// The parts to draw. Their instances and draws must lie inside `decisions` and `arguments`.
+// The parts to draw. Their instances, draws and objects must lie inside `decisions`, `arguments` and `objects`.
 // length: sorted
 @group(0) @binding(1) var<storage, read> sorted: array<SortedDraw>;
 // The decision word of each instance of the scene.
@@ -31,6 +34,9 @@ struct SortedParams {
 // Out: the single list entry of each draw.
 // length: sorted
 @group(0) @binding(5) var<storage, read_write> entries: array<u32>;
+// The objects.
+// length: 1
+@group(0) @binding(6) var<storage, read> objects: array<LodObject>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -40,11 +46,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     }
     let single = sorted[index];
     let decision = decisions[single.instance];
-    entries[index] = list_entry_word(single.slot, decision_morph(decision));
     if decision == 0u {
+        entries[index] = single.slot;
         draws[index] = SceneDraw(0u, 0u, 0u, 0u, 0u);
         return;
     }
-    let draw = arguments[single.first_draw + decision_list(decision) - 1u];
+    let entry = sorted_entry(objects[single.object], decision, single.slot);
+    entries[index] = entry.word;
+    let draw = arguments[single.first_draw + entry.list];
     draws[index] = SceneDraw(draw.index_count, 1u, draw.first_index, draw.base_vertex, 0u);
 }

@@ -98,14 +98,19 @@ impl LodCamera {
         is_right.then_some(Self {
             eye,
             focal,
-            ahead: ahead.unwrap_or(DVec3::ZERO).as_vec3(),
+            ahead: ahead.unwrap_or_else(|| into_depth(if reversed { -z } else { z })).as_vec3(),
             pixels,
             near: up(near),
             perspective: if perspective.is_some() { 1.0 } else { 0.0 },
-            unused_a: 0.0,
-            unused_b: 0.0,
+            pixel_count: viewport[0] as f32 * viewport[1] as f32,
+            unused: 0.0,
         })
     }
+}
+
+/// The direction in which the depth of a parallel projection grows.
+fn into_depth(depth: DVec4) -> DVec3 {
+    depth.truncate().normalize_or(DVec3::NEG_Z)
 }
 
 fn check_view(view_from_cell: &Mat4) -> Result<(), InputError> {

@@ -1,14 +1,15 @@
 //! Level of detail and culling of a scene's instances.
 //!
-//! - [`select`]: which instances a view sees, and at which level of detail.
+//! - [`select`]: which instances a view sees, and their metric.
+//! - [`decide`]: their levels of detail, from metrics, hysteresis and transitions.
 //! - [`list`]: the lists from which the view draws them.
 //! - [`sorted`]: draws of single instances.
 //! - [`assign`]: the detail of gates and skinning, from the displacement that the views of a frame allow.
 //! - [`attach`]: placements of meshes that follow bones, once the bones are posed.
 //!
 //! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep their own instances and
-//! draws. In a frame, record [`select`] and [`list`] for each view; the first view is marked as such
-//! ([`SelectView::is_first`](SelectView)). Then record [`assign`] for each character, and draw from the lists.
+//! draws. In a frame, record [`select`], [`decide`] and [`list`] for each view; the first view is marked as
+//! such ([`SelectView::is_first`](SelectView)). Then record [`assign`] for each character, and draw from the lists.
 //!
 //! Instances of all objects lie in one buffer of [`SceneInstance`]; those of an object take whole blocks of [`BLOCK`].
 //! A view ([`SelectView`]) culls them by its planes ([`planes`]). Up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) limit
@@ -23,17 +24,17 @@ pub mod allowed;
 pub mod assign;
 pub mod attach;
 mod camera;
-#[doc(hidden)]
 pub mod criterion;
+pub mod decide;
 mod instance;
 pub mod list;
 #[doc(hidden)]
 pub mod object;
 pub mod select;
 pub mod sorted;
-#[doc(hidden)]
 pub mod transition;
 
+pub use crate::shared::lod::budget_state::BudgetState;
 pub use crate::shared::lod::instance::{
     CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, SceneInstance,
     instance_flags_mask, instance_flags_word,

@@ -2,16 +2,12 @@
 
 use super::{BLOCK, LodObject, OBJECT_LEVELS};
 use crate::InputError;
-use crate::shared::lod::object::object_flags_transition;
-use crate::shared::lod::transition::TRANSITION_HARD;
+use crate::shared::lod::object::{NO_RANK, object_flags_transition};
+use crate::shared::lod::transition::TRANSITION_GEOMORPH;
 
-/// Checks the number of an object's levels and their errors. With `begins_at_0`, the error of level 0 must be 0.
-pub(super) fn check_levels(
-    path: &str,
-    levels: u32,
-    errors: &[f32],
-    begins_at_0: bool,
-) -> Result<(), InputError> {
+/// Checks the number of an object's levels and their thresholds. With `begins_at_0`, that of level 0 must be 0.
+fn check_levels(path: &str, object: &LodObject, begins_at_0: bool) -> Result<(), InputError> {
+    let levels = object.levels;
     if !(1..=OBJECT_LEVELS).contains(&levels) {
         return Err(InputError::new(
             format!("{path}.levels"),
@@ -20,12 +16,12 @@ pub(super) fn check_levels(
         ));
     }
     let mut least = 0.0;
-    for (level, error) in errors.iter().enumerate().take(levels as usize) {
-        if !(least..f32::INFINITY).contains(error) || begins_at_0 && level == 0 && *error > 0.0 {
+    for (level, threshold) in object.thresholds.as_flattened().iter().enumerate().take(levels as usize) {
+        if !(least..f32::INFINITY).contains(threshold) || begins_at_0 && level == 0 && *threshold > 0.0 {
             let bound = "must be finite, ascending, and 0 at level 0";
-            return Err(InputError::new(format!("{path}.errors[{level}]"), error, bound));
+            return Err(InputError::new(format!("{path}.thresholds[{level}]"), threshold, bound));
         }
-        least = *error;
+        least = *threshold;
     }
     Ok(())
 }
@@ -48,16 +44,30 @@ impl LodObject {
         first_list: 0,
         first_draw: 0,
         parts: 0,
-        mesh_fraction: 0.0,
+        metric_scale: 1.0,
         flags: 0,
-        errors: [[0.0; 4]; 2],
+        thresholds: [[0.0; 4]; 2],
+        finer: 1.0,
+        coarser: 1.0,
+        rate: 0.0,
+        motion: 0.0,
+        point: [0.0; 3],
+        periphery: 0.0,
+        half_size: [0.0; 3],
+        rank: NO_RANK,
+        fade_begin: 0.0,
+        fade_end: 0.0,
+        unused_a: 0,
+        unused_b: 0,
+        triangles: [[0; 4]; 2],
     };
 
     /// Checks the ranges. `path` is the object's path in error messages.
     ///
     /// # Errors
     /// [`InputError`] for instances that do not take whole blocks, for a number of levels beyond [`OBJECT_LEVELS`], for
-    /// errors that are not finite or descend, and for a fraction outside 0 to 1.
+    /// thresholds that are not finite or descend, for a scale of the metric that is not above 0, and for factors of which
+    /// the finer one is not in 0 to 1, or the coarser one below it.
     pub fn validate(&self, path: &str) -> Result<(), InputError> {
         for (field, value) in [("first", self.first), ("instances", self.instances)] {
             if !value.is_multiple_of(BLOCK) {
@@ -65,16 +75,18 @@ impl LodObject {
                 return Err(InputError::new(format!("{path}.{field}"), value, bound));
             }
         }
-        let begins_at_0 = object_flags_transition(self.flags) == TRANSITION_HARD;
-        check_levels(path, self.levels, self.errors.as_flattened(), begins_at_0)?;
-        check_fraction(format!("{path}.mesh_fraction"), self.mesh_fraction)
+        check_levels(path, self, object_flags_transition(self.flags) != TRANSITION_GEOMORPH)?;
+        let is_above_0 = |value: f32| value > 0.0 && value.is_finite();
+        let checked = [
+            ("metric_scale", self.metric_scale, is_above_0(self.metric_scale), "must be finite, and above 0"),
+            ("finer", self.finer, (0.0..=1.0).contains(&self.finer), "must be in 0..=1"),
+            ("coarser", self.coarser, self.coarser >= self.finer, "must be at least finer"),
+        ];
+        match checked.into_iter().find(|(_, _, is_right, _)| !is_right) {
+            Some((field, value, _, bound)) => Err(InputError::new(format!("{path}.{field}"), value, bound)),
+            None => Ok(()),
+        }
     }
-}
-
-/// The coarsest level whose error is at most `within`.
-pub fn level_within(levels: u32, errors: &[[f32; 4]; 2], within: f32) -> u32 {
-    let fits = |level: &u32| errors.as_flattened()[*level as usize] <= within;
-    (1..levels.min(OBJECT_LEVELS)).rev().find(fits).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -89,8 +101,7 @@ mod tests {
             first: 64,
             instances: 128,
             levels: 3,
-            mesh_fraction: 0.5,
-            errors: [[0.0, 0.1, 0.1, f32::NAN], [0.0; 4]],
+            thresholds: [[0.0, 0.1, 0.1, f32::NAN], [0.0; 4]],
             ..LodObject::NONE
         };
         assert_eq!(right.validate("objects[3]"), Ok(()));
@@ -99,22 +110,19 @@ mod tests {
         assert_eq!(refused(LodObject { instances: 65, ..right }), "objects[3].instances");
         assert_eq!(refused(LodObject { levels: 0, ..right }), "objects[3].levels");
         assert_eq!(refused(LodObject { levels: 9, ..right }), "objects[3].levels");
-        assert_eq!(refused(LodObject { levels: 4, ..right }), "objects[3].errors[3]");
-        let first = |error| [[error, 0.1, 0.1, 0.2], [0.0; 4]];
-        assert_eq!(refused(LodObject { errors: first(0.1), ..right }), "objects[3].errors[0]");
-        let flags = object_flags_word(1, TRANSITION_GEOMORPH, 0);
-        let morphs = LodObject { flags, errors: first(0.05), ..right };
+        assert_eq!(refused(LodObject { levels: 4, ..right }), "objects[3].thresholds[3]");
+        let first = |threshold| [[threshold, 0.1, 0.1, 0.2], [0.0; 4]];
+        assert_eq!(refused(LodObject { thresholds: first(0.1), ..right }), "objects[3].thresholds[0]");
+        let flags = object_flags_word(1, 0, 0, TRANSITION_GEOMORPH, 0);
+        let morphs = LodObject { flags, thresholds: first(0.05), ..right };
         assert_eq!(morphs.validate("objects[3]"), Ok(()));
-        assert_eq!(refused(LodObject { errors: first(-0.1), ..right }), "objects[3].errors[0]");
-        assert_eq!(refused(LodObject { levels: 5, errors: first(0.0), ..right }), "objects[3].errors[4]");
-        assert_eq!(refused(LodObject { mesh_fraction: 1.5, ..right }), "objects[3].mesh_fraction");
-    }
-
-    #[test]
-    fn the_coarsest_level_that_fits_is_taken() {
-        let errors = [[0.0, 0.1, 0.1, 0.2], [0.4, 0.8, 1.6, 3.2]];
-        let levels = [0.0, 0.09, 0.1, 0.3, 9.0].map(|within| level_within(8, &errors, within));
-        assert_eq!(levels, [0, 0, 2, 3, 7]);
-        assert_eq!(level_within(2, &errors, 9.0), 1);
+        assert_eq!(refused(LodObject { thresholds: first(-0.1), ..right }), "objects[3].thresholds[0]");
+        assert_eq!(
+            refused(LodObject { levels: 5, thresholds: first(0.0), ..right }),
+            "objects[3].thresholds[4]"
+        );
+        assert_eq!(refused(LodObject { metric_scale: 0.0, ..right }), "objects[3].metric_scale");
+        assert_eq!(refused(LodObject { finer: 1.1, ..right }), "objects[3].finer");
+        assert_eq!(refused(LodObject { coarser: 0.9, ..right }), "objects[3].coarser");
     }
 }

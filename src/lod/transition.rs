@@ -1,33 +1,43 @@
 //! Transitions between levels of detail. CPU reference of `wgsl/lod/transition.wgsl`.
 
-use super::object::level_within;
+use super::criterion::Criterion;
 use super::{LodObject, OBJECT_LEVELS};
-use crate::shared::lod::object::{MORPH_STEPS, decision_word, morph_word, object_flags_transition};
-use crate::shared::lod::transition::TRANSITION_GEOMORPH;
-#[cfg(feature = "gpu")]
-use crate::shared::lod::transition::TRANSITION_HARD;
+use crate::InputError;
+use crate::shared::lod::object::{
+    FADE_PROGRESS, FADE_STEPS, MORPH_STEPS, decision_level, decision_mirrored, decision_next, decision_seen,
+    decision_steps, decision_word, fade_word, list_entry_word, object_flags_timed, object_flags_transition,
+};
+use crate::shared::lod::transition::{
+    NO_LEVEL, TRANSITION_ALPHA, TRANSITION_CROSS_FADE, TRANSITION_DITHER, TRANSITION_FADE_IN,
+    TRANSITION_GEOMORPH, TRANSITION_HARD, TRANSITION_TWO_PHASE,
+};
 
 /// Error allowance for a surface between two levels, as a multiple of the coarser level's error. It comes from
 /// measurements and is not a bound (`docs/pixel-bounds.md`).
-#[cfg(feature = "gpu")]
 const ON_THE_WAY: f32 = 1.2;
 
 /// How an object's instances change from one level of detail to the next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+///
+/// Fades draw an instance twice while it changes. All but [`Transition::Dither`] blend: their blended level is drawn in
+/// [`Layer::Transparent`](crate::render::Layer::Transparent), after everything opaque. Layers other than colour show the
+/// level with the larger weight alone; a dither shows its pattern in every layer. Parts with blended materials change at
+/// once.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum Transition {
-    /// At once, when a coarser level's error is allowed.
+    /// At once.
     #[default]
     Hard,
     /// By a geomorph: the vertices of a level move towards their partners in the next coarser level
     /// ([`Mesh::partners`](crate::asset::Mesh::partners)).
     ///
-    /// The larger the allowed displacement, the further they move, in each view on its own. At the partners' positions
-    /// the picture equals that of the coarser level, so the level change itself is invisible.
+    /// The larger the metric, the further they move, in each view on its own. At the partners' positions the picture
+    /// equals that of the coarser level, so the level change itself is invisible.
     ///
-    /// A level begins to move when 1.2 times the next level's error is allowed. It arrives when 1.2 times the error of
-    /// the level after that is allowed. The factor covers the surface between two levels, whose error may exceed that
-    /// of both (figures in `docs/pixel-bounds.md`). The drawn level is therefore one to two levels finer than with
-    /// [`Transition::Hard`]. This costs about 1.7 times the triangles, and two loads per vertex.
+    /// With [`Criterion::Error`], a level begins to move when 1.2 times the next level's error is allowed. It arrives when
+    /// 1.2 times the error of the level after that is allowed. The factor covers the surface between two levels, whose
+    /// error may exceed that of both (figures in `docs/pixel-bounds.md`). The drawn level is therefore one to two levels
+    /// finer than with [`Transition::Hard`]. This costs about 1.7 times the triangles, and two loads per vertex.
     ///
     /// Vertex motion is part of velocity ([`Layer::Velocity`](crate::render::Layer::Velocity)). If the level of the
     /// last frame was finer, a vertex was at its own place; if it was coarser, at the place of the vertex that stood in
@@ -35,19 +45,113 @@ pub enum Transition {
     /// the last frame, and for all instances in the first frame after objects were added, removed or grew. An instance
     /// that took the slot of one removed since the last frame counts with the removed instance's level.
     Geomorph,
+    /// Both levels, each in its own pixels of an ordered pattern that stands still. Together they cover every pixel.
+    Dither(Pace),
+    /// Both levels blended, with weights λ and 1 − λ (thesis A, section 7.3.1). What is behind them shows through.
+    CrossFade(Pace),
+    /// The level opaque; the next one is blended over it with weight 1 − λ and without writing depth (section 7.3.2).
+    /// The level disappears at once in the end.
+    FadeIn(Pace),
+    /// The level opaque while the next one fades in over it, then the next one opaque while the level fades out
+    /// (section 7.3.3). Nothing behind shows through.
+    TwoPhase(Pace),
+    /// Levels change at once, and instances fade out to nothing (section 7.4). The numbers have the unit of the object's
+    /// criterion: distance, fraction of the viewport, or pixels per world unit. [`Criterion::Error`] has none.
+    Alpha {
+        /// Where instances begin to fade.
+        opaque: f32,
+        /// Where they have vanished, further away.
+        gone: f32,
+    },
+}
+
+/// How fast a fade runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pace {
+    /// With the metric: in a band around each threshold, of so large a fraction of it to either side, above 0 and below 1.
+    /// The band of [`Criterion::Error`] begins at the threshold and is twice as wide, so that no level is drawn before it
+    /// is allowed.
+    Band(f32),
+    /// In time: so many seconds from the moment when another level is right, above 0. Until then the old level is drawn
+    /// beyond what the criterion permits.
+    Seconds(f32),
+}
+
+impl Default for Pace {
+    /// A band of a tenth to either side, as thesis A's [90, 110].
+    fn default() -> Self {
+        Self::Band(0.1)
+    }
 }
 
 impl Transition {
-    /// Both transitions, with their names in scene files and on the command line.
-    pub const NAMES: [(&'static str, Self); 2] = [("hard", Self::Hard), ("geomorph", Self::Geomorph)];
+    /// Transitions without numbers of their own, with their names in scene files and on the command line. Fades have the
+    /// default pace.
+    pub const NAMES: [(&'static str, Self); 6] = [
+        ("hard", Self::Hard),
+        ("geomorph", Self::Geomorph),
+        ("dither", Self::Dither(Pace::Band(0.1))),
+        ("cross_fade", Self::CrossFade(Pace::Band(0.1))),
+        ("fade_in", Self::FadeIn(Pace::Band(0.1))),
+        ("two_phase", Self::TwoPhase(Pace::Band(0.1))),
+    ];
 
     /// Its code in an object's flags.
-    #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
             Self::Hard => TRANSITION_HARD,
             Self::Geomorph => TRANSITION_GEOMORPH,
+            Self::Dither(_) => TRANSITION_DITHER,
+            Self::CrossFade(_) => TRANSITION_CROSS_FADE,
+            Self::FadeIn(_) => TRANSITION_FADE_IN,
+            Self::TwoPhase(_) => TRANSITION_TWO_PHASE,
+            Self::Alpha { .. } => TRANSITION_ALPHA,
         }
+    }
+
+    /// The pace of a fade between levels.
+    pub fn pace(self) -> Option<Pace> {
+        match self {
+            Self::Dither(pace) | Self::CrossFade(pace) | Self::FadeIn(pace) | Self::TwoPhase(pace) => {
+                Some(pace)
+            }
+            Self::Hard | Self::Geomorph | Self::Alpha { .. } => None,
+        }
+    }
+
+    /// Whether instances may fade, which takes lists of their own.
+    pub(crate) fn fades(self) -> bool {
+        !matches!(self, Self::Hard | Self::Geomorph)
+    }
+
+    /// Checks the numbers, for an object with this criterion.
+    ///
+    /// # Errors
+    /// [`InputError`] for a pace outside its range, and for [`Transition::Alpha`] with [`Criterion::Error`] or with
+    /// `gone` not further away than `opaque`.
+    pub fn validate(self, criterion: &Criterion) -> Result<(), InputError> {
+        match self.pace() {
+            Some(Pace::Band(band)) if !(band > 0.0 && band < 1.0) => {
+                return Err(InputError::new("transition.band", band, "must be above 0 and below 1"));
+            }
+            Some(Pace::Seconds(seconds)) if !(seconds > 0.0 && seconds.is_finite()) => {
+                return Err(InputError::new("transition.seconds", seconds, "must be finite, and above 0"));
+            }
+            _ => {}
+        }
+        let Self::Alpha { opaque, gone } = self else { return Ok(()) };
+        let metrics = [opaque, gone].map(|value| criterion.metric_of(value));
+        let [Some(begin), Some(end)] = metrics else {
+            let bound = "needs a criterion with distances, sizes or magnifications";
+            return Err(InputError::new("transition", "alpha", bound));
+        };
+        if !(begin >= 0.0 && begin.is_finite()) {
+            return Err(InputError::new("transition.opaque", opaque, "must be finite, and above 0"));
+        }
+        if end > begin && end.is_finite() {
+            return Ok(());
+        }
+        Err(InputError::new("transition.gone", gone, format!("must be further away than opaque, {opaque}")))
     }
 
     /// Threshold per level: the smallest metric at which the level is drawn. Input: thresholds of the levels without a
@@ -56,37 +160,186 @@ impl Transition {
     /// With a geomorph, the threshold is where the level begins to move: [`ON_THE_WAY`] times the next level's error.
     /// Level 0 is drawn below its threshold too. For the last level, twice its own error takes the place of the next
     /// level's.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn begins(self, errors: &[f32]) -> Vec<f32> {
-        match (self, errors.last()) {
+    pub(crate) fn begins(self, thresholds: &[f32]) -> Vec<f32> {
+        match (self, thresholds.last()) {
             (Self::Geomorph, Some(last)) => {
-                let next = errors.iter().skip(1).copied().chain([2.0 * last]);
-                next.map(|error| ON_THE_WAY * error).collect()
+                let next = thresholds.iter().skip(1).copied().chain([2.0 * last]);
+                next.map(|threshold| (ON_THE_WAY * threshold).min(f32::MAX)).collect()
             }
-            _ => errors.to_vec(),
+            _ => thresholds.to_vec(),
         }
     }
 }
 
-/// The morph word of a level: its index and the number of steps out of [`MORPH_STEPS`]; 0 if it has not moved.
-pub fn morph_within(object: &LodObject, level: u32, metric: f32) -> u32 {
-    let errors = object.errors.as_flattened();
-    let begin = errors[level as usize];
-    if object_flags_transition(object.flags) != TRANSITION_GEOMORPH
-        || level + 1 >= object.levels.min(OBJECT_LEVELS)
-        || metric <= begin
-    {
-        return 0;
-    }
-    let way = ((metric - begin) / (errors[level as usize + 1] - begin)).min(1.0);
-    let steps = (MORPH_STEPS as f32 * way + 0.5) as u32;
-    if steps > 0 { morph_word(level, steps) } else { 0 }
+/// The smallest metric at which a level is drawn, for an instance whose level in the last frame was `last`, or
+/// [`NO_LEVEL`].
+pub fn threshold_of(object: &LodObject, level: u32, last: u32) -> f32 {
+    let factor = match last {
+        NO_LEVEL => 1.0,
+        last if level <= last => object.finer,
+        _ => object.coarser,
+    };
+    object.thresholds.as_flattened()[level as usize] * factor
 }
 
-/// The decision word for a visible instance: 1 + 2 · level + mirrored, and [`morph_within`].
-pub fn decision(object: &LodObject, is_mirrored: bool, metric: f32) -> u32 {
-    let level = level_within(object.levels, &object.errors, metric);
-    decision_word(1 + 2 * level + u32::from(is_mirrored), morph_within(object, level, metric))
+/// The coarsest level whose threshold is at most `metric`.
+pub fn level_within(object: &LodObject, metric: f32, last: u32) -> u32 {
+    let fits = |level: &u32| threshold_of(object, *level, last) <= metric;
+    (1..object.levels.min(OBJECT_LEVELS)).rev().find(fits).unwrap_or(0)
+}
+
+fn steps_between(metric: f32, begin: f32, end: f32, most: u32) -> u32 {
+    (most as f32 * ((metric - begin) / (end - begin)).clamp(0.0, 1.0) + 0.5) as u32
+}
+
+/// The level of an instance in the last frame, or [`NO_LEVEL`]. A fade in time counts as the level that it leads to.
+pub fn last_level(object: &LodObject, last: u32) -> u32 {
+    match (decision_seen(last), decision_steps(last) > 0 && object_flags_timed(object.flags) != 0) {
+        (0, _) => NO_LEVEL,
+        (_, true) => decision_next(last),
+        (_, false) => decision_level(last),
+    }
+}
+
+fn settled(level: u32, mirrored: u32) -> u32 {
+    decision_word(1, mirrored, level, level, 0)
+}
+
+fn morphing(object: &LodObject, metric: f32, mirrored: u32) -> u32 {
+    let level = level_within(object, metric, NO_LEVEL);
+    if level + 1 >= object.levels.min(OBJECT_LEVELS) {
+        return settled(level, mirrored);
+    }
+    let [begin, end] = [level, level + 1].map(|level| threshold_of(object, level, NO_LEVEL));
+    decision_word(1, mirrored, level, level, steps_between(metric, begin, end, MORPH_STEPS))
+}
+
+fn fading_in_band(object: &LodObject, metric: f32, mirrored: u32) -> u32 {
+    let is_passed = |level: &u32| threshold_of(object, *level, 0) <= metric;
+    let levels = object.levels.min(OBJECT_LEVELS);
+    let level = (1..levels).rev().find(is_passed).unwrap_or(0);
+    let next = level + 1;
+    if next >= levels {
+        return settled(level, mirrored);
+    }
+    let [begin, end] = [next, 0].map(|last| threshold_of(object, next, last));
+    match steps_between(metric, begin, end, FADE_PROGRESS) {
+        0 => settled(level, mirrored),
+        FADE_PROGRESS => settled(next, mirrored),
+        steps => decision_word(1, mirrored, level, next, steps),
+    }
+}
+
+fn fading_in_time(object: &LodObject, level: u32, mirrored: u32, last: u32, seconds: f32) -> u32 {
+    if decision_seen(last) == 0 {
+        return settled(level, mirrored);
+    }
+    let (mut from, mut to, mut done) = (decision_level(last), decision_next(last), decision_steps(last));
+    if done == 0 {
+        to = level;
+    } else if level == from {
+        (from, to, done) = (to, from, FADE_PROGRESS - done);
+    }
+    if from == to {
+        return settled(from, mirrored);
+    }
+    let steps = done + (((object.rate * seconds).min(FADE_PROGRESS as f32) + 0.5) as u32).max(1);
+    match steps >= FADE_PROGRESS {
+        true => settled(to, mirrored),
+        false => decision_word(1, mirrored, from, to, steps),
+    }
+}
+
+/// What a decision depends on besides object and metric.
+#[derive(Debug, Clone, Copy)]
+pub struct Circumstances {
+    /// Factor of the metric, for a budget: 1 or more.
+    pub factor: f32,
+    /// Whether the placement mirrors.
+    pub is_mirrored: bool,
+    /// The view's decision in its last frame; 0 if there is none.
+    pub last: u32,
+    /// Seconds since that frame.
+    pub seconds: f32,
+    /// Whether all fades end.
+    pub ends_fades: bool,
+}
+
+/// The decision word for a visible instance.
+pub fn decision(object: &LodObject, metric: f32, circumstances: &Circumstances) -> u32 {
+    let Circumstances { factor, is_mirrored, last, seconds, ends_fades } = *circumstances;
+    let mirrored = u32::from(is_mirrored);
+    let transition = object_flags_transition(object.flags);
+    let is_fading = (TRANSITION_DITHER..=TRANSITION_TWO_PHASE).contains(&transition);
+    let is_timed = object_flags_timed(object.flags) != 0;
+    let coarsened = factor * metric;
+    if transition == TRANSITION_GEOMORPH {
+        return morphing(object, coarsened, mirrored);
+    }
+    if is_fading && !is_timed && !ends_fades {
+        return fading_in_band(object, coarsened, mirrored);
+    }
+    let held = if is_fading && !is_timed { NO_LEVEL } else { last_level(object, last) };
+    let level = level_within(object, coarsened, held);
+    if is_fading && is_timed && !ends_fades {
+        return fading_in_time(object, level, mirrored, last, seconds);
+    }
+    if transition != TRANSITION_ALPHA {
+        return settled(level, mirrored);
+    }
+    match steps_between(metric, object.fade_begin, object.fade_end, FADE_PROGRESS) {
+        FADE_PROGRESS => 0,
+        steps => decision_word(1, mirrored, level, level, steps),
+    }
+}
+
+/// The finest level that a decision draws.
+pub fn finest_of(decision: u32) -> u32 {
+    decision_level(decision).min(decision_next(decision))
+}
+
+/// The list entries of a decision: list and word, at most two. `index` is the instance's index in the object.
+pub fn entries(object: &LodObject, decision: u32, index: u32) -> Vec<(u32, u32)> {
+    if decision_seen(decision) == 0 {
+        return Vec::new();
+    }
+    let (level, next, steps) = (decision_level(decision), decision_next(decision), decision_steps(decision));
+    let mirrored = decision_mirrored(decision);
+    let solid = |level: u32, steps: u32| (2 * level + mirrored, list_entry_word(index, level, steps));
+    let fading = |level: u32, weight: u32, rest: u32| {
+        let word = list_entry_word(index, level, fade_word(weight, rest));
+        (2 * (object.levels + level) + mirrored, word)
+    };
+    if steps == 0 {
+        return vec![solid(level, 0)];
+    }
+    let left = left_of(steps);
+    let gained = FADE_STEPS - left;
+    match object_flags_transition(object.flags) {
+        TRANSITION_DITHER => vec![fading(level, left, 0), fading(next, left, 1)],
+        TRANSITION_CROSS_FADE => vec![fading(level, left, 0), fading(next, gained, 0)],
+        TRANSITION_FADE_IN => vec![solid(level, 0), fading(next, gained, 0)],
+        TRANSITION_TWO_PHASE if left > gained => vec![solid(level, 0), fading(next, 2 * gained, 0)],
+        TRANSITION_TWO_PHASE => vec![solid(next, 0), fading(level, 2 * left, 0)],
+        TRANSITION_ALPHA => vec![fading(level, left, 0)],
+        _ => vec![solid(level, steps)],
+    }
+}
+
+/// The list and the entry of a visible instance that is drawn by itself.
+pub fn sorted_entry(object: &LodObject, decision: u32, index: u32) -> (u32, u32) {
+    let steps = decision_steps(decision);
+    let (level, word) = match object_flags_transition(object.flags) {
+        TRANSITION_GEOMORPH => (decision_level(decision), steps),
+        TRANSITION_ALPHA => (decision_level(decision), fade_word(left_of(steps), 0)),
+        _ if 2 * steps > FADE_PROGRESS => (decision_next(decision), 0),
+        _ => (decision_level(decision), 0),
+    };
+    (2 * level + decision_mirrored(decision), list_entry_word(index, level, word))
+}
+
+fn left_of(steps: u32) -> u32 {
+    FADE_STEPS - (steps * FADE_STEPS + FADE_PROGRESS / 2) / FADE_PROGRESS
 }
 
 #[cfg(all(test, feature = "gpu"))]

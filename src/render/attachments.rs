@@ -24,6 +24,8 @@ pub enum Attachments {
     /// Positions (`Rgba32Float`) and object and instance numbers (`Rg32Uint`), with one sample per pixel. For
     /// [`Layer::Measure`] and [`Layer::Depth`].
     Measure,
+    /// One colour in linear light, as in [`Attachments::Color`]. For [`Layer::Levels`] and [`Layer::Depth`].
+    Levels,
     /// The colours that the caller's output writes. For [`Layer::Own`] and [`Layer::Depth`].
     Own(OutputProgram),
 }
@@ -39,6 +41,7 @@ impl Attachments {
             Self::Surface => &[Layer::Surface],
             Self::Velocity => &[Layer::Velocity],
             Self::Measure => &[Layer::Measure],
+            Self::Levels => &[Layer::Levels],
             Self::Own(_) => &[Layer::Own],
         }
     }
@@ -56,7 +59,7 @@ impl Attachments {
     /// The required format of each of the first colour attachments.
     pub(super) fn wanted(&self) -> &'static [Wanted] {
         match self {
-            Self::Color => &[(is_float, "must be a colour of floats")],
+            Self::Color | Self::Levels => &[(is_float, "must be a colour of floats")],
             Self::Surface => &[
                 (
                     |format| matches!(format, Format::Rgba16Float | Format::Rgba32Float),

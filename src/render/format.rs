@@ -86,6 +86,11 @@ impl TargetFormat {
         Self::holding(Attachments::Velocity, &[Format::Rg16Float])
     }
 
+    /// For [`Layer::Levels`]: `Rgba8UnormSrgb`, `Depth32Float` that grows with distance, and one sample.
+    pub fn levels() -> Self {
+        Self::holding(Attachments::Levels, &[Format::Rgba8UnormSrgb])
+    }
+
     /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, `Depth32Float` that grows with distance, and one sample.
     /// The colours take 24 of the 32 bytes per sample that WebGPU allows.
     pub fn measure() -> Self {

@@ -53,6 +53,9 @@ pub enum Layer {
     /// Positions are relative to the corner of the view's cell ([`Camera::cell`](crate::scene::Camera::cell)). On
     /// reliefs, the position is that of the point that the ray meets.
     Measure,
+    /// Surfaces coloured by the level of detail of their instance, with depth: red for the finest, then orange, yellow, green,
+    /// teal, blue, indigo, violet. For debugging.
+    Levels,
     /// The colours that the caller's output writes ([`OutputProgram`](super::OutputProgram)), with depth.
     Own,
 }
@@ -67,6 +70,7 @@ impl Layer {
             Self::Surface => "surface",
             Self::Velocity => "velocity",
             Self::Measure => "measure",
+            Self::Levels => "levels",
             Self::Own => "",
         }
     }
@@ -80,7 +84,7 @@ impl Layer {
     pub(crate) fn shown(self) -> Shown {
         match self {
             Self::Color | Self::Transparent | Self::Own => Shown::Lit,
-            Self::Surface => Shown::Surface,
+            Self::Surface | Self::Levels => Shown::Surface,
             Self::Depth | Self::Velocity | Self::Measure => Shown::Place,
         }
     }

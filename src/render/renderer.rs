@@ -13,10 +13,11 @@ use super::format::TargetFormat;
 use super::layer::Layer;
 use super::shading::Shading;
 use crate::gpu::{Gpu, foreign};
+use crate::lod::transition::Transition;
 use crate::lod::{OBJECT_LISTS, SceneDraw};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, Part, SortedDraws, SortedPart};
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::specialization::Specialization;
+use crate::scene::specialization::{Fade, Specialization};
 use crate::scene::{Scene, View};
 use crate::{Error, InputError};
 use pipelines::{PipelineKey, PipelineSource};
@@ -125,17 +126,21 @@ impl Renderer {
     /// Compiles the missing pipelines of these objects, with or without a sun's shadow.
     pub(crate) fn prepare_objects<'a>(
         &mut self,
-        objects: impl Iterator<Item = &'a dyn Drawable>,
+        objects: impl Iterator<Item = (&'a dyn Drawable, Transition)>,
         is_shadowed: bool,
     ) -> Result<(), Error> {
-        let parts: Vec<&Specialization> =
-            objects.flat_map(|object| object.parts()).map(|part| part.specialization).collect();
-        parts.iter().try_for_each(|part| self.check_names(part))?;
+        let parts = objects.flat_map(|(object, transition)| {
+            object.parts().map(move |part| (part.specialization, transition))
+        });
+        let parts: Vec<(&Specialization, Transition)> = parts.collect();
+        parts.iter().try_for_each(|(part, _)| self.check_names(part))?;
         let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
-            for part in parts.iter().filter(|part| is_in(part, layer)) {
-                for is_flipped in [false, true] {
-                    self.compile(self.key(layer, part, is_flipped, is_shadowed))?;
+            for (part, transition) in &parts {
+                for fade in fades_of(part, *transition, layer) {
+                    for is_flipped in [false, true] {
+                        self.compile(self.key(layer, part, is_flipped, is_shadowed).fading(fade))?;
+                    }
                 }
             }
         }
@@ -169,8 +174,8 @@ impl Renderer {
     /// group 3, viewport, scissor and stencil reference are the caller's. The pass must have the attachments and
     /// samples of the renderer's format and belong to its device; wgpu checks this.
     ///
-    /// Each object takes an indirect draw for each part and level, and twice that if only some of its instances are
-    /// mirrored.
+    /// Each object takes an indirect draw for each part and level, twice that if only some of its instances are mirrored, and
+    /// twice that if its levels fade.
     ///
     /// A render bundle shows later recordings of the view too, but nothing checks whether the last frame recorded the
     /// view. Record the bundle anew after objects were added or grew, after materials changed, and when an object gets
@@ -199,7 +204,7 @@ impl Renderer {
             return Err(foreign("pass"));
         }
         if layer == Layer::Transparent {
-            self.check(&drawn, objects.iter().copied(), layer)?;
+            self.draw_objects(pass, &drawn, objects.iter().copied(), layer)?;
             if let Some(sorted) = scene.sorted_draws(view) {
                 self.draw_sorted(pass, &drawn, &sorted);
             }
@@ -255,9 +260,10 @@ impl Renderer {
         sorted: &SortedDraws<'a>,
     ) {
         pass.set_bind_group(0, view.group);
-        for SortedPart { drawable, part, draw, is_mirrored } in &sorted.parts {
+        for SortedPart { drawable, part, draw, is_mirrored, transition } in &sorted.parts {
             let is_flipped = *is_mirrored != view.mirrors;
-            let pipeline = self.pipeline(Layer::Transparent, part.specialization, is_flipped, view);
+            let fade = sorted_fade(*transition);
+            let pipeline = self.pipeline(Layer::Transparent, part.specialization, (is_flipped, fade), view);
             let (Some(pipeline), Some(group)) = (pipeline, drawable.group()) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, group);
@@ -278,10 +284,10 @@ impl Renderer {
         &self,
         layer: Layer,
         part: &Specialization,
-        is_flipped: bool,
+        (is_flipped, fade): (bool, Fade),
         view: &DrawnView<'_>,
     ) -> Option<&wgpu::RenderPipeline> {
-        self.pipelines.get(&self.key(layer, part, is_flipped, view.is_shadowed))
+        self.pipelines.get(&self.key(layer, part, is_flipped, view.is_shadowed).fading(fade))
     }
 
     /// Draws one part of an object, given by its index, in a layer that shows it.
@@ -293,36 +299,65 @@ impl Renderer {
         (index, part): (u32, Part<'a>),
         layer: Layer,
     ) {
-        if !is_in(part.specialization, layer) {
+        let mut lists = lists_of(part.specialization, object.transition, layer).peekable();
+        if lists.peek().is_none() {
             return;
         }
         pass.set_bind_group(2, part.group);
-        for is_mirrored in [false, true] {
-            let is_flipped = is_mirrored != view.mirrors;
-            let pipeline = self.pipeline(layer, part.specialization, is_flipped, view);
-            let is_listed = object.sides[usize::from(is_mirrored)];
-            let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
-            pass.set_pipeline(pipeline);
-            draw_lists(pass, view, object, index, is_mirrored);
+        for fade in lists {
+            for is_mirrored in [false, true] {
+                let is_flipped = is_mirrored != view.mirrors;
+                let pipeline = self.pipeline(layer, part.specialization, (is_flipped, fade), view);
+                let is_listed = object.sides[usize::from(is_mirrored)];
+                let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
+                pass.set_pipeline(pipeline);
+                draw_lists(pass, view, object, index, (is_mirrored, fade));
+            }
         }
     }
 }
 
-/// Whether a layer shows a part.
-fn is_in(part: &Specialization, layer: Layer) -> bool {
-    part.state().blended == (layer == Layer::Transparent)
+/// The lists of a part that a layer draws: how their instances fade.
+fn lists_of(part: &Specialization, transition: Transition, layer: Layer) -> impl Iterator<Item = Fade> {
+    let is_transparent = layer == Layer::Transparent;
+    let fading = match transition {
+        Transition::Hard | Transition::Geomorph => None,
+        Transition::Dither(_) => (!is_transparent).then_some(Fade::Dither),
+        _ if is_transparent => Some(Fade::Blend),
+        Transition::FadeIn(_) | Transition::TwoPhase(_) => None,
+        Transition::CrossFade(_) | Transition::Alpha { .. } => {
+            (layer != Layer::Color).then_some(Fade::Heavier)
+        }
+    };
+    let solid = (!is_transparent).then_some(Fade::None);
+    // Blended parts are drawn one by one.
+    solid.into_iter().chain(fading).filter(|_| !part.state().blended)
 }
 
-/// Draws a part of all mirrored instances, or of all others. List 2 · level + mirrored has a draw for each part.
+/// How a sorted draw of an object with this transition fades.
+fn sorted_fade(transition: Transition) -> Fade {
+    if matches!(transition, Transition::Alpha { .. }) { Fade::Blend } else { Fade::None }
+}
+
+/// The pipelines of a part in a layer, by how instances fade.
+fn fades_of(part: &Specialization, transition: Transition, layer: Layer) -> Vec<Fade> {
+    if part.state().blended && layer == Layer::Transparent {
+        return vec![sorted_fade(transition)];
+    }
+    lists_of(part, transition, layer).collect()
+}
+
+/// Draws a part of all mirrored instances, or of all others, of those that fade or of those that do not.
 fn draw_lists<'a>(
     pass: &mut impl ScenePass<'a>,
     view: &DrawnView<'a>,
     object: &DrawnObject<'a>,
     part: u32,
-    is_mirrored: bool,
+    (is_mirrored, fade): (bool, Fade),
 ) {
     let lod = object.lod;
-    for list in (0..lod.levels).map(|level| 2 * level + u32::from(is_mirrored)) {
+    let first = if fade == Fade::None { 0 } else { lod.levels };
+    for list in (first..first + lod.levels).map(|level| 2 * level + u32::from(is_mirrored)) {
         let first = u64::from(lod.first_list) + u64::from(list) * u64::from(lod.instances);
         let bytes = [first, first + u64::from(lod.instances)].map(|word| word * size_of::<u32>() as u64);
         pass.set_vertex_buffer(0, view.lists.raw().slice(bytes[0]..bytes[1]));

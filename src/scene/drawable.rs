@@ -5,6 +5,7 @@ use std::fmt::Debug;
 
 use crate::Error;
 use crate::gpu::{Buffer, Group, Staged};
+use crate::lod::transition::Transition;
 use crate::lod::{LodObject, SceneDraw};
 use crate::scene::specialization::Specialization;
 use crate::shared::render::scene_instances::SceneObject;
@@ -79,6 +80,8 @@ pub(crate) struct DrawnObject<'a> {
     pub lod: &'a LodObject,
     /// Whether to draw the lists of instances that are not mirrored, and the lists of mirrored ones.
     pub sides: [bool; 2],
+    /// How its levels change.
+    pub transition: Transition,
     /// Bind group 1, if the view has it.
     pub view_group: Option<&'a Group>,
 }
@@ -105,6 +108,8 @@ pub(crate) struct SortedPart<'a> {
     pub draw: u32,
     /// Whether the instance's placement mirrors.
     pub is_mirrored: bool,
+    /// How the levels of its object change.
+    pub transition: Transition,
 }
 
 /// A view, for a renderer.

@@ -2,6 +2,7 @@
 
 use crate::animation::Frame;
 use crate::gpu::Staged;
+use crate::lod::transition::Transition;
 use crate::lod::{SceneInstance, SelectView};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, SortedDraws, SortedPart};
 use crate::scene::drive::Poses;
@@ -9,9 +10,9 @@ use crate::scene::object::{self, Object};
 use crate::scene::order::Ordered;
 use crate::scene::stage::Stage;
 use crate::scene::statistics::SceneCounts;
-use crate::scene::view::View;
-use crate::scene::view::lists::SortedLists;
-use crate::scene::{FRAMES_IN_FLIGHT, Scene};
+use crate::scene::view::lists::{SortedLists, ViewPasses};
+use crate::scene::view::{Moment, View};
+use crate::scene::{FRAMES_IN_FLIGHT, Passes, Scene};
 use crate::{Error, InputError};
 
 /// The caller's passes between sampling and model matrices.
@@ -134,7 +135,7 @@ impl Scene {
         let staged = self.record_stages(encoder, views, between);
         if staged.is_ok() {
             self.count(encoder, views);
-            views.iter_mut().for_each(|view| view.recorded(self.frames));
+            views.iter_mut().for_each(|view| view.recorded(self.frames, self.now));
         }
         self.frames += 1;
         // The staged changes are complete only if all stages were recorded.
@@ -202,9 +203,12 @@ impl Scene {
         }
     }
 
-    /// The drawables of all objects.
-    pub(crate) fn drawables(&self) -> impl Iterator<Item = &dyn Drawable> {
-        self.objects.iter().flat_map(Object::drawables)
+    /// The drawables of all objects, with the transitions of their levels.
+    pub(crate) fn drawables(&self) -> impl Iterator<Item = (&dyn Drawable, Transition)> {
+        self.objects.iter().flat_map(|object| {
+            let transition = object.level_of_detail.transition();
+            object.drawables().map(move |drawable| (drawable, transition))
+        })
     }
 
     fn is_empty(&self) -> bool {
@@ -246,9 +250,11 @@ impl Scene {
         for (object, (sides, in_view)) in shown {
             let (number, sides) = (object.handle, *sides);
             let view_group = in_view.as_ref().map(|in_view| in_view.group());
+            let transition = object.level_of_detail.transition();
             for chunk in &object.chunks {
                 for (drawable, lod) in chunk.drawables.iter().zip(&chunk.lods) {
-                    objects.push(DrawnObject { number, drawable: &**drawable, lod, sides, view_group });
+                    let drawable = &**drawable;
+                    objects.push(DrawnObject { number, drawable, lod, sides, transition, view_group });
                 }
             }
         }
@@ -266,12 +272,13 @@ impl Scene {
             let placed = object.instances.all().get(*instance as usize);
             let is_mirrored = placed.is_some_and(SceneInstance::is_mirrored);
             let Some(chunk) = object.chunk_of(*instance) else { continue };
+            let transition = object.level_of_detail.transition();
             let instance = (*instance as usize - chunk.slots.start) as u32;
             for single in &chunk.sorted {
                 let drawable = &*chunk.drawables[single.drawable];
                 let Some(part) = drawable.part(single.part) else { continue };
                 let draw = single.first + instance;
-                parts.push(SortedPart { drawable, part, draw, is_mirrored });
+                parts.push(SortedPart { drawable, part, draw, is_mirrored, transition });
             }
         }
         Some(SortedDraws { draws, entries, parts })
@@ -294,7 +301,7 @@ impl Scene {
         let seen = views.iter().map(|view| Ok(view.select_view(blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
         for object in self.objects.iter_mut() {
-            if object.provide(&self.gpu, &self.layouts_of_groups, &seen)? {
+            if object.provide(&self.gpu, &self.layouts_of_groups, &seen, self.now)? {
                 self.layout = None;
             }
         }
@@ -315,7 +322,8 @@ impl Scene {
         }
         self.attachments.fit(&self.gpu, &self.objects, layout, (&mut self.staged, self.frames))?;
         for view in views {
-            let passes = (&self.passes.select, &self.passes.list, &self.passes.sorted);
+            let Passes { select, decide, list, sorted, .. } = &self.passes;
+            let passes = ViewPasses { select, decide, list, sorted };
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, &self.objects))?;
             let attachments = (&self.attachments, &self.objects);
             view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;
@@ -336,8 +344,8 @@ impl Scene {
         }
         for (at, view) in views.iter_mut().enumerate() {
             let sides = self.objects.iter().map(|object| object.instances.sides());
-            let of_frame = (self.frames, at == 0);
-            view.stage(&mut self.staged, (layout.blocks, &self.light), sides, of_frame)?;
+            let now = Moment { frame: self.frames, time: self.now, is_first: at == 0 };
+            view.stage(&mut self.staged, (layout.blocks, &self.light), sides, now)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {

@@ -33,6 +33,8 @@ pub(crate) struct Layout {
     pub keeps_last: bool,
     /// Allowed displacement per instance, in its model's units; −1 for instances that no view sees.
     pub allowed: Buffer<f32>,
+    /// Finest level per instance that the frame's views draw.
+    pub finest: Buffer<u32>,
     pub objects: Buffer<LodObject>,
     pub object_count: u32,
     /// Object per block.
@@ -74,6 +76,7 @@ impl Layout {
             last_instances,
             keeps_last,
             allowed: Buffer::new(gpu, "allowed displacements", count)?,
+            finest: Buffer::new(gpu, "finest levels", count)?,
             objects: Buffer::from_slice(gpu, "objects", objects)?,
             object_count: objects.len() as u32,
             block_objects: Buffer::from_slice(gpu, "objects of blocks", &block_objects)?,
@@ -101,6 +104,10 @@ pub(super) struct CountedObject {
     pub parts: u32,
     pub levels: u32,
     pub mesh_fraction: f32,
+    /// Largest factor by which its settings enlarge the allowed displacement.
+    pub bias: f32,
+    /// Whether instances may fade.
+    pub fades: bool,
 }
 
 /// All objects of a layout with counted draws.

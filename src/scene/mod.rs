@@ -27,6 +27,7 @@ pub mod kind;
 mod layers;
 pub(crate) mod layout;
 pub(crate) mod layouts;
+pub(crate) mod level_of_detail;
 pub(crate) mod material;
 mod materials;
 mod matrices;
@@ -65,7 +66,9 @@ pub(crate) mod wgsl;
 #[doc(inline)]
 pub use crate::animation::Wrap;
 #[doc(inline)]
-pub use crate::lod::transition::Transition;
+pub use crate::lod::criterion::{Criterion, DistanceTo, SizeOf};
+#[doc(inline)]
+pub use crate::lod::transition::{Pace, Transition};
 #[doc(inline)]
 pub use crate::skinning::bounding_sphere::BoundingSphere;
 #[doc(inline)]
@@ -86,6 +89,7 @@ pub use camera::{Camera, Depth};
 pub use drive::Poses;
 pub use handles::{InstanceId, ObjectId};
 pub use instance_pose::InstancePose;
+pub use level_of_detail::{Culling, LevelChoice, LevelOfDetail, Perceptual};
 pub use options::{CharacterOptions, LayerMask, RootOptions, TerrainStyle};
 pub use placement::{ClipTime, Placement, Play};
 pub use poses::PoseBuffers;
@@ -97,14 +101,15 @@ pub use statistics::{
     CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
 };
 pub use terrain::TerrainSource;
-pub use view::View;
 pub(crate) use view::ViewShadow;
+pub use view::{DitherPattern, View};
 pub use watch::{WatchedBone, WatchedBones};
 
 use crate::asset::Light;
 use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::attach::AttachPass;
+use crate::lod::decide::DecidePass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
 use crate::lod::sorted::SortedPass;
@@ -191,6 +196,7 @@ pub struct Scene {
 #[derive(Debug)]
 struct Passes {
     select: SelectPass,
+    decide: DecidePass,
     list: ListPass,
     sorted: SortedPass,
     assign: AssignPass,
@@ -201,6 +207,7 @@ impl Passes {
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self {
             select: SelectPass::new(gpu)?,
+            decide: DecidePass::new(gpu)?,
             list: ListPass::new(gpu)?,
             sorted: SortedPass::new(gpu)?,
             assign: AssignPass::new(gpu)?,

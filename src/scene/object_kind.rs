@@ -4,7 +4,7 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::pin::Pin;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 use crate::animation::Frame;
 use crate::gpu::{Gpu, Group, Staged};
@@ -34,6 +34,11 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
     /// Whether instances can be attached to bones of characters.
     fn is_attachable(&self) -> bool {
         false
+    }
+
+    /// The corners of a box around the model at rest; `None` for a cube around the object's sphere.
+    fn model_box(&self) -> Option<[Vec3; 2]> {
+        None
     }
 
     /// A sphere around an instance in all of its motion; `None` for the object's sphere.
@@ -116,12 +121,6 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
     /// Prepares the jobs of a frame.
     fn fit(&mut self, gpu: &Gpu, fitted: &Fitted<'_>, staged: &mut Staged) -> Result<(), Error> {
         let _ = (gpu, fitted, staged);
-        Ok(())
-    }
-
-    /// Stages the levels' fraction of the allowed displacement, after it has changed.
-    fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
-        let _ = (staged, fraction);
         Ok(())
     }
 
@@ -241,9 +240,11 @@ impl OnDevice {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeenBy<'a> {
     pub views: &'a [SelectView],
-    /// The object's uniform, with the levels' fraction of the displacement before LOD bias.
+    /// The object, with the scale of its metric before the LOD bias of memory.
     pub object: &'a LodObject,
     pub instances: &'a [SceneInstance],
+    /// The scene's time in seconds.
+    pub now: f64,
 }
 
 /// Result of providing memory for a frame.
@@ -278,11 +279,7 @@ pub(super) struct Fitted<'a> {
     pub is_new: bool,
     pub assign: &'a AssignPass,
     pub budget: ErrorBudget,
-    /// The levels' fraction of the allowed displacement.
-    pub mesh_fraction: f32,
     pub chunks: &'a [Chunk],
-    /// Smallest metric per level at which the level is drawn.
-    pub thresholds: &'a [f32],
 }
 
 /// An instance at its place.

@@ -6,6 +6,7 @@ use crate::lod::transition::Transition;
 use crate::scene::Scene;
 use crate::scene::handles::{ObjectId, foreign, stale};
 use crate::scene::kind::Kind;
+use crate::scene::level_of_detail::LevelOfDetail;
 use crate::scene::object::Object;
 use crate::scene::options::CharacterOptions;
 use crate::scene::relief::Relief;
@@ -191,7 +192,17 @@ impl Scene {
                 object.instances.keep_last(true);
             }
         }
+        self.update_ranks();
         id
+    }
+
+    /// Tells all objects whether any of them has a rank.
+    fn update_ranks(&mut self) {
+        let is_ranked = self.objects.iter().any(|object| object.level_of_detail.rank.is_some());
+        for object in self.objects.iter_mut() {
+            object.is_retuned |= object.is_ranked != is_ranked;
+            object.is_ranked = is_ranked;
+        }
     }
 
     /// Removes an object and all of its instances, and frees its memory.
@@ -204,6 +215,7 @@ impl Scene {
         }
         self.object_at(object)?;
         self.objects.remove([object.index, object.generation]);
+        self.update_ranks();
         self.layout = None;
         Ok(())
     }
@@ -228,24 +240,42 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets how an object changes its levels of detail, from the next recording on. Compile renderers for it
-    /// ([`Renderer::prepare`](crate::render::Renderer::prepare)). The default is [`Transition::Hard`].
+    /// Sets how an object's levels of detail are chosen and change, from the next recording on. Compile renderers for a new
+    /// transition ([`Renderer::prepare`](crate::render::Renderer::prepare)).
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene. With [`Transition::Geomorph`], also for an object without
-    /// levels of detail or without partners in its meshes ([`add_levels`](crate::skinning::add_levels) finds them):
-    /// terrain, reliefs, and meshes that exceed a binding of the device.
-    pub fn set_transition(&mut self, object: ObjectId, transition: Transition) -> Result<(), Error> {
+    /// [`InputError`] for an object that is not of this scene, and as [`LevelOfDetail::validate`]. With
+    /// [`Transition::Geomorph`], also for an object without levels of detail or without partners in its meshes
+    /// ([`add_levels`](crate::skinning::add_levels) finds them): terrain, reliefs, and meshes that exceed a binding of the
+    /// device.
+    pub fn set_level_of_detail(
+        &mut self,
+        object: ObjectId,
+        level_of_detail: &LevelOfDetail,
+    ) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
-        if transition == Transition::Geomorph && !entry.can_morph() {
+        level_of_detail.validate(entry.errors.len())?;
+        if level_of_detail.transition == Transition::Geomorph && !entry.can_morph() {
             let bound = "must have levels of detail with partners";
             return Err(InputError::new("object.levels", entry.errors.len(), bound).into());
         }
-        if std::mem::replace(&mut entry.transition, transition) != transition {
-            entry.mark_transition();
+        let last = std::mem::replace(&mut entry.level_of_detail, level_of_detail.clone());
+        entry.is_retuned = true;
+        entry.mark_transition();
+        let codes = [&last, level_of_detail].map(|settings| settings.transition().code());
+        if codes[0] != codes[1] || last.transition.fades() != level_of_detail.transition.fades() {
             self.layout = None;
         }
+        self.update_ranks();
         Ok(())
+    }
+
+    /// How the levels of detail of an object are chosen and change.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not of this scene.
+    pub fn level_of_detail(&self, object: ObjectId) -> Result<&LevelOfDetail, InputError> {
+        Ok(&self.object_at(object)?.level_of_detail)
     }
 
     /// Whether an object can geomorph: it has levels of detail, and its vertices have partners.
@@ -254,14 +284,6 @@ impl Scene {
     /// [`InputError`] for an object that is not of this scene.
     pub fn can_morph(&self, object: ObjectId) -> Result<bool, InputError> {
         Ok(self.object_at(object)?.can_morph())
-    }
-
-    /// How the levels of detail of an object change.
-    ///
-    /// # Errors
-    /// [`InputError`] for an object that is not of this scene.
-    pub fn transition(&self, object: ObjectId) -> Result<Transition, InputError> {
-        Ok(self.object_at(object)?.transition)
     }
 
     pub(super) fn object_mut(&mut self, object: ObjectId) -> Result<&mut Object, InputError> {

@@ -17,7 +17,9 @@ impl Chunk {
             for (part, _) in blended {
                 self.sorted.push(SortedParts { drawable, part, first: all.len() as u32 });
                 let first_draw = first_draw + OBJECT_LISTS * part as u32;
-                let single = |slot| SortedDraw { instance: self.range.first + slot, first_draw, slot };
+                let object = self.number as u32;
+                let single =
+                    |slot| SortedDraw { instance: self.range.first + slot, first_draw, slot, object };
                 all.extend((0..instances).map(single));
             }
             first_draw += OBJECT_LISTS * of.part_count() as u32;

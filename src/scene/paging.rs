@@ -4,8 +4,13 @@
 use std::ops::Range;
 
 use crate::lod::allowed::allowed_by;
+use crate::lod::criterion::{Placed, metric};
 use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
-use crate::lod::{LodObject, SceneInstance, SelectView};
+use crate::lod::{LodCamera, LodObject, SceneInstance, SelectView};
+use crate::scene::object_kind::SeenBy;
+use crate::shared::lod::criterion::{CRITERION_DISTANCE, CRITERION_NEAREST};
+use crate::shared::lod::object::{FADE_PROGRESS, object_flags_criterion, object_flags_never_culled};
+use crate::shared::lod::view::POSITION_SLACK;
 use crate::skinning::pages::{KEEPING_PAGE_BYTES, PAGE_BYTES};
 
 /// Up to this size (4 MiB), pages for all instances in full detail are allocated at once.
@@ -65,26 +70,65 @@ impl Paging {
     }
 }
 
+/// The smallest metric of an instance in a time during which a fade may still show the level of that moment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Held {
+    metric: f32,
+    /// Scene time of `metric`.
+    time: f64,
+    /// The smallest metric since then.
+    next: f32,
+}
+
+impl Held {
+    const NONE: Self = Self { metric: f32::MAX, time: f64::MIN, next: f32::MAX };
+
+    /// Takes the metric at scene time `now` into account; returns the smallest of the last `seconds`.
+    fn with(&mut self, metric: f32, now: f64, seconds: f64) -> f32 {
+        if metric <= self.metric {
+            *self = Self { metric, time: now, next: f32::MAX };
+        } else if (now - self.time).abs() > seconds {
+            *self = Self { metric: metric.min(self.next), time: now, next: f32::MAX };
+        } else {
+            self.next = self.next.min(metric);
+        }
+        self.metric
+    }
+}
+
 /// Visibility of a character's instances in a frame's views.
 #[derive(Debug)]
 pub(super) struct Seen<'a> {
     object: &'a LodObject,
-    /// Smallest displacement that any view allows, per instance; `None` if no view may see it.
-    allowed: Vec<Option<f32>>,
+    /// Smallest metric in any view, per instance, not scaled; `None` if no view may see it.
+    metrics: Vec<Option<f32>>,
 }
 
 impl<'a> Seen<'a> {
-    /// All instances, in the views of a frame. `object` has the levels' fraction of the displacement before LOD bias.
-    pub fn new(views: &[SelectView], object: &'a LodObject, instances: &[SceneInstance]) -> Self {
-        let allowed = instances.iter().map(|instance| allowed(views, object, instance)).collect();
-        Self { object, allowed }
+    /// All instances, in the views of a frame. `held` has the metrics of the last frames.
+    pub fn new(seen: &SeenBy<'a>, held: &mut Vec<Held>) -> Self {
+        let SeenBy { views, object, instances, now } = *seen;
+        let mut metrics: Vec<Option<f32>> =
+            instances.iter().map(|instance| least_metric(views, object, instance)).collect();
+        if object.rate > 0.0 {
+            // A fade, and another one that waited for it, with room for rounded steps.
+            let seconds = 3.0 * f64::from(FADE_PROGRESS as f32 / object.rate) + 0.1;
+            held.resize(instances.len(), Held::NONE);
+            for (metric, held) in metrics.iter_mut().zip(held) {
+                match metric {
+                    Some(metric) => *metric = held.with(*metric, now, seconds),
+                    None => *held = Held::NONE,
+                }
+            }
+        }
+        Self { object, metrics }
     }
 
-    /// Pages that some of the instances need, per mesh, if the displacement of levels is scaled by `lod_bias`.
+    /// Pages that some of the instances need, per mesh, if the metric is scaled by `lod_bias`.
     fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u64> {
-        let fraction = CAUTION * lod_bias * self.object.mesh_fraction;
-        let seen = || self.allowed[slots.clone()].iter().flatten();
-        let levels = || seen().map(|allowed| level(self.object, fraction * allowed));
+        let factor = CAUTION * lod_bias * self.object.metric_scale;
+        let seen = || self.metrics[slots.clone()].iter().flatten();
+        let levels = || seen().map(|metric| finest(self.object, factor * metric));
         meshes.iter().map(|mesh| mesh.needed(levels())).collect()
     }
 
@@ -114,19 +158,35 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The smallest displacement that any view allows an instance; `None` if no view may see it. Nearly visible instances
-/// count.
-fn allowed(views: &[SelectView], object: &LodObject, instance: &SceneInstance) -> Option<f32> {
+/// The smallest metric of an instance in any camera of any view, minus its rounding error; `None` if no view may see it.
+/// Nearly visible instances count.
+fn least_metric(views: &[SelectView], object: &LodObject, instance: &SceneInstance) -> Option<f32> {
     let of_view = |view: &SelectView| {
         let (center, radius) = placed_sphere(instance, view.cell);
-        let is_seen = is_shown(view, object, instance) && nearly_seen(view, center, radius);
-        is_seen.then(|| allowed_by(view.cameras(), center, radius, instance.largest_scale()))
+        let is_culled = object_flags_never_culled(object.flags) == 0 && !nearly_seen(view, center, radius);
+        if !is_shown(view, object, instance) || is_culled {
+            return None;
+        }
+        let (axes, at) = (instance.axes(), instance.position(view.cell));
+        let (placed, scale) = (Placed { axes, at, center, radius }, instance.largest_scale());
+        let of_camera = |camera: &LodCamera| {
+            let allowed = allowed_by(std::slice::from_ref(camera), center, radius, scale);
+            let lengths = at.length() + center.length() + camera.eye.length();
+            let rounding = if is_distance(object) { 4.0 * POSITION_SLACK * lengths } else { 0.0 };
+            metric(object, camera, &placed, allowed) - rounding
+        };
+        view.cameras().iter().map(of_camera).reduce(f32::min)
     };
     views.iter().filter_map(of_view).reduce(f32::min)
 }
 
-/// The coarsest level whose error is at most `error`.
-fn level(object: &LodObject, error: f32) -> u32 {
-    let errors = object.errors.as_flattened();
-    (1..object.levels).take_while(|level| errors[*level as usize] <= error).count() as u32
+fn is_distance(object: &LodObject) -> bool {
+    (CRITERION_DISTANCE..=CRITERION_NEAREST).contains(&object_flags_criterion(object.flags))
+}
+
+/// The finest level that a view may draw at a metric, whatever it drew before.
+fn finest(object: &LodObject, metric: f32) -> u32 {
+    let thresholds = object.thresholds.as_flattened();
+    let factor = object.coarser.max(1.0);
+    (1..object.levels).take_while(|level| factor * thresholds[*level as usize] <= metric).count() as u32
 }

@@ -89,7 +89,7 @@ mod drawn {
     use crate::scene::View;
     use crate::scene::mesh::MeshDrawable;
     use crate::scene::view::lists::ViewLists;
-    use crate::shared::lod::object::{MORPH_STEPS, list_entry_instance, list_entry_morph, morph_steps};
+    use crate::shared::lod::object::{MORPH_STEPS, list_entry_instance, list_entry_steps};
     use crate::skinning::vertex::Vertex;
 
     /// An instance that a view may show, as drawn in the view's last frame.
@@ -104,7 +104,7 @@ mod drawn {
     /// How a view drew an instance.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct DrawnAs {
-        /// Index of its list: 2 · level + mirrored.
+        /// Index of its list: 2 · level + mirrored. Of an instance that fades, the finer level's.
         pub list: u32,
         /// Progress of the geomorph to the next coarser level, 0 to 1.
         pub way: f64,
@@ -135,7 +135,7 @@ mod drawn {
                     let count = draws[range.first_draw as usize + list].instance_count as usize;
                     for entry in &lists[range.first_list as usize + list * room..][..count] {
                         let index = list_entry_instance(*entry);
-                        let steps = morph_steps(list_entry_morph(*entry));
+                        let steps = list_entry_steps(*entry);
                         let way = f64::from(steps) / f64::from(MORPH_STEPS);
                         let placement = placements[(range.first + index) as usize];
                         let drawn_as = DrawnAs { list: list as u32, way, placement };

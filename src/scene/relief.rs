@@ -12,7 +12,7 @@ use crate::scene::mesh::{
 };
 use crate::scene::object_kind::{MakeOn, Making, ObjectKind, OnDevice};
 use crate::scene::ray::Surface;
-use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
 use crate::shared::render::scene_vertex::MeshParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::skinning::vertex::Vertex;
@@ -194,8 +194,8 @@ pub(super) fn drawn(
     let parts = vec![MeshPart::new(faces, MeshMaterials::Relief(material))];
     let drawable = MeshDrawable::new(gpu, layouts, geometry, 0, parts)?;
     let draw = SceneDraw { index_count: relief.mesh.indices.len() as u32, ..NOTHING };
-    let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
-    draws[..2].fill(draw);
+    let mut draws = vec![NOTHING; OBJECT_LEVELS as usize];
+    draws[0] = draw;
     let sphere = BoundingSphere::around(vertices.iter().map(|vertex| vertex.position.into()));
     Ok((sphere, (vec![Box::new(drawable)], draws)))
 }

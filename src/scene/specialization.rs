@@ -8,6 +8,7 @@ use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_T
 use crate::scene::options::TerrainStyle;
 use crate::scene::program::{self, KindProgram};
 use crate::scene::wgsl::entries::KindText;
+use crate::shared::render::scene_fade::{FADE_BLEND, FADE_DITHER, FADE_HEAVIER, FADE_NONE};
 use crate::surface::{Green, ReliefOptions, ReliefShadow};
 
 /// The shader of a kind of object.
@@ -32,11 +33,11 @@ impl Program {
 
     /// Input of the generator of entry points.
     pub fn kind(&self) -> KindText<'_> {
-        let of = |name, discards, blends, deep| KindText { name, discards, blends, deep, moves: true };
+        let of = |name, blends, deep| KindText { name, blends, deep, moves: true };
         match self {
-            Self::Mesh => of("mesh", true, true, false),
-            Self::Relief => of("relief", true, false, true),
-            Self::Terrain => of("terrain", false, false, false),
+            Self::Mesh => of("mesh", true, false),
+            Self::Relief => of("relief", false, true),
+            Self::Terrain => of("terrain", false, false),
             Self::Own(program) => program.kind(),
         }
     }
@@ -147,7 +148,14 @@ impl Specialization {
     /// For a mesh with materials. `textured` and `normal_mapped` say whether any of them has a texture or a normal map.
     pub fn mesh(state: PartState, textured: bool, normal_mapped: bool, morphed: bool) -> Self {
         let PartState { double_sided, cut_out, .. } = state;
-        let full = scene_mesh::Constants { double_sided, textured, normal_mapped, morphed, shadowed: false };
+        let full = scene_mesh::Constants {
+            double_sided,
+            textured,
+            normal_mapped,
+            morphed,
+            shadowed: false,
+            fade: 0,
+        };
         let place = scene_mesh::Constants { textured: textured && cut_out, normal_mapped: false, ..full };
         Self::new(Program::Mesh, state, [full, full, place].map(|constants| constants.list()))
     }
@@ -167,6 +175,7 @@ impl Specialization {
             own_depth: false,
             reversed: false,
             shadowed: false,
+            fade: 0,
             // Reliefs have a single level of detail.
             morphed: false,
         };
@@ -177,7 +186,7 @@ impl Specialization {
 
     /// For patches of terrain, which are double-sided.
     pub fn terrain(style: TerrainStyle) -> Self {
-        let wireframe = |wireframe| scene_terrain::Constants { wireframe, shadowed: false }.list();
+        let wireframe = |wireframe| scene_terrain::Constants { wireframe, shadowed: false, fade: 0 }.list();
         let state = PartState { double_sided: true, ..PartState::default() };
         let full = wireframe(style == TerrainStyle::Wireframe);
         Self::new(Program::Terrain, state, [full, wireframe(false), wireframe(false)])
@@ -186,7 +195,7 @@ impl Specialization {
     /// For a caller-defined kind.
     pub fn own(program: &KindProgram, state: PartState) -> Self {
         // Every caller's text declares them.
-        let constants = [SHADOWED, OWN_DEPTH, REVERSED].map(|name| (name, 0.0)).to_vec();
+        let constants = [SHADOWED, OWN_DEPTH, REVERSED, FADE].map(|name| (name, 0.0)).to_vec();
         Self::new(Program::Own(program.clone()), state, std::array::from_fn(|_| constants.clone()))
     }
 
@@ -199,25 +208,40 @@ impl Specialization {
     }
 
     /// The constants for some layers, including those that the renderer sets: whether shading looks surfaces up in a sun's
-    /// shadow map, and whether depth falls with distance.
-    pub fn constants(&self, shown: Shown, shadowed: bool, reversed: bool) -> Constants {
+    /// shadow map, whether depth falls with distance, and how fading instances are drawn.
+    pub fn constants(&self, shown: Shown, shadowed: bool, reversed: bool, fade: Fade) -> Constants {
+        let flag = |value: bool| f64::from(u8::from(value));
         let set = [
-            (SHADOWED, shadowed),
-            (OWN_DEPTH, self.0.state.own_depth == OwnDepth::Always),
-            (REVERSED, reversed),
+            (SHADOWED, flag(shadowed)),
+            (OWN_DEPTH, flag(self.0.state.own_depth == OwnDepth::Always)),
+            (REVERSED, flag(reversed)),
+            (FADE, f64::from(fade as u32)),
         ];
         let value = |(name, value): &(&'static str, f64)| {
             let set = set.iter().find(|(known, _)| known == name);
-            (*name, set.map_or(*value, |(_, set)| f64::from(u8::from(*set))))
+            (*name, set.map_or(*value, |(_, set)| *set))
         };
         self.0.constants[shown as usize].iter().map(value).collect()
     }
+}
+
+/// How the instances of a list that fade are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(crate) enum Fade {
+    /// They do not fade.
+    #[default]
+    None = FADE_NONE as isize,
+    Dither = FADE_DITHER as isize,
+    Blend = FADE_BLEND as isize,
+    /// Only the level with the larger weight is drawn.
+    Heavier = FADE_HEAVIER as isize,
 }
 
 /// The constants that the renderer sets.
 const SHADOWED: &str = "relievo_SHADOWED";
 const OWN_DEPTH: &str = "relievo_OWN_DEPTH";
 const REVERSED: &str = "relievo_REVERSED";
+const FADE: &str = "relievo_FADE";
 
 #[cfg(test)]
 mod tests {
@@ -238,11 +262,12 @@ mod tests {
     fn the_renderers_constants_are_set_where_the_shader_has_them() {
         let relief =
             Specialization::relief(&ReliefOptions { depth: true, ..ReliefOptions::default() }, false);
-        let found = relief.constants(Shown::Lit, true, true);
+        let found = relief.constants(Shown::Lit, true, true, Fade::Blend);
         for name in [SHADOWED, OWN_DEPTH, REVERSED] {
             assert!(found.contains(&(name, 1.0)), "{name} in {found:?}");
         }
-        let terrain = Specialization::terrain(TerrainStyle::Wireframe).constants(Shown::Place, false, true);
-        assert_eq!(terrain, [("relievo_WIREFRAME", 0.0), (SHADOWED, 0.0)]);
+        let terrain =
+            Specialization::terrain(TerrainStyle::Wireframe).constants(Shown::Place, false, true, Fade::None);
+        assert_eq!(terrain, [(FADE, 0.0), ("relievo_WIREFRAME", 0.0), (SHADOWED, 0.0)]);
     }
 }

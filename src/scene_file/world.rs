@@ -117,7 +117,7 @@ impl LoadedScene {
             return Ok(());
         }
         let path = format!("{}.transition", entry.path);
-        scene.set_transition(object, transition).map_err(|error| match error {
+        scene.set_level_of_detail(object, &transition.into()).map_err(|error| match error {
             Error::Input(error) => {
                 InputError::new(path, "geomorph", format!("{} {}", error.path, error.bound)).into()
             }

@@ -16,8 +16,8 @@ use relievo::Error;
 use relievo::gpu::Buffer;
 use relievo::ops::lod::sorted::{SortedBuffers, SortedPass};
 use relievo::shared::lod::object::{
-    decision_list, decision_morph, decision_word, list_entry_instance, list_entry_morph, list_entry_word,
-    morph_level, morph_steps, morph_word,
+    decision_level, decision_next, decision_steps, decision_word, list_entry_instance, list_entry_steps,
+    list_entry_word,
 };
 
 const OUT_DIR: &str = env!("OUT_DIR");
@@ -143,6 +143,7 @@ fn short_buffers_are_refused_by_name() {
             arguments: &Buffer::new(&gpu, "arguments", 1).expect("allocated"),
             draws: &Buffer::new(&gpu, "draws", draws).expect("allocated"),
             entries: &Buffer::new(&gpu, "entries", entries).expect("allocated"),
+            objects: &Buffer::new(&gpu, "objects", 1).expect("allocated"),
         };
         pass.prepare(&gpu, buffers, 2).expect("long enough");
         let Err(Error::Input(error)) = pass.prepare(&gpu, buffers, 3) else { panic!("{short} was accepted") };
@@ -153,18 +154,20 @@ fn short_buffers_are_refused_by_name() {
 
 #[test]
 fn packed_words_give_back_their_fields() {
-    let word = decision_word(16, morph_word(7, 511));
-    assert_eq!((word, decision_list(word)), (0xfff10, 16));
-    assert_eq!((morph_level(decision_morph(word)), morph_steps(decision_morph(word))), (7, 511));
+    let word = decision_word(1, 0, 7, 2, 511);
+    assert_eq!((word, decision_level(word)), (0x1ff5d, 7));
+    assert_eq!((decision_next(word), decision_steps(word)), (2, 511));
     // The last field has the highest bit.
-    assert_eq!(list_entry_word(0xf_ffff, 0xfff), u32::MAX);
-    assert_eq!((list_entry_instance(u32::MAX), list_entry_morph(u32::MAX)), (0xf_ffff, 0xfff));
+    assert_eq!(list_entry_word(0xf_ffff, 7, 0x1ff), u32::MAX);
+    assert_eq!((list_entry_instance(u32::MAX), list_entry_steps(u32::MAX)), (0xf_ffff, 0x1ff));
 }
 
 #[test]
-#[should_panic(expected = "a value exceeds its bits: Decision: list 8, morph 12")]
+#[should_panic(
+    expected = "a value exceeds its bits: Decision: seen 1, mirrored 1, level 3, next 3, steps 16"
+)]
 fn a_value_beyond_its_field_is_refused() {
-    decision_word(256, 0);
+    decision_word(1, 0, 8, 0, 0);
 }
 
 #[test]

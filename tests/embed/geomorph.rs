@@ -14,7 +14,8 @@ use relievo::ops::skinning::merged::merged;
 use relievo::ops::terrain::config::TerrainConfig;
 use relievo::render::{Layer, Renderer};
 use relievo::scene::{
-    Camera, ErrorBudget, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition, View,
+    Camera, ErrorBudget, LevelOfDetail, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition,
+    View,
 };
 use relievo_samples::{creature, rock};
 
@@ -59,7 +60,9 @@ impl Stage {
             scene.play(instance, &Play::new("walk")).expect("there");
             scene.advance(0.4).expect("finite");
         }
-        scene.set_transition(object, transition).expect("with partners");
+        // Levels depend on this frame alone.
+        let level_of_detail = LevelOfDetail { hysteresis: 0.0, ..transition.into() };
+        scene.set_level_of_detail(object, &level_of_detail).expect("with partners");
         let frame = Frame::plain(gpu, SIZE);
         let renderer = frame.renderer(gpu, &scene);
         let mut view = scene.view(Quality::default()).expect("a view");
@@ -200,8 +203,9 @@ fn what_was_set_stays_and_can_be_taken_back() {
     assert!(stage.draw(half) == moved, "after growth");
     stage.scene.refresh().expect("afresh");
     assert!(stage.draw(half) == moved, "after a fresh start");
-    assert_eq!(stage.scene.transition(stage.object), Ok(Transition::Geomorph));
-    stage.scene.set_transition(stage.object, Transition::Hard).expect("there");
+    let found = stage.scene.level_of_detail(stage.object).expect("there");
+    assert_eq!(found.transition, Transition::Geomorph);
+    stage.scene.set_level_of_detail(stage.object, &Transition::Hard.into()).expect("there");
     stage.renderer.prepare(&stage.scene).expect("compiled");
     let hard = stage.draw(half);
     let mut other = Stage::new(&gpu, &model, size, Transition::Hard);
@@ -220,8 +224,11 @@ fn objects_without_partners_are_refused() {
     model.meshes[0].partners.clear();
     let without = scene.add_mesh(&model, 1).expect("added");
     for object in [land, bare, without] {
-        let refused = scene.set_transition(object, Transition::Geomorph).expect_err("refused");
+        let refused = scene.set_level_of_detail(object, &Transition::Geomorph.into()).expect_err("refused");
         assert!(refused.to_string().starts_with("object.levels = "), "{refused}");
-        assert_eq!(scene.set_transition(object, Transition::Hard).map_err(|error| error.to_string()), Ok(()));
+        assert_eq!(
+            scene.set_level_of_detail(object, &Transition::Hard.into()).map_err(|error| error.to_string()),
+            Ok(())
+        );
     }
 }

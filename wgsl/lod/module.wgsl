@@ -4,6 +4,7 @@
 import package::wgsl::lod::instance::{Axes, SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::object::{LodObject, SceneDraw};
 import package::wgsl::lod::allowed::camera_allows;
+import package::wgsl::lod::budget_state::BudgetState;
 import package::wgsl::lod::view::{LodCamera, SelectView};
 import package::wgsl::lod::criterion::criterion_metric;
-import package::wgsl::lod::transition::transition_decision;
+import package::wgsl::lod::transition::{transition_decision, transition_entries};

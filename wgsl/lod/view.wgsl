@@ -9,7 +9,7 @@ struct LodCamera {
     eye: vec3<f32>,
     // Pixels per world unit at a distance of one unit on the axis; in a parallel view, at any distance.
     focal: f32,
-    // Unit vector of the view direction.
+    // Unit vector of the view direction; also in a parallel view.
     ahead: vec3<f32>,
     // Allowed error on screen, in pixels.
     pixels: f32,
@@ -17,8 +17,9 @@ struct LodCamera {
     near: f32,
     // 1 for a perspective view, 0 for a parallel one.
     perspective: f32,
-    unused_a: f32,
-    unused_b: f32,
+    // Number of pixels of the viewport.
+    pixel_count: f32,
+    unused: f32,
 }
 
 // A view: its volume, and the cameras that decide levels of detail.
@@ -39,11 +40,17 @@ struct SelectView {
     casters: u32,
     // Number of blocks of instances.
     blocks: u32,
-    // 1 if the view was in the last frame too: the decisions in the buffer are then that frame's.
+    // 1 if the view was in the last frame too: the decisions and the placements in the buffers are then that frame's.
     is_next: u32,
+    // Seconds since the view's last frame.
+    seconds: f32,
     unused_a: u32,
     unused_b: u32,
-    unused_c: u32,
+    // Rows x, y and w of the transform from positions relative to the corner of the view's cell to clip space, in units of half
+    // the picture's height.
+    clip_rows: array<vec4<f32>, 3>,
+    // The same rows in the view's last frame, for placements of that frame.
+    last_clip_rows: array<vec4<f32>, 3>,
 }
 
 // Bound of the rounding error of results that are computed from positions relative to the corner of the view's cell. Unit: the

@@ -21,13 +21,15 @@ fn lit(given: Surface) -> vec4<f32> {
     return mix(shade(surface, scene_seen_by()), vec4<f32>(surface.unlit.rgb, 1.0), surface.unlit.w);
 }
 
-// Opaque surfaces have alpha 1: a pixel is drawn fully or discarded.
+// Opaque surfaces have alpha 1: a pixel is drawn fully or discarded. While they fade, they are blended.
 fn color_write(given: Surface) -> ColorTargets {
     var surface = given;
-    surface.alpha = 1.0;
+    surface.alpha = surface.fade;
     return ColorTargets(lit(surface));
 }
 
-fn transparent_write(surface: Surface) -> TransparentTargets {
+fn transparent_write(given: Surface) -> TransparentTargets {
+    var surface = given;
+    surface.alpha *= surface.fade;
     return TransparentTargets(lit(surface));
 }

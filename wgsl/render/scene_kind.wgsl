@@ -1,7 +1,7 @@
 // The interface between kinds of objects and outputs. A kind exports `KIND_place(entry, vertex) -> SceneVertex`,
 // `KIND_last_position(entry, vertex) -> vec3<f32>` and `KIND_surface(SceneFragment) -> Surface`, which never discards and runs
 // in uniform control flow. `build/entries.rs` generates the entry points.
-import package::wgsl::lod::object::list_entry_instance;
+import package::wgsl::render::scene_fade::{entry_word, faded_alpha, scene_word_counter_clockwise, scene_word_instance, scene_word_level};
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
 
@@ -41,25 +41,35 @@ struct SceneFragment {
     clip: vec4<f32>,
     // Whether the outer side of the triangle is seen.
     is_outside: bool,
+    // Level of detail of the instance, from 0 for the finest.
+    level: u32,
+    // Alpha of an instance that is blended while it fades; else 1.
+    fade: f32,
 }
 
-// Flag in the last word of a vertex: triangles seen from outside run counter-clockwise on screen.
-const COUNTER_CLOCKWISE = 0x80000000u;
-
-// Words that the vertex shader passes on: the kind's own, then the instance with `COUNTER_CLOCKWISE`.
+// Words that the vertex shader passes on: the kind's own, then the list entry's.
 fn scene_words(placed: SceneVertex, entry: u32) -> vec4<u32> {
-    let facing = select(0u, COUNTER_CLOCKWISE, view.side * placed.side > 0.0);
-    return vec4<u32>(placed.words, list_entry_instance(entry) | facing);
+    return vec4<u32>(placed.words, entry_word(entry, view.side * placed.side > 0.0));
 }
 
 // Index of the instance in these words.
 fn words_instance(words: vec4<u32>) -> u32 {
-    return words.w & ~COUNTER_CLOCKWISE;
+    return scene_word_instance(words.w);
+}
+
+// Level of detail of the instance.
+fn words_level(words: vec4<u32>) -> u32 {
+    return scene_word_level(words.w);
+}
+
+// Alpha of the instance while it fades.
+fn words_fade(words: vec4<u32>) -> f32 {
+    return faded_alpha(words.w);
 }
 
 // Whether the outer side of a triangle is visible. `is_front`: it runs counter-clockwise on screen.
 fn words_outside(words: vec4<u32>, is_front: bool) -> bool {
-    return is_front == ((words.w & COUNTER_CLOCKWISE) != 0u);
+    return is_front == (scene_word_counter_clockwise(words.w) != 0u);
 }
 
 // Default surface without an instance: white, opaque and lit, with the triangle's geometry. `scene_surface` adds the instance.
@@ -77,5 +87,7 @@ fn triangle_surface(in: SceneFragment) -> Surface {
     surface.light_position = in.position;
     surface.last_position = in.last_position;
     surface.depth = in.clip.z;
+    surface.level = in.level;
+    surface.fade = in.fade;
     return surface;
 }

@@ -1,6 +1,6 @@
 // The kind `mesh`: instances of a mesh, static or skinned, with textures and normal maps. Each vertex's material says whether
 // the surface is opaque, alpha-tested, blended or dithered (screen-door transparency).
-// kind mesh: discards, blends
+// kind mesh: blends
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex};
 import package::wgsl::render::scene_instances::scene_surface;
 import package::wgsl::render::scene_motion::last_position;

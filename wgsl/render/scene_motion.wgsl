@@ -1,5 +1,5 @@
 // Positions of a mesh's vertices in the last frame.
-import package::wgsl::lod::object::{OBJECT_LEVELS, decision_list, decision_morph, morph_steps};
+import package::wgsl::lod::object::{OBJECT_LEVELS, decision_level, decision_steps};
 import package::wgsl::render::scene_instances::{entry_instance, instance_index, scene_last_placed};
 import package::wgsl::render::scene_vertex::{MORPHED, VertexMorph, material_of, mesh, morphed, partner_index, partner_level, vertex_index_of, vertex_morph, vertices, way_of};
 import package::wgsl::skinning::vertex::vertex_position;
@@ -27,7 +27,7 @@ fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     if decision == 0u || mesh.partners == 0u {
         return LastMorph(vertex, vertex_morph(entry, vertex));
     }
-    let level = (decision_list(decision) - 1u) >> 1u;
+    let level = decision_level(decision);
     var standing = vertex;
     var word = material_of[mesh.partners + standing];
     for (var step = 0u; step < OBJECT_LEVELS && partner_level(word) < level; step++) {
@@ -37,7 +37,7 @@ fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     if partner_level(word) != level {
         return LastMorph(standing, VertexMorph(standing, 0.0));
     }
-    return LastMorph(standing, VertexMorph(partner_index(word), way_of(morph_steps(decision_morph(decision)))));
+    return LastMorph(standing, VertexMorph(partner_index(word), way_of(decision_steps(decision))));
 }
 
 // Position of a vertex in the last frame, relative to the corner of the view's cell. `entry` is the list entry of its instance.

@@ -1,6 +1,6 @@
 // The kind `relief`: instances of a static mesh with a relief (B section 3.1, tables 4.1 to 4.4), traced by any method. It has
 // self-shadow, silhouettes and the depth of the relief.
-// kind relief: discards, deep
+// kind relief: deep
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex};
 import package::wgsl::render::scene_instances::{scene_last_rigid, scene_surface};
 import package::wgsl::render::scene_motion::last_position;

@@ -36,6 +36,10 @@ struct Surface {
     cutoff: f32,
     // Depth, 0 to 1; on a relief that of the ray's hit.
     depth: f32,
+    // Level of detail of the instance, from 0 for the finest.
+    level: u32,
+    // Alpha of an instance that is blended while it fades; else 1. `alpha` contains it.
+    fade: f32,
 }
 
 // A view of the scene.

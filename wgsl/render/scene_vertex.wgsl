@@ -1,5 +1,5 @@
 // Vertices of the meshes of a scene, static or skinned, at the placement of an instance.
-import package::wgsl::lod::object::{MORPH_STEPS, list_entry_morph, morph_level, morph_steps};
+import package::wgsl::lod::object::{MORPH_STEPS, list_entry_level, list_entry_steps};
 import package::wgsl::render::scene_instances::{entry_instance, scene_placed};
 import package::wgsl::render::scene_kind::SceneVertex;
 import package::wgsl::skinning::cluster::CLUSTER;
@@ -50,9 +50,8 @@ struct VertexMorph {
 // Vertices that exist in the next coarser level too do not move. Without a morph in the list entry, no vertex moves.
 fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
     let word = material_of[mesh.partners + vertex];
-    let morph = list_entry_morph(entry);
-    let steps = morph_steps(morph);
-    if steps == 0u || mesh.partners == 0u || partner_level(word) != morph_level(morph) {
+    let steps = list_entry_steps(entry);
+    if steps == 0u || mesh.partners == 0u || partner_level(word) != list_entry_level(entry) {
         return VertexMorph(vertex, 0.0);
     }
     return VertexMorph(partner_index(word), way_of(steps));

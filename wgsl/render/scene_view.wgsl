@@ -23,6 +23,8 @@ struct SceneView {
     // Rows of u, v and depth of the transform from positions relative to the corner of the cell to the shadow map. All are 0 in
     // a view without a shadow.
     shadow_rows: array<vec4<f32>, 3>,
+    // Pixels by which the pattern of dithers is moved.
+    dither_offset: vec2<u32>,
 }
 
 @group(0) @binding(0) var<uniform> view: SceneView;

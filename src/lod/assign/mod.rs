@@ -1,9 +1,10 @@
-//! Assigns the allowed displacement of each character instance to bone gates and skinning, as levels, bones and
-//! influences that they may leave out.
+//! Assigns the allowed displacement of each character instance to bone gates and skinning, as bones and influences that
+//! they may leave out.
 //!
-//! [`select`](super::select) gives the allowed displacement, in the model's units. Fractions of it go to mesh levels of
-//! detail, to bones that are not sampled, and to influences that fade. The fractions add up to at most 1, because
-//! displacements add up. An instance that no view sees is neither sampled nor skinned.
+//! [`select`](super::select) gives the allowed displacement, in the model's units. Fractions of it go to bones that are not
+//! sampled and to influences that fade; what they leave is for levels of detail of the mesh. [`decide`](super::decide) gives
+//! the finest level that a view draws, which is the one to skin. An instance that no view sees is neither sampled nor
+//! skinned.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -12,7 +13,7 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{AssignBuffers, AssignPass};
 
-use super::object::{check_fraction, check_levels};
+use super::object::check_fraction;
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 pub use crate::shared::lod::assign::AssignParams;
@@ -23,14 +24,11 @@ impl AssignParams {
     /// # Errors
     /// [`InputError`] that names the field; `params.influence_fraction` for fractions that add up to more than 1.
     pub fn validate(&self) -> Result<(), InputError> {
-        let errors: Vec<f32> = self.errors.iter().flat_map(|errors| errors.to_array()).collect();
-        check_levels("params", self.levels, &errors, true)?;
-        check_fraction("params.mesh_fraction".to_owned(), self.mesh_fraction)?;
         check_fraction("params.bone_fraction".to_owned(), self.bone_fraction)?;
         check_fraction("params.influence_fraction".to_owned(), self.influence_fraction)?;
-        let sum = self.mesh_fraction + self.bone_fraction + self.influence_fraction;
+        let sum = self.bone_fraction + self.influence_fraction;
         if sum > 1.0 + 1e-6 {
-            let bound = format!("must not add up to more than 1 with the others, and does to {sum}");
+            let bound = format!("must not add up to more than 1 with bone_fraction, and does to {sum}");
             return Err(InputError::new("params.influence_fraction", self.influence_fraction, bound));
         }
         if !(1e-20..f32::INFINITY).contains(&self.unit) {

@@ -2,23 +2,22 @@
 
 use super::AssignParams;
 use crate::animation::{BoneSampling, Lod};
-use crate::lod::object::level_within;
 use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
 use crate::skinning::instance_lod::InstanceLod;
 
 /// The gate's and the skinning's level of detail for an instance. `allowed` is its allowed displacement in the model's
-/// units, negative if no view sees it. With `carries`, the instance carries a mesh, and no bone may be off.
-pub fn assign(params: &AssignParams, allowed: f32, carries: bool) -> (Lod, InstanceLod) {
+/// units, negative if no view sees it, `finest` the finest level that is drawn. With `carries`, the instance carries a mesh,
+/// and no bone may be off.
+pub fn assign(params: &AssignParams, allowed: f32, finest: u32, carries: bool) -> (Lod, InstanceLod) {
     if allowed < 0.0 {
         return (Lod { sampling: BoneSampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
     }
     let units = if carries { 0.0 } else { units(params, allowed) };
     let lod = Lod { allowed: units.floor().min(MAX_UNITS) as u32, ..Lod::FULL };
-    let errors = params.errors.map(|errors| errors.to_array());
     let instance_lod = InstanceLod {
         influence_fade: fade_steps(params, allowed).floor() / FADE_STEPS,
         max_influences: params.max_influences,
-        mesh_lod: level_within(params.levels, &errors, params.mesh_fraction * allowed),
+        mesh_lod: finest,
     };
     (lod, instance_lod)
 }

@@ -1,7 +1,8 @@
 //! Instance lists of a view: for each object and level of detail, a list of unmirrored instances and one of mirrored
-//! ones, in ascending order, the same on every run.
+//! ones, in ascending order, the same on every run. Objects whose transition fades have as many lists again, for instances
+//! that fade in or out.
 //!
-//! [`select`](super::select) counts the instances of each block in each list. Prefix sums of the counts give the
+//! [`decide`](super::decide) counts the instances of each block in each list. Prefix sums of the counts give the
 //! position at which a block begins. Inside a block the order is that of the instances, so no order depends on thread
 //! scheduling. The totals are the instance counts of the object's draws.
 
@@ -13,14 +14,27 @@ pub mod reference;
 pub use pass::{ListBuffers, ListPass};
 
 use super::{LodObject, OBJECT_LISTS};
+use crate::shared::lod::object::object_flags_transition;
+use crate::shared::lod::transition::TRANSITION_DITHER;
 
 impl LodObject {
-    /// Size of the object's lists in words.
-    pub fn list_words(&self) -> u32 {
-        OBJECT_LISTS * self.instances
+    /// Number of the object's lists: 2 per level, and as many for instances that fade.
+    pub fn lists(&self) -> u32 {
+        if self.fades() { 4 * self.levels } else { 2 * self.levels }
     }
 
-    /// First word of a list in a view's list buffer. The list of a level is 2 · level + mirrored.
+    /// Whether instances may fade in and out.
+    pub fn fades(&self) -> bool {
+        object_flags_transition(self.flags) >= TRANSITION_DITHER
+    }
+
+    /// Size of the object's lists in words.
+    pub fn list_words(&self) -> u32 {
+        self.lists() * self.instances
+    }
+
+    /// First word of a list in a view's list buffer. The list of a level is 2 · level + mirrored; that of its instances that
+    /// fade lies 2 · levels behind.
     pub fn list_begin(&self, list: u32) -> u32 {
         self.first_list + list * self.instances
     }

@@ -13,11 +13,11 @@ pub struct ListBuffers<'a> {
     pub objects: &'a Buffer<LodObject>,
     /// For each block of 64 instances the index of its object, or [`NO_OBJECT`](crate::lod::NO_OBJECT).
     pub block_objects: &'a Buffer<u32>,
-    /// Decision per instance: 0 if it is not seen, else 1 + its list.
+    /// Decision word per instance.
     pub decisions: &'a Buffer<u32>,
     /// In: instance count per block and list, [`OBJECT_LISTS`] for each block. Overwritten.
     pub counts: &'a Buffer<u32>,
-    /// Out: list entries, from [`LodObject::list_begin`] on: the index of an instance in its object, and its morph.
+    /// Out: list entries, from [`LodObject::list_begin`] on: the index of an instance in its object, its level and steps.
     pub lists: &'a Buffer<u32>,
     /// The draws of all objects ([`LodObject::draw`]). Only their instance counts are written.
     pub arguments: &'a Buffer<SceneDraw>,

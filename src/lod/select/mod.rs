@@ -1,4 +1,4 @@
-//! Selection: which instances of a scene a view sees, at which level of detail, and how far they may be off.
+//! Selection: which instances of a scene a view sees, their metric, and how far they may be off.
 //!
 //! A view sees an instance if all of these hold:
 //! - the instance exists and its object is shown;
@@ -7,9 +7,11 @@
 //! - its bounding sphere reaches into the view volume.
 //!
 //! Each of the view's cameras allows a displacement ([`LodCamera::allows`](super::LodCamera::allows)). The smallest of
-//! them, divided by the instance's largest scale, is the allowed displacement in the model's units. The view draws the
-//! object's coarsest level whose error is within the mesh fraction of it. The minimum over the views of a frame also
-//! limits gates and skinning ([`assign`](super::assign)), because all views share one pose.
+//! them, divided by the instance's largest scale, is the allowed displacement in the model's units. The minimum over the
+//! views of a frame limits gates and skinning ([`assign`](super::assign)), because all views share one pose.
+//!
+//! Each camera also gives a metric, by the object's [`Criterion`](super::criterion::Criterion). The smallest of them,
+//! scaled, decides the level ([`decide`](super::decide)).
 
 #[cfg(feature = "gpu")]
 mod pass;

@@ -9,7 +9,7 @@ use crate::lod::BLOCK;
 #[doc(inline)]
 pub use bindings::Buffers as SelectBuffers;
 
-/// Selects the instances that a view sees, and their levels of detail.
+/// Selects the instances that a view sees.
 #[derive(Debug, Clone)]
 pub struct SelectPass {
     kernel: Kernel,

@@ -1,25 +1,24 @@
 //! Selection of instances: the CPU reference of `kernels/lod/select.wgsl`.
 
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Vec2, Vec3, Vec4};
 
 use crate::asset::Affine;
 use crate::lod::allowed::allowed_by;
-use crate::lod::criterion::metric;
-use crate::lod::transition::decision;
+use crate::lod::criterion::{Placed, metric};
 use crate::lod::{
-    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, SceneInstance, SelectView,
-    instance_flags_mask,
+    INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, SceneInstance, SelectView, instance_flags_mask,
 };
 use crate::shared::lod::allowed::MAX_ALLOWED;
-use crate::shared::lod::object::{decision_list, object_flags_shown};
-use crate::shared::lod::select::{MAX_METRIC, UNSEEN_ALLOWED};
+use crate::shared::lod::criterion::MAX_METRIC;
+use crate::shared::lod::object::{UNSEEN_METRIC, metric_word, object_flags_never_culled, object_flags_shown};
+use crate::shared::lod::select::{MAX_MOTION, UNSEEN_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
 
-/// A view's decision for one visible instance.
+/// What a view sees of an instance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selected {
-    /// The decision word ([`decision`]).
-    pub decision: u32,
+    /// The metric of the object's criterion, scaled.
+    pub metric: f32,
     /// The displacement that the view allows, in the model's units.
     pub allowed: f32,
     /// The transform from the model's space to the corner of the view's cell.
@@ -58,22 +57,62 @@ pub(crate) fn nearly_seen(view: &SelectView, center: Vec3, radius: f32) -> bool 
     depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius
 }
 
-/// A view's decision for an instance; `None` if the view does not see it.
-pub fn select(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> Option<Selected> {
+/// What a view sees of an instance; `None` if it does not see it. `last` is the transform of the view's last frame, if the
+/// view saw the instance in it.
+pub fn select(
+    view: &SelectView,
+    object: &LodObject,
+    instance: &SceneInstance,
+    last: Option<&Affine>,
+) -> Option<Selected> {
     let (center, radius) = placed_sphere(instance, view.cell);
-    if !is_shown(view, object, instance) || depth_inside(view, center, radius) < 0.0 {
+    let is_culled = object_flags_never_culled(object.flags) == 0 && depth_inside(view, center, radius) < 0.0;
+    if !is_shown(view, object, instance) || is_culled {
         return None;
     }
     let scale = instance.largest_scale();
+    let (axes, at) = (instance.axes(), instance.position(view.cell));
+    let placed = Placed { axes, at, center, radius };
     let allowed = allowed_by(view.cameras(), center, radius, scale);
     let metric_of = |camera: &LodCamera| {
         let allowed = allowed_by(std::slice::from_ref(camera), center, radius, scale);
-        metric(object, camera, center, allowed)
+        metric(object, camera, &placed, allowed)
     };
-    let metric = view.cameras().iter().map(metric_of).fold(MAX_METRIC, f32::min);
-    let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
+    let least = view.cameras().iter().map(metric_of).fold(MAX_METRIC, f32::min);
+    let factor = object.metric_scale * perceptual_factor(view, object, instance, last);
+    let [x, y, z] = axes;
     let placement = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
-    Some(Selected { decision: decision(object, instance.is_mirrored(), metric), allowed, placement })
+    Some(Selected { metric: (factor * least).min(MAX_METRIC), allowed, placement })
+}
+
+/// Position of a point in the picture, from the middle, in units of half the picture's height.
+fn in_picture(rows: &[Vec4; 3], point: Vec3) -> Vec2 {
+    let [x, y, w] = rows.map(|row| row.dot(point.extend(1.0)));
+    if w > 0.0 { Vec2::new(x, y) / w } else { Vec2::splat(1e4) }
+}
+
+fn perceptual_factor(
+    view: &SelectView,
+    object: &LodObject,
+    instance: &SceneInstance,
+    last: Option<&Affine>,
+) -> f32 {
+    if object.motion == 0.0 && object.periphery == 0.0 {
+        return 1.0;
+    }
+    let now = in_picture(&view.clip_rows, placed_sphere(instance, view.cell).0);
+    let [x, y, z, _] = instance.bounding_sphere;
+    let point = Vec4::new(x, y, z, 1.0);
+    let speed = last.filter(|_| view.is_next != 0 && view.seconds > 0.0).map_or(0.0, |rows| {
+        let last_center = Vec3::from(rows.map(|row| Vec4::from(row).dot(point)));
+        0.5 * now.distance(in_picture(&view.last_clip_rows, last_center)) / view.seconds
+    });
+    1.0 + object.motion * speed.min(MAX_MOTION) + object.periphery * now.length().min(1.0)
+}
+
+/// The metric word of a view's result for an instance.
+pub fn word(selected: Option<&Selected>, is_mirrored: bool) -> u32 {
+    selected.map_or(UNSEEN_METRIC, |selected| metric_word(selected.metric.to_bits(), is_mirrored.into()))
 }
 
 /// The allowed displacement of an instance after one more view of the frame. `before` is the value after the earlier
@@ -85,18 +124,4 @@ pub fn merged(before: Option<f32>, selected: Option<&Selected>) -> f32 {
         (Some(before), None) => before,
         (None, None) => UNSEEN_ALLOWED,
     }
-}
-
-/// Instance counts per block and list, from the decisions of all instances.
-pub fn counts(decisions: &[u32]) -> Vec<u32> {
-    let mut counts = Vec::with_capacity(decisions.len() / 4);
-    for block in decisions.chunks(BLOCK as usize) {
-        let mut tally = [0; crate::lod::OBJECT_LISTS as usize];
-        block
-            .iter()
-            .filter(|decision| **decision > 0)
-            .for_each(|decision| tally[decision_list(*decision) as usize - 1] += 1);
-        counts.extend(tally);
-    }
-    counts
 }

@@ -24,7 +24,7 @@ impl SortedPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the first `count` sorted draws. Record it after [`select`](crate::lod::select).
+    /// Prepares the first `count` sorted draws. Record it after [`decide`](crate::lod::decide).
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers with fewer draws; [`GpuError`].

@@ -1,6 +1,6 @@
 //! Checks before drawing.
 
-use super::{Renderer, is_in};
+use super::{Renderer, fades_of};
 use crate::InputError;
 use crate::render::layer::Layer;
 use crate::render::output::OutputProgram;
@@ -10,7 +10,7 @@ use crate::scene::specialization::Specialization;
 
 /// The remedy for missing pipelines.
 const PREPARE: &str = "must be compiled for this renderer: call Renderer::prepare after an object or a SunShadow was added, and \
-                       after Scene::set_material or Scene::set_transition changed the object";
+                       after Scene::set_material or Scene::set_level_of_detail changed the object";
 
 impl Renderer {
     /// Whether a scene is on the renderer's device.
@@ -65,7 +65,10 @@ impl Renderer {
         }
         for object in objects {
             let mut parts = object.drawable.parts().map(|part| part.specialization);
-            let is_ready = |part| !is_in(part, layer) || self.pipeline(layer, part, false, view).is_some();
+            let is_compiled = |part, fade| self.pipeline(layer, part, (false, fade), view).is_some();
+            let is_ready = |part| {
+                fades_of(part, object.transition, layer).into_iter().all(|fade| is_compiled(part, fade))
+            };
             if !parts.all(is_ready) {
                 let value = format!("object {} (ObjectId::number), not compiled", object.number);
                 return Err(InputError::new("scene", value, PREPARE));

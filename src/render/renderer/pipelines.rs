@@ -9,7 +9,7 @@ use crate::render::output::OutputProgram;
 use crate::render::shading::Shading;
 use crate::scene::caller_text::PREFIX;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::specialization::{OwnDepth, Program, Specialization};
+use crate::scene::specialization::{Fade, OwnDepth, Program, Specialization};
 use crate::scene::wgsl::entries::fragment_entry;
 
 /// The key of a pipeline: a part in a layer.
@@ -21,18 +21,25 @@ pub(super) struct PipelineKey {
     is_flipped: bool,
     /// Whether shading looks up the sun's shadow map.
     is_shadowed: bool,
+    /// How fading instances are drawn.
+    fade: Fade,
 }
 
 impl PipelineKey {
     /// The key of a part without a sun's shadow.
     pub fn new(layer: Layer, part: &Specialization, is_flipped: bool) -> Self {
         let is_flipped = is_flipped && !part.state().double_sided;
-        Self { layer, part: part.clone(), is_flipped, is_shadowed: false }
+        Self { layer, part: part.clone(), is_flipped, is_shadowed: false, fade: Fade::None }
     }
 
     /// This key with a sun's shadow, if `is_shadowed` and the layer is shaded; else without.
     pub fn shadowed(self, is_shadowed: bool) -> Self {
         Self { is_shadowed: is_shadowed && self.layer.is_shaded(), ..self }
+    }
+
+    /// This key for a list of instances that fade.
+    pub fn fading(self, fade: Fade) -> Self {
+        Self { fade, ..self }
     }
 
     /// The pipeline's source for a target format. `casts`: for shadow maps, where both sides of triangles stop light.
@@ -45,17 +52,20 @@ impl PipelineKey {
         };
         // Without a depth attachment no shader may write depth.
         let deep = own_depth && format.depth.is_some();
-        let is_plain_depth = layer == Layer::Depth && !state.cut_out && !deep;
+        let discards = state.cut_out || self.fade == Fade::Dither;
+        let is_plain_depth = layer == Layer::Depth && !discards && !deep;
         let own = format.output().filter(|_| layer == Layer::Own);
-        let entry = own.map_or(layer.entry(), OutputProgram::entry);
+        // Opaque parts that fade are blended in the layer of transparent ones.
+        let written = if layer == Layer::Transparent && !state.blended { Layer::Color } else { layer };
+        let entry = own.map_or(written.entry(), OutputProgram::entry);
         let moves = own.map_or(layer == Layer::Velocity, OutputProgram::moves);
-        let entry = format!("{PREFIX}{}", fragment_entry(entry, state.cut_out, deep));
+        let entry = format!("{PREFIX}{}", fragment_entry(entry, discards, deep));
         let vertex = match (is_plain_depth, moves) {
             (true, _) => "vertex_depth",
             (false, true) => "vertex_moving",
             (false, false) => "vertex",
         };
-        let constants = self.part.constants(layer.shown(), self.is_shadowed, format.is_reversed());
+        let constants = self.part.constants(layer.shown(), self.is_shadowed, format.is_reversed(), self.fade);
         PipelineSource {
             layer,
             program: self.part.program().clone(),

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{Character, Runtime, Shared};
 use crate::animation::Frame;
-use crate::gpu::{Gpu, Staged, Upload as _};
+use crate::gpu::{Gpu, Staged};
 use crate::scene::chunk::Chunk;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
@@ -15,7 +15,6 @@ use crate::scene::object_kind::{
 };
 use crate::scene::ray::Surface;
 use crate::scene::stage::Stage;
-use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 
@@ -100,13 +99,6 @@ impl ObjectKind for Character {
     fn fit(&mut self, gpu: &Gpu, fitted: &Fitted<'_>, staged: &mut Staged) -> Result<(), Error> {
         self.fit_driven(gpu, staged)?;
         if fitted.is_new { self.fit_levels(gpu, fitted) } else { Ok(()) }
-    }
-
-    fn stage_mesh_fraction(&self, staged: &mut Staged, fraction: f32) -> Result<(), Error> {
-        for (params, values, _) in self.runtimes.iter().flat_map(|runtime| &runtime.assign) {
-            staged.uniform(params, &AssignParams { mesh_fraction: fraction, ..*values })?;
-        }
-        Ok(())
     }
 
     fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {

@@ -16,10 +16,10 @@ use crate::animation::{BoundTable, ClipSet, Gate, RootMotion, RotationPath};
 use crate::asset::mesh::bone_radii;
 use crate::gpu::Gpu;
 use crate::scene::instances::Changed;
-use crate::scene::layout::error_vectors;
 use crate::scene::mesh;
 use crate::scene::object_kind::{Fitted, Replaced};
 use crate::scene::options::{CharacterOptions, bone_of};
+use crate::scene::paging::Held;
 use crate::scene::playing::Playing;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
@@ -61,6 +61,8 @@ pub(super) struct Character {
     replaced: Replaced,
     /// Whether memory has ended. Chunks are not divided then.
     is_memory_short: bool,
+    /// Metrics of the last frames, per instance, while levels fade in time.
+    held: Vec<Held>,
 }
 
 impl Character {
@@ -112,6 +114,7 @@ impl Character {
             runtimes,
             replaced: Replaced::Nothing,
             is_memory_short,
+            held: Vec::new(),
         })
     }
 
@@ -136,21 +139,15 @@ impl Character {
 
     /// Prepares the jobs that assign levels in a layout, unless they are up to date.
     fn fit_levels(&mut self, gpu: &Gpu, fitted: &Fitted<'_>) -> Result<(), Error> {
-        let mut errors = fitted.thresholds.to_vec();
-        // The error of level 0 does not count.
-        errors[0] = 0.0;
         for (runtime, chunk) in self.runtimes.iter_mut().zip(fitted.chunks) {
             let params = AssignParams {
                 first: chunk.range.first,
                 instances: 0,
-                levels: errors.len() as u32,
                 max_influences: InstanceLod::FULL.max_influences,
-                mesh_fraction: fitted.mesh_fraction,
                 bone_fraction: fitted.budget.bones,
                 influence_fraction: fitted.budget.influences,
                 unit: self.unit,
                 stray: self.stray,
-                errors: error_vectors(&errors),
             };
             runtime.fit(gpu, fitted.layout, fitted.assign, params)?;
         }

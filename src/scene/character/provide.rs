@@ -15,10 +15,12 @@ impl Character {
     /// Allocates the pages that a frame's views need. A chunk whose pages would exceed a binding is divided. If memory is
     /// short, the result has an LOD bias above 1.
     pub(super) fn provide_pages(&mut self, gpu: &Gpu, seen: &SeenBy<'_>) -> Result<Provided, Error> {
-        let SeenBy { views, object, instances } = *seen;
         let lod_bias = match self.runtimes.iter().all(Runtime::is_full) {
             true => 1.0,
-            false => self.provide_seen(gpu, &Seen::new(views, object, instances))?,
+            false => {
+                let seen = Seen::new(seen, &mut self.held);
+                self.provide_seen(gpu, &seen)?
+            }
         };
         // If an error occurred, `replaced` still holds the earlier replacements.
         let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);

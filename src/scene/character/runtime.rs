@@ -67,7 +67,7 @@ pub(in crate::scene) struct Runtime {
     /// Paging per skin.
     pub paging: Vec<Paging>,
     pub weights: Vec<MorphWeightsJob>,
-    pub assign: Vec<(Uniform<AssignParams>, AssignParams, Job)>,
+    pub assign: Vec<Job>,
     /// Adds driven bones to the gate's choice, and lists all of them; `None` without driven bones.
     pub driven: Option<(Job, CompactJob)>,
     /// The version of the driven bones that `driven` was prepared for.
@@ -160,12 +160,13 @@ impl Runtime {
             let uniform = Uniform::new(gpu, "assign", &params)?;
             let buffers = AssignBuffers {
                 allowed: &layout.allowed,
+                finest: &layout.finest,
                 instances: &layout.instances,
                 lods: &self.frame.state.lods,
                 instance_lods: &skin.crowd.instance_lods,
             };
             let job = pass.prepare(gpu, &uniform, buffers, params.instances)?;
-            self.assign.push((uniform, params, job));
+            self.assign.push(job);
         }
         self.version = layout.version;
         Ok(())
@@ -199,7 +200,7 @@ impl Runtime {
         match stage {
             Stage::Select => {}
             Stage::Gate => {
-                self.assign.iter().for_each(|(_, _, job)| job.dispatch(pass));
+                self.assign.iter().for_each(|job| job.dispatch(pass));
                 self.frame.dispatch_gate(pass);
                 if let Some((drive, lists)) = &self.driven {
                     drive.dispatch(pass);

@@ -14,7 +14,7 @@ use crate::scene::mesh::{Drawn, NOTHING};
 use crate::scene::object_kind::{Made, MakeOn, Making, ObjectKind, OnDevice, Placed, UnitRay};
 use crate::scene::ray::SurfaceHit;
 use crate::scene::specialization::{OwnDepth, PartState, Specialization};
-use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
 use crate::shared::render::scene_instances::SceneObject;
 use crate::{Error, InputError};
 
@@ -74,11 +74,11 @@ impl OwnKind {
         };
         let parts = self.kind.parts().iter().map(part).collect();
         let drawable = OwnDrawable::new(gpu, layouts, self.kind.indices(), parts)?;
-        let draw = |part: &KindPart, list: u32| match part.levels.get(list as usize / 2) {
+        let draw = |part: &KindPart, level: u32| match part.levels.get(level as usize) {
             Some(range) => SceneDraw { index_count: range.len() as u32, first_index: range.start, ..NOTHING },
             None => NOTHING,
         };
-        let of_part = |part: &KindPart| (0..OBJECT_LISTS).map(|list| draw(part, list)).collect::<Vec<_>>();
+        let of_part = |part: &KindPart| (0..OBJECT_LEVELS).map(|level| draw(part, level)).collect::<Vec<_>>();
         let draws = self.kind.parts().iter().flat_map(of_part).collect();
         Ok((vec![Box::new(drawable)], draws))
     }

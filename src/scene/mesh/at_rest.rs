@@ -1,5 +1,7 @@
 //! Static meshes as a kind of object.
 
+use glam::Vec3;
+
 use super::drawn;
 use crate::InputError;
 use crate::scene::chunk::Chunk;
@@ -15,6 +17,11 @@ pub(in crate::scene) struct MeshAtRest(pub Merged);
 impl ObjectKind for MeshAtRest {
     fn name(&self) -> &'static str {
         "a mesh"
+    }
+
+    fn model_box(&self) -> Option<[Vec3; 2]> {
+        let positions = self.0.model.meshes.iter().flat_map(|mesh| &mesh.positions).map(|at| Vec3::from(*at));
+        positions.map(|at| [at; 2]).reduce(|[low, high], [at, _]| [low.min(at), high.max(at)])
     }
 
     fn is_attachable(&self) -> bool {

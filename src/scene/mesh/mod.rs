@@ -9,7 +9,7 @@ use crate::scene::drawable::{Drawable, NO_OBJECT};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::scene::pieces::{Most, indices_of_levels, pieces};
-use crate::shared::lod::object::{OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
 use crate::shared::render::scene_vertex::{MeshParams, partner_word};
 use crate::skinning::at_rest::at_rest;
 use crate::skinning::bounding_sphere::BoundingSphere;
@@ -23,7 +23,7 @@ use crate::{Error, InputError};
 pub(super) use at_rest::MeshAtRest;
 pub(crate) use drawable::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 
-/// Drawables of an object, and the draws of all lists per part.
+/// Drawables of an object, and the draws per part and level.
 pub(super) type Drawn = (Vec<Box<dyn Drawable>>, Vec<SceneDraw>);
 
 /// A model's meshes at rest, merged, with a sphere around them.
@@ -118,16 +118,15 @@ pub(super) fn errors(merged: &Merged) -> Vec<f32> {
     std::iter::once(0.0).chain(merged.errors.iter().copied()).collect()
 }
 
-/// The draws of a merged mesh's parts: two per part and level, for instances that are not mirrored and for mirrored ones.
+/// The draws of a merged mesh's parts: [`OBJECT_LEVELS`] for each part.
 pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) -> Vec<SceneDraw> {
     let of_part = |part: &Part| {
-        let draw = |list: u32| {
-            let level = list / 2;
+        let draw = |level: u32| {
             let Some(range) = part.indices.get(level as usize) else { return NOTHING };
             let first_index = buffers.level(level).first_index + range.start;
             SceneDraw { index_count: range.len() as u32, first_index, ..NOTHING }
         };
-        (0..OBJECT_LISTS).map(draw).collect::<Vec<_>>()
+        (0..OBJECT_LEVELS).map(draw).collect::<Vec<_>>()
     };
     merged.parts.iter().filter(|part| part.mesh == mesh).flat_map(of_part).collect()
 }

@@ -25,10 +25,12 @@ impl Object {
         gpu: &Gpu,
         layouts: &SceneLayouts,
         views: &[SelectView],
+        now: f64,
     ) -> Result<bool, Error> {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
-        let lod = LodObject { mesh_fraction: self.mesh_fraction, ..self.lod_object(&all) };
-        let seen = SeenBy { views, object: &lod, instances: self.instances.all() };
+        let lod = self.lod_object(&all);
+        let lod = LodObject { metric_scale: lod.metric_scale / self.lod_bias, ..lod };
+        let seen = SeenBy { views, object: &lod, instances: self.instances.all(), now };
         let Provided { lod_bias, replaced } = self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
         self.is_rebound |= replaced == Replaced::Buffers;
         self.is_retuned |= lod_bias != self.lod_bias;
@@ -55,7 +57,6 @@ impl Object {
             for chunk in &self.chunks {
                 staged.elements(&layout.objects, chunk.number, &[self.lod_object(chunk)])?;
             }
-            self.kind.stage_mesh_fraction(staged, self.lod_bias * self.mesh_fraction)?;
         }
         self.kind.stage(staged, frame, now)
     }
@@ -80,16 +81,7 @@ impl Object {
                 stage_params(staged, chunk, self.handle)?;
             }
         }
-        let thresholds = if is_new { self.thresholds() } else { Vec::new() };
-        let fitted = Fitted {
-            layout,
-            is_new,
-            assign: pass,
-            budget,
-            mesh_fraction: self.lod_bias * self.mesh_fraction,
-            chunks: &self.chunks,
-            thresholds: &thresholds,
-        };
+        let fitted = Fitted { layout, is_new, assign: pass, budget, chunks: &self.chunks };
         self.kind.fit(gpu, &fitted, staged)?;
         self.fitted = layout.version;
         Ok(())
@@ -131,6 +123,7 @@ pub(in crate::scene) fn laid_out(
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
     for object in objects.iter_mut() {
+        let passes = if object.level_of_detail.transition.fades() { 2 } else { 1 };
         let levels = object.errors.len() as u32;
         for at in 0..object.chunks.len() {
             let chunk = &mut object.chunks[at];
@@ -139,9 +132,9 @@ pub(in crate::scene) fn laid_out(
             chunk.lay_out_sorted(&mut sorted);
             let instances = chunk.room();
             range.first += instances;
-            range.first_list += 2 * levels * instances;
-            range.first_draw += object.draws.len() as u32;
-            draws.extend_from_slice(&object.draws);
+            range.first_list += 2 * passes * levels * instances;
+            range.first_draw += OBJECT_LISTS * object.parts() as u32;
+            draws.extend(object.draws_of_lists());
             all.push(object.lod_object(&object.chunks[at]));
         }
     }
@@ -155,9 +148,11 @@ impl Counted {
         let counted = |(object, entry): (ObjectId, &Object)| CountedObject {
             object,
             first_draws: entry.chunks.iter().map(|chunk| chunk.range.first_draw).collect(),
-            parts: entry.draws.len() as u32 / OBJECT_LISTS,
+            parts: entry.parts() as u32,
             levels: entry.errors.len() as u32,
-            mesh_fraction: entry.mesh_fraction,
+            mesh_fraction: entry.error_fraction(),
+            bias: entry.level_of_detail.largest_factor(),
+            fades: entry.level_of_detail.transition.fades(),
         };
         Self { objects: objects.each().map(counted).collect() }
     }

@@ -10,7 +10,6 @@ use glam::Vec3;
 use crate::asset::Model;
 use crate::gpu::{Gpu, PendingUploads};
 use crate::lod::criterion::Criterion;
-use crate::lod::transition::Transition;
 use crate::scene::character::Character;
 use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
@@ -18,14 +17,15 @@ use crate::scene::instances::Instances;
 use crate::scene::kind::{Kind, OwnKind};
 use crate::scene::layout::error_vectors;
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::level_of_detail::LevelOfDetail;
 use crate::scene::material::Looks;
-use crate::scene::mesh::{self, Drawn, MeshAtRest};
+use crate::scene::mesh::{self, Drawn, MeshAtRest, NOTHING};
 use crate::scene::object_kind::ObjectKind;
 use crate::scene::options::CharacterOptions;
 use crate::scene::quality::ErrorBudget;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, TerrainSource};
-use crate::shared::lod::object::{LodObject, OBJECT_LISTS, SceneDraw, object_flags_word};
+use crate::shared::lod::object::{LodObject, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 pub(super) use frame::laid_out;
@@ -43,9 +43,12 @@ pub(crate) struct Object {
     /// The error of each level in the model's units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
-    /// Transition between levels, and the criterion that chooses them.
-    pub(super) transition: Transition,
-    pub(super) criterion: Criterion,
+    /// How its levels are chosen and change.
+    pub(super) level_of_detail: LevelOfDetail,
+    /// Whether any object of the scene has a rank.
+    pub(super) is_ranked: bool,
+    /// Middle and half size of a box around the model.
+    model_box: [Vec3; 2],
     /// LOD bias: 1 unless memory has ended.
     pub(super) lod_bias: f32,
     /// Dirty: LOD bias or visibility must be uploaded again.
@@ -59,7 +62,7 @@ pub(crate) struct Object {
     pub(super) pending: Option<PendingUploads>,
     /// Materials of a mesh or a character.
     pub(super) looks: Option<Looks>,
-    /// Draws of all lists of a chunk per part, with instance counts of 0.
+    /// Draws per part and level, [`OBJECT_LEVELS`] for each part, with instance counts of 0.
     pub(super) draws: Vec<SceneDraw>,
     /// Chunks, at least one.
     pub(super) chunks: Vec<Chunk>,
@@ -74,14 +77,19 @@ impl Object {
         (errors, mesh_fraction): (Vec<f32>, f32),
         (chunks, draws): (Vec<Chunk>, Vec<SceneDraw>),
     ) -> Self {
+        let model_box =
+            kind.model_box().map_or([sphere.center, Vec3::splat(sphere.radius)], |[low, high]| {
+                [0.5 * (low + high), 0.5 * (high - low)]
+            });
         Self {
             kind: Box::new(kind),
             instances,
             sphere,
             errors,
             mesh_fraction,
-            transition: Transition::default(),
-            criterion: Criterion::default(),
+            level_of_detail: LevelOfDetail::default(),
+            is_ranked: false,
+            model_box,
             lod_bias: 1.0,
             is_retuned: false,
             is_rebound: false,
@@ -176,22 +184,60 @@ impl Object {
 
     /// A chunk of the object, in kernel format.
     pub(super) fn lod_object(&self, chunk: &Chunk) -> LodObject {
-        LodObject {
+        let triangles = self.triangles();
+        let of = LodObject {
             first: chunk.range.first,
             instances: chunk.room(),
             levels: self.errors.len() as u32,
             first_list: chunk.range.first_list,
             first_draw: chunk.range.first_draw,
-            parts: self.draws.len() as u32 / OBJECT_LISTS,
-            mesh_fraction: self.lod_bias * self.mesh_fraction,
-            flags: object_flags_word(self.is_drawn().into(), self.transition.code(), self.criterion.code()),
-            errors: error_vectors(&self.thresholds()).map(Into::into),
+            parts: self.parts() as u32,
+            metric_scale: self.lod_bias * self.error_fraction(),
+            thresholds: error_vectors(&self.thresholds()).map(Into::into),
+            point: self.model_box[0].into(),
+            half_size: self.model_box[1].into(),
+            triangles: [0, 4]
+                .map(|first| std::array::from_fn(|lane| triangles.get(first + lane).copied().unwrap_or(0))),
+            ..LodObject::NONE
+        };
+        self.level_of_detail.on_device(self.is_drawn(), self.is_ranked, of)
+    }
+
+    /// The fraction of the allowed displacement that levels may use, if they are chosen by error; else 1.
+    fn error_fraction(&self) -> f32 {
+        match self.level_of_detail.criterion() {
+            Criterion::Error => self.mesh_fraction,
+            _ => 1.0,
         }
     }
 
     /// Smallest metric per level at which the level is drawn or begins to morph.
     pub(super) fn thresholds(&self) -> Vec<f32> {
-        self.transition.begins(&self.criterion.thresholds(&self.errors))
+        self.level_of_detail.thresholds(&self.errors, &self.triangles())
+    }
+
+    /// Triangles per level.
+    pub(super) fn triangles(&self) -> Vec<u32> {
+        let of_level = |level: usize| {
+            let draws = self.draws.chunks(OBJECT_LEVELS as usize);
+            draws.map(|draws| draws[level].index_count / 3).fold(0, u32::saturating_add)
+        };
+        (0..self.errors.len()).map(of_level).collect()
+    }
+
+    /// Number of parts.
+    fn parts(&self) -> usize {
+        self.draws.len() / OBJECT_LEVELS as usize
+    }
+
+    /// Draws of all lists of a chunk per part, with instance counts of 0.
+    fn draws_of_lists(&self) -> impl Iterator<Item = SceneDraw> {
+        let levels = self.errors.len();
+        let lists = if self.level_of_detail.transition.fades() { 4 * levels } else { 2 * levels };
+        self.draws.chunks(OBJECT_LEVELS as usize).flat_map(move |draws| {
+            let draw = move |list: usize| if list < lists { draws[list / 2 % levels] } else { NOTHING };
+            (0..OBJECT_LISTS as usize).map(draw)
+        })
     }
 
     /// Sets whether motion history is kept, once the object is refreshed.
@@ -204,7 +250,8 @@ impl Object {
     pub(super) fn draws(&self) -> usize {
         let parts: usize = self.drawables().map(|drawable| drawable.part_count()).sum();
         let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
-        sides * parts * self.errors.len()
+        let passes = if self.level_of_detail.transition.fades() { 2 } else { 1 };
+        passes * sides * parts * self.errors.len()
     }
 
     /// An instance's index in the scene's instance buffers.

@@ -11,7 +11,7 @@ impl Object {
 
     /// Passes the transition on to the drawables.
     pub(in crate::scene) fn mark_transition(&mut self) {
-        let morphed = self.transition == Transition::Geomorph;
+        let morphed = self.level_of_detail.transition == Transition::Geomorph;
         let drawables = self.chunks.iter_mut().flat_map(|chunk| &mut chunk.drawables);
         drawables.for_each(|drawable| drawable.set_morphed(morphed));
     }

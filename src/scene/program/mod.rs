@@ -89,6 +89,8 @@ impl KindProgram {
     ///     last_position: vec3<f32>,  // in the last frame, where the layer needs motion; else `position`
     ///     clip: vec4<f32>,           // the position in the target in pixels, and the depth
     ///     is_outside: bool,          // whether the outer side of the triangle is seen
+    ///     level: u32,                // level of detail of the instance, from 0 for the finest
+    ///     fade: f32,                 // alpha of an instance that is blended while it fades; else 1
     /// }
     /// ```
     ///
@@ -119,8 +121,7 @@ impl KindProgram {
         let code = without_comments(source);
         let declared = declared_names(&code);
         let declares = |what: &str| declared.contains(&format!("{name}_{what}"));
-        let kind =
-            KindText { name, discards: true, blends: true, deep: true, moves: declares("last_position") };
+        let kind = KindText { name, blends: true, deep: true, moves: declares("last_position") };
         // Comments are blanked so that nothing in them is taken for code; all code keeps its place.
         let text = format!("{code}\n{}", composed(&kind, SCENE_CORE, SCENE_OUTPUTS));
         let own = CallerText { path: "kind", source, text: &text };
@@ -156,7 +157,7 @@ impl KindProgram {
 
     /// Input of the generator of entry points.
     pub(crate) fn kind(&self) -> KindText<'_> {
-        KindText { name: &self.0.name, discards: true, blends: true, deep: true, moves: self.0.moves }
+        KindText { name: &self.0.name, blends: true, deep: true, moves: self.0.moves }
     }
 
     /// A kind that draws nothing.
@@ -358,7 +359,7 @@ fn all_last_position(entry: u32, vertex: u32) -> vec3<f32> {
 fn all_surface(in: relievo_SceneFragment) -> Surface {
     let same = relievo_SceneFragment(
         in.position, in.normal, in.tangent, in.uv, in.values, in.words, in.instance, in.last_position, in.clip,
-        in.is_outside);
+        in.is_outside, in.level, in.fade);
     var surface = relievo_scene_surface(same);
     surface.color = relievo_view.eye.xyz + relievo_view.light.xyz + relievo_view.clip_from_world[0].xyz;
     return surface;

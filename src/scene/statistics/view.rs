@@ -71,7 +71,7 @@ impl ViewCounts {
         let objects: Vec<_> = (about.counted.objects.iter().enumerate())
             .map(|(at, counted)| {
                 let coarser = about.lod_bias.get(at).copied().unwrap_or(1.0);
-                let factor = 1.0 + counted.mesh_fraction * (coarser - 1.0);
+                let factor = 1.0 + counted.mesh_fraction * (coarser * counted.bias - 1.0).max(0.0);
                 let pixels = coarser_pixels(about.pixels, factor, about.focal);
                 let levels = (0..counted.levels).map(|level| counted.level(level, &draws)).collect();
                 ObjectStatistics { object: counted.object, pixels, levels }
@@ -86,7 +86,8 @@ impl CountedObject {
     /// Instances and triangles in the draws of one level.
     fn level(&self, level: u32, draws: &[SceneDraw]) -> LevelStatistics {
         let mut found = LevelStatistics::default();
-        let lists = [2 * level, 2 * level + 1].into_iter();
+        let passes = if self.fades { 2 } else { 1 };
+        let lists = (0..passes).flat_map(|pass| [0, 1].map(|side| 2 * (pass * self.levels + level) + side));
         for (list, first) in lists.flat_map(|list| self.first_draws.iter().map(move |first| (list, first))) {
             for part in 0..self.parts {
                 let at = (first + OBJECT_LISTS * part + list) as usize;

@@ -9,7 +9,7 @@ use crate::scene::chunk::Chunk;
 use crate::scene::instances::Instances;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::mesh::NOTHING;
-use crate::shared::lod::object::{OBJECT_LISTS, SceneDraw};
+use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch};
 use crate::terrain::config::{HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::{TILES_PERIOD, planes};
@@ -75,7 +75,7 @@ pub(in crate::scene) async fn made(
         first = slots.end;
         chunks.push(Chunk::new(slots, vec![Box::new(drawable)]));
     }
-    let mut draws = vec![NOTHING; OBJECT_LISTS as usize];
+    let mut draws = vec![NOTHING; OBJECT_LEVELS as usize];
     draws[0].index_count = indices.len() as u32;
     let (edge, spacing) = (config.edge_length(), config.terrain_scale);
     let terrain = Terrain { ground, edge, spacing, source: source.clone(), morphing };

@@ -4,10 +4,11 @@ use super::attached::AttachedJobs;
 use crate::Error;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
-use crate::lod::SelectView;
+use crate::lod::decide::{DecideBuffers, DecidePass};
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
 use crate::lod::sorted::{SortedBuffers, SortedPass};
+use crate::lod::{BudgetState, OBJECT_LISTS, SelectView};
 use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::{InstancesInView, SceneLayouts};
@@ -16,6 +17,15 @@ use crate::scene::object_kind::KindInView;
 use crate::scene::order::Ordered;
 use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_view::SceneView;
+
+/// The passes that a view's jobs are prepared with.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::scene) struct ViewPasses<'a> {
+    pub select: &'a SelectPass,
+    pub decide: &'a DecidePass,
+    pub list: &'a ListPass,
+    pub sorted: &'a SortedPass,
+}
 
 /// Draws of sorted instances.
 #[derive(Debug)]
@@ -50,6 +60,7 @@ pub(crate) struct ViewLists {
     /// Sorted instances, from back to front.
     pub order: Vec<Ordered>,
     pub(super) select: Job,
+    pub(super) decide: Job,
     pub(super) list: Job,
     pub(super) attached: AttachedJobs,
 }
@@ -59,12 +70,14 @@ impl ViewLists {
         gpu: &Gpu,
         layout: &Layout,
         (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
-        (select, list, single): (&SelectPass, &ListPass, &SortedPass),
+        passes: ViewPasses<'_>,
         (layouts, objects, map): (&SceneLayouts, &Slots<Object>, Option<&wgpu::TextureView>),
     ) -> Result<Self, Error> {
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
-        let counts = Buffer::new(gpu, "counts of blocks", 16 * layout.blocks as usize)?;
+        let metrics = Buffer::new(gpu, "metrics", instances)?;
+        let counts = Buffer::new(gpu, "counts of blocks", (OBJECT_LISTS * layout.blocks) as usize)?;
+        let budget = Buffer::from_slice(gpu, "budget", &[BudgetState::FREE])?;
         let last_decisions = Buffer::new(gpu, "decisions of the last frame", instances)?;
         let frames = if layout.keeps_last { 2 } else { 1 };
         let placements = Buffer::new(gpu, "placements in the view", frames * instances)?;
@@ -76,12 +89,23 @@ impl ViewLists {
             block_objects: &layout.block_objects,
             instances: &layout.instances,
             allowed: &layout.allowed,
-            decisions: &decisions,
+            metrics: &metrics,
             placements: &placements,
-            counts: &counts,
-            last_decisions: &last_decisions,
+            decisions: &decisions,
         };
-        let select = select.prepare(gpu, buffers)?;
+        let select = passes.select.prepare(gpu, buffers)?;
+        let buffers = DecideBuffers {
+            view,
+            objects: &layout.objects,
+            block_objects: &layout.block_objects,
+            metrics: &metrics,
+            decisions: &decisions,
+            last_decisions: &last_decisions,
+            counts: &counts,
+            finest: &layout.finest,
+            budget: &budget,
+        };
+        let decide = passes.decide.prepare(gpu, buffers)?;
         let buffers = ListBuffers {
             objects: &layout.objects,
             block_objects: &layout.block_objects,
@@ -90,12 +114,12 @@ impl ViewLists {
             lists: &lists,
             arguments: &arguments,
         };
-        let list = list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
+        let list = passes.list.prepare(gpu, buffers, layout.object_count, layout.blocks)?;
         let instances = in_view(layout, &placements, &last_decisions);
         let group = layouts.view(gpu, drawn, &instances, map)?;
         let in_view = objects.iter().map(|object| object.kind.in_view(gpu, layouts, object.handle));
         Ok(Self {
-            sorted: sorted(gpu, layout, single, (&decisions, &arguments))?,
+            sorted: sorted(gpu, layout, passes.sorted, (&decisions, &arguments))?,
             version: layout.version,
             lists,
             arguments,
@@ -106,6 +130,7 @@ impl ViewLists {
             in_view: in_view.collect::<Result<_, Error>>()?,
             order: Vec::new(),
             select,
+            decide,
             list,
             attached: AttachedJobs::default(),
         })
@@ -152,6 +177,7 @@ fn sorted(
     }
     let draws = Buffer::new(gpu, "draws of single instances", count)?;
     let entries = Buffer::new(gpu, "lists of one", count)?;
-    let buffers = SortedBuffers { sorted, decisions, arguments, draws: &draws, entries: &entries };
+    let objects = &layout.objects;
+    let buffers = SortedBuffers { sorted, decisions, arguments, draws: &draws, entries: &entries, objects };
     Ok(Some(SortedLists { job: pass.prepare(gpu, buffers, count as u32)?, draws, entries }))
 }

@@ -7,13 +7,10 @@ mod rebuild;
 mod shadow;
 mod uniforms;
 
-use glam::IVec3;
+use glam::{IVec3, UVec2};
 
 use crate::asset::Light;
 use crate::gpu::{Gpu, Staged, Uniform, Upload as _};
-use crate::lod::list::ListPass;
-use crate::lod::select::SelectPass;
-use crate::lod::sorted::SortedPass;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::lod::{INSTANCE_ALIVE, INSTANCE_CASTS, instance_flags_mask};
 use crate::lod::{SelectView, VIEW_CAMERAS, planes};
@@ -27,9 +24,9 @@ use crate::scene::quality::Quality;
 use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
-use lists::ViewLists;
+use lists::{ViewLists, ViewPasses};
 pub(crate) use shadow::ViewShadow;
-use uniforms::lod_camera;
+use uniforms::{clip_rows, lod_camera};
 
 /// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
 ///
@@ -85,11 +82,12 @@ pub struct View {
     pub(crate) remade_by: &'static str,
     quality: Quality,
     camera: Option<Camera>,
-    /// Number and camera of the view's last frame.
-    last: Option<(u64, Camera)>,
+    /// The view's last frame.
+    last: Option<LastFrame>,
     lod_cameras: Vec<Camera>,
     mask: u16,
     casters: bool,
+    dither: DitherPattern,
     /// The sun's shadow that is applied in this view.
     shadow: Option<ViewShadow>,
     select: Uniform<SelectView>,
@@ -97,6 +95,27 @@ pub struct View {
     recorded: Option<Recorded>,
     pub(crate) lists: Option<ViewLists>,
     counts: Option<ViewCounts>,
+}
+
+/// The pattern of pixels by which levels of detail dither into each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DitherPattern {
+    /// The same in every frame.
+    #[default]
+    Still,
+    /// Moved in every frame, through all 64 places.
+    PerFrame,
+}
+
+/// A view's last frame.
+#[derive(Debug, Clone, Copy)]
+struct LastFrame {
+    frame: u64,
+    camera: Camera,
+    /// The scene's time in seconds.
+    time: f64,
+    /// Whether the next frame forgets it ([`View::cut`]).
+    is_cut: bool,
 }
 
 /// Facts about a view's last frame that a renderer needs.
@@ -108,6 +127,16 @@ pub(super) struct Recorded {
     pub reversed: bool,
     /// Per object: whether it has instances that are not mirrored, and whether it has mirrored ones.
     pub sides: Vec<[bool; 2]>,
+}
+
+/// The frame that is being recorded.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    pub frame: u64,
+    /// The scene's time in seconds.
+    pub time: f64,
+    /// Whether the view is the first of the frame.
+    pub is_first: bool,
 }
 
 impl View {
@@ -129,6 +158,7 @@ impl View {
             lod_cameras: Vec::new(),
             mask: u16::MAX,
             casters: false,
+            dither: DitherPattern::Still,
             shadow: None,
             select,
             drawn,
@@ -199,6 +229,29 @@ impl View {
         self.casters = casters;
     }
 
+    /// Sets whether the pattern of dithers ([`Transition::Dither`](super::Transition::Dither)) stands still or changes in each
+    /// frame. Temporal antialiasing averages a pattern that changes; the default stands still.
+    pub fn set_dither(&mut self, dither: DitherPattern) {
+        self.dither = dither;
+    }
+
+    /// Pixels by which a frame's pattern is moved.
+    fn dither_offset(&self, frame: u64) -> UVec2 {
+        match self.dither {
+            DitherPattern::Still => UVec2::ZERO,
+            // Steps of a knight's move visit all pixels of the pattern.
+            DitherPattern::PerFrame => UVec2::new((3 * frame % 8) as u32, (frame / 8 + frame) as u32 % 8),
+        }
+    }
+
+    /// Makes the next frame begin afresh, for a cut or a jump of the camera: its levels of detail do not depend on those of
+    /// the last frame, no fade runs on, and velocities are those of a still camera.
+    pub fn cut(&mut self) {
+        if let Some(last) = &mut self.last {
+            last.is_cut = true;
+        }
+    }
+
     /// The camera, if one was set.
     pub fn camera(&self) -> Option<&Camera> {
         self.camera.as_ref()
@@ -220,7 +273,7 @@ impl View {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        passes: (&SelectPass, &ListPass, &SortedPass),
+        passes: ViewPasses<'_>,
         (layouts, objects): (&SceneLayouts, &Slots<Object>),
     ) -> Result<(), Error> {
         let map = self.shadow.as_ref().map(|shadow| &shadow.map);
@@ -243,12 +296,12 @@ impl View {
 
     /// Whether frame `frames − 1`, the last one, included this view.
     pub(super) fn is_of_frame(&self, frames: u64) -> bool {
-        self.last.is_some_and(|(frame, _)| frame + 1 == frames)
+        self.last.is_some_and(|last| last.frame + 1 == frames)
     }
 
-    /// Stores the camera of a recorded frame.
-    pub(super) fn recorded(&mut self, frame: u64) {
-        self.last = self.camera.map(|camera| (frame, camera));
+    /// Stores a recorded frame at scene time `time`.
+    pub(super) fn recorded(&mut self, frame: u64, time: f64) {
+        self.last = self.camera.map(|camera| LastFrame { frame, camera, time, is_cut: false });
     }
 
     /// Stages the view's uniforms. `sides` has the meaning of [`Recorded::sides`].
@@ -257,11 +310,16 @@ impl View {
         staged: &mut Staged,
         (blocks, light): (u32, &Light),
         sides: impl Iterator<Item = [bool; 2]>,
-        (frame, is_first): (u64, bool),
+        now: Moment,
     ) -> Result<(), Error> {
-        let last = self.last.filter(|(last, _)| *last + 1 == frame).map(|(_, camera)| camera);
+        let Moment { frame, time, is_first } = now;
+        let last = self.last.filter(|last| last.frame + 1 == frame && !last.is_cut);
         let (camera, mut view) = self.select_view(blocks, is_first)?;
         view.is_next = last.is_some().into();
+        view.clip_rows = clip_rows(&camera);
+        view.last_clip_rows = last.map_or(view.clip_rows, |last| clip_rows(&last.camera));
+        view.seconds = last.map_or(0.0, |last| (time - last.time).abs() as f32);
+        let last = last.map(|last| last.camera);
         staged.uniform(&self.select, &view)?;
         staged.uniform(
             &self.drawn,
@@ -269,6 +327,7 @@ impl View {
                 [&camera, &last.unwrap_or(camera)],
                 &view.cameras[0],
                 (light, self.shadow.as_ref()),
+                self.dither_offset(frame),
             ),
         )?;
         for in_view in self.lists.iter().flat_map(|lists| lists.in_view.iter().flatten()) {
@@ -320,6 +379,7 @@ impl View {
     pub(super) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);
+            lists.decide.dispatch(pass);
             lists.list.dispatch(pass);
             if let Some(sorted) = &lists.sorted {
                 sorted.job.dispatch(pass);

@@ -1,6 +1,6 @@
 //! Uniforms of a view for kernels and shaders.
 
-use glam::{DMat4, DVec3, IVec3, Mat4, Vec3, Vec4};
+use glam::{DMat4, DVec3, IVec3, Mat4, UVec2, Vec3, Vec4};
 
 use crate::InputError;
 use crate::asset::Light;
@@ -16,6 +16,7 @@ impl SceneView {
         [camera, last]: [&Camera; 2],
         own: &LodCamera,
         (light, shadow): (&Light, Option<&ViewShadow>),
+        dither_offset: UVec2,
     ) -> Self {
         let eye = match own.perspective > 0.0 {
             true => camera.eye_offset().extend(1.0),
@@ -31,6 +32,7 @@ impl SceneView {
             cell: IVec3::from(camera.cell),
             shadow_texel: shadow.map_or(0.0, |shadow| shadow.texel),
             shadow_rows: shadow.map_or([Vec4::ZERO; 3], |shadow| shadow.rows(camera.cell)),
+            dither_offset,
         }
     }
 
@@ -47,6 +49,7 @@ impl SceneView {
             cell: IVec3::ZERO,
             shadow_texel: 0.0,
             shadow_rows: [Vec4::ZERO; 3],
+            dither_offset: UVec2::ZERO,
         }
     }
 }
@@ -76,8 +79,8 @@ impl SelectView {
             pixels: 0.0,
             near: 0.0,
             perspective: 1.0,
-            unused_a: 0.0,
-            unused_b: 0.0,
+            pixel_count: 1.0,
+            unused: 0.0,
         };
         Self {
             planes: [Vec4::NEG_W; 6],
@@ -89,11 +92,20 @@ impl SelectView {
             casters: 0,
             blocks: 0,
             is_next: 0,
+            seconds: 0.0,
             unused_a: 0,
             unused_b: 0,
-            unused_c: 0,
+            clip_rows: [Vec4::W; 3],
+            last_clip_rows: [Vec4::W; 3],
         }
     }
+}
+
+/// Rows x, y and w of a camera's transform from its cell to clip space, in units of half the picture's height.
+pub(super) fn clip_rows(camera: &Camera) -> [Vec4; 3] {
+    let clip = camera.clip_from_cell();
+    let [width, height] = camera.viewport.map(|size| size as f32);
+    [clip.row(0) * (width / height), clip.row(1), clip.row(3)]
 }
 
 /// A camera that decides levels of detail, relative to a cell's corner.

@@ -124,7 +124,7 @@ fn part_of_allowed(gpu: &Gpu, model: &Model, steps: u32) -> f64 {
     let placement =
         Placement { offset: middle - scale * sphere.center, scale: Vec3::splat(scale), ..Default::default() };
     let instance = scene.spawn(object, placement).expect("room");
-    scene.set_transition(object, Transition::Geomorph).expect("with partners");
+    scene.set_level_of_detail(object, &Transition::Geomorph.into()).expect("with partners");
     let mut moments = vec![0.0];
     if let Some(clip) = model.clips.first() {
         scene.play(instance, &Play::new("0")).expect("there");

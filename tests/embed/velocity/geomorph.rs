@@ -67,7 +67,7 @@ impl Stage {
         };
         let object = object.expect("added");
         scene.spawn(object, Placement::at([0.0; 3])).expect("room");
-        scene.set_transition(object, Transition::Geomorph).expect("with partners");
+        scene.set_level_of_detail(object, &Transition::Geomorph.into()).expect("with partners");
         view.set(camera()).expect("a camera");
         let eye = Eye::new(gpu, &scene);
         let merged = merged(model, 8).expect("valid");

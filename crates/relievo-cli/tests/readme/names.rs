@@ -73,7 +73,7 @@ fn members() {
     let _ = Scene::health; // Scene::health
     let _ = Scene::keep_motion_history; // Scene::keep_motion_history
     let _ = Scene::set_material; // Scene::set_material
-    let _ = Scene::set_transition; // Scene::set_transition
+    let _ = Scene::set_level_of_detail; // Scene::set_level_of_detail
     let _ = Simplified::hash; // Simplified::hash
     let _ = Layer::Color; // Layer::Color
     let _ = Layer::Depth; // Layer::Depth

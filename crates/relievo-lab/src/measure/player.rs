@@ -106,7 +106,7 @@ impl Player {
         if let Some(transition) = transition {
             for WorldObject { object, .. } in &world.objects {
                 if world.scene.can_morph(*object)? {
-                    world.scene.set_transition(*object, transition)?;
+                    world.scene.set_level_of_detail(*object, &transition.into())?;
                 }
             }
         }

@@ -6,6 +6,7 @@ use crate::asset::Light;
 use crate::asset::transform::Affine;
 use crate::gpu::{Buffer, Gpu, Group, Options, Uniform};
 use crate::lod::is_mirrored;
+use crate::lod::transition::Transition;
 use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw, SceneInstance};
 use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
@@ -47,6 +48,7 @@ pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
         cell: glam::IVec3::ZERO,
         shadow_texel: 0.0,
         shadow_rows: [Vec4::ZERO; 3],
+        dither_offset: glam::UVec2::ZERO,
     }
 }
 
@@ -76,7 +78,7 @@ impl Stage {
             first_list: 2 * BLOCK,
             first_draw: 3,
             parts: parts.len() as u32,
-            flags: object_flags_word(1, 0, 0),
+            flags: object_flags_word(1, 0, 0, 0, 0),
             ..LodObject::NONE
         };
         let (lists, draws) = listed(&lod, placements, parts);
@@ -121,7 +123,8 @@ impl Stage {
     }
 
     pub fn object<'a>(&'a self, drawable: &'a dyn Drawable, ground: Option<&'a Group>) -> DrawnObject<'a> {
-        DrawnObject { number: 1, drawable, lod: &self.lod, sides: [true; 2], view_group: ground }
+        let transition = Transition::Hard;
+        DrawnObject { number: 1, drawable, lod: &self.lod, sides: [true; 2], transition, view_group: ground }
     }
 }
 
@@ -153,7 +156,7 @@ fn listed(lod: &LodObject, placements: &[Affine], parts: &[[u32; 2]]) -> (Vec<u3
 /// A renderer with the pipelines of one object.
 pub fn renderer(gpu: &Gpu, format: &TargetFormat, drawable: &dyn Drawable) -> Renderer {
     let mut renderer = Renderer::new(gpu, format).expect("a format");
-    renderer.prepare_objects([drawable].into_iter(), false).expect("compiled");
+    renderer.prepare_objects([(drawable, Transition::Hard)].into_iter(), false).expect("compiled");
     renderer
 }
 

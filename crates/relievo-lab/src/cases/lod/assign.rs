@@ -1,6 +1,5 @@
 //! Parity and benchmark cases of `kernels/lod/assign.wgsl`.
 
-use glam::Vec4;
 use relievo::Error;
 use relievo::gpu::{Buffer, Uniform};
 use relievo::ops::animation::lod::PackedLod;
@@ -22,8 +21,8 @@ const QUOTIENT: f32 = 1e-6;
 /// The fraction of instances whose level or fade rounding may decide either way.
 const MAY_TOUCH: f64 = 1.0 / 200.0;
 
-/// The cases cover numbers of instances around a workgroup's, behind and before instances of other objects; all numbers of
-/// levels, characters without influences to fade, and displacements from 0 to the largest, or of unseen instances.
+/// The cases cover numbers of instances around a workgroup's, behind and before instances of other objects;
+/// characters without influences to fade, and displacements from 0 to the largest, or of unseen instances.
 ///
 /// # Errors
 /// What the device reports.
@@ -31,8 +30,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = AssignPass::new(gpu)?;
     for (case, instances) in (0..).zip([1, 63, 64, 65, 1000]) {
-        for levels in [1, 2, 5, 8] {
-            let params = params(64 * case, instances, levels);
+        for has_stray in [false, true] {
+            let params = params(64 * case, instances, has_stray);
             let allowed = random_allowed(case, (64 * case + instances) as usize + 64);
             let all = random_carriers(case, allowed.len());
             let (lods, instance_lods) = (
@@ -42,6 +41,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let buffers = AssignBuffers {
                 allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
                 instances: &Buffer::from_slice(gpu, "instances", &all)?,
+                finest: &Buffer::from_slice(gpu, "finest", &finest(allowed.len()))?,
                 lods: &lods.buffer,
                 instance_lods: &instance_lods.buffer,
             };
@@ -49,32 +49,54 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers, instances)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
             let of_object = params.first as usize..(params.first + instances) as usize;
-            let allowed: Vec<(f32, bool)> =
-                allowed[of_object.clone()].iter().copied().zip(all[of_object].iter().map(carries)).collect();
-            let name = format!("{instances} instances, {levels} levels");
-            let gates = |found: &[PackedLod]| compared_lods(&params, &allowed, found);
+            let given = Given::all(&allowed, &all);
+            let given = &given[of_object];
+            let name =
+                format!("{instances} instances, {} influences", if has_stray { "with" } else { "without" });
+            let gates = |found: &[PackedLod]| compared_lods(&params, given, found);
             cases.check(format!("{name}: gates"), &lods, gates).await?;
-            let skins = |found: &[InstanceLod]| compared_instance_lods(&params, &allowed, found);
+            let skins = |found: &[InstanceLod]| compared_instance_lods(&params, given, found);
             cases.check(format!("{name}: skins"), &instance_lods, skins).await?;
         }
     }
     Ok(())
 }
 
-/// Parameters of a character with so many levels; with two of them it has no influences to fade.
-fn params(first: u32, instances: u32, levels: u32) -> AssignParams {
-    let error = |level: usize| if level == 0 { 0.0 } else { 1e-3 * (1 << (2 * level)) as f32 };
+/// Parameters of a character, with influences to fade or without.
+fn params(first: u32, instances: u32, has_stray: bool) -> AssignParams {
     AssignParams {
         first,
         instances,
-        levels,
-        mesh_fraction: 0.5,
         bone_fraction: 0.3,
         influence_fraction: 0.2,
         unit: 3.7e-7,
-        stray: if levels == 2 { 0.0 } else { 0.7 },
+        stray: if has_stray { 0.7 } else { 0.0 },
         max_influences: 4,
-        errors: [0, 1].map(|four| Vec4::from_array(std::array::from_fn(|lane| error(4 * four + lane)))),
+    }
+}
+
+/// Finest levels of so many instances.
+fn finest(count: usize) -> Vec<u32> {
+    (0..count as u32).map(|at| at * 5 % 8).collect()
+}
+
+/// What is given of an instance.
+#[derive(Debug, Clone, Copy)]
+struct Given {
+    allowed: f32,
+    finest: u32,
+    carries: bool,
+}
+
+impl Given {
+    fn all(allowed: &[f32], instances: &[SceneInstance]) -> Vec<Self> {
+        let carries = instances.iter().map(|instance| instance.flags & INSTANCE_CARRIES != 0);
+        let given = allowed.iter().zip(finest(allowed.len())).zip(carries);
+        given.map(|((allowed, finest), carries)| Self { allowed: *allowed, finest, carries }).collect()
+    }
+
+    fn scaled(self, factor: f32) -> Self {
+        Self { allowed: factor * self.allowed, ..self }
     }
 }
 
@@ -100,55 +122,47 @@ fn random_carriers(case: u32, count: usize) -> Vec<SceneInstance> {
     all
 }
 
-fn carries(instance: &SceneInstance) -> bool {
-    instance.flags & INSTANCE_CARRIES != 0
-}
-
 /// The right results, as the kernel writes them.
-fn packed(params: &AssignParams, (allowed, carries): (f32, bool)) -> (PackedLod, InstanceLod) {
-    let (lod, instance_lod) = assign(params, allowed, carries);
+fn packed(params: &AssignParams, given: Given) -> (PackedLod, InstanceLod) {
+    let (lod, instance_lod) = assign(params, given.allowed, given.finest, given.carries);
     (lod.packed(), instance_lod)
 }
 
 /// The right results for the displacement as it is, and for the least and the largest to which rounding may change it.
-fn around(params: &AssignParams, (allowed, carries): (f32, bool)) -> [(PackedLod, InstanceLod); 3] {
-    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, (factor * allowed, carries)))
+fn around(params: &AssignParams, given: Given) -> [(PackedLod, InstanceLod); 3] {
+    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, given.scaled(factor)))
 }
 
 /// Units must lie between those of the least and the largest displacement; everything else must be equal.
-fn compared_lods(params: &AssignParams, allowed: &[(f32, bool)], found: &[PackedLod]) -> Comparison {
-    let judge = |(found, allowed): (&PackedLod, &(f32, bool))| {
-        let [(right, _), (least, _), (largest, _)] = around(params, *allowed);
+fn compared_lods(params: &AssignParams, given: &[Given], found: &[PackedLod]) -> Comparison {
+    let judge = |(found, given): (&PackedLod, &Given)| {
+        let [(right, _), (least, _), (largest, _)] = around(params, *given);
         let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
             && PackedLod { allowed: right.allowed, ..*found } == right;
         let error = f64::from(found.allowed.abs_diff(right.allowed));
         Judgement::exact(is_right, error, false)
     };
-    let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
+    let judgements: Vec<Judgement> = found.iter().zip(given).map(judge).collect();
     each(&judgements, "units", MAY_TOUCH, |at| {
-        format!("{:?} instead of {:?}", found[at], packed(params, allowed[at]).0)
+        format!("{:?} instead of {:?}", found[at], packed(params, given[at]).0)
     })
 }
 
-/// A level or a fade may be that of the least or of the largest displacement, if these differ.
-fn compared_instance_lods(
-    params: &AssignParams,
-    allowed: &[(f32, bool)],
-    found: &[InstanceLod],
-) -> Comparison {
-    let judge = |(found, allowed): (&InstanceLod, &(f32, bool))| {
-        let [(_, right), (_, least), (_, largest)] = around(params, *allowed);
+/// A fade may be that of the least or of the largest displacement, if these differ.
+fn compared_instance_lods(params: &AssignParams, given: &[Given], found: &[InstanceLod]) -> Comparison {
+    let judge = |(found, given): (&InstanceLod, &Given)| {
+        let [(_, right), (_, least), (_, largest)] = around(params, *given);
         let is_right = (least.influence_fade..=largest.influence_fade).contains(&found.influence_fade)
-            && (least.mesh_lod..=largest.mesh_lod).contains(&found.mesh_lod)
+            && found.mesh_lod == right.mesh_lod
             && found.max_influences == right.max_influences
             // Fades are whole steps, exact in f32.
             && libm::truncf(64.0 * found.influence_fade) == 64.0 * found.influence_fade;
         let error = f64::from((found.influence_fade - right.influence_fade).abs());
         Judgement::exact(is_right, error, least != largest)
     };
-    let judgements: Vec<Judgement> = found.iter().zip(allowed).map(judge).collect();
+    let judgements: Vec<Judgement> = found.iter().zip(given).map(judge).collect();
     each(&judgements, "fade", MAY_TOUCH, |at| {
-        format!("{:?} instead of {:?}", found[at], packed(params, allowed[at]).1)
+        format!("{:?} instead of {:?}", found[at], packed(params, given[at]).1)
     })
 }
 
@@ -160,21 +174,22 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let gpu = bench.gpu;
     let pass = AssignPass::new(gpu)?;
     for count in [1_000, 100_000_usize] {
-        let params = params(0, count as u32, 8);
+        let params = params(0, count as u32, true);
         let allowed: Vec<f32> =
             (0..count).map(|at| if at % 4 == 0 { -1.0 } else { 1e-3 * (at % 1024) as f32 }).collect();
         let buffers = AssignBuffers {
             allowed: &Buffer::from_slice(gpu, "allowed", &allowed)?,
             instances: &Buffer::from_slice(gpu, "instances", &random_instances(1, count))?,
+            finest: &Buffer::from_slice(gpu, "finest", &finest(count))?,
             lods: &Buffer::new(gpu, "lods", count)?,
             instance_lods: &Buffer::new(gpu, "instance_lods", count)?,
         };
         let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers, count as u32)?;
-        // The kernel reads two words and writes a Lod and an InstanceLod.
-        let words = 9 * count;
+        // The kernel reads three words and writes a Lod and an InstanceLod.
+        let words = 10 * count;
         let name = format!("{count} instances");
         measure(bench, name, (count, "instance"), words, &|encoder| job.record(encoder), || {
-            allowed.iter().map(|allowed| assign(&params, *allowed, false)).collect::<Vec<_>>()
+            allowed.iter().map(|allowed| assign(&params, *allowed, 0, false)).collect::<Vec<_>>()
         })?;
     }
     Ok(())
@@ -187,23 +202,22 @@ mod tests {
 
     #[test]
     fn what_is_wrong_of_one_instance_is_seen() {
-        let params = params(0, 200, 5);
+        let params = params(0, 200, true);
         let carriers = random_carriers(5, 200);
-        let allowed: Vec<(f32, bool)> =
-            random_allowed(5, 200).into_iter().zip(carriers.iter().map(carries)).collect();
+        let given = Given::all(&random_allowed(5, 200), &carriers);
         let (lods, instance_lods): (Vec<PackedLod>, Vec<InstanceLod>) =
-            allowed.iter().map(|allowed| packed(&params, *allowed)).unzip();
-        assert!(compared_lods(&params, &allowed, &lods).holds);
-        assert!(compared_instance_lods(&params, &allowed, &instance_lods).holds);
-        let unseen = allowed.iter().position(|(allowed, _)| *allowed < 0.0).expect("some");
-        let faded =
-            (0..200).position(|at| (0.1..0.9).contains(&instance_lods[at].influence_fade) && !allowed[at].1);
+            given.iter().map(|given| packed(&params, *given)).unzip();
+        assert!(compared_lods(&params, &given, &lods).holds);
+        assert!(compared_instance_lods(&params, &given, &instance_lods).holds);
+        let unseen = given.iter().position(|given| given.allowed < 0.0).expect("some");
+        let faded = (0..200)
+            .position(|at| (0.1..0.9).contains(&instance_lods[at].influence_fade) && !given[at].carries);
         let faded = faded.expect("some");
-        let carrier = allowed.iter().position(|(allowed, carries)| *allowed > 0.1 && *carries).expect("some");
+        let carrier = given.iter().position(|given| given.allowed > 0.1 && given.carries).expect("some");
         let gate = |at: usize, change: fn(&mut PackedLod)| {
             let mut found = lods.clone();
             change(&mut found[at]);
-            compared_lods(&params, &allowed, &found).holds
+            compared_lods(&params, &given, &found).holds
         };
         assert!(!gate(unseen, |lod| lod.flags = 0) && !gate(faded, |lod| lod.flags = LOD_HIDDEN));
         assert!(!gate(faded, |lod| lod.allowed += lod.allowed / 1000));
@@ -212,7 +226,7 @@ mod tests {
         let skin = |at: usize, change: fn(&mut InstanceLod)| {
             let mut found = instance_lods.clone();
             change(&mut found[at]);
-            compared_instance_lods(&params, &allowed, &found).holds
+            compared_instance_lods(&params, &given, &found).holds
         };
         assert!(!skin(unseen, |lod| lod.max_influences = 4) && !skin(faded, |lod| lod.max_influences = 0));
         assert!(!skin(faded, |lod| lod.influence_fade += 1.0 / 64.0));
@@ -220,18 +234,20 @@ mod tests {
         assert!(!skin(faded, |lod| lod.mesh_lod += 1));
     }
 
-    /// A displacement at the very edge of a level may give either level.
+    /// A displacement at the very edge of a step of the fade may give either step.
     #[test]
     fn an_edge_may_go_either_way() {
-        let params = params(0, 1, 5);
-        let edge = params.errors[0].y / params.mesh_fraction;
-        let (_, right) = assign(&params, edge, false);
-        let level = |level| {
-            compared_instance_lods(&params, &[(edge, false)], &[InstanceLod { mesh_lod: level, ..right }])
+        let params = params(0, 1, true);
+        let edge = 0.25 * params.stray / params.influence_fraction;
+        let given = Given { allowed: edge, finest: 3, carries: false };
+        let (_, right) = packed(&params, given.scaled(1.0 + QUOTIENT));
+        let fade = |steps: f32| {
+            let influence_fade = right.influence_fade - steps / 64.0;
+            compared_instance_lods(&params, &[given], &[InstanceLod { influence_fade, ..right }])
         };
-        assert!(level(0).holds && level(1).holds && !level(2).holds);
-        assert_eq!(level(0).spread.expect("given").touching, 1);
-        let two = compared_instance_lods(&params, &[(edge, false); 2], &[right; 2]);
+        assert!(fade(0.0).holds && fade(1.0).holds && !fade(2.0).holds);
+        assert_eq!(fade(0.0).spread.expect("given").touching, 1);
+        let two = compared_instance_lods(&params, &[given; 2], &[right; 2]);
         assert!(!two.holds && two.fault.expect("a fault").contains("2 of 2 touch"));
     }
 }

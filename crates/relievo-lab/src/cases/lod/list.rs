@@ -4,9 +4,9 @@ use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Job};
 use relievo::ops::lod::list::reference::{before_blocks, lists};
 use relievo::ops::lod::list::{ListBuffers, ListPass};
-use relievo::ops::lod::select::reference::counts;
-use relievo::ops::lod::{BLOCK, OBJECT_LISTS, SceneDraw};
-use relievo::shared::lod::object::decision_word;
+use relievo::ops::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneDraw};
+use relievo::shared::lod::object::{FADE_PROGRESS, MORPH_STEPS, decision_word, object_flags_transition};
+use relievo::shared::lod::transition::{TRANSITION_GEOMORPH, TRANSITION_HARD};
 
 use crate::cases::animation::Draw;
 use crate::cases::lod::{Blocks, SIZES};
@@ -33,7 +33,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let words = OBJECT_LISTS as usize * blocks.block_objects.len();
             let (count, list) = (Poisoned::new(gpu, words)?, Poisoned::new(gpu, blocks.list_words())?);
             let arguments = Poisoned::<SceneDraw>::new(gpu, blocks.draws())?;
-            count.buffer.write(gpu, &counts(&decisions))?;
+            count.buffer.write(gpu, &blocks.counts(&decisions))?;
             let outputs = (&count.buffer, &list.buffer, &arguments.buffer);
             let job = prepared(gpu, &pass, &blocks, &decisions, outputs)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
@@ -52,19 +52,35 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 /// Decisions of all instances, also of those in blocks of no object.
 fn random_decisions(case: u32, kind: &str, blocks: &Blocks) -> Vec<u32> {
     let mut draw = Draw::new(case ^ 0x1157);
-    // Lists keep what is above, of every other instance.
-    let moved = |index: usize, decision: u32| match decision {
-        0 => 0,
-        decision => decision_word(decision, if index.is_multiple_of(2) { 0x5a3 } else { 0 }),
+    let mut decision = |index: usize| match (kind, blocks.object_of(index)) {
+        (_, None) => draw.word() | 1,
+        ("none seen", _) => 0,
+        ("few", _) if !draw.word().is_multiple_of(40) => 0,
+        ("all in one list", Some(object)) => {
+            decision_word(1, case % 2, object.levels - 1, object.levels - 1, 0)
+        }
+        (_, Some(_)) if draw.word().is_multiple_of(5) => 0,
+        (_, Some(object)) => random_decision(&mut draw, object),
     };
-    let mut decision = |index: usize| match kind {
-        _ if blocks.object_of(index).is_none() => 1 + draw.word() % OBJECT_LISTS,
-        "none seen" => 0,
-        "all in one list" => 1 + case,
-        "few" if !draw.word().is_multiple_of(40) => 0,
-        _ => draw.word() % (1 + OBJECT_LISTS),
+    (0..BLOCK as usize * blocks.block_objects.len()).map(&mut decision).collect()
+}
+
+/// A decision of a visible instance, changing its level or not.
+pub(crate) fn random_decision(draw: &mut Draw, object: &LodObject) -> u32 {
+    let level = draw.word() % object.levels;
+    let is_changing = draw.word().is_multiple_of(2);
+    let (next, steps) = match object_flags_transition(object.flags) {
+        TRANSITION_HARD => (level, 0),
+        _ if !is_changing => (level, 0),
+        TRANSITION_GEOMORPH => (level, draw.word() % (MORPH_STEPS + 1)),
+        // The levels of a fade differ.
+        _ if object.levels > 1 => {
+            ((level + 1 + draw.word() % (object.levels - 1)) % object.levels, draw.word() % FADE_PROGRESS)
+        }
+        _ => (level, 0),
     };
-    (0..BLOCK as usize * blocks.block_objects.len()).map(|index| moved(index, decision(index))).collect()
+    let next = if steps == 0 { level } else { next };
+    decision_word(1, draw.word() % 2, level, next, steps)
 }
 
 /// The lists of a scene, prepared with counts, lists and draws as outputs.
@@ -97,7 +113,7 @@ impl Written {
     /// What the reference writes.
     fn expected(blocks: &Blocks, decisions: &[u32]) -> Self {
         let mut written = Self {
-            counts: counts(decisions),
+            counts: blocks.counts(decisions),
             lists: vec![POISON; blocks.list_words()],
             arguments: vec![POISON; size_of::<SceneDraw>() / 4 * blocks.draws()],
         };
@@ -105,8 +121,14 @@ impl Written {
             let own = (OBJECT_LISTS * object.first / BLOCK) as usize..;
             let own = &mut written.counts[own][..(OBJECT_LISTS * object.instances / BLOCK) as usize];
             own.copy_from_slice(&before_blocks(own));
-            for (list, members) in (0..).zip(lists(object, decisions)) {
-                written.lists[object.list_begin(list) as usize..][..members.len()].copy_from_slice(&members);
+            let lists = lists(object, decisions);
+            assert!(lists[object.lists() as usize..].iter().all(Vec::is_empty), "no such list");
+            // Draws of lists that the object does not have get the count 0.
+            for (list, members) in (0..).zip(lists) {
+                if list < object.lists() {
+                    let begin = object.list_begin(list) as usize;
+                    written.lists[begin..][..members.len()].copy_from_slice(&members);
+                }
                 for part in 0..object.parts {
                     // The second of a draw's words is the number of its instances.
                     let draw = size_of::<SceneDraw>() / 4 * object.draw(part, list) as usize;
@@ -130,9 +152,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let all = blocks.block_objects.len();
         let count = BLOCK as usize * all;
         let mut draw = Draw::new(1);
-        let decision = |_| (draw.word() % (3 * OBJECT_LISTS)).saturating_sub(2 * OBJECT_LISTS - 1);
-        let decisions: Vec<u32> = (0..count).map(decision).collect();
-        let fresh = Buffer::from_slice(gpu, "fresh counts", &counts(&decisions))?;
+        let mut decision = |index: usize| match blocks.object_of(index) {
+            Some(object) if draw.word().is_multiple_of(3) => random_decision(&mut draw, object),
+            _ => 0,
+        };
+        let decisions: Vec<u32> = (0..count).map(&mut decision).collect();
+        let fresh = Buffer::from_slice(gpu, "fresh counts", &blocks.counts(&decisions))?;
         let sums = Buffer::new(gpu, "counts", OBJECT_LISTS as usize * all)?;
         let listed = Buffer::new(gpu, "lists", blocks.list_words())?;
         let arguments = Buffer::new(gpu, "arguments", blocks.draws())?;

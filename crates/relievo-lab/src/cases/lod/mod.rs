@@ -2,18 +2,21 @@
 
 pub mod assign;
 pub mod attach;
+pub mod decide;
 pub mod list;
 pub mod select;
 pub mod sorted;
 
 use glam::{IVec3, Mat4, Quat, Vec3};
 use relievo::InputError;
+use relievo::ops::lod::decide::reference::counts;
 use relievo::ops::lod::{
     BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS,
     SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
 };
-use relievo::shared::lod::object::object_flags_word;
-use relievo::shared::lod::transition::TRANSITION_GEOMORPH;
+use relievo::shared::lod::criterion::CRITERION_MAGNIFICATION;
+use relievo::shared::lod::object::{FADE_PROGRESS, NO_RANK, object_flags_word};
+use relievo::shared::lod::transition::{TRANSITION_ALPHA, TRANSITION_DITHER, TRANSITION_GEOMORPH};
 
 use crate::cases::animation::Draw;
 
@@ -40,6 +43,20 @@ impl Blocks {
         let (mut first_list, mut first_draw) = (3, 2);
         for (index, blocks) in sizes.iter().enumerate().rev() {
             block_objects.push(NO_OBJECT);
+            let kind = index as u32 + case;
+            let transition = kind % (TRANSITION_ALPHA + 1);
+            let is_timed = u32::from(case % 2 == 1 && transition >= TRANSITION_DITHER);
+            let flags = object_flags_word(
+                u32::from(index != 2),
+                u32::from(kind % 3 == 2),
+                is_timed,
+                transition,
+                (kind + case) % (CRITERION_MAGNIFICATION + 1),
+            );
+            let threshold = |level: usize| match level {
+                0 if transition != TRANSITION_GEOMORPH => 0.0,
+                level => 2e-3 * (1 << level) as f32,
+            };
             let object = LodObject {
                 first: BLOCK * block_objects.len() as u32,
                 instances: BLOCK * blocks,
@@ -47,22 +64,22 @@ impl Blocks {
                 first_list,
                 first_draw,
                 parts: draw.word() % 4,
-                mesh_fraction: 0.5,
-                flags: object_flags_word(
-                    u32::from(index != 2),
-                    (index as u32 + case) % 2 * TRANSITION_GEOMORPH,
-                    0,
-                ),
-                errors: std::array::from_fn(|four| {
-                    std::array::from_fn(|lane| {
-                        let is_still = (index as u32 + case).is_multiple_of(2);
-                        if four + lane == 0 && is_still {
-                            0.0
-                        } else {
-                            2e-3 * (1 << (4 * four + lane)) as f32
-                        }
-                    })
+                metric_scale: 0.5,
+                flags,
+                thresholds: std::array::from_fn(|four| {
+                    std::array::from_fn(|lane| threshold(4 * four + lane))
                 }),
+                finer: 0.9,
+                coarser: 1.1,
+                rate: if is_timed == 1 { FADE_PROGRESS as f32 / 0.3 } else { 0.0 },
+                motion: if kind % 2 == 1 { 0.3 } else { 0.0 },
+                point: [0.3, -0.2, 0.1],
+                periphery: if kind % 4 == 3 { 0.5 } else { 0.0 },
+                half_size: [0.7, 0.2, 0.4],
+                rank: kind % (NO_RANK + 1),
+                fade_begin: 0.01,
+                fade_end: 0.2,
+                ..LodObject::NONE
             };
             block_objects.extend((0..*blocks).map(|_| index as u32));
             first_list += object.list_words() + 5;
@@ -82,6 +99,11 @@ impl Blocks {
     pub(crate) fn draws(&self) -> usize {
         let ends = self.objects.iter().map(|object| object.draw(object.parts, 0));
         ends.max().unwrap_or(0) as usize
+    }
+
+    /// Instance counts per block and list of these decisions; those of blocks without an object are 0.
+    pub(crate) fn counts(&self, decisions: &[u32]) -> Vec<u32> {
+        counts(decisions, |block| self.object_of(block * BLOCK as usize))
     }
 
     /// The object of an instance.
@@ -153,8 +175,10 @@ pub(crate) fn view(
     let own = LodCamera::new(look, projection, [1000, 700], reversed, 1.0)?;
     let mut cameras = [own; VIEW_CAMERAS as usize];
     cameras[1..=others.len()].copy_from_slice(others);
+    let clip = projection * look;
+    let clip_rows = [clip.row(0) * (1000.0 / 700.0), clip.row(1), clip.row(3)];
     Ok(SelectView {
-        planes: planes(projection * look),
+        planes: planes(clip),
         cameras,
         cell: CELL,
         mask: 0xffff,
@@ -163,9 +187,11 @@ pub(crate) fn view(
         casters: 0,
         blocks: u32::MAX,
         is_next: 0,
+        seconds: 0.02,
         unused_a: 0,
         unused_b: 0,
-        unused_c: 0,
+        clip_rows,
+        last_clip_rows: clip_rows,
     })
 }
 

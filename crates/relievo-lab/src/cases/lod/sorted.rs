@@ -2,12 +2,14 @@
 
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu, Job};
-use relievo::ops::lod::sorted::reference::{draws, entries};
+use relievo::ops::lod::sorted::reference::draws;
 use relievo::ops::lod::sorted::{SortedBuffers, SortedDraw, SortedPass};
-use relievo::ops::lod::{OBJECT_LISTS, SceneDraw};
-use relievo::shared::lod::object::{decision_word, list_entry_instance};
+use relievo::ops::lod::{LodObject, OBJECT_LISTS, SceneDraw};
+use relievo::shared::lod::object::list_entry_instance;
 
 use crate::cases::animation::Draw;
+use crate::cases::lod::Blocks;
+use crate::cases::lod::list::random_decision;
 use crate::cases::measure;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Bench, Cases, compare};
@@ -15,6 +17,7 @@ use crate::harness::{Bench, Cases, compare};
 /// Random sorted draws, decisions (some of unseen instances), and indirect draws.
 pub(crate) struct Given {
     pub sorted: Vec<SortedDraw>,
+    pub objects: Vec<LodObject>,
     pub decisions: Vec<u32>,
     pub arguments: Vec<SceneDraw>,
 }
@@ -24,10 +27,17 @@ impl Given {
     pub(crate) fn new(count: usize) -> Self {
         let mut draw = Draw::new(count as u32 ^ 0x51b1);
         let parts = 7;
-        let single = |draw: &mut Draw| SortedDraw {
-            instance: draw.word() % count.max(1) as u32,
-            first_draw: 3 + OBJECT_LISTS * (draw.word() % parts),
-            slot: list_entry_instance(draw.word()),
+        // Objects with every transition. The instances of an object follow each other.
+        let objects = Blocks::new(0, &[1; 8]).objects;
+        let object_of = |instance: u32| instance % 8;
+        let single = |draw: &mut Draw| {
+            let instance = draw.word() % count.max(1) as u32;
+            SortedDraw {
+                instance,
+                first_draw: 3 + OBJECT_LISTS * (draw.word() % parts),
+                slot: list_entry_instance(draw.word()),
+                object: object_of(instance),
+            }
         };
         let argument = |draw: &mut Draw| SceneDraw {
             index_count: draw.word() % 1000,
@@ -38,13 +48,14 @@ impl Given {
         };
         Self {
             sorted: (0..count).map(|_| single(&mut draw)).collect(),
-            decisions: (0..count)
-                .map(|_| match (draw.word() % (3 + OBJECT_LISTS)).saturating_sub(2) {
-                    0 => 0,
-                    list => decision_word(list, draw.word() & 0xfff),
+            decisions: (0..count as u32)
+                .map(|at| match draw.word().is_multiple_of(10) {
+                    true => 0,
+                    false => random_decision(&mut draw, &objects[object_of(at) as usize]),
                 })
                 .collect(),
             arguments: (0..3 + OBJECT_LISTS * parts).map(|_| argument(&mut draw)).collect(),
+            objects,
         }
     }
 
@@ -57,6 +68,7 @@ impl Given {
     ) -> Result<Job, Error> {
         let buffers = SortedBuffers {
             sorted: &Buffer::from_slice(gpu, "sorted", &self.sorted)?,
+            objects: &Buffer::from_slice(gpu, "objects", &self.objects)?,
             decisions: &Buffer::from_slice(gpu, "decisions", &self.decisions)?,
             arguments: &Buffer::from_slice(gpu, "arguments", &self.arguments)?,
             draws,
@@ -65,9 +77,9 @@ impl Given {
         pass.prepare(gpu, buffers, self.sorted.len() as u32)
     }
 
-    /// What the reference writes.
-    pub(crate) fn expected(&self) -> Vec<SceneDraw> {
-        draws(&self.sorted, &self.decisions, &self.arguments)
+    /// What the reference writes: draws and entries.
+    pub(crate) fn expected(&self) -> (Vec<SceneDraw>, Vec<u32>) {
+        draws(&self.sorted, &self.objects, &self.decisions, &self.arguments).into_iter().unzip()
     }
 }
 
@@ -84,11 +96,10 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let lists = Poisoned::<u32>::new(gpu, count)?;
         let job = given.prepared(gpu, &pass, (&output.buffer, &lists.buffer))?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
-        let expected = given.expected();
+        let (expected, entries) = given.expected();
         let same = |actual: &[SceneDraw]| compare::exact(words(actual), words(&expected));
         cases.check(format!("{count} draws"), &output, same).await?;
-        let expected = entries(&given.sorted, &given.decisions);
-        cases.exact(format!("{count} lists of one"), &lists, &expected).await?;
+        cases.exact(format!("{count} lists of one"), &lists, &entries).await?;
     }
     Ok(())
 }
@@ -111,9 +122,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // Three words and a decision are read, a draw of five is read and written, and an entry written.
         let words = 15 * count;
         let name = format!("{count} draws");
-        measure(bench, name, (count, "draw"), words, &|encoder| job.record(encoder), || {
-            (given.expected(), entries(&given.sorted, &given.decisions))
-        })?;
+        measure(bench, name, (count, "draw"), words, &|encoder| job.record(encoder), || given.expected())?;
     }
     Ok(())
 }
@@ -121,11 +130,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use relievo::shared::lod::object::list_entry_steps;
 
     #[test]
     fn a_draw_of_what_is_not_seen_or_of_another_list_is_noticed() {
         let given = Given::new(65);
-        let right = given.expected();
+        let (right, lists) = given.expected();
         assert!(compare::exact(words(&right), words(&right)).holds);
         let unseen = given.sorted.iter().position(|single| given.decisions[single.instance as usize] == 0);
         for at in [unseen.expect("one of 65"), 64] {
@@ -133,14 +143,14 @@ mod tests {
             wrong[at].instance_count ^= 1;
             assert!(!compare::exact(words(&wrong), words(&right)).holds);
         }
-        let lists = entries(&given.sorted, &given.decisions);
-        let moved = lists.iter().position(|entry| entry >> 20 > 0).expect("one of 65");
-        let still = entries(&given.sorted, &[0; 65]);
+        let moved = lists.iter().position(|entry| list_entry_steps(*entry) > 0).expect("one of 65");
+        let still = Given { decisions: vec![0; 65], ..Given::new(65) }.expected().1;
         assert!(still[moved] != lists[moved] && !compare::exact(&still, &lists).holds);
-        let mut other = given.sorted.clone();
-        other[3].first_draw += OBJECT_LISTS;
-        let other = draws(&other, &vec![2; 65], &given.arguments);
-        let all = draws(&given.sorted, &vec![2; 65], &given.arguments);
-        assert!(!compare::exact(words(&other), words(&all)).holds);
+        let all = |first_draw: u32| {
+            let mut given = Given { decisions: vec![1; 65], ..Given::new(65) };
+            given.sorted[3].first_draw += first_draw;
+            given.expected().0
+        };
+        assert!(!compare::exact(words(&all(OBJECT_LISTS)), words(&all(0))).holds);
     }
 }

@@ -63,7 +63,7 @@ impl Look {
         let crowd = scene.add_character(&drawn.model, placements.len())?;
         scene.set_error_budget(budget)?;
         if parts.mesh > 0.0 {
-            scene.set_transition(crowd, drawn.transition)?;
+            scene.set_level_of_detail(crowd, &drawn.transition.into())?;
         }
         for (placement, instance) in placements.iter().zip(&stage.instances) {
             let spawned = scene.spawn(crowd, *placement)?;

@@ -1,26 +1,29 @@
 //! Parity and benchmark cases of `kernels/lod/select.wgsl`.
 
+use glam::{Vec3, Vec4};
 use relievo::Error;
 use relievo::asset::Affine;
 use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
 use relievo::ops::lod::allowed::allowed_by;
-use relievo::ops::lod::object::level_within;
-use relievo::ops::lod::select::reference::{counts, depth_inside, is_shown, placed_sphere, select};
+use relievo::ops::lod::select::reference::{depth_inside, is_shown, placed_sphere, select};
 use relievo::ops::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
-use relievo::ops::lod::transition::morph_within;
-use relievo::ops::lod::{BLOCK, LodObject, OBJECT_LISTS, SceneInstance, SelectView};
+use relievo::ops::lod::{BLOCK, LodCamera, LodObject, SceneInstance, SelectView};
+use relievo::shared::lod::criterion::{
+    CRITERION_BOX, CRITERION_DISTANCE, CRITERION_ERROR, CRITERION_NEAREST, MAX_METRIC,
+};
 use relievo::shared::lod::object::{
-    MORPH_STEPS, decision_list, decision_morph, decision_word, morph_level, morph_steps, morph_word,
+    UNSEEN_METRIC, decision_word, metric_bits, metric_mirrored, object_flags_criterion,
+    object_flags_never_culled,
 };
 use relievo::shared::lod::view::POSITION_SLACK;
 
-use crate::cases::lod::{Blocks, SIZES, frame, random_instances};
+use crate::cases::lod::{Blocks, CELL, SIZES, frame, random_instances};
 use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
-use crate::harness::{Bench, Cases, compare};
+use crate::harness::{Bench, Cases};
 
-/// How far rounding may move a level or an allowed displacement beyond what it does to positions: kernel and reference
+/// How far rounding may move an allowed displacement beyond what it does to positions: kernel and reference
 /// round some 40 times each, by at most 2⁻²³.
 const FORMULA: f32 = 1e-5;
 
@@ -33,9 +36,13 @@ const POSITION_BOUND: f32 = 2.4e-7;
 /// The fraction of instances for which rounding may decide either way.
 const MAY_TOUCH: f64 = 1.0 / 200.0;
 
-/// The cases cover one object and several, some whose levels move into each other, one without instances and one that is not shown, blocks of no object and blocks
-/// beyond the view's, and the four views of a frame one after another. Where rounding may decide either way, both
-/// decisions are accepted and counted.
+/// The fraction of instances whose metric rounding may change by more than a fifth: boxes that are never culled and reach the
+/// near plane.
+const BOXES_MAY_TOUCH: f64 = 1.0 / 20.0;
+
+/// The cases cover one object and several, with all criteria, with perceptual factors, one without instances, one that is not
+/// shown and some that are never culled, blocks of no object and blocks beyond the view's, and the four views of a frame one
+/// after another. Where rounding may decide either way, both results are accepted and counted.
 ///
 /// # Errors
 /// What the device reports.
@@ -81,30 +88,24 @@ impl Scene {
 /// The outputs on the device.
 struct Outputs {
     allowed: Poisoned<f32>,
-    decisions: Poisoned<u32>,
+    metrics: Poisoned<u32>,
     placements: Poisoned<Affine>,
-    counts: Poisoned<u32>,
-    last_decisions: Poisoned<u32>,
 }
 
 /// What the kernel wrote.
 #[derive(Clone, PartialEq, Default)]
 struct Found {
     allowed: Vec<f32>,
-    decisions: Vec<u32>,
+    metrics: Vec<u32>,
     placements: Vec<Affine>,
-    counts: Vec<u32>,
-    last_decisions: Vec<u32>,
 }
 
 impl Outputs {
     fn new(gpu: &Gpu, instances: usize) -> Result<Self, GpuError> {
         Ok(Self {
             allowed: Poisoned::new(gpu, instances)?,
-            decisions: Poisoned::new(gpu, instances)?,
+            metrics: Poisoned::new(gpu, instances)?,
             placements: Poisoned::new(gpu, instances)?,
-            last_decisions: Poisoned::new(gpu, instances)?,
-            counts: Poisoned::new(gpu, instances / (BLOCK / OBJECT_LISTS) as usize)?,
         })
     }
 
@@ -117,30 +118,25 @@ impl Outputs {
         view: &SelectView,
     ) -> Result<Found, Error> {
         let gpu = cases.gpu;
-        self.decisions.buffer.write(gpu, &before(scene.instances.len()))?;
-        self.placements.poison(gpu)?;
-        self.counts.poison(gpu)?;
-        self.last_decisions.poison(gpu)?;
+        self.metrics.poison(gpu)?;
+        self.placements.buffer.write(gpu, &last_placements(&scene.instances))?;
         let buffers = SelectBuffers {
             view: &Uniform::new(gpu, "view", view)?,
             objects: &Buffer::from_slice(gpu, "objects", &scene.blocks.objects)?,
             block_objects: &Buffer::from_slice(gpu, "block_objects", &scene.blocks.block_objects)?,
             instances: &Buffer::from_slice(gpu, "instances", &scene.instances)?,
             allowed: &self.allowed.buffer,
-            decisions: &self.decisions.buffer,
+            metrics: &self.metrics.buffer,
             placements: &self.placements.buffer,
-            counts: &self.counts.buffer,
-            last_decisions: &self.last_decisions.buffer,
+            decisions: &Buffer::from_slice(gpu, "decisions", &last_decisions(scene.instances.len()))?,
         };
         let job = SelectPass::new(gpu)?.prepare(gpu, buffers)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
         let end = |output| format!("{name}: the end of {output}");
         Ok(Found {
             allowed: cases.values(end("allowed"), &self.allowed).await?,
-            decisions: cases.values(end("decisions"), &self.decisions).await?,
+            metrics: cases.values(end("metrics"), &self.metrics).await?,
             placements: cases.values(end("placements"), &self.placements).await?,
-            counts: cases.values(end("counts"), &self.counts).await?,
-            last_decisions: cases.values(end("last decisions"), &self.last_decisions).await?,
         })
     }
 }
@@ -156,20 +152,19 @@ enum State {
     Within(f32, f32),
 }
 
-/// What may be decided for an instance, whichever way rounding goes.
+/// What may be found of an instance, whichever way rounding goes.
 struct Range {
     may_be_unseen: bool,
     may_be_seen: bool,
-    levels: [u32; 2],
-    /// How far the first of these may have moved at least, and the last at most, in steps.
-    steps: [u32; 2],
+    metric: [f32; 2],
     allowed: [f32; 2],
 }
 
 impl Range {
     /// The displacement that a camera allows, and how far a sphere reaches into the view volume, change with the sphere's
-    /// radius at least as much as with the rounding of its center; so two radii bound what rounding may decide.
-    fn of(view: &SelectView, object: &LodObject, instance: &SceneInstance) -> Self {
+    /// radius at least as much as with the rounding of its center; so two radii bound what rounding may decide. Other
+    /// metrics change by the rounding of the center at the instance's depth.
+    fn of(view: &SelectView, object: &LodObject, instance: &SceneInstance, last: Option<&Affine>) -> Self {
         let (center, radius) = placed_sphere(instance, view.cell);
         let scale = instance.largest_scale();
         let farthest = view.cameras().iter().map(|camera| camera.eye.length()).fold(0.0, f32::max);
@@ -179,45 +174,74 @@ impl Range {
         let [less, more] =
             [radius + slack, radius - slack].map(|radius| allowed_by(view.cameras(), center, radius, scale));
         let allowed = [less * (1.0 - FORMULA), more * (1.0 + FORMULA)];
-        let within = allowed.map(|allowed| object.mesh_fraction * allowed);
-        let levels = within.map(|within| level_within(object.levels, &object.errors, within));
-        let steps = [0, 1].map(|at| morph_steps(morph_within(object, levels[at], within[at])));
         let is_shown = is_shown(view, object, instance);
+        let is_culled = object_flags_never_culled(object.flags) == 0;
+        let never = SelectView { planes: [Vec4::W; 6], ..*view };
+        let metric = select(&never, object, instance, last).map_or(0.0, |selected| selected.metric);
+        // The part of itself by which a length on the screen changes.
+        let is_box = object_flags_criterion(object.flags) == CRITERION_BOX;
+        let part_of = |camera: &LodCamera| {
+            let reach = if is_box { radius } else { 0.0 };
+            let depth = camera.ahead.dot(center - camera.eye);
+            match camera.perspective == 0.0 || !is_box && depth + slack < camera.near {
+                true => 0.0,
+                false => 4.0 * slack / (depth - reach - slack).max(camera.near),
+            }
+        };
+        let part_on_screen = view.cameras().iter().map(part_of).fold(0.0, f32::max);
+        let factor = perceptual_slack(view, object, center, slack);
+        let metric = match object_flags_criterion(object.flags) {
+            CRITERION_ERROR if metric > 0.0 => {
+                let [least, most] = allowed.map(|allowed| allowed * metric / less.max(1e-30));
+                [least * (1.0 - factor), most.max(metric) * (1.0 + factor)]
+            }
+            CRITERION_ERROR => [0.0, object.metric_scale * more * (1.0 + factor + 5.0)],
+            CRITERION_DISTANCE..=CRITERION_NEAREST => {
+                [metric * (1.0 - factor) - 4.0 * slack, metric * (1.0 + factor) + 4.0 * slack]
+            }
+            _ => {
+                let part = 1e-4 + factor + part_on_screen;
+                if part < 0.2 { [metric * (1.0 - part), metric * (1.0 + part)] } else { [0.0, MAX_METRIC] }
+            }
+        };
         Self {
-            may_be_seen: is_shown && depth_inside(view, center, radius + slack) >= 0.0,
-            may_be_unseen: !is_shown || depth_inside(view, center, radius - slack) < 0.0,
-            levels,
-            steps,
+            may_be_seen: is_shown && (!is_culled || depth_inside(view, center, radius + slack) >= 0.0),
+            may_be_unseen: !is_shown || is_culled && depth_inside(view, center, radius - slack) < 0.0,
+            metric,
             allowed,
         }
     }
 
     /// Whether rounding may decide either way.
     fn touches(&self) -> bool {
-        self.may_be_seen && (self.may_be_unseen || self.levels[0] != self.levels[1])
+        self.may_be_seen && (self.may_be_unseen || self.metric[1] == MAX_METRIC)
     }
 
-    /// Whether a decision is one of those that are right.
-    fn permits(&self, decision: u32, instance: &SceneInstance) -> bool {
-        let Some(list) = decision_list(decision).checked_sub(1) else {
-            return self.may_be_unseen && decision == 0;
-        };
-        let is_right = list % 2 == u32::from(instance.is_mirrored());
-        let level = list / 2;
-        let is_right = is_right && (self.levels[0]..=self.levels[1]).contains(&level);
-        let morph = decision_morph(decision);
-        let is_right = is_right && decision == decision_word(1 + list, morph);
-        self.may_be_seen && is_right && self.permits_morph(level, morph)
+    /// Whether a metric word is one of those that are right.
+    fn permits(&self, word: u32, instance: &SceneInstance) -> bool {
+        if word == UNSEEN_METRIC {
+            return self.may_be_unseen;
+        }
+        let metric = f32::from_bits(metric_bits(word));
+        let is_right = metric_mirrored(word) == u32::from(instance.is_mirrored());
+        self.may_be_seen && is_right && (self.metric[0]..=self.metric[1]).contains(&metric)
     }
+}
 
-    /// Whether a level may have moved so far. Steps are judged by an interval, and none counts as one that touches.
-    fn permits_morph(&self, level: u32, morph: u32) -> bool {
-        let steps = morph_steps(morph);
-        let least = if level == self.levels[0] { self.steps[0] } else { 0 };
-        let most = if level == self.levels[1] { self.steps[1] } else { MORPH_STEPS };
-        let is_named = morph_level(morph) == if steps > 0 { level } else { 0 };
-        is_named && (least..=most).contains(&steps)
+/// The fraction by which rounding may change the perceptual factor.
+fn perceptual_slack(view: &SelectView, object: &LodObject, center: Vec3, slack: f32) -> f32 {
+    if object.motion == 0.0 && object.periphery == 0.0 {
+        return 1e-5;
     }
+    let [x, y, w] = view.clip_rows.map(|row| row.dot(center.extend(1.0)));
+    let most = 4.0 * object.motion + object.periphery;
+    if w <= 0.0 {
+        return most;
+    }
+    // The last frame's place may be behind the eye, too.
+    let length = 1.0 + (x.hypot(y) / w);
+    let position = 8.0 * slack * view.clip_rows[0].truncate().length() * length / w;
+    (1e-4 + (object.motion / view.seconds + object.periphery) * position).min(most)
 }
 
 fn judgement(is_right: bool, touches: bool) -> Judgement {
@@ -231,55 +255,45 @@ impl Found {
         scene: &Scene,
         view: &SelectView,
         state: &mut [State],
-    ) -> [(&'static str, Comparison); 5] {
+    ) -> [(&'static str, Comparison); 3] {
         [
-            ("decisions", self.compared_decisions(scene, view)),
-            ("counts", self.compared_counts(scene, view)),
+            ("metrics", self.compared_metrics(scene, view)),
             ("placements", self.compared_placements(scene, view)),
-            ("last decisions", self.compared_last_decisions(scene, view)),
             ("allowed", self.compared_allowed(scene, view, state)),
         ]
     }
 
-    fn compared_decisions(&self, scene: &Scene, view: &SelectView) -> Comparison {
-        let before = before(self.decisions.len());
-        let judge = |(index, decision): (usize, &u32)| match scene.object_of(view, index) {
-            None => judgement(*decision == before[index], false),
+    fn compared_metrics(&self, scene: &Scene, view: &SelectView) -> Comparison {
+        let (placements, decisions) = (last_placements(&scene.instances), last_decisions(self.metrics.len()));
+        let last = |index: usize| (decisions[index] != 0).then_some(&placements[index]);
+        let judge = |(index, word): (usize, &u32)| match scene.object_of(view, index) {
+            None => judgement(*word == POISON, false),
             Some(object) => {
                 let instance = &scene.instances[index];
-                let range = Range::of(view, object, instance);
-                judgement(range.permits(*decision, instance), range.touches())
+                let range = Range::of(view, object, instance, last(index));
+                judgement(range.permits(*word, instance), range.touches())
             }
         };
-        let judgements: Vec<Judgement> = self.decisions.iter().enumerate().map(judge).collect();
-        each(&judgements, "wrong decisions", MAY_TOUCH, |index| {
-            let expected =
-                scene.object_of(view, index).map(|object| select(view, object, &scene.instances[index]));
-            format!("{:#x} instead of {expected:?}", self.decisions[index])
+        let judgements: Vec<Judgement> = self.metrics.iter().enumerate().map(judge).collect();
+        each(&judgements, "wrong metrics", BOXES_MAY_TOUCH, |index| {
+            let expected = scene
+                .object_of(view, index)
+                .map(|object| select(view, object, &scene.instances[index], last(index)));
+            let found = f32::from_bits(metric_bits(self.metrics[index]));
+            format!("{:#x} ({found}) instead of {expected:?}", self.metrics[index])
         })
-    }
-
-    fn compared_counts(&self, scene: &Scene, view: &SelectView) -> Comparison {
-        let mut expected = Vec::with_capacity(self.counts.len());
-        for (block, decisions) in self.decisions.chunks(BLOCK as usize).enumerate() {
-            match scene.object_of(view, block * BLOCK as usize) {
-                Some(_) if decisions.iter().all(|decision| decision_list(*decision) <= OBJECT_LISTS) => {
-                    expected.extend(counts(decisions))
-                }
-                _ => expected.extend([POISON; OBJECT_LISTS as usize]),
-            }
-        }
-        compare::exact(&self.counts, &expected)
     }
 
     fn compared_placements(&self, scene: &Scene, view: &SelectView) -> Comparison {
         let mut judgements = Vec::with_capacity(12 * self.placements.len());
+        let before = last_placements(&scene.instances);
         for (index, rows) in self.placements.iter().enumerate() {
             let instance = &scene.instances[index];
-            let is_seen = self.decisions[index] != 0 && scene.object_of(view, index).is_some();
-            if !is_seen {
-                let values = rows.iter().flatten().map(|value| judgement(value.to_bits() == POISON, false));
-                judgements.extend(values);
+            if !self.is_seen(scene, view, index) {
+                let values = rows.as_flattened().iter().zip(before[index].as_flattened());
+                judgements.extend(
+                    values.map(|(value, before)| judgement(value.to_bits() == before.to_bits(), false)),
+                );
                 continue;
             }
             let ([x, y, z], at) = (instance.axes(), instance.position(view.cell));
@@ -299,23 +313,18 @@ impl Found {
         })
     }
 
-    fn compared_last_decisions(&self, scene: &Scene, view: &SelectView) -> Comparison {
-        let expected = |(index, before): (usize, &u32)| match scene.object_of(view, index) {
-            Some(_) => *before * view.is_next,
-            None => POISON,
-        };
-        let expected: Vec<u32> = before(self.last_decisions.len()).iter().enumerate().map(expected).collect();
-        compare::exact(&self.last_decisions, &expected)
+    fn is_seen(&self, scene: &Scene, view: &SelectView, index: usize) -> bool {
+        self.metrics[index] != UNSEEN_METRIC && scene.object_of(view, index).is_some()
     }
 
     fn compared_allowed(&self, scene: &Scene, view: &SelectView, state: &mut [State]) -> Comparison {
         let mut judgements = Vec::with_capacity(self.allowed.len());
         for (index, allowed) in self.allowed.iter().enumerate() {
             if let Some(object) = scene.object_of(view, index) {
-                let range = Range::of(view, object, &scene.instances[index]).allowed;
+                let range = Range::of(view, object, &scene.instances[index], None).allowed;
                 let before = if view.is_first == 0 { state[index] } else { State::Unseen };
-                state[index] = match (before, self.decisions[index]) {
-                    (before, 0) => before,
+                state[index] = match (before, self.is_seen(scene, view, index)) {
+                    (before, false) => before,
                     (State::Within(low, high), _) => State::Within(low.min(range[0]), high.min(range[1])),
                     _ => State::Within(range[0], range[1]),
                 };
@@ -332,13 +341,19 @@ impl Found {
     }
 }
 
-/// The decisions of a frame before: all lists, some instances that were not seen, and all numbers of steps.
-fn before(count: usize) -> Vec<u32> {
-    let decision = |at: u32| match at % (OBJECT_LISTS + 1) {
-        0 => 0,
-        list => decision_word(list, morph_word(0, at.wrapping_mul(37) % (MORPH_STEPS + 1))),
+/// Decisions of a frame before: of every seventh instance none.
+fn last_decisions(count: usize) -> Vec<u32> {
+    (0..count as u32).map(|at| decision_word(u32::from(at % 7 > 0), 0, 0, 0, 0)).collect()
+}
+
+/// Placements of a frame before: instances were a little aside.
+fn last_placements(instances: &[SceneInstance]) -> Vec<Affine> {
+    let placement = |(at, instance): (usize, &SceneInstance)| {
+        let ([x, y, z], origin) = (instance.axes(), instance.position(CELL));
+        let aside = 0.5 * (at % 5) as f32;
+        std::array::from_fn(|axis| [x[axis], y[axis], z[axis], origin[axis] + aside])
     };
-    (0..count as u32).map(decision).collect()
+    instances.iter().enumerate().map(placement).collect()
 }
 
 #[cfg(test)]
@@ -357,25 +372,24 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let view = SelectView { blocks, ..view };
         let count = 64 * blocks as usize;
         let instances: Vec<_> = random_instances(1, 1024).into_iter().cycle().take(count).collect();
-        let decisions = Buffer::new(gpu, "decisions", count)?;
         let buffers = SelectBuffers {
             view: &Uniform::new(gpu, "view", &view)?,
             objects: &Buffer::from_slice(gpu, "objects", &objects)?,
             block_objects: &Buffer::from_slice(gpu, "block_objects", &block_objects)?,
             instances: &Buffer::from_slice(gpu, "instances", &instances)?,
             allowed: &Buffer::new(gpu, "allowed", count)?,
-            decisions: &decisions,
+            metrics: &Buffer::new(gpu, "metrics", count)?,
             placements: &Buffer::new(gpu, "placements", count)?,
-            counts: &Buffer::new(gpu, "counts", (OBJECT_LISTS * blocks) as usize)?,
-            last_decisions: &Buffer::new(gpu, "last decisions", count)?,
+            decisions: &Buffer::new(gpu, "decisions", count)?,
         };
         let job = pass.prepare(gpu, buffers)?;
-        let seen = instances.iter().filter(|instance| select(&view, &objects[0], instance).is_some()).count();
-        // The kernel reads 18 of an instance's words and a decision and writes three, and the placements of those that are seen.
-        let words = 22 * count + 12 * seen;
+        let seen =
+            instances.iter().filter(|instance| select(&view, &objects[0], instance, None).is_some()).count();
+        // The kernel reads 18 of an instance's words and writes two, and the placements of those that are seen.
+        let words = 20 * count + 12 * seen;
         let case = format!("{count} instances, {seen} seen");
         measure(bench, case, (count, "instance"), words, &|encoder| job.record(encoder), || {
-            instances.iter().map(|instance| select(&view, &objects[0], instance)).collect::<Vec<_>>()
+            instances.iter().map(|instance| select(&view, &objects[0], instance, None)).collect::<Vec<_>>()
         })?;
     }
     Ok(())

@@ -1,34 +1,26 @@
 //! Every comparator of these cases fails on planted faults.
 
-use relievo::ops::lod::select::reference::merged;
+use relievo::ops::lod::select::reference::{merged, word};
 
 use crate::cases::lod::select::*;
 
 /// What the reference writes.
 fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
     let count = scene.instances.len();
-    let poison = f32::from_bits(POISON);
-    let mut found = Found {
-        allowed: allowed.to_vec(),
-        decisions: before(count),
-        placements: vec![[[poison; 4]; 3]; count],
-        counts: vec![POISON; count / 4],
-        last_decisions: vec![POISON; count],
-    };
+    let placements = last_placements(&scene.instances);
+    let decisions = last_decisions(count);
+    let mut found =
+        Found { allowed: allowed.to_vec(), metrics: vec![POISON; count], placements: placements.clone() };
     for (index, before) in allowed.iter().enumerate() {
         let Some(object) = scene.object_of(view, index) else { continue };
-        let selected = select(view, object, &scene.instances[index]);
+        let instance = &scene.instances[index];
+        let last = (decisions[index] != 0).then_some(&placements[index]);
+        let selected = select(view, object, instance, last);
         let before = (view.is_first == 0).then_some(*before);
         found.allowed[index] = merged(before, selected.as_ref());
-        found.last_decisions[index] = found.decisions[index] * view.is_next;
-        found.decisions[index] = selected.map_or(0, |selected| selected.decision);
+        found.metrics[index] = word(selected.as_ref(), instance.is_mirrored());
         if let Some(selected) = selected {
             found.placements[index] = selected.placement;
-        }
-    }
-    for block in 0..count / 64 {
-        if scene.object_of(view, 64 * block).is_some() {
-            found.counts[16 * block..][..16].copy_from_slice(&counts(&found.decisions[64 * block..][..64]));
         }
     }
     found
@@ -54,29 +46,23 @@ fn what_is_wrong_of_one_instance_is_seen() {
     assert_eq!(faults(&scene, &view, &right), Vec::<&str>::new());
     let own = |index: &usize| scene.object_of(&view, *index).is_some();
     let first = |is: &dyn Fn(u32) -> bool| {
-        (0..count).filter(own).find(|index| is(right.decisions[*index])).expect("some")
+        (0..count).filter(own).find(|index| is(right.metrics[*index])).expect("some")
     };
-    let seen = first(&|decision| (1..=16).contains(&(decision & 0xff)));
-    let moved = first(&|decision| decision >> 11 > 1);
-    let unseen = first(&|decision| decision == 0);
+    let seen = first(&|word| word != UNSEEN_METRIC);
+    let unseen = first(&|word| word == UNSEEN_METRIC);
     let foreign = (0..count).find(|index| !own(index)).expect("some");
     let with = |change: &dyn Fn(&mut Found)| {
         let mut found = right.clone();
         change(&mut found);
         faults(&scene, &view, &found)
     };
-    assert_eq!(with(&|found| found.decisions[seen] ^= 3)[0], "decisions");
-    assert_eq!(with(&|found| found.decisions[unseen] = 1)[0], "decisions");
-    assert_eq!(with(&|found| found.decisions[foreign] ^= 1), ["decisions"]);
-    assert_eq!(with(&|found| found.decisions[moved] ^= 1 << 8), ["decisions"]);
-    assert_eq!(with(&|found| found.decisions[moved] &= 0xff), ["decisions"]);
-    assert_eq!(with(&|found| found.decisions[moved] ^= 1 << 13), ["decisions"]);
-    assert_eq!(with(&|found| found.counts[seen / 4] += 1), ["counts"]);
-    assert_eq!(with(&|found| found.counts[foreign / 64 * 16] = 0), ["counts"]);
+    assert_eq!(with(&|found| found.metrics[seen] ^= 1 << 31), ["metrics"]);
+    assert_eq!(with(&|found| found.metrics[seen] += 1 << 20), ["metrics"]);
+    assert_eq!(with(&|found| found.metrics[unseen] = 1)[0], "metrics");
+    assert_eq!(with(&|found| found.metrics[foreign] ^= 1), ["metrics"]);
     assert_eq!(with(&|found| found.placements[seen][1][3] += 1e-3), ["placements"]);
     assert_eq!(with(&|found| found.placements[seen][0][0] = f32::NAN), ["placements"]);
-    assert_eq!(with(&|found| found.placements[unseen][0][0] = 0.0), ["placements"]);
-    assert_eq!(with(&|found| found.last_decisions[seen] += 1), ["last decisions"]);
+    assert_eq!(with(&|found| found.placements[unseen][0][0] += 1.0), ["placements"]);
     assert_eq!(with(&|found| found.allowed[seen] *= 1.02), ["allowed"]);
     assert_eq!(with(&|found| found.allowed[unseen] = 0.0), ["allowed"]);
     assert_eq!(with(&|found| found.allowed[foreign] = -1.0), ["allowed"]);
@@ -98,29 +84,19 @@ fn a_view_that_forgets_the_one_before_is_seen() {
         before.compared(&scene, &first, &mut state);
         found.compared(&scene, &second, &mut state).map(|(_, comparison)| comparison.holds)
     };
-    assert_eq!(compared(&right(&scene, &second, &before.allowed)), [true; 5]);
+    assert_eq!(compared(&right(&scene, &second, &before.allowed)), [true; 3]);
     let forgetful = right(&scene, &SelectView { is_first: 1, ..second }, &before.allowed);
-    assert_eq!(compared(&forgetful), [true, true, true, true, false]);
-}
-
-/// The decisions of the last frame, and nothing where that frame had no such view.
-#[test]
-fn a_decision_of_another_frame_is_seen() {
-    let (scene, view) = scene_and_view();
-    let count = scene.instances.len();
-    let view = SelectView { is_next: 1, ..view };
-    let found = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
-    assert_eq!(faults(&scene, &view, &found), Vec::<&str>::new());
-    let other = SelectView { is_next: 0, ..view };
-    assert_eq!(faults(&scene, &other, &found), ["last decisions"]);
+    assert_eq!(compared(&forgetful), [true, true, false]);
 }
 
 /// An instance whose sphere touches a plane may be seen or not; only few may.
 #[test]
 fn one_at_an_edge_may_go_either_way_and_few_may_be() {
     let (mut scene, view) = scene_and_view();
-    let own: Vec<usize> =
-        (0..scene.instances.len()).filter(|index| scene.object_of(&view, *index).is_some()).collect();
+    let is_culled = |object: &LodObject| object_flags_never_culled(object.flags) == 0;
+    let own: Vec<usize> = (0..scene.instances.len())
+        .filter(|index| scene.object_of(&view, *index).is_some_and(is_culled))
+        .collect();
     let side = view.planes[0];
     let edge = |instance: &mut SceneInstance| {
         let at = glam::Vec3::new(120.0, 25.0, 120.0);
@@ -137,12 +113,14 @@ fn one_at_an_edge_may_go_either_way_and_few_may_be() {
     edge(&mut scene.instances[own[0]]);
     let poison = vec![f32::from_bits(POISON); scene.instances.len()];
     let one = right(&scene, &view, &poison);
-    let touching = one.compared_decisions(&scene, &view).spread.expect("given").touching;
+    let touching = one.compared_metrics(&scene, &view).spread.expect("given").touching;
     assert_eq!(touching, 1);
     let mut other = one.clone();
-    other.decisions[own[0]] = if one.decisions[own[0]] == 0 { 1 } else { 0 };
-    assert!(other.compared_decisions(&scene, &view).holds);
-    own[..9].iter().for_each(|index| edge(&mut scene.instances[*index]));
-    let nine = right(&scene, &view, &poison).compared_decisions(&scene, &view);
-    assert!(!nine.holds && nine.fault.expect("a fault").contains("9 of 448 touch"));
+    let seen = |metrics: &[u32]| metrics.iter().copied().find(|word| *word < 1 << 31).expect("one");
+    other.metrics[own[0]] =
+        if one.metrics[own[0]] == UNSEEN_METRIC { seen(&one.metrics) } else { UNSEEN_METRIC };
+    assert!(other.compared_metrics(&scene, &view).holds);
+    own[..23].iter().for_each(|index| edge(&mut scene.instances[*index]));
+    let many = right(&scene, &view, &poison).compared_metrics(&scene, &view);
+    assert!(!many.holds && many.fault.expect("a fault").contains("23 of 448 touch"));
 }

@@ -1,0 +1,37 @@
+//! The GPU pass of `kernels/lod/decide.wgsl`.
+
+use crate::Error;
+use crate::gpu::bindings::lod::decide as bindings;
+use crate::gpu::{Gpu, GpuError, Job, Kernel};
+use crate::lod::BLOCK;
+
+/// The buffers that a decision reads and writes.
+#[doc(inline)]
+pub use bindings::Buffers as DecideBuffers;
+
+/// Decides the levels of detail of a view's instances.
+#[derive(Debug, Clone)]
+pub struct DecidePass {
+    kernel: Kernel,
+}
+
+impl DecidePass {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// What the driver's compiler reports.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu)? })
+    }
+
+    /// Prepares the decisions for all instances, [`BLOCK`] for each element of `block_objects`. Record it after
+    /// [`select`](crate::lod::select).
+    ///
+    /// # Errors
+    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`].
+    pub fn prepare(&self, gpu: &Gpu, buffers: DecideBuffers<'_>) -> Result<Job, Error> {
+        let blocks = buffers.block_objects.len();
+        let group = buffers.bind(gpu, &self.kernel, &bindings::Lengths { blocks })?;
+        Ok(Job::spread(gpu, "lod/decide", (&self.kernel, group), BLOCK * blocks as u32)?)
+    }
+}

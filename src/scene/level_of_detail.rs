@@ -1,0 +1,219 @@
+//! How an object's levels of detail are chosen and how they change.
+
+use crate::InputError;
+use crate::lod::LodObject;
+use crate::lod::criterion::Criterion;
+use crate::lod::transition::{Pace, Transition};
+use crate::shared::lod::object::{FADE_PROGRESS, NO_RANK, RANKS, object_flags_word};
+use crate::shared::lod::select::MAX_MOTION;
+
+/// How the levels of detail of an object are chosen, in every view, and how they change.
+///
+/// # Examples
+///
+/// Hand-set distances, and a dither of 0.3 seconds:
+///
+/// ```no_run
+/// use relievo::scene::{Criterion, DistanceTo, LevelChoice, LevelOfDetail, Pace, Transition};
+/// # fn tune(scene: &mut relievo::scene::Scene, tree: relievo::scene::ObjectId) -> Result<(), relievo::Error> {
+/// let criterion = Criterion::Distance { to: DistanceTo::Center, from: vec![20.0, 60.0, 200.0] };
+/// scene.set_level_of_detail(
+///     tree,
+///     &LevelOfDetail {
+///         choice: LevelChoice::By(criterion),
+///         transition: Transition::Dither(Pace::Seconds(0.3)),
+///         ..LevelOfDetail::default()
+///     },
+/// )?;
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct LevelOfDetail {
+    /// The criterion, or one level for all.
+    pub choice: LevelChoice,
+    /// How levels change.
+    pub transition: Transition,
+    /// Half width of the interval around each threshold in which an instance keeps its level (thesis A, section 7.2), as a
+    /// fraction of the threshold: at least 0, below 1. A level is left for a coarser one at (1 + h) times its distance, and
+    /// for a finer one at (1 − h) times; sizes likewise. An error never exceeds what is allowed: a coarser level is taken
+    /// once 1 − h times the allowed displacement suffices. It applies where levels change at once or fade in time.
+    pub hysteresis: f32,
+    /// Factor of the allowed displacement or of the distance, above 0: with 2, levels are chosen as if an instance were
+    /// twice as far away. [`Quality::pixels`](super::Quality::pixels) then holds times this factor. Thesis A's *late
+    /// switching* (section 7.1) is a factor below 1.
+    pub bias: f32,
+    /// Importance among the objects that share a budget of triangles ([`Quality::triangles`](super::Quality::triangles)),
+    /// 0 to 7: those of rank 0 are coarsened first (thesis A, section 6.3). Objects without a rank are never coarsened, if
+    /// any object of the scene has one.
+    pub rank: Option<u8>,
+    /// What is perceived poorly may be coarser.
+    pub perceptual: Perceptual,
+    /// Whether instances outside the view volume are left out.
+    pub culling: Culling,
+}
+
+/// The choice of a level.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LevelChoice {
+    /// By a criterion.
+    By(Criterion),
+    /// This level for all instances in all views, 0 for the finest: for debugging.
+    Forced(u32),
+}
+
+/// Strength of the perceptual factors (thesis A, section 6.4). The metric of an instance, which is a distance or an allowed
+/// displacement, is multiplied by 1 + `motion` · v + `periphery` · r. So levels are chosen as if it were further away.
+///
+/// v is the speed of its middle in the picture in picture heights per second, at most 4, and 0 where the last frame did not
+/// show it. r is the distance of its middle from the picture's, in half heights, at most 1. The formula is ours: thesis A
+/// gives none.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Perceptual {
+    /// Factor per picture height and second, at least 0; 0 by default.
+    pub motion: f32,
+    /// Factor at half a picture height from the middle, at least 0; 0 by default.
+    pub periphery: f32,
+}
+
+/// Whether instances outside the view volume are left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Culling {
+    /// By the bounding sphere.
+    #[default]
+    Frustum,
+    /// Never: for debugging, and for shaders that move an instance out of its sphere.
+    Never,
+}
+
+impl Default for LevelOfDetail {
+    /// By projected error, at once, with a hysteresis of a tenth.
+    fn default() -> Self {
+        Self {
+            choice: LevelChoice::By(Criterion::Error),
+            transition: Transition::Hard,
+            hysteresis: 0.1,
+            bias: 1.0,
+            rank: None,
+            perceptual: Perceptual::default(),
+            culling: Culling::Frustum,
+        }
+    }
+}
+
+impl From<Transition> for LevelOfDetail {
+    fn from(transition: Transition) -> Self {
+        Self { transition, ..Self::default() }
+    }
+}
+
+impl LevelOfDetail {
+    /// Checks the ranges, for an object with `levels` levels.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the invalid field.
+    pub fn validate(&self, levels: usize) -> Result<(), InputError> {
+        let Self { choice, transition, hysteresis, bias, rank, perceptual, .. } = self;
+        match choice {
+            LevelChoice::By(criterion) => {
+                criterion.validate(levels)?;
+                transition.validate(criterion)?;
+            }
+            LevelChoice::Forced(level) if *level as usize >= levels => {
+                let bound = format!("must be below {levels}, the number of levels");
+                return Err(InputError::new("choice.level", level, bound));
+            }
+            LevelChoice::Forced(_) => {}
+        }
+        if !(0.0..1.0).contains(hysteresis) {
+            return Err(InputError::new("hysteresis", hysteresis, "must be at least 0 and below 1"));
+        }
+        if !(*bias > 0.0 && bias.is_finite()) {
+            return Err(InputError::new("bias", bias, "must be finite, and above 0"));
+        }
+        if let Some(rank) = rank.filter(|rank| u32::from(*rank) >= RANKS) {
+            return Err(InputError::new("rank", rank, format!("must be below {RANKS}")));
+        }
+        let factors =
+            [("perceptual.motion", perceptual.motion), ("perceptual.periphery", perceptual.periphery)];
+        match factors.into_iter().find(|(_, factor)| !(0.0..f32::INFINITY).contains(factor)) {
+            Some((path, factor)) => Err(InputError::new(path, factor, "must be finite, and not negative")),
+            None => Ok(()),
+        }
+    }
+
+    /// The criterion; that of errors for a forced level.
+    pub(super) fn criterion(&self) -> &Criterion {
+        const ERROR: &Criterion = &Criterion::Error;
+        match &self.choice {
+            LevelChoice::By(criterion) => criterion,
+            LevelChoice::Forced(_) => ERROR,
+        }
+    }
+
+    /// The transition in force: a forced level never changes.
+    pub(super) fn transition(&self) -> Transition {
+        match self.choice {
+            LevelChoice::By(_) => self.transition,
+            LevelChoice::Forced(_) => Transition::Hard,
+        }
+    }
+
+    /// Smallest metric per level at which the level is drawn or begins to morph. Input: errors and triangles per level.
+    pub(super) fn thresholds(&self, errors: &[f32], triangles: &[u32]) -> Vec<f32> {
+        match &self.choice {
+            LevelChoice::By(criterion) => self.transition.begins(&criterion.thresholds(errors, triangles)),
+            LevelChoice::Forced(level) => {
+                let threshold = |of: usize| if of as u32 <= *level { 0.0 } else { f32::MAX };
+                (0..errors.len()).map(threshold).collect()
+            }
+        }
+    }
+
+    /// The object with these settings. `is_ranked`: whether any object of the scene has a rank.
+    pub(super) fn on_device(&self, is_shown: bool, is_ranked: bool, of: LodObject) -> LodObject {
+        let (criterion, transition) = (self.criterion(), self.transition());
+        let pace = transition.pace();
+        let [finer, coarser] = match (pace, transition) {
+            (_, Transition::Geomorph) => [1.0; 2],
+            (Some(Pace::Band(band)), _) => criterion.band(band, false),
+            _ => criterion.band(self.hysteresis, true),
+        };
+        let seconds = match pace {
+            Some(Pace::Seconds(seconds)) => Some(seconds),
+            _ => None,
+        };
+        let [fade_begin, fade_end] = match transition {
+            Transition::Alpha { opaque, gone } => {
+                [opaque, gone].map(|value| criterion.metric_of(value).unwrap_or(0.0))
+            }
+            _ => [0.0; 2],
+        };
+        let flags = object_flags_word(
+            is_shown.into(),
+            (self.culling == Culling::Never).into(),
+            seconds.is_some().into(),
+            transition.code(),
+            criterion.code(),
+        );
+        LodObject {
+            metric_scale: self.bias * of.metric_scale,
+            flags,
+            finer,
+            coarser,
+            rate: seconds.map_or(0.0, |seconds| FADE_PROGRESS as f32 / seconds),
+            motion: self.perceptual.motion,
+            periphery: self.perceptual.periphery,
+            rank: if is_ranked { self.rank.map_or(NO_RANK, u32::from) } else { 0 },
+            fade_begin,
+            fade_end,
+            point: criterion.point().map_or(of.point, Into::into),
+            ..of
+        }
+    }
+
+    /// Largest factor by which the settings enlarge the displacement that a view allows.
+    pub(super) fn largest_factor(&self) -> f32 {
+        self.bias * (1.0 + MAX_MOTION * self.perceptual.motion + self.perceptual.periphery)
+    }
+}
