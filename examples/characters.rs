@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let target = Offscreen::with_format(&gpu, SIZE, TargetFormat::srgb().with_samples(4))?; // In your program: any targets.
     let mut renderer = Renderer::new(&gpu, target.format())?;
     renderer.prepare(&scene)?;
-    let mut view = scene.view(Quality { pixels: 0.5 })?;
+    let mut view = scene.view(Quality::pixels(0.5))?;
 
     // A frame.
     let (eye, ahead) = (Vec3::new(0.0, 4.0, 8.0), Vec3::new(0.0, 0.5, -6.0));

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut shadow = SunShadow::new(&mut scene, 4096)?; // texels along an edge of its map
     let mut renderer = Renderer::new(&gpu, target.format())?;
     renderer.prepare(&scene)?;
-    let mut view = scene.view(Quality { pixels: 1.0 })?; // at most a pixel off
+    let mut view = scene.view(Quality::pixels(1.0))?; // at most a pixel off
     let (eye, focus) = (ground(&scene, 660.0, 655.0) + 6.0 * DVec3::Y, ground(&scene, 660.0, 580.0));
     view.set(Camera::looking_at_world(eye, focus, 0.8, [0.1, 2000.0], target.size()))?;
 

@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut shadow = SunShadow::new(&mut scene, 4096)?;
     let mut renderer = Renderer::new(&gpu, target.format())?;
     renderer.prepare(&scene)?;
-    let mut view = scene.view(Quality { pixels: 1.0 })?;
+    let mut view = scene.view(Quality::pixels(1.0))?;
     let (eye, focus) =
         (ground(&scene, 58.0, 66.0) + 2.2 * DVec3::Y, ground(&scene, 56.0, 56.0) + 0.6 * DVec3::Y);
     view.set(Camera::looking_at_world(eye, focus, 0.8, [0.1, 400.0], target.size()))?;

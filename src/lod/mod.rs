@@ -2,6 +2,7 @@
 //!
 //! - [`select`]: which instances a view sees, and their metric.
 //! - [`decide`]: their levels of detail, from metrics, hysteresis and transitions.
+//! - [`budget`]: by how much the levels are coarsened, so that the triangles fit.
 //! - [`list`]: the lists from which the view draws them.
 //! - [`sorted`]: draws of single instances.
 //! - [`assign`]: the detail of gates and skinning, from the displacement that the views of a frame allow.
@@ -23,6 +24,7 @@
 pub mod allowed;
 pub mod assign;
 pub mod attach;
+pub mod budget;
 mod camera;
 pub mod criterion;
 pub mod decide;

@@ -57,8 +57,8 @@ impl LodObject {
         rank: NO_RANK,
         fade_begin: 0.0,
         fade_end: 0.0,
-        unused_a: 0,
-        unused_b: 0,
+        metric_floor: 0.0,
+        unused: 0,
         triangles: [[0; 4]; 2],
     };
 

@@ -265,23 +265,44 @@ pub struct Circumstances {
     pub ends_fades: bool,
 }
 
+/// The metric that a budget's factor, 1 or more, makes of a metric.
+pub fn coarsened(object: &LodObject, metric: f32, factor: f32) -> f32 {
+    factor * metric + (factor - 1.0) * object.metric_floor
+}
+
+/// The level of the last frame that hysteresis holds, or [`NO_LEVEL`]: fades in a band and geomorphs depend on this frame
+/// alone.
+pub fn held_level(object: &LodObject, last: u32) -> u32 {
+    let is_timed = object_flags_timed(object.flags) != 0;
+    match object_flags_transition(object.flags) {
+        TRANSITION_GEOMORPH => NO_LEVEL,
+        TRANSITION_DITHER..=TRANSITION_TWO_PHASE if !is_timed => NO_LEVEL,
+        _ => last_level(object, last),
+    }
+}
+
+/// Whether an instance has faded out.
+pub fn is_faded_out(object: &LodObject, metric: f32) -> bool {
+    object_flags_transition(object.flags) == TRANSITION_ALPHA
+        && steps_between(metric, object.fade_begin, object.fade_end, FADE_PROGRESS) == FADE_PROGRESS
+}
+
 /// The decision word for a visible instance.
 pub fn decision(object: &LodObject, metric: f32, circumstances: &Circumstances) -> u32 {
     let Circumstances { factor, is_mirrored, last, seconds, ends_fades } = *circumstances;
     let mirrored = u32::from(is_mirrored);
     let transition = object_flags_transition(object.flags);
-    let is_fading = (TRANSITION_DITHER..=TRANSITION_TWO_PHASE).contains(&transition);
-    let is_timed = object_flags_timed(object.flags) != 0;
-    let coarsened = factor * metric;
+    let within = coarsened(object, metric, factor);
     if transition == TRANSITION_GEOMORPH {
-        return morphing(object, coarsened, mirrored);
+        return morphing(object, within, mirrored);
     }
-    if is_fading && !is_timed && !ends_fades {
-        return fading_in_band(object, coarsened, mirrored);
+    let is_fading = (TRANSITION_DITHER..=TRANSITION_TWO_PHASE).contains(&transition) && !ends_fades;
+    let is_timed = object_flags_timed(object.flags) != 0;
+    if is_fading && !is_timed {
+        return fading_in_band(object, within, mirrored);
     }
-    let held = if is_fading && !is_timed { NO_LEVEL } else { last_level(object, last) };
-    let level = level_within(object, coarsened, held);
-    if is_fading && is_timed && !ends_fades {
+    let level = level_within(object, within, held_level(object, last));
+    if is_fading {
         return fading_in_time(object, level, mirrored, last, seconds);
     }
     if transition != TRANSITION_ALPHA {

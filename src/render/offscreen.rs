@@ -182,7 +182,7 @@ impl Offscreen {
         let gpu = scene.gpu().clone();
         let mut renderer = Renderer::new(&gpu, &self.format)?;
         renderer.prepare(scene)?;
-        let mut view = scene.view(Quality { pixels: 0.0 })?;
+        let mut view = scene.view(Quality::pixels(0.0))?;
         view.set(camera)?;
         gpu.try_run("draw", |encoder| {
             scene.record(encoder, &mut [&mut view])?;

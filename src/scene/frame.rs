@@ -2,6 +2,7 @@
 
 use crate::animation::Frame;
 use crate::gpu::Staged;
+use crate::lod::budget::BudgetStage;
 use crate::lod::transition::Transition;
 use crate::lod::{SceneInstance, SelectView};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, SortedDraws, SortedPart};
@@ -182,6 +183,15 @@ impl Scene {
 
     fn dispatch(&self, stage: Stage, views: &[&mut View], pass: &mut wgpu::ComputePass<'_>) {
         if stage == Stage::Select {
+            views.iter().for_each(|view| view.dispatch_select(pass));
+            for stage in BudgetStage::EACH {
+                for (at, view) in views.iter().enumerate() {
+                    let is_other = || !views[..at].iter().any(|other| other.shares_budget_with(view));
+                    if stage.is_of_each_view() || is_other() {
+                        view.dispatch_budget(stage, pass);
+                    }
+                }
+            }
             views.iter().for_each(|view| view.dispatch(pass));
         }
         self.objects.iter().for_each(|object| object.kind.dispatch(stage, pass));
@@ -322,8 +332,8 @@ impl Scene {
         }
         self.attachments.fit(&self.gpu, &self.objects, layout, (&mut self.staged, self.frames))?;
         for view in views {
-            let Passes { select, decide, list, sorted, .. } = &self.passes;
-            let passes = ViewPasses { select, decide, list, sorted };
+            let Passes { select, decide, budget, list, sorted, .. } = &self.passes;
+            let passes = ViewPasses { select, decide, budget, list, sorted };
             view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, &self.objects))?;
             let attachments = (&self.attachments, &self.objects);
             view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;
@@ -345,7 +355,7 @@ impl Scene {
         for (at, view) in views.iter_mut().enumerate() {
             let sides = self.objects.iter().map(|object| object.instances.sides());
             let now = Moment { frame: self.frames, time: self.now, is_first: at == 0 };
-            view.stage(&mut self.staged, (layout.blocks, &self.light), sides, now)?;
+            view.stage(&mut self.staged, (layout, &self.light), sides, now)?;
         }
         let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {

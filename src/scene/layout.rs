@@ -42,6 +42,8 @@ pub(crate) struct Layout {
     /// Number of blocks, words of lists, and draws.
     pub blocks: u32,
     pub list_words: u32,
+    /// Budgets count triangles in units of 2 to the power of this.
+    pub triangle_unit: u32,
     /// Draws of a view that sees nothing.
     pub draws: Vec<SceneDraw>,
     /// Parts with sorted draws.
@@ -60,6 +62,7 @@ impl Layout {
         (objects, draws, sorted): (&[LodObject], Vec<SceneDraw>, &[SortedDraw]),
         end: ObjectRange,
         (version, keeps_last, counted): (u64, bool, Arc<Counted>),
+        triangle_unit: u32,
     ) -> Result<Self, Error> {
         let of_object =
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
@@ -82,6 +85,7 @@ impl Layout {
             block_objects: Buffer::from_slice(gpu, "objects of blocks", &block_objects)?,
             blocks: block_objects.len() as u32,
             list_words: end.first_list,
+            triangle_unit,
             draws,
             sorted: Buffer::from_slice(gpu, "single instances", sorted)?,
             counted,
@@ -106,6 +110,8 @@ pub(super) struct CountedObject {
     pub mesh_fraction: f32,
     /// Largest factor by which its settings enlarge the allowed displacement.
     pub bias: f32,
+    /// Its rank on the device.
+    pub rank: u32,
     /// Whether instances may fade.
     pub fades: bool,
 }

@@ -4,8 +4,12 @@ use crate::InputError;
 use crate::lod::LodObject;
 use crate::lod::criterion::Criterion;
 use crate::lod::transition::{Pace, Transition};
+use crate::shared::lod::budget::MAX_FACTOR;
 use crate::shared::lod::object::{FADE_PROGRESS, NO_RANK, RANKS, object_flags_word};
 use crate::shared::lod::select::MAX_MOTION;
+
+/// Fraction of the farthest threshold that a budget adds to metrics, inverted: half of the largest factor.
+const FLOOR: f32 = 0.5 * MAX_FACTOR;
 
 /// How the levels of detail of an object are chosen, in every view, and how they change.
 ///
@@ -196,20 +200,29 @@ impl LevelOfDetail {
             transition.code(),
             criterion.code(),
         );
+        // Thresholds of levels that are never drawn do not count.
+        let reached = of.thresholds.as_flattened()[..of.levels as usize].iter().filter(|at| **at < f32::MAX);
+        let farthest = reached.fold(0.0, |farthest: f32, threshold| farthest.max(*threshold));
         LodObject {
             metric_scale: self.bias * of.metric_scale,
+            metric_floor: farthest * coarser.max(1.0) / FLOOR,
             flags,
             finer,
             coarser,
             rate: seconds.map_or(0.0, |seconds| FADE_PROGRESS as f32 / seconds),
             motion: self.perceptual.motion,
             periphery: self.perceptual.periphery,
-            rank: if is_ranked { self.rank.map_or(NO_RANK, u32::from) } else { 0 },
+            rank: self.rank_on_device(is_ranked),
             fade_begin,
             fade_end,
             point: criterion.point().map_or(of.point, Into::into),
             ..of
         }
+    }
+
+    /// The rank on the device: without any rank in the scene, all objects have the same.
+    pub(super) fn rank_on_device(&self, is_ranked: bool) -> u32 {
+        if is_ranked { self.rank.map_or(NO_RANK, u32::from) } else { 0 }
     }
 
     /// Largest factor by which the settings enlarge the displacement that a view allows.

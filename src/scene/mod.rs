@@ -40,6 +40,7 @@ mod object_kind;
 mod objects;
 mod options;
 pub(crate) mod order;
+mod pacer;
 mod paging;
 mod pick;
 mod pieces;
@@ -98,7 +99,8 @@ pub use ray::{Hit, Ray};
 pub use rebuild::Rebuild;
 pub use relief::{Relief, ReliefSource};
 pub use statistics::{
-    CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes, ViewStatistics,
+    BudgetStatistics, CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes,
+    ViewStatistics,
 };
 pub use terrain::TerrainSource;
 pub(crate) use view::ViewShadow;
@@ -109,6 +111,7 @@ use crate::asset::Light;
 use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
 use crate::lod::assign::AssignPass;
 use crate::lod::attach::AttachPass;
+use crate::lod::budget::BudgetPass;
 use crate::lod::decide::DecidePass;
 use crate::lod::list::ListPass;
 use crate::lod::select::SelectPass;
@@ -197,6 +200,7 @@ pub struct Scene {
 struct Passes {
     select: SelectPass,
     decide: DecidePass,
+    budget: BudgetPass,
     list: ListPass,
     sorted: SortedPass,
     assign: AssignPass,
@@ -208,6 +212,7 @@ impl Passes {
         Ok(Self {
             select: SelectPass::new(gpu)?,
             decide: DecidePass::new(gpu)?,
+            budget: BudgetPass::new(gpu)?,
             list: ListPass::new(gpu)?,
             sorted: SortedPass::new(gpu)?,
             assign: AssignPass::new(gpu)?,

@@ -13,25 +13,53 @@ pub struct Quality {
     /// When the device has no memory left for the vertices of a character's visible instances, its levels are coarser than
     /// this; [`Scene::lod_bias`](super::Scene::lod_bias) returns the factor.
     pub pixels: f32,
+    /// The largest number of triangles that the view draws in one layer, back faces and both levels of fades included; at
+    /// least 1. `None`, the default: no limit.
+    ///
+    /// In each frame the device finds the least factor of the metric of all instances at which they fit: the levels of
+    /// detail are those of instances further away, or those of more [`Quality::pixels`]. The error then is within
+    /// `pixels` times this factor ([`ViewStatistics::pixels`](super::ViewStatistics::pixels)). The factor grows at once, and
+    /// falls within half a second. Objects with a rank are coarsened in the order of their ranks
+    /// ([`LevelOfDetail::rank`](super::LevelOfDetail::rank)). If the coarsest levels do not fit,
+    /// [`BudgetStatistics::is_missed`](super::BudgetStatistics::is_missed) is true.
+    pub triangles: Option<u32>,
+    /// The time that a frame may take, in milliseconds, above 0. `None`, the default: no limit. The view then draws fewer
+    /// triangles, at most `triangles`, until the times that the program reports ([`View::frame_took`](super::View::frame_took))
+    /// are within it.
+    pub milliseconds: Option<f32>,
 }
 
 impl Default for Quality {
-    /// One pixel.
+    /// One pixel, without a budget.
     fn default() -> Self {
-        Self { pixels: 1.0 }
+        Self { pixels: 1.0, triangles: None, milliseconds: None }
     }
 }
 
 impl Quality {
-    /// Checks `pixels`.
+    /// A quality within so many pixels, without a budget.
+    pub fn pixels(pixels: f32) -> Self {
+        Self { pixels, ..Self::default() }
+    }
+
+    /// Checks the fields.
     ///
     /// # Errors
-    /// [`InputError`] for `pixels` that is negative or not finite.
+    /// [`InputError`] for `pixels` that is negative or not finite, for 0 `triangles`, and for `milliseconds` that are not
+    /// above 0 and finite.
     pub fn validate(&self) -> Result<(), InputError> {
-        if self.pixels >= 0.0 && self.pixels.is_finite() {
-            return Ok(());
+        if !(0.0..f32::INFINITY).contains(&self.pixels) {
+            return Err(InputError::new("quality.pixels", self.pixels, "must be finite, and not negative"));
         }
-        Err(InputError::new("quality.pixels", self.pixels, "must be finite, and not negative"))
+        if self.triangles == Some(0) {
+            return Err(InputError::new("quality.triangles", 0, "must be at least 1"));
+        }
+        match self.milliseconds {
+            Some(limit) if !(limit > 0.0 && limit.is_finite()) => {
+                Err(InputError::new("quality.milliseconds", limit, "must be finite, and above 0"))
+            }
+            _ => Ok(()),
+        }
     }
 }
 

@@ -210,7 +210,7 @@ fn color(at: &At<'_>, most: f64) -> Result<[f32; 3], InputError> {
 fn quality(at: &At<'_>) -> Result<(Quality, Transition), InputError> {
     let fields = at.fields(&["pixels", "transition"])?;
     let pixels = fields.number("pixels", 0.0, 1e4, Quality::default().pixels.into())? as f32;
-    Ok((Quality { pixels }, fields.one_of("transition", Transition::NAMES, Transition::default())?))
+    Ok((Quality::pixels(pixels), fields.one_of("transition", Transition::NAMES, Transition::default())?))
 }
 
 fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {

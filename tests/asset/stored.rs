@@ -66,7 +66,7 @@ fn scene(gpu: &Gpu, model: &Model) -> RgbaImage {
     let target = Offscreen::new(gpu, [160, 90]).expect("a target");
     let mut renderer = Renderer::new(gpu, target.format()).expect("compiled");
     renderer.prepare(&scene).expect("compiled");
-    let mut view = scene.view(Quality { pixels: 4.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(4.0)).expect("a view");
     let (eye, focus) = (Vec3::new(0.0, 1.5, 0.0), Vec3::new(0.0, 0.5, -10.0));
     view.set(Camera::looking_at(eye, focus, 0.8, [0.1, 200.0], target.size())).expect("a camera");
     let mut encoder = gpu.encoder("frame");

@@ -37,7 +37,7 @@ impl Crowd {
             instance
         });
         let all = all.collect();
-        let view = scene.view(Quality { pixels }).expect("a view");
+        let view = scene.view(Quality::pixels(pixels)).expect("a view");
         Self { scene, creature, all, view }
     }
 

@@ -67,7 +67,7 @@ fn frames_are_counted() {
     );
     assert!(world.scene.stage_times().is_none(), "a device without timestamps");
     // Nothing moves: nothing is done. Coarser: fewer triangles.
-    all.set_quality(Quality { pixels: 2.0 }).expect("a quality");
+    all.set_quality(Quality::pixels(2.0)).expect("a quality");
     world.scene.advance(0.0).expect("finite");
     for _ in 0..2 {
         submit(&mut world.scene, &mut [&mut all, &mut none]);

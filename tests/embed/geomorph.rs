@@ -76,7 +76,7 @@ impl Stage {
     fn draw(&mut self, allowed: f32) -> RgbaImage {
         // 0.9999 is what a camera keeps back.
         let pixels = allowed * self.focal / 0.9999;
-        self.view.set_quality(Quality { pixels }).expect("valid");
+        self.view.set_quality(Quality::pixels(pixels)).expect("valid");
         let layers = [Layer::Color, Layer::Transparent];
         self.frame.shot_of(&mut self.scene, &mut self.view, &self.renderer, &layers)
     }

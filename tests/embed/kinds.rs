@@ -171,7 +171,7 @@ impl World {
             scene.spawn(object, placement).expect("room");
         }
         let instances = scene.instances(object).expect("there");
-        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         view.set(camera()).expect("a camera");
         scene.advance(1.3).expect("finite");
         Self { scene, view, object, instances, sample }
@@ -533,7 +533,7 @@ fn outputs_of_the_caller_are_blended_as_their_formats_say() {
     for at in 0..8 {
         scene.spawn(meadow, Placement::at([0.0, 0.0, -3.0 + 0.3 * at as f32])).expect("room");
     }
-    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
     let camera = Camera::looking_at(Vec3::new(0.0, 0.2, 0.5), Vec3::NEG_Z, 0.6, [0.1, 200.0], SIZE);
     view.set(camera).expect("a camera");
     let add = BlendComponent {
@@ -567,7 +567,7 @@ fn grass_is_culled_and_has_levels() {
         scene.spawn(meadow, Placement::at([0.0, 0.0, 5.0 + at as f32])).expect("room");
     }
     scene.set_statistics(true).expect("room");
-    let mut view = scene.view(Quality { pixels: 1.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(1.0)).expect("a view");
     let camera = Camera::looking_at(Vec3::new(0.0, 0.3, 0.5), Vec3::NEG_Z, 0.6, [0.1, 200.0], SIZE);
     view.set(camera).expect("a camera");
     let mut encoder = gpu.encoder("frame");

@@ -25,7 +25,7 @@ fn scene(gpu: &relievo::gpu::Gpu) -> (Scene, InstanceId, View) {
     let options = CharacterOptions { layers, ..CharacterOptions::default() };
     let creature = scene.add_character_with(&model(), 2, &options).expect("added");
     let instance = scene.spawn(creature, Placement::default()).expect("room");
-    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
     let eye = relievo::scene::Camera::looking_at(
         Vec3::new(0.0, 2.5, 9.0),
         Vec3::new(0.0, 1.5, 0.0),
@@ -171,7 +171,7 @@ fn roots_keep_their_place() {
         assert!(middle[0].distance(middle[1]) < 0.1, "{middle:?}");
         // Bones, more precisely.
         scene.watch_bones(&[(moved, "40"), (fixed, "40")]).expect("bones");
-        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         let eye = relievo::scene::Camera::looking_at(
             Vec3::new(0.0, 20.0, 40.0),
             Vec3::ZERO,

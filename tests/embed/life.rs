@@ -156,7 +156,7 @@ fn a_long_life_leaves_no_trace() {
     }
     assert_eq!(gpu.memory().now(), held, "memory grows");
     let full = |world: &mut World, view: &mut View| {
-        view.set_quality(Quality { pixels: 0.0 }).expect("a quality");
+        view.set_quality(Quality::pixels(0.0)).expect("a quality");
         let renderer = frame.renderer(&gpu, &world.scene);
         frame.shot(&mut world.scene, view, &renderer)
     };

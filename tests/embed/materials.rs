@@ -87,7 +87,7 @@ impl Stage {
         let mut scene = Scene::new(gpu).expect("compiled");
         let object = scene.add_character(model, 2).expect("added");
         scene.spawn(object, Placement::at([0.0, 0.0, 0.0])).expect("room");
-        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         let eye = Camera::looking_at(Vec3::new(0.3, 0.2, 5.0), Vec3::ZERO, 0.8, [0.5, 20.0], SIZE);
         view.set(eye).expect("a camera");
         let frame = Frame::plain(gpu, SIZE);

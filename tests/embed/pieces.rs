@@ -80,7 +80,7 @@ fn meshes_beyond_a_binding_are_drawn_in_pieces() {
         for placement in [near, far] {
             scene.spawn(object, placement).expect("room");
         }
-        let mut view = scene.view(Quality { pixels: 0.5 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.5)).expect("a view");
         let camera = Camera::looking_at(Vec3::new(1.0, 5.0, 9.0), Vec3::ZERO, 0.8, [0.3, 400.0], SIZE);
         view.set(camera).expect("a camera");
         let frame = Frame::plain(gpu, SIZE);
@@ -107,7 +107,7 @@ fn terrain_beyond_a_binding_is_drawn_in_chunks() {
         let mut scene = Scene::new(gpu).expect("compiled");
         let config = TerrainConfig::new(65, 12.0, "chunks").expect("valid");
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
-        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         let camera = Camera::looking_at(Vec3::new(20.0, 180.0, -300.0), Vec3::ZERO, 0.8, [1.0, 4000.0], SIZE);
         view.set(camera).expect("a camera");
         let frame = Frame::plain(gpu, SIZE);

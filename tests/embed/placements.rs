@@ -36,7 +36,7 @@ fn shot(gpu: &relievo::gpu::Gpu, cell: [i32; 3], mirror: bool) -> RgbaImage {
         light.direction.x = -light.direction.x;
     }
     scene.set_light(light).expect("a light");
-    let mut view = scene.view(Quality { pixels: 0.5 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.5)).expect("a view");
     view.set(camera).expect("a camera");
     let frame = Frame::plain(gpu, SIZE);
     let renderer = frame.renderer(gpu, &scene);
@@ -71,7 +71,7 @@ fn scale_counts() {
         let creature = scene.add_character(&model(), 1).expect("added");
         let placement = Placement { turn: Quat::from_rotation_y(0.6), ..Placement::default().scaled(scale) };
         scene.spawn(creature, placement).expect("room");
-        let mut view = scene.view(Quality { pixels: 1.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(1.0)).expect("a view");
         let eye = Vec3::new(0.0, 2.5, 12.0) * scale;
         let planes = [0.5 * scale, 60.0 * scale];
         view.set(Camera::looking_at(eye, Vec3::new(0.0, 1.5, 0.0) * scale, 0.6, planes, SIZE))

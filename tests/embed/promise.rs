@@ -63,7 +63,7 @@ impl Stage {
 
     /// Goes the camera's way in so many frames, measures so many of them, and returns their largest figures.
     fn walk(&mut self, pixels: f32, frames: u32, measured: u32) -> Displacement {
-        self.view.set_quality(Quality { pixels }).expect("in range");
+        self.view.set_quality(Quality::pixels(pixels)).expect("in range");
         let mut all: Option<Displacement> = None;
         for at in 0..frames {
             self.frame(at as f32 / frames as f32);

@@ -36,7 +36,7 @@ impl Stage {
         scene.play(waver, &Play::new("wave")).expect("the clip");
         let [upper, lower, end] = ARM.map(|name| scene.bone(waver, name).expect("a bone"));
         scene.drive(waver, &ARM[..2]).expect("bones");
-        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         let (from, to) = (DVec3::new(0.0, 5.0, 20.0), DVec3::new(0.0, 3.0, 0.0));
         let at = placement.world();
         view.set(Camera::looking_at_world(at + from, at + to, 0.6, [0.5, 400.0], SIZE)).expect("a camera");

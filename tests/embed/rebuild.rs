@@ -252,7 +252,7 @@ fn a_scene_survives_the_end_of_memory() {
     };
     record(&mut world, &mut near).expect("recorded");
     memory.set_limit(memory.now());
-    near.set_quality(Quality { pixels: 0.0 }).expect("a quality");
+    near.set_quality(Quality::pixels(0.0)).expect("a quality");
     record(&mut world, &mut near).expect("coarser, but recorded");
     assert!(world.scene.lod_bias(world.creature).expect("there") > 1.0);
     memory.set_limit(u64::MAX);

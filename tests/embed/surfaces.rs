@@ -40,7 +40,7 @@ fn cubes(gpu: &relievo::gpu::Gpu) -> (Scene, View, Vec<Triangle>, [ObjectId; 2])
         triangles.extend(placed(&cube(), placement, false, tag));
     }
     scene.despawn(gone).expect("there");
-    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
     view.set(camera()).expect("a camera");
     (scene, view, triangles, [first, object])
 }

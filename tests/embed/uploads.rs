@@ -66,7 +66,7 @@ impl Stage {
             [0, 1, 2].map(|at| scene.spawn(objects[at + 1], places[at].scaled(scales[at])).expect("room"));
         scene.play(instances[1], &Play::new("walk")).expect("the clip");
         scene.advance(1.3).expect("finite");
-        let mut view = scene.view(Quality { pixels: 0.5 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.5)).expect("a view");
         view.set(camera()).expect("a camera");
         let frame = Frame::plain(gpu, SIZE);
         let renderer = frame.renderer(gpu, &scene);

@@ -32,7 +32,7 @@ fn moved() -> Camera {
 fn scene(gpu: &Gpu) -> (Scene, View) {
     let mut scene = Scene::new(gpu).expect("compiled");
     scene.keep_motion_history(true).expect("kept");
-    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
     view.set(camera()).expect("a camera");
     (scene, view)
 }
@@ -215,7 +215,7 @@ fn terrain_and_reliefs_move_with_the_camera() {
     let seen_from = |x: f32| {
         Camera::looking_at(Vec3::new(x, 12.0, 16.0), Vec3::new(0.0, 2.0, -6.0), 0.9, [0.5, 400.0], SIZE)
     };
-    let mut view = world.scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = world.scene.view(Quality::pixels(0.0)).expect("a view");
     view.set(seen_from(3.0)).expect("a camera");
     let eye = Eye::new(&gpu, &world.scene);
     eye.frame(&mut world.scene, &mut view);

@@ -201,7 +201,7 @@ fn views_are_checked() {
     let mut refused =
         |views: &mut [&mut View]| world.scene.record(&mut encoder, views).expect_err("refused").to_string();
     assert!(refused(&mut [&mut blind]).contains("camera"));
-    let path = |quality: f32| other.scene.view(Quality { pixels: quality }).expect_err("refused").to_string();
+    let path = |quality: f32| other.scene.view(Quality::pixels(quality)).expect_err("refused").to_string();
     assert!(path(-1.0).contains("quality.pixels") && path(f32::NAN).contains("quality.pixels"));
 }
 

@@ -79,7 +79,7 @@ impl World {
 
     /// A view of the scene with the camera of these tests.
     pub fn view(&self, pixels: f32) -> View {
-        let mut view = self.scene.view(Quality { pixels }).expect("a view");
+        let mut view = self.scene.view(Quality::pixels(pixels)).expect("a view");
         view.set(camera(SIZE)).expect("a camera");
         view
     }

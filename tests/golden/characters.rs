@@ -27,7 +27,7 @@ fn add(scene: &mut Scene, model: &Model, places: &[(Vec3, f32)]) -> ObjectId {
 fn view(scene: &Scene, target: Vec3, pixels: f32) -> View {
     let look = rh::view::look_at_mat4(Vec3::new(-1.0, 2.6, 7.0), target, Vec3::Y);
     let projection = rh::proj::directx::perspective(0.75, 176.0 / 112.0, 0.2, 100.0);
-    let mut view = scene.view(Quality { pixels }).expect("a view");
+    let mut view = scene.view(Quality::pixels(pixels)).expect("a view");
     view.set(camera(look, projection, SIZE)).expect("a camera");
     view
 }

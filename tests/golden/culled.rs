@@ -31,7 +31,7 @@ impl Crowd {
         let instances: Vec<_> = spawned.collect();
         let view = |field_of_view: f32, size: [u32; 2]| {
             let (eye, target) = (Vec3::new(0.0, 1.0, 9.0), Vec3::new(0.0, 0.8, 0.0));
-            let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+            let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
             let camera = Camera::looking_at(eye, target, field_of_view, [0.2, 100.0], size);
             view.set(camera).expect("a camera");
             view

@@ -39,7 +39,7 @@ fn a_figure_in_its_materials() {
     let object = scene.add_character(&model, 1).expect("added");
     let instance = scene.spawn(object, Placement::default()).expect("room");
     scene.play(instance, &Play { start: -f64::from(SECONDS), ..Play::new("0") }).expect("the clip");
-    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
     view.set(camera(view_from_world, clip_from_view, SIZE)).expect("a camera");
     let found = stage::picture(&gpu, &mut scene, &mut view);
 

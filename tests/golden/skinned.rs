@@ -106,7 +106,7 @@ fn limbs(lower: Mat4) -> RgbaImage {
             camera::rh::view::look_at_mat4(Vec3::new(0.0, 1.2, 6.0), Vec3::new(0.0, 0.1, 0.0), Vec3::Y);
         let aspect = 2.0 * size[0] as f32 / size[1] as f32;
         let projection = camera::rh::proj::directx::perspective(0.33, aspect, 1.0, 20.0);
-        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         view.set(stage::camera(look, projection, [size[0], size[1] / 2])).expect("a camera");
         let half = stage::picture(&gpu, &mut scene, &mut view);
         image::imageops::replace(&mut all, &half, 0, i64::from(row * size[1] / 2));

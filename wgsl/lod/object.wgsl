@@ -77,8 +77,9 @@ struct LodObject {
     // Metrics between which its instances fade out, with `TRANSITION_ALPHA`.
     fade_begin: f32,
     fade_end: f32,
-    unused_a: u32,
-    unused_b: u32,
+    // Added to the metric in proportion to a budget's factor, so that the largest factor reaches every level, even from 0.
+    metric_floor: f32,
+    unused: u32,
     // Number of triangles per level, in units of the budget.
     triangles: array<vec4<u32>, 2>,
 }

@@ -118,20 +118,40 @@ fn fading_in_time(object: LodObject, level: u32, mirrored: u32, last: u32, secon
     return decision_word(1u, mirrored, left, to, steps);
 }
 
+// The metric that a budget's factor, 1 or more, makes of a metric.
+fn coarsened(object: LodObject, metric: f32, factor: f32) -> f32 {
+    return factor * metric + (factor - 1.0) * object.metric_floor;
+}
+
+// The level of the last frame that hysteresis holds, or `NO_LEVEL`: fades in a band and geomorphs depend on this frame alone.
+fn held_level(object: LodObject, last: u32) -> u32 {
+    let transition = object_flags_transition(object.flags);
+    let is_fading = transition >= TRANSITION_DITHER && transition <= TRANSITION_TWO_PHASE;
+    let is_momentary = transition == TRANSITION_GEOMORPH || (is_fading && object_flags_timed(object.flags) == 0u);
+    return select(last_level(object, last), NO_LEVEL, is_momentary);
+}
+
+// Whether an instance has faded out (`TRANSITION_ALPHA`).
+fn is_faded_out(object: LodObject, metric: f32) -> bool {
+    return object_flags_transition(object.flags) == TRANSITION_ALPHA
+        && steps_between(metric, object.fade_begin, object.fade_end, FADE_PROGRESS) == FADE_PROGRESS;
+}
+
 // The decision for a visible instance. `factor` coarsens its levels, for a budget; `last` is the view's decision in the last
 // frame, 0 if there is none; `ends` ends all fades.
 fn transition_decision(object: LodObject, metric: f32, factor: f32, mirrored: u32, last: u32, seconds: f32, ends: bool) -> u32 {
     let transition = object_flags_transition(object.flags);
+    let within = coarsened(object, metric, factor);
     if transition == TRANSITION_GEOMORPH {
-        return morphing(object, factor * metric, mirrored);
+        return morphing(object, within, mirrored);
     }
-    let is_fading = transition >= TRANSITION_DITHER && transition <= TRANSITION_TWO_PHASE;
+    let is_fading = transition >= TRANSITION_DITHER && transition <= TRANSITION_TWO_PHASE && !ends;
     let is_timed = object_flags_timed(object.flags) != 0u;
-    if is_fading && !is_timed && !ends {
-        return fading_in_band(object, factor * metric, mirrored);
+    if is_fading && !is_timed {
+        return fading_in_band(object, within, mirrored);
     }
-    let level = level_within(object, factor * metric, select(last_level(object, last), NO_LEVEL, is_fading && !is_timed));
-    if is_fading && is_timed && !ends {
+    let level = level_within(object, within, held_level(object, last));
+    if is_fading {
         return fading_in_time(object, level, mirrored, last, seconds);
     }
     if transition != TRANSITION_ALPHA {

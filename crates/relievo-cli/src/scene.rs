@@ -179,8 +179,8 @@ impl Scene {
             return Err(InputError::new("layer", name_of(LAYERS, self.layer), bound).into());
         }
         let quality = match (self.full, self.pixels) {
-            (true, _) => Some(Quality { pixels: 0.0 }),
-            (false, pixels) => pixels.map(|pixels| Quality { pixels }),
+            (true, _) => Some(Quality::pixels(0.0)),
+            (false, pixels) => pixels.map(|pixels| Quality::pixels(pixels)),
         };
         let (layer, depth) = (self.layer, self.depth);
         let samples = self.samples.unwrap_or(if layer == Layer::Color { 4 } else { 1 });

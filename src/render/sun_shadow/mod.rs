@@ -149,7 +149,7 @@ impl SunShadow {
         let Fit { camera, texel } = Fit::new(&frusta, scene.light().direction, self.size);
         self.view.set_lod_cameras(&cameras)?;
         let pixels = views.iter().map(|view| view.quality().pixels).fold(f32::INFINITY, f32::min);
-        self.view.set_quality(Quality { pixels })?;
+        self.view.set_quality(Quality::pixels(pixels))?;
         self.view.set(camera)?;
         for view in views {
             view.set_shadow(ViewShadow { map: self.map.clone(), camera, texel });

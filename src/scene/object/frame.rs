@@ -14,7 +14,7 @@ use crate::scene::layout::{Counted, CountedObject, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object_kind::{Fitted, Provided, Replaced, SeenBy};
 use crate::scene::quality::ErrorBudget;
-use crate::shared::lod::object::{LodObject, OBJECT_LISTS};
+use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LISTS};
 use crate::shared::render::scene_instances::SceneObject;
 
 impl Object {
@@ -122,7 +122,15 @@ pub(in crate::scene) fn laid_out(
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
+    // Sums over all instances stay below 2^31, and so do those of both levels of all fades below 2^32.
+    let most = |object: &Object| {
+        let triangles = object.triangles().first().copied().unwrap_or(0);
+        object.capacity().next_multiple_of(BLOCK as usize) as u64 * u64::from(triangles)
+    };
+    let triangles: u64 = objects.iter().map(most).sum();
+    let triangle_unit = (64 - triangles.leading_zeros()).saturating_sub(31);
     for object in objects.iter_mut() {
+        object.triangle_unit = triangle_unit;
         let passes = if object.level_of_detail.transition.fades() { 2 } else { 1 };
         let levels = object.errors.len() as u32;
         for at in 0..object.chunks.len() {
@@ -139,7 +147,7 @@ pub(in crate::scene) fn laid_out(
         }
     }
     let counted = Arc::new(Counted::new(objects));
-    Layout::new(gpu, (&all, draws, &sorted), range, (version, keeps_last, counted))
+    Layout::new(gpu, (&all, draws, &sorted), range, (version, keeps_last, counted), triangle_unit)
 }
 
 impl Counted {
@@ -152,6 +160,7 @@ impl Counted {
             levels: entry.errors.len() as u32,
             mesh_fraction: entry.error_fraction(),
             bias: entry.level_of_detail.largest_factor(),
+            rank: entry.rank_on_device(),
             fades: entry.level_of_detail.transition.fades(),
         };
         Self { objects: objects.each().map(counted).collect() }

@@ -47,6 +47,8 @@ pub(crate) struct Object {
     pub(super) level_of_detail: LevelOfDetail,
     /// Whether any object of the scene has a rank.
     pub(super) is_ranked: bool,
+    /// Budgets count its triangles in units of 2 to the power of this.
+    triangle_unit: u32,
     /// Middle and half size of a box around the model.
     model_box: [Vec3; 2],
     /// LOD bias: 1 unless memory has ended.
@@ -89,6 +91,7 @@ impl Object {
             mesh_fraction,
             level_of_detail: LevelOfDetail::default(),
             is_ranked: false,
+            triangle_unit: 0,
             model_box,
             lod_bias: 1.0,
             is_retuned: false,
@@ -223,6 +226,10 @@ impl Object {
             draws.map(|draws| draws[level].index_count / 3).fold(0, u32::saturating_add)
         };
         (0..self.errors.len()).map(of_level).collect()
+    }
+
+    fn rank_on_device(&self) -> u32 {
+        self.level_of_detail.rank_on_device(self.is_ranked)
     }
 
     /// Number of parts.

@@ -65,10 +65,23 @@ pub struct ViewStatistics {
     /// Number of the frame, as [`SceneStatistics::frame`].
     pub frame: u64,
     /// Largest possible error of anything, in pixels: that of [`Quality`](crate::scene::Quality), or of the object whose
-    /// levels of detail had to be coarser ([`Scene::lod_bias`]).
+    /// levels of detail were coarser: by a budget, by its own settings, or for lack of memory ([`Scene::lod_bias`]).
     pub pixels: f32,
+    /// The budget of triangles, if the view has one.
+    pub budget: Option<BudgetStatistics>,
     /// One entry per object, in the order in which they were added.
     pub objects: Vec<ObjectStatistics>,
+}
+
+/// What a budget of triangles did in a frame ([`Quality::triangles`](crate::scene::Quality::triangles)).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BudgetStatistics {
+    /// Largest factor of the metric of any rank, 1 or more.
+    pub factor: f32,
+    /// Whether even the coarsest levels had too many triangles.
+    pub is_missed: bool,
+    /// Whether all fades ended, because both levels of each had too many triangles.
+    pub fades_ended: bool,
 }
 
 /// What a view drew of one object.

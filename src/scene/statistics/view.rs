@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{FRAMES, LevelStatistics, ObjectStatistics, ViewStatistics};
+use super::{BudgetStatistics, FRAMES, LevelStatistics, ObjectStatistics, ViewStatistics};
 use crate::gpu::{Gpu, GpuError, ReadbackRing};
-use crate::lod::{OBJECT_LISTS, SceneDraw};
+use crate::lod::{BudgetState, OBJECT_LISTS, SceneDraw};
 use crate::scene::handles::Slots;
 use crate::scene::layout::{Counted, CountedObject};
 use crate::scene::object::Object;
@@ -19,6 +19,8 @@ struct About {
     focal: Option<f32>,
     /// LOD bias per object; empty if all are 1.
     lod_bias: Vec<f32>,
+    /// Whether the view has a budget of triangles.
+    has_budget: bool,
 }
 
 /// Readback of a view's counts.
@@ -32,7 +34,8 @@ pub(in crate::scene) struct ViewCounts {
 impl ViewCounts {
     /// Allocates buffers for a view's draws.
     pub fn new(gpu: &Gpu, counted: &Arc<Counted>, draws: &wgpu::Buffer) -> Result<Self, GpuError> {
-        let ring = ReadbackRing::new(gpu, "statistics of a view", FRAMES, draws.size())?;
+        let size = draws.size() + size_of::<BudgetState>() as u64;
+        let ring = ReadbackRing::new(gpu, "statistics of a view", FRAMES, size)?;
         Ok(Self { counted: counted.clone(), ring, last: None })
     }
 
@@ -45,16 +48,17 @@ impl ViewCounts {
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        draws: &wgpu::Buffer,
-        (frame, pixels, focal): (u64, f32, Option<f32>),
+        (draws, budget): (&wgpu::Buffer, &wgpu::Buffer),
+        (frame, pixels, focal, has_budget): (u64, f32, Option<f32>, bool),
         objects: &Slots<Object>,
     ) {
         self.arrive();
         let is_coarser = objects.iter().any(|object| object.lod_bias != 1.0);
         let lod_bias = objects.iter().filter(|_| is_coarser).map(|object| object.lod_bias).collect();
-        let about = About { frame, counted: self.counted.clone(), pixels, focal, lod_bias };
+        let about = About { frame, counted: self.counted.clone(), pixels, focal, lod_bias, has_budget };
         self.ring.record(encoder, about, |encoder, to| {
             encoder.copy_buffer_to_buffer(draws, 0, to, 0, draws.size());
+            encoder.copy_buffer_to_buffer(budget, 0, to, draws.size(), size_of::<BudgetState>() as u64);
         });
     }
 
@@ -66,19 +70,28 @@ impl ViewCounts {
 
     fn arrive(&mut self) {
         let Some((about, bytes)) = self.ring.take() else { return };
+        let (bytes, state) = bytes.split_at(bytes.len() - size_of::<BudgetState>());
+        let state: BudgetState = bytemuck::pod_read_unaligned(state);
         let whole = bytes.len() / size_of::<SceneDraw>() * size_of::<SceneDraw>();
         let draws = bytemuck::pod_collect_to_vec::<u8, SceneDraw>(&bytes[..whole]);
         let objects: Vec<_> = (about.counted.objects.iter().enumerate())
             .map(|(at, counted)| {
                 let coarser = about.lod_bias.get(at).copied().unwrap_or(1.0);
-                let factor = 1.0 + counted.mesh_fraction * (coarser * counted.bias - 1.0).max(0.0);
+                let coarser = coarser * counted.bias * state.factor(counted.rank);
+                let factor = 1.0 + counted.mesh_fraction * (coarser - 1.0).max(0.0);
                 let pixels = coarser_pixels(about.pixels, factor, about.focal);
                 let levels = (0..counted.levels).map(|level| counted.level(level, &draws)).collect();
                 ObjectStatistics { object: counted.object, pixels, levels }
             })
             .collect();
         let pixels = objects.iter().map(|object| object.pixels).fold(about.pixels, f32::max);
-        self.last = Some(ViewStatistics { frame: about.frame, pixels, objects });
+        let factors = state.factors.as_flattened().iter();
+        let budget = about.has_budget.then(|| BudgetStatistics {
+            factor: factors.copied().fold(1.0, f32::max),
+            is_missed: state.is_missed != 0,
+            fades_ended: state.ends_fades != 0,
+        });
+        self.last = Some(ViewStatistics { frame: about.frame, pixels, budget, objects });
     }
 }
 

@@ -41,9 +41,10 @@ impl View {
         frame: u64,
         objects: &Slots<Object>,
     ) {
-        let focal = self.shortest_focal();
+        let (focal, has_budget) = (self.shortest_focal(), self.has_budget());
         let (Some(counts), Some(lists)) = (&mut self.counts, &self.lists) else { return };
-        counts.record(encoder, lists.arguments.raw(), (frame, self.quality.pixels, focal), objects);
+        let buffers = (lists.arguments.raw(), lists.budget_state.raw());
+        counts.record(encoder, buffers, (frame, self.quality.pixels, focal, has_budget), objects);
     }
 
     /// The smallest focal length, in pixels, among the perspective cameras that decide the view's levels of detail.

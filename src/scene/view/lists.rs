@@ -1,9 +1,11 @@
 //! Device buffers of a view: the visible instances and their draws.
 
 use super::attached::AttachedJobs;
+use super::budget::Budget;
 use crate::Error;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
+use crate::lod::budget::{BudgetPass, BudgetStages};
 use crate::lod::decide::{DecideBuffers, DecidePass};
 use crate::lod::list::{ListBuffers, ListPass};
 use crate::lod::select::{SelectBuffers, SelectPass};
@@ -23,6 +25,7 @@ use crate::shared::render::scene_view::SceneView;
 pub(in crate::scene) struct ViewPasses<'a> {
     pub select: &'a SelectPass,
     pub decide: &'a DecidePass,
+    pub budget: &'a BudgetPass,
     pub list: &'a ListPass,
     pub sorted: &'a SortedPass,
 }
@@ -61,6 +64,10 @@ pub(crate) struct ViewLists {
     pub order: Vec<Ordered>,
     pub(super) select: Job,
     pub(super) decide: Job,
+    /// The budget's stages between the two, if there is one.
+    pub(super) budget: Option<BudgetStages>,
+    /// The state that decisions read.
+    pub(super) budget_state: Buffer<BudgetState>,
     pub(super) list: Job,
     pub(super) attached: AttachedJobs,
 }
@@ -71,13 +78,17 @@ impl ViewLists {
         layout: &Layout,
         (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
         passes: ViewPasses<'_>,
+        budget: Option<&Budget>,
         (layouts, objects, map): (&SceneLayouts, &Slots<Object>, Option<&wgpu::TextureView>),
     ) -> Result<Self, Error> {
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
         let metrics = Buffer::new(gpu, "metrics", instances)?;
         let counts = Buffer::new(gpu, "counts of blocks", (OBJECT_LISTS * layout.blocks) as usize)?;
-        let budget = Buffer::from_slice(gpu, "budget", &[BudgetState::FREE])?;
+        let budget_state = match budget {
+            Some(budget) => budget.state.clone(),
+            None => Self::free(gpu)?,
+        };
         let last_decisions = Buffer::new(gpu, "decisions of the last frame", instances)?;
         let frames = if layout.keeps_last { 2 } else { 1 };
         let placements = Buffer::new(gpu, "placements in the view", frames * instances)?;
@@ -103,9 +114,13 @@ impl ViewLists {
             last_decisions: &last_decisions,
             counts: &counts,
             finest: &layout.finest,
-            budget: &budget,
+            budget: &budget_state,
         };
         let decide = passes.decide.prepare(gpu, buffers)?;
+        let of_view = (view, &metrics, &decisions);
+        let budget = budget
+            .map(|budget| super::budget::prepared(gpu, layout, passes.budget, of_view, budget))
+            .transpose()?;
         let buffers = ListBuffers {
             objects: &layout.objects,
             block_objects: &layout.block_objects,
@@ -131,6 +146,8 @@ impl ViewLists {
             order: Vec::new(),
             select,
             decide,
+            budget,
+            budget_state,
             list,
             attached: AttachedJobs::default(),
         })

@@ -1,6 +1,7 @@
 //! Views: a camera into a scene, its visible instances and their levels of detail.
 
 mod attached;
+mod budget;
 mod counted;
 pub(crate) mod lists;
 mod rebuild;
@@ -24,6 +25,7 @@ use crate::scene::quality::Quality;
 use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
+use budget::BudgetOfView;
 use lists::{ViewLists, ViewPasses};
 pub(crate) use shadow::ViewShadow;
 use uniforms::{clip_rows, lod_camera};
@@ -48,8 +50,8 @@ use uniforms::{clip_rows, lod_camera};
 /// #     begin: impl Fn(&mut wgpu::CommandEncoder) -> wgpu::RenderPass<'static>,
 /// # ) -> Result<(), relievo::Error> {
 ///
-/// let mut eye = scene.view(Quality { pixels: 0.5 })?;
-/// let mut sun = scene.view(Quality { pixels: 0.5 })?;
+/// let mut eye = scene.view(Quality::pixels(0.5))?;
+/// let mut sun = scene.view(Quality::pixels(0.5))?;
 /// sun.set_casters_only(true);
 ///
 /// // A frame.
@@ -81,6 +83,7 @@ pub struct View {
     /// Name of the function that remakes the view on another device.
     pub(crate) remade_by: &'static str,
     quality: Quality,
+    budget: BudgetOfView,
     camera: Option<Camera>,
     /// The view's last frame.
     last: Option<LastFrame>,
@@ -153,6 +156,7 @@ impl View {
             device,
             remade_by: "View::rebuild",
             quality,
+            budget: BudgetOfView::default(),
             camera: None,
             last: None,
             lod_cameras: Vec::new(),
@@ -183,10 +187,12 @@ impl View {
     /// Sets the quality.
     ///
     /// # Errors
-    /// [`InputError`] for pixels that are negative or not finite.
+    /// [`InputError`] as [`Quality::validate`].
     pub fn set_quality(&mut self, quality: Quality) -> Result<(), InputError> {
         quality.validate()?;
+        let had = self.has_budget();
         self.quality = quality;
+        self.budget_changed(had);
         Ok(())
     }
 
@@ -276,6 +282,7 @@ impl View {
         passes: ViewPasses<'_>,
         (layouts, objects): (&SceneLayouts, &Slots<Object>),
     ) -> Result<(), Error> {
+        let budget = if self.has_budget() { Some(self.budget_on(gpu)?) } else { None };
         let map = self.shadow.as_ref().map(|shadow| &shadow.map);
         match &mut self.lists {
             Some(lists) if lists.version == layout.version => {
@@ -283,7 +290,8 @@ impl View {
             }
             lists => {
                 let groups = (layouts, objects, map);
-                *lists = Some(ViewLists::new(gpu, layout, (&self.select, &self.drawn), passes, groups)?);
+                let uniforms = (&self.select, &self.drawn);
+                *lists = Some(ViewLists::new(gpu, layout, uniforms, passes, budget.as_deref(), groups)?);
             }
         }
         Ok(())
@@ -308,13 +316,14 @@ impl View {
     pub(super) fn stage(
         &mut self,
         staged: &mut Staged,
-        (blocks, light): (u32, &Light),
+        (layout, light): (&Layout, &Light),
         sides: impl Iterator<Item = [bool; 2]>,
         now: Moment,
     ) -> Result<(), Error> {
         let Moment { frame, time, is_first } = now;
         let last = self.last.filter(|last| last.frame + 1 == frame && !last.is_cut);
-        let (camera, mut view) = self.select_view(blocks, is_first)?;
+        let (camera, mut view) = self.select_view(layout.blocks, is_first)?;
+        self.stage_budget(staged, (layout.blocks, layout.triangle_unit))?;
         view.is_next = last.is_some().into();
         view.clip_rows = clip_rows(&camera);
         view.last_clip_rows = last.map_or(view.clip_rows, |last| clip_rows(&last.camera));
@@ -375,10 +384,16 @@ impl View {
         Ok((camera, view))
     }
 
-    /// Adds culling, level selection and list building to a compute pass.
-    pub(super) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+    /// Adds culling to a compute pass.
+    pub(super) fn dispatch_select(&self, pass: &mut wgpu::ComputePass<'_>) {
         if let Some(lists) = &self.lists {
             lists.select.dispatch(pass);
+        }
+    }
+
+    /// Adds level decisions and list building to a compute pass.
+    pub(super) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        if let Some(lists) = &self.lists {
             lists.decide.dispatch(pass);
             lists.list.dispatch(pass);
             if let Some(sorted) = &lists.sorted {

@@ -118,7 +118,7 @@ impl Staged {
     }
 
     fn add_view(&mut self, camera: Camera, pixels: f32) {
-        let mut view = self.scene.view(Quality { pixels }).expect("a view");
+        let mut view = self.scene.view(Quality::pixels(pixels)).expect("a view");
         view.set(camera).expect("a camera");
         self.views.push(view);
     }

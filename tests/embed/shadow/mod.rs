@@ -169,7 +169,7 @@ fn plate(gpu: &relievo::gpu::Gpu, cell: [i32; 3]) -> (Scene, View, Vec<(Placemen
         let far = Placement { cell, ..place };
         (place, numbers(scene.spawn(boxes, far).expect("room")))
     });
-    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
     let eye =
         Camera::looking_at(Vec3::new(14.0, 12.0, 26.0), Vec3::new(9.0, 0.0, 8.0), 0.9, [0.5, 400.0], SIZE);
     view.set(Camera { cell, ..eye }).expect("a camera");

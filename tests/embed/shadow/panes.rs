@@ -36,7 +36,7 @@ fn scene_of(gpu: &Gpu, light: Light) -> Scene {
 }
 
 fn view_of(scene: &Scene, eye: Vec3) -> View {
-    let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+    let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
     view.set(Camera::looking_at(eye, Vec3::ZERO, 0.7, [0.5, 60.0], SIZE)).expect("a camera");
     view
 }
@@ -160,7 +160,7 @@ fn pieces_and_chunks_cast_what_the_whole_does() {
         }
         let config = TerrainConfig::new(65, 12.0, "chunks").expect("valid");
         let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches)).expect("generated");
-        let mut view = scene.view(Quality { pixels: 0.0 }).expect("a view");
+        let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         let camera =
             Camera::looking_at(Vec3::new(6.0, 22.0, 24.0), Vec3::new(0.0, 5.0, 0.0), 0.8, [0.3, 400.0], SIZE);
         view.set(camera).expect("a camera");

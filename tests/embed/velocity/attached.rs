@@ -38,7 +38,7 @@ enum Was {
 fn attached_meshes_move_with_their_bones() {
     let gpu = device();
     let (mut scene, mut view) = scene(&gpu);
-    let mut other = scene.view(relievo::scene::Quality { pixels: 0.0 }).expect("a view");
+    let mut other = scene.view(relievo::scene::Quality::pixels(0.0)).expect("a view");
     other.set(super::moved()).expect("a camera");
     let character = scene.add_character(&animated(), 1).expect("added");
     let solid = scene.add_mesh(&model(&cube(), plain([1.0; 4], Alpha::Opaque), false), 2).expect("added");

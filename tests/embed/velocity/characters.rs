@@ -94,7 +94,7 @@ fn what_was_not_there_stood_still() {
         view.set(if at == 4 { away } else { camera() }).expect("a camera");
         // In the last frames levels of detail and fades change: what is drawn then moves by up to four pixels.
         let pixels = if at > 7 && at % 2 == 0 { 4.0 } else { 0.0 };
-        view.set_quality(Quality { pixels }).expect("a number");
+        view.set_quality(Quality::pixels(pixels)).expect("a number");
         let found = eye.frame(&mut scene, &mut view);
         let most = if at > 7 { 4.0 / SIZE[1] as f32 } else { 2e-6 };
         // The camera turned away and back.
@@ -103,7 +103,7 @@ fn what_was_not_there_stood_still() {
         assert!(at == 4 || found.iter().any(|found| found[0] != 7.0), "frame {at} is empty");
     }
     // They walk, and then they stop.
-    view.set_quality(Quality { pixels: 0.0 }).expect("a number");
+    view.set_quality(Quality::pixels(0.0)).expect("a number");
     eye.frame(&mut scene, &mut view);
     for (step, moves) in [(0.1, true), (0.1, true), (0.0, false), (0.0, false), (0.1, true)] {
         scene.advance(step).expect("finite");

@@ -91,7 +91,7 @@ impl Stage {
         };
         // 0.9999 is what a camera keeps back.
         let pixels = allowed * (SIZE[1] as f32 / (2.0 * HALF)) / 0.9999;
-        self.view.set_quality(Quality { pixels }).expect("valid");
+        self.view.set_quality(Quality::pixels(pixels)).expect("valid");
         let step = seconds - self.scene.time() as f32;
         self.scene.advance(step).expect("finite");
         self.eye.frame(&mut self.scene, &mut self.view)

@@ -76,6 +76,7 @@ pub static OPERATIONS: &[Operation] = operations![
     skinning / select,
     skinning / skin,
     lod / select,
+    lod / budget,
     lod / decide,
     lod / list,
     lod / sorted,

@@ -158,7 +158,7 @@ impl ScenePlay {
 
 impl FullDetail {
     fn new(gpu: &Gpu, loaded: &LoadedScene, player: &Player) -> Result<Self, Error> {
-        let rendering = Rendering { quality: Quality { pixels: 0.0 }, ..*player.rendering() };
+        let rendering = Rendering { quality: Quality::pixels(0.0), ..*player.rendering() };
         let full = counted(Player::new(loaded.build(gpu)?, rendering)?)?;
         let mut meters = Vec::new();
         for _ in player.views() {

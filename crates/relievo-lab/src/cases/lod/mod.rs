@@ -2,6 +2,7 @@
 
 pub mod assign;
 pub mod attach;
+pub mod budget;
 pub mod decide;
 pub mod list;
 pub mod select;

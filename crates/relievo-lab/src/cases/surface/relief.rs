@@ -225,7 +225,7 @@ impl Drawing {
         scene.spawn(square, Placement::default())?;
         let mut renderer = Renderer::new(gpu, target.format())?;
         renderer.prepare(&scene)?;
-        let mut view = scene.view(Quality { pixels: 0.0 })?;
+        let mut view = scene.view(Quality::pixels(0.0))?;
         view.set(camera())?;
         gpu.try_run("record", |encoder| scene.record(encoder, &mut [&mut view]))?;
         let drawing = Self { scene, view, renderer };

@@ -37,7 +37,7 @@ impl Parts {
         let pixels = bones + influences + mesh;
         let share = |part: f32| if pixels > 0.0 { part / pixels } else { 0.0 };
         let budget = ErrorBudget { mesh: share(mesh), bones: share(bones), influences: share(influences) };
-        (Quality { pixels }, budget)
+        (Quality::pixels(pixels), budget)
     }
 }
 

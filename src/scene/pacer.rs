@@ -1,0 +1,113 @@
+//! A controller of a view's triangles by the time that frames take.
+
+/// Time constant of the average of frame times, in frames.
+const FRAMES: f32 = 6.0;
+
+/// Fraction of the limit within which nothing changes.
+const DEAD_BAND: f32 = 0.05;
+
+/// Largest factors of the triangles per frame.
+const FALL: f32 = 0.85;
+const RISE: f32 = 1.04;
+
+/// Number of triangles to begin with.
+const MOST: f32 = 64e6;
+
+/// Number of triangles below which nothing changes.
+const LEAST: f32 = 1e3;
+
+/// Adjusts a limit of triangles so that frames take a given time.
+///
+/// The time is averaged over some frames. Where it is off by more than a twentieth, the limit is multiplied by the square
+/// root of the ratio, within bounds: it falls faster than it rises. So the limit settles from one side, and does not
+/// oscillate around a level that takes too long.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Pacer {
+    limit: Option<f32>,
+    average: Option<f32>,
+    /// The smallest limit at which frames took too long, with the number of frames since then.
+    too_many: Option<(f32, u32)>,
+}
+
+/// Frames after which a limit that took too long is tried again.
+const PATIENCE: u32 = 240;
+
+impl Pacer {
+    /// Takes the time of a frame into account. `target` is the limit in the same unit.
+    pub fn took(&mut self, time: f32, target: f32) {
+        let average = self.average.map_or(time, |average| average + (time - average) / FRAMES);
+        self.average = Some(average);
+        let limit = self.limit.unwrap_or(MOST);
+        if let Some((_, frames)) = &mut self.too_many {
+            *frames += 1;
+        }
+        self.too_many = self.too_many.filter(|(_, frames)| *frames < PATIENCE);
+        let ratio = (target / average.max(1e-6)).sqrt();
+        let next = if average > target {
+            self.too_many = Some((limit, 0));
+            limit * ratio.max(FALL)
+        } else if average < (1.0 - DEAD_BAND) * target {
+            let most = self.too_many.map_or(MOST, |(limit, _)| 0.98 * limit);
+            (limit * ratio.min(RISE)).min(most).max(limit.min(most))
+        } else {
+            limit
+        };
+        self.limit = Some(next.clamp(LEAST, MOST));
+    }
+
+    /// The limit of triangles; `None` before the first frame.
+    pub fn limit(&self) -> Option<u32> {
+        self.limit.map(|limit| limit as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Frames take 2 ms and 1 ms per 100,000 triangles; levels are coarse, so that triangles come in steps of a tenth.
+    fn time(limit: u32, scene: f32) -> f32 {
+        let wanted = (limit as f32).min(scene);
+        let steps = (wanted.log2() / 1.1_f32.log2()).floor();
+        2.0 + 1e-5 * 1.1_f32.powf(steps)
+    }
+
+    #[test]
+    fn the_limit_settles_and_does_not_oscillate_beyond_a_level() {
+        for scene in [3e5, 2e6, 5e7] {
+            let mut pacer = Pacer::default();
+            let mut times = Vec::new();
+            for _ in 0..600 {
+                let took = time(pacer.limit().unwrap_or(u32::MAX), scene);
+                times.push(took);
+                pacer.took(took, 8.0);
+            }
+            let settled = &times[300..];
+            let [least, most] = [f32::min, f32::max].map(|of| settled.iter().copied().fold(settled[0], of));
+            assert!(most <= 1.1 * 8.0 && most - least <= 0.12 * most, "{scene}: {least} to {most}");
+            if scene > 1e6 {
+                assert!(least > 0.75 * 8.0, "{scene}: {least} of 8 ms are used");
+            } else {
+                assert!(most < 8.0, "all of a small scene is drawn");
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_of_load_is_followed_within_a_second() {
+        let mut pacer = Pacer::default();
+        for _ in 0..300 {
+            pacer.took(time(pacer.limit().unwrap_or(u32::MAX), 5e7), 8.0);
+        }
+        // From now on, triangles cost twice as much.
+        let slow = |limit: u32| 2.0 * time(limit, 5e7) - 2.0;
+        let mut late = 0;
+        for _ in 0..60 {
+            let took = slow(pacer.limit().expect("some"));
+            late += u32::from(took > 1.05 * 8.0);
+            pacer.took(took, 8.0);
+        }
+        assert!(late < 30, "{late} of 60 frames were late");
+        assert!(slow(pacer.limit().expect("some")) <= 1.05 * 8.0);
+    }
+}

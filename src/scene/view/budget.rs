@@ -1,0 +1,161 @@
+//! A view's budget of triangles.
+
+use std::sync::Arc;
+
+use super::View;
+use super::lists::ViewLists;
+use crate::gpu::{Buffer, Gpu, GpuError, Staged, Uniform, Upload as _};
+use crate::lod::BudgetState;
+use crate::lod::budget::{BudgetBuffers, BudgetParams, BudgetPass, BudgetStage, BudgetStages, BudgetWork};
+use crate::scene::Scene;
+use crate::scene::layout::Layout;
+use crate::scene::pacer::Pacer;
+use crate::scene::quality::Quality;
+use crate::{Error, InputError};
+
+/// The buffers of a budget, which several views may share.
+#[derive(Debug)]
+pub(in crate::scene) struct Budget {
+    params: Uniform<BudgetParams>,
+    pub state: Buffer<BudgetState>,
+    work: Buffer<BudgetWork>,
+}
+
+impl Budget {
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self {
+            params: Uniform::new(gpu, "budget", &BudgetParams { limit: u32::MAX, blocks: 0 })?,
+            state: Buffer::from_slice(gpu, "state of a budget", &[BudgetState::FREE])?,
+            work: Buffer::new(gpu, "sums of a budget", 1)?,
+        })
+    }
+}
+
+/// A view's part of its budget.
+#[derive(Debug, Default)]
+pub(super) struct BudgetOfView {
+    budget: Option<Arc<Budget>>,
+    /// The pacer of [`Quality::milliseconds`](crate::scene::Quality::milliseconds).
+    pacer: Option<Pacer>,
+}
+
+impl Scene {
+    /// Gives several views one budget: together they draw at most `triangles` triangles, and their levels of detail are
+    /// coarsened by the same factor. Record all of them in each frame. A view leaves the budget when its quality is set
+    /// ([`View::set_quality`]).
+    ///
+    /// # Errors
+    /// [`InputError`] for 0 triangles, and for a view of another scene; [`GpuError`].
+    pub fn share_budget(&self, views: &mut [&mut View], triangles: u32) -> Result<(), Error> {
+        let quality = Quality { triangles: Some(triangles), ..Quality::default() };
+        quality.validate()?;
+        for (at, view) in views.iter().enumerate() {
+            view.check(self, &format!("views[{at}]"))?;
+        }
+        let budget = Arc::new(Budget::new(self.gpu())?);
+        for view in views {
+            view.quality.triangles = Some(triangles);
+            view.budget = BudgetOfView { budget: Some(budget.clone()), pacer: None };
+            view.lists = None;
+        }
+        Ok(())
+    }
+}
+
+impl View {
+    /// Reports the time that a frame with this view took, in milliseconds, for
+    /// [`Quality::milliseconds`](crate::scene::Quality::milliseconds): of the whole frame, or of what the view's triangles
+    /// cost. Without that limit, the call does nothing. Call it once a frame.
+    ///
+    /// # Errors
+    /// [`InputError`] for a time that is negative or not finite.
+    pub fn frame_took(&mut self, milliseconds: f32) -> Result<(), InputError> {
+        if !(0.0..f32::INFINITY).contains(&milliseconds) {
+            let bound = "must be finite, and not negative";
+            return Err(InputError::new("milliseconds", milliseconds, bound));
+        }
+        if let Some(limit) = self.quality.milliseconds {
+            self.budget.pacer.get_or_insert_default().took(milliseconds, limit);
+        }
+        Ok(())
+    }
+
+    /// The number of triangles that the view may draw; `None` without a limit.
+    pub fn triangle_limit(&self) -> Option<u32> {
+        let paced = self.quality.milliseconds.and(self.budget.pacer.as_ref()?.limit());
+        match (self.quality.triangles, paced) {
+            (Some(limit), Some(paced)) => Some(limit.min(paced)),
+            (limit, paced) => limit.or(paced),
+        }
+    }
+
+    /// Takes another quality. The view leaves a shared budget.
+    pub(super) fn budget_changed(&mut self, had: bool) {
+        let is_shared = self.budget.budget.as_ref().is_some_and(|budget| Arc::strong_count(budget) > 1);
+        if had != self.has_budget() || is_shared {
+            self.budget = BudgetOfView::default();
+            self.lists = None;
+        }
+    }
+
+    pub(super) fn has_budget(&self) -> bool {
+        self.quality.triangles.is_some() || self.quality.milliseconds.is_some()
+    }
+
+    /// The budget's buffers, which are made if there are none.
+    pub(super) fn budget_on(&mut self, gpu: &Gpu) -> Result<Arc<Budget>, Error> {
+        if self.budget.budget.is_none() {
+            self.budget.budget = Some(Arc::new(Budget::new(gpu)?));
+        }
+        Ok(self.budget.budget.clone().expect("made above"))
+    }
+
+    /// Whether the two views share a budget; of one view, whether it has one.
+    pub(in crate::scene) fn shares_budget_with(&self, other: &View) -> bool {
+        match (&self.budget.budget, &other.budget.budget) {
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            _ => false,
+        }
+    }
+
+    /// Stages the limit, in units of 2^`unit` triangles.
+    pub(super) fn stage_budget(&self, staged: &mut Staged, (blocks, unit): (u32, u32)) -> Result<(), Error> {
+        let Some(budget) = self.budget.budget.as_ref().filter(|_| self.has_budget()) else { return Ok(()) };
+        let limit = self.triangle_limit().unwrap_or(u32::MAX) >> unit;
+        Ok(staged.uniform(&budget.params, &BudgetParams { limit, blocks })?)
+    }
+
+    /// Adds a stage of the budget to a compute pass.
+    pub(in crate::scene) fn dispatch_budget(&self, stage: BudgetStage, pass: &mut wgpu::ComputePass<'_>) {
+        if let Some(stages) = self.lists.as_ref().and_then(|lists| lists.budget.as_ref()) {
+            stages.dispatch(stage, pass);
+        }
+    }
+}
+
+/// The jobs of a view's budget.
+pub(super) fn prepared(
+    gpu: &Gpu,
+    layout: &Layout,
+    pass: &BudgetPass,
+    (view, metrics, decisions): (&Uniform<crate::lod::SelectView>, &Buffer<u32>, &Buffer<u32>),
+    budget: &Budget,
+) -> Result<BudgetStages, Error> {
+    let buffers = BudgetBuffers {
+        view,
+        objects: &layout.objects,
+        block_objects: &layout.block_objects,
+        metrics,
+        decisions,
+        state: &budget.state,
+        work: &budget.work,
+    };
+    pass.prepare(gpu, &budget.params, buffers)
+}
+
+impl ViewLists {
+    /// Makes the state of a view without a budget.
+    pub(super) fn free(gpu: &Gpu) -> Result<Buffer<BudgetState>, GpuError> {
+        Buffer::from_slice(gpu, "no budget", &[BudgetState::FREE])
+    }
+}
