@@ -77,9 +77,21 @@ pub use crate::surface::{
 };
 #[doc(inline)]
 pub use crate::terrain::{
-    blend::Shading as TerrainShading, config::TerrainConfig, fields::Fields as TerrainFields,
-    mesh::GroundPoint, morph::Morph as TerrainMorph, recipe::Recipe as TerrainRecipe,
+    blend::{Shading as TerrainShading, WeightMode},
+    config::{
+        Border as TerrainBorder, BuiltIn as BuiltInTexture, HeightInterpolation, Offset as TerrainOffset,
+        Slope as TerrainSlope, TerrainConfig, Zone as TerrainZone, ZoneTexture,
+    },
+    despike::Despike,
+    features::Features as TerrainFeatures,
+    fields::Fields as TerrainFields,
+    fixed::FeatureMode,
+    hydraulic::Hydraulic,
+    mesh::GroundPoint,
+    morph::Morph as TerrainMorph,
+    recipe::Recipe as TerrainRecipe,
     texture::TerrainTexture,
+    thermal::Thermal,
 };
 pub use bounds::Bounds;
 pub use camera::{Camera, Depth};
@@ -99,7 +111,7 @@ pub use statistics::{
 pub use terrain::TerrainSource;
 pub use view::View;
 pub(crate) use view::ViewShadow;
-pub use watch::{WatchedBone, WatchedBones};
+pub use watch::{InstanceBone, WatchedBone, WatchedBones};
 
 use crate::asset::Light;
 use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
