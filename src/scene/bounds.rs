@@ -46,6 +46,19 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
+    ///
+    /// # Examples
+    ///
+    /// A camera that frames an instance.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Camera, InstanceId, Scene, View};
+    /// # fn example(scene: &Scene, view: &mut View, fox: InstanceId) -> Result<(), relievo::Error> {
+    /// let [low, high] = scene.bounds(fox)?.world();
+    /// view.set(Camera::framing(low, high, [960, 540]))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
         let placed = self.placed_instance(instance)?;
         match self.object_of(instance)?.kind.wide_box(&placed)? {

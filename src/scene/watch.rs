@@ -90,6 +90,22 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
     /// not have; [`GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// Where a hand is, a few frames late and without waiting.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceBone, InstanceId, Scene};
+    /// # fn example(scene: &mut Scene, fighter: InstanceId) -> Result<(), relievo::Error> {
+    /// scene.watch_bones(&[InstanceBone { instance: fighter, bone: "hand_right" }])?; // once
+    /// // In each frame:
+    /// if let Some(watched) = scene.watched_bones() {
+    ///     println!("at {} s: {}", watched.time, watched.bones[0].world());
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn watch_bones(&mut self, bones: &[InstanceBone<'_>]) -> Result<(), Error> {
         let chosen = bones.iter().map(|of| Ok((of.instance, self.bone(of.instance, of.bone)?)));
         let chosen = chosen.collect::<Result<Vec<_>, InputError>>()?;

@@ -5,10 +5,11 @@ use relievo::asset::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::ops::animation::Pose;
 use relievo::ops::animation::layers::mask_below;
 use relievo::ops::animation::local_to_model::reference::local_to_model;
-use relievo::ops::animation::root_motion::Taken;
+
 use relievo::ops::animation::sample::reference::blend;
 use relievo::scene::{
-    CharacterOptions, InstanceBone, InstanceId, LayerMask, Placement, Play, Quality, RootOptions, Scene, View,
+    CharacterOptions, InstanceBone, InstanceId, LayerMask, Placement, Play, Quality, RootMotionParts,
+    RootOptions, Scene, View,
 };
 
 use crate::frame::{Frame, device};
@@ -151,7 +152,7 @@ fn roots_keep_their_place() {
     keys[0].rotation = Some(linear(vec![turned(0.0), turned(0.5), turned(0.9)]));
     model.clips = vec![Clip::new("stride", &model.skeleton, &keys, 1.0).expect("valid")];
     let mut scene = Scene::new(&gpu).expect("compiled");
-    let taken = Taken { yaw: true, ..Taken::default() };
+    let taken = RootMotionParts { yaw: true, ..RootMotionParts::default() };
     let root = Some(RootOptions { bone: "0", taken });
     let options = CharacterOptions { root_motion: root, ..CharacterOptions::default() };
     let walker = scene.add_character_with(&model, 1, &options).expect("added");
