@@ -75,7 +75,7 @@ impl Scene {
     }
 
     /// Replaces an image of a mesh or a character in all materials that use it, or adds one. `index` is the image's index
-    /// in the model; the number of images adds a new one. Colours are sRGB with linear alpha, normal maps linear. The image
+    /// in the model; an index equal to the number of images adds one. Colours are sRGB with linear alpha, normal maps linear. The image
     /// is uploaded at once, with the other images in its texture array. That allocates memory, and render bundles must be
     /// made anew.
     ///

@@ -36,7 +36,7 @@ pub struct Relief {
     pub mesh: SurfaceMesh,
     /// Heights, colours and normals.
     pub maps: ReliefSource,
-    /// Method, shadows and silhouette. Textures on the device are made for one method.
+    /// Method, shadows and silhouette. With [`ReliefSource::Textures`], the method must be that of the textures.
     pub options: ReliefOptions,
     /// Depth, plane and width of shadows. Its light is not used, because a scene has one light.
     pub material: ReliefMaterial,

@@ -50,7 +50,7 @@ impl Shared {
         Ok(Self { set, gate, masks, clips, meshes })
     }
 
-    /// The same on another device.
+    /// These parts on another device.
     pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
         Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
     }

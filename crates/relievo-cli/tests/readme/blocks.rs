@@ -23,20 +23,33 @@ mod own {
 
 /// A scene in the render pass of a program.
 #[rustfmt::skip]
-fn draw(
-    (device, queue): (&wgpu::Device, &wgpu::Queue),
-    (mut encoder, mut pass): (wgpu::CommandEncoder, wgpu::RenderPass<'_>),
-    (mut scene, mut view, camera): (Scene, View, Camera),
-) -> Result<(), Error> {
+mod drawing {
     // begin README.md
-    let gpu = Gpu::from_wgpu(device.clone(), queue.clone());             // WebGPU's default limits suffice
-    let mut renderer = Renderer::new(&gpu, &TargetFormat::new(own::COLOR).with_samples(4))?;
-    renderer.prepare(&scene)?;                                           // compiles the pipelines
-    view.set(camera)?;                                                   // per frame: your own matrices
-    scene.record(&mut encoder, &mut [&mut view])?;                       // compute passes; no submission, no wait
-    renderer.draw(&mut pass, &scene, &view, Layer::Color)?;              // your render pass
+    use relievo::render::{Layer, Renderer, TargetFormat};
+    use relievo::scene::{Camera, Quality, Scene, View};
+    use relievo::{Error, gpu::Gpu, wgpu};
+
+    struct Drawing { scene: Scene, view: View, renderer: Renderer }
+
+    impl Drawing {
+        fn new(device: &wgpu::Device, queue: &wgpu::Queue, color: wgpu::TextureFormat) -> Result<Self, Error> {
+            let gpu = Gpu::from_wgpu(device.clone(), queue.clone()); // yours; WebGPU's default limits suffice
+            let scene = Scene::new(&gpu)?; // then add objects
+            let mut renderer = Renderer::new(&gpu, &TargetFormat::new(color).with_samples(4))?; // and Depth32Float
+            renderer.prepare(&scene)?; // compiles the pipelines
+            Ok(Self { view: scene.view(Quality::default())?, scene, renderer })
+        }
+
+        fn record(&mut self, camera: Camera, encoder: &mut wgpu::CommandEncoder) -> Result<(), Error> {
+            self.view.set(camera)?; // your own matrices
+            self.scene.record(encoder, &mut [&mut self.view]) // compute passes; no submission, no wait
+        }
+
+        fn draw(&self, pass: &mut wgpu::RenderPass<'_>) -> Result<(), Error> {
+            Ok(self.renderer.draw(pass, &self.scene, &self.view, Layer::Color)?) // your render pass, in each frame
+        }
+    }
     // end
-    Ok(())
 }
 
 /// A scene in a program, with what that has already.
