@@ -50,7 +50,7 @@ impl Shared {
         Ok(Self { set, gate, masks, clips, meshes })
     }
 
-    /// These parts on another device.
+    /// Shared data of the same character on another device.
     pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
         Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
     }
