@@ -25,6 +25,20 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// A frame that is recorded but never submitted.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Scene, View};
+    /// # fn example(scene: &mut Scene, view: &mut View, mut kept: wgpu::CommandEncoder) -> Result<(), relievo::Error> {
+    /// scene.record(&mut kept, &mut [view])?;
+    /// // … `kept` stays alive and is not submitted.
+    /// scene.invalidate()?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn invalidate(&mut self) -> Result<(), Error> {
         self.is_broken = false;
         self.staging.invalidate();

@@ -218,6 +218,21 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for a capacity out of range, and for invalid levels, parts, indices or an invalid sphere of the kind;
     /// the error names the field (`kind.parts[0].levels[1]`). [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// Two patches of the caller's grass, a [`Kind`] as in `examples/kind`.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::kind::Kind;
+    /// # use relievo::scene::{Placement, Scene};
+    /// # fn example(scene: &mut Scene, grass: impl Kind) -> Result<(), relievo::Error> {
+    /// let meadow = scene.add_kind(grass, 2)?;
+    /// scene.spawn(meadow, Placement::at_world([0.0, 0.0, 0.0]))?;
+    /// scene.spawn(meadow, Placement::at_world([16.0, 0.0, 0.0]))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn add_kind(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
         let object = Object::of_kind(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
