@@ -8,6 +8,7 @@ use relievo::gpu::Gpu;
 use relievo::ops::terrain::config::{Offset, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::height::{HeightBatch, HeightPass};
+use relievo::ops::terrain::window::Windows;
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Scene, TerrainSource};
 
@@ -21,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
     let config = TerrainConfig::new(129, 40.0, "embedded")?;
     let pass = HeightPass::new(&gpu, Offset::Signed, None)?;
-    let batch = HeightBatch::new(&gpu, &pass, &config, [9, 1], 0)?;
+    let batch = HeightBatch::new(&gpu, &pass, &config, Windows { count: 9, apron: 1 }, 0)?;
     // The scene shares the heights, which show nothing yet. Nine patches fit one buffer; a batch beyond 128 MiB has several
     // parts, each a terrain.
     let mut scene = Scene::new(&gpu)?;

@@ -1,17 +1,16 @@
-//! Creatures walk over generated terrain, in the light of a low sun.
+//! Creatures walk over generated terrain.
 
-use glam::{DVec3, Vec3};
-use relievo::asset::Light;
+use relievo::glam::DVec3;
 use relievo::gpu::{Gpu, Options};
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
-use relievo::scene::{Camera, Placement, Play, Quality, Scene, TerrainConfig, TerrainSource, add_levels};
+use relievo::scene::*;
 use relievo_samples::creature;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::headless(&Options::default())?;
     let mut scene = Scene::new(&gpu)?;
-    let config = TerrainConfig::from_json(include_str!("terrain.json"))?;
-    let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3, at / 3]).collect();
+    let config = TerrainConfig::new(257, 40.0, "any text")?; // samples along an edge, range of heights, seed
+    let patches = [[1, 1], [2, 1], [1, 2], [2, 2]]; // counted to the east and to the south
     let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches))?;
     let ground = |scene: &Scene, x: f64, z: f64| {
         let point = scene.ground(land, x, z).ok().flatten();
@@ -25,8 +24,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let walker = scene.spawn(crowd, Placement::at_world(place).turned(0.4).scaled(1.8))?;
         scene.play(walker, &Play { start: -0.31 * f64::from(at), ..Play::new("walk") })?;
     }
-    let direction = Vec3::new(-0.7, 0.45, 0.3); // towards the light
-    scene.set_light(Light { direction, color: Vec3::new(1.4, 1.3, 1.1), ambient: 0.22 })?;
 
     let target = Offscreen::with_format(&gpu, [960, 540], TargetFormat::srgb().with_samples(4))?;
     let mut shadow = SunShadow::new(&mut scene, 4096)?; // texels along an edge of its map
@@ -35,7 +32,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut view = scene.view(Quality::pixels(1.0))?; // at most a pixel off
     let (eye, focus) = (ground(&scene, 660.0, 655.0) + 6.0 * DVec3::Y, ground(&scene, 660.0, 580.0));
     view.set(Camera::looking_at_world(eye, focus, 0.8, [0.1, 2000.0], target.size()))?;
-
     let (mut encoder, sky) = (gpu.encoder("frame"), [0.42, 0.58, 0.8]);
     shadow.fit(&scene, &mut [&mut view], 150.0)?; // up to 150 units ahead of the eye
     scene.record(&mut encoder, &mut [&mut view, shadow.view()])?;

@@ -21,7 +21,7 @@ use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::height::reference::height;
 use relievo::ops::terrain::height::{HeightBatch, HeightPass};
-use relievo::ops::terrain::window::Window;
+use relievo::ops::terrain::window::{Window, Windows};
 use relievo_lab::harness::{TimedBy, Timer};
 
 /// A device as another program opens it: no optional features, WebGPU's default limits.
@@ -45,7 +45,7 @@ fn foreign_with_instance() -> (wgpu::Instance, wgpu::Device, wgpu::Queue) {
 fn heights_equal_the_reference(gpu: &Gpu) {
     let config = TerrainConfig::new(65, 20.0, "device").expect("valid");
     let pass = HeightPass::new(gpu, Offset::Signed, None).expect("compiled");
-    let batch = HeightBatch::new(gpu, &pass, &config, [2, 0], 0).expect("allocated");
+    let batch = HeightBatch::new(gpu, &pass, &config, Windows { count: 2, apron: 0 }, 0).expect("allocated");
     batch.set(gpu, &[[3, 4], [-1, 0]], &Features::default()).expect("set");
     gpu.run("test", |encoder| batch.record(encoder)).expect("run");
     let actual = batch.fields()[0].heights.read_blocking(gpu).expect("read");
@@ -145,7 +145,7 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
         let config = TerrainConfig::new(4097, 20.0, "large").expect("valid");
         let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
         let apron = 850;
-        match HeightBatch::new(&gpu, &pass, &config, [1, apron], 0) {
+        match HeightBatch::new(&gpu, &pass, &config, Windows { count: 1, apron }, 0) {
             Ok(batch) => {
                 assert!(gpu.max_binding() > 128 << 20);
                 batch.set(&gpu, &[[0, 0]], &Features::default()).expect("set");
@@ -167,7 +167,7 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let config = TerrainConfig::new(1025, 20.0, "split").expect("valid");
     let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
     let count = 33_u32;
-    let batch = HeightBatch::new(&gpu, &pass, &config, [count, 0], 0).expect("allocated");
+    let batch = HeightBatch::new(&gpu, &pass, &config, Windows { count, apron: 0 }, 0).expect("allocated");
     assert!(batch.fields().len() == 2, "33 patches of 4.2 MB exceed one binding of 128 MiB");
     let patches: Vec<_> = (0..count as i32).map(|i| [i, -i]).collect();
     batch.set(&gpu, &patches, &Features::default()).expect("set");

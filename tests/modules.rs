@@ -140,8 +140,7 @@ fn zones_and_their_textures_are_those_of_the_reference() {
     for (additive, weights) in [(0.0, WeightMode::Normalized), (1.0, WeightMode::Additive)] {
         let words = run(&gpu, "terrain", &[("ADDITIVE", additive)], None, &heights, 9 * count + 6);
         let fractions = |at: usize| {
-            let place = (heights[at], steepness(normal(at)));
-            zone_fractions(&zones(), place, &[1.0, 0.75, 0.5], weights)
+            zone_fractions(&zones(), heights[at], steepness(normal(at)), &[1.0, 0.75, 0.5], weights)
         };
         assert!((0..count).flat_map(fractions).any(|part| part > 0.01 && part < 0.99), "nothing is blended");
         for (at, own) in words.chunks(9).take(count).enumerate() {

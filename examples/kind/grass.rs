@@ -59,8 +59,11 @@ impl Grass {
         let storage = buffer("blades", bytemuck::cast_slice(&blades), wgpu::BufferUsages::STORAGE);
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let time = buffer("time", &[0; 8], usage);
-        let resources = [(0, storage.as_entire_binding()), (1, time.as_entire_binding())];
-        let part = KindPart { double_sided: true, ..KindPart::new(program.bind(gpu, &resources)?, levels) };
+        let entries = [
+            wgpu::BindGroupEntry { binding: 0, resource: storage.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: time.as_entire_binding() },
+        ];
+        let part = KindPart { double_sided: true, ..KindPart::new(program.bind(gpu, &entries)?, levels) };
         let indices = buffer("triangles", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
         Ok(Self { program, blades, time, indices, parts: [part], seconds: 0.0 })
     }

@@ -5,7 +5,7 @@ mod two_bones;
 
 use glam::DVec3;
 use relievo::gpu::{Gpu, Options};
-use relievo::scene::{Camera, Placement, Play, Quality, Scene};
+use relievo::scene::{Camera, InstanceBone, Placement, Play, Quality, Scene};
 use relievo_samples::creature;
 use two_bones::Limb;
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [upper, lower, end] = ARM.map(|name| scene.bone(waver, name));
     let arm = Limb { upper: upper?, lower: lower?, end: end? };
     scene.drive(waver, &ARM[..2])?;
-    scene.watch_bones(&[(waver, ARM[2])])?;
+    scene.watch_bones(&[InstanceBone { instance: waver, bone: ARM[2] }])?;
 
     let mut eye = scene.view(Quality::default())?;
     let foot = scene.placement(waver)?.world();

@@ -24,10 +24,10 @@ struct ClipClockParams {
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;
 // Weights of the layers above the base, layer by layer.
 @group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
-// Per instance: the last clip + 1, with BLENDED if layers were above it, or 0 if no pose is stored; a hash of the clips of
-// these layers; and, as bits, the time inside the clip and the look-ahead time.
+// Per instance, of the last frame. x: clip + 1, with BLENDED if layers were above it; 0 if no pose is stored. y: hash of the
+// clips of these layers. z: time inside the clip. w: look-ahead time. Times are f32 as bits.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
-// One per instance.
+// Clip clock of each instance.
 @group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;
 
 const BLENDED: u32 = 0x80000000u;

@@ -21,8 +21,9 @@ struct GateParams {
     words: u32,
     // Entries per row of the table.
     stride: u32,
-    // Ticks since the start, and since the last frame.
+    // Ticks since the start.
     ticks: u32,
+    // Ticks since the last frame.
     frame_ticks: u32,
     // Ticks of the longest period.
     period: u32,

@@ -9,8 +9,9 @@ import package::wgsl::animation::timeline::keyframe_cursor;
 override COMPACTED: bool = false;
 
 struct KeyframeCursorParams {
-    // Number of entries, one per layer and instance; number of instances.
+    // Number of entries: layers times instances.
     entries: u32,
+    // Number of instances.
     instances: u32,
     // Cursors allocated per instance.
     timelines: u32,

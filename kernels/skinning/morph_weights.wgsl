@@ -32,9 +32,9 @@ struct WeightEntry {
 
 @group(0) @binding(0) var<uniform> params: MorphWeightsParams;
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// One per clip.
+// Keys of each clip.
 @group(0) @binding(2) var<storage, read> entries: array<WeightEntry>;
-// One per instance.
+// Level of detail of each instance.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
 // Binding 4 holds the key times. Values lie key by key, one per target.
 @group(0) @binding(5) var<storage, read> values: array<f32>;

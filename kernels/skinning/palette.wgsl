@@ -7,8 +7,9 @@ import package::wgsl::skinning::rows::{LEAST_LENGTH, unit_or};
 override DUAL: bool = false;
 
 struct PaletteParams {
-    // Number of bones of the skin, and of the skeleton.
+    // Number of bones of the skin.
     bones: u32,
+    // Number of bones of the skeleton.
     all_bones: u32,
     // Number of bones of the skin times number of instances.
     pairs: u32,
@@ -21,7 +22,7 @@ struct PaletteParams {
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
 // Three rows per bone of the skeleton and instance.
 @group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
-// One per instance.
+// Level of detail of each instance.
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
 // Three rows per bone; with DUAL the rotation, the dual part, the diagonal, and the elements above it.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;

@@ -44,7 +44,7 @@ struct Dispatched {
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
 // The updated bones of each instance, one bit per bone.
 @group(0) @binding(2) var<storage, read_write> updated_bones: array<u32>;
-// One per instance.
+// Level of detail of each instance.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
 // The weights of each instance's targets, as bits.
 @group(0) @binding(4) var<storage, read> weights: array<u32>;

@@ -4,7 +4,7 @@
 //
 // A ray that crosses the surface twice leaves it somewhere in between, at a place where the surface ahead falls
 // faster than the ray. The cone must therefore stay above every cell where a ray from this cell can leave the
-// surface, and may cut through cells in which the surface rises along every such ray (`rises`). The bounds hold
+// surface. It may cut through cells in which the surface rises along every such ray (`rises`). The bounds hold
 // for every point of both cells: they use smallest distances and largest heights. Nodes are searched nearest
 // first and skipped when they cannot narrow the cone. Nodes that look small from the cell are treated as a
 // whole, so that the search takes O(log N) per cell.
@@ -16,12 +16,15 @@ import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index, s
 const OPENING: f32 = 2.0;
 
 struct ConeParams {
-    // Texels and cells of a map along x and y.
+    // Texels of a map along x and y.
     size: vec2<u32>,
+    // Cells of a map along x and y.
     cells: vec2<u32>,
-    // Nodes per row and number of rows of one map's pyramid, and cones per row of the output.
+    // Nodes per row of one map's pyramid.
     pitch: u32,
+    // Rows of one map's pyramid.
     rows: u32,
+    // Cones per row of the output.
     cone_pitch: u32,
     address: u32,
 }

@@ -3,11 +3,13 @@
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index};
 
 struct PyramidParams {
-    // Texels and cells of a map along x and y.
+    // Texels of a map along x and y.
     size: vec2<u32>,
+    // Cells of a map along x and y.
     cells: vec2<u32>,
-    // Nodes per row and number of rows of the plane of one map's pyramid.
+    // Nodes per row of the plane of one map's pyramid.
     pitch: u32,
+    // Rows of the plane of one map's pyramid.
     rows: u32,
     address: u32,
     // The level that is written; 0 has the leaves.

@@ -18,8 +18,9 @@ struct MapParams {
     additive: u32,
     // Number of planes that textures are projected from: 1 (from above) or 3 (triplanar).
     planes: u32,
-    // Texture tiles per sample and per unit of height, in 2^-22 tiles.
+    // Texture tiles per sample, in 2^-22 tiles.
     tiles_per_sample: u32,
+    // Texture tiles per unit of height, in 2^-22 tiles.
     tiles_per_unit: u32,
     // Strength of the colour variation, 0 to 1.
     variation: f32,

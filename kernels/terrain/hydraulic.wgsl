@@ -20,18 +20,22 @@ struct HydraulicParams {
     settles: i32,
     // Water that falls on each sample, in 1/65536 height units.
     rain: i32,
-    // Fractions in 1/32768.
+    // Fraction of the water that evaporates in a cycle, in 1/32768.
     evaporation: i32,
+    // Fraction of the missing sediment that is eroded in a cycle, in 1/32768.
     erosion: i32,
+    // Fraction of the excess sediment that is deposited in a cycle, in 1/32768.
     deposition: i32,
     // Sediment for each unit of discharge at a slope of 1, in 1/256.
     capacity: i32,
-    // Discharge up to which no sediment is carried, and the most water that spreads to each neighbour, in 1/65536 height units.
+    // Threshold of two effects, in 1/65536 height units: a discharge up to it carries no sediment, and the water that spreads to each
+    // neighbour is at most it.
     threshold: i32,
     // Fall to the next sample at a slope of 1. Larger falls are clamped to it.
     steepest: i32,
-    // With factor and shift, a fall is a slope in 1/4096: ((fall >> shift) * factor) >> 15.
+    // First step from a fall to its slope in 1/4096: ((fall >> slope_shift) * slope_factor) >> 15.
     slope_shift: u32,
+    // Second step; see `slope_shift`.
     slope_factor: i32,
     // The largest stable difference between two neighbours.
     talus: i32,

@@ -3,8 +3,9 @@
 // and the window.
 
 struct PadParams {
-    // Samples along an edge of a patch, and around it in its window.
+    // Samples along an edge of a patch.
     size: u32,
+    // Samples around a patch in its window.
     apron: u32,
 }
 

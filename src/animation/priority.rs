@@ -32,6 +32,7 @@ mod analyze;
 mod differences;
 
 use crate::InputError;
+use crate::animation::instance::Wrap;
 use crate::asset::clip::Clip;
 use crate::asset::skeleton::Skeleton;
 
@@ -101,7 +102,7 @@ pub struct Priorities {
 }
 
 impl Priorities {
-    /// Computes the priorities of a clip's keys. `user` has one value per bone, 0 to 1.
+    /// Computes the priorities of the keys of a clip that plays with `wrap`. `user` has one value per bone, 0 to 1.
     ///
     /// # Errors
     /// [`InputError`] for invalid weights ([`Weights::validate`]), for a clip of another skeleton, and for user values that are
@@ -109,13 +110,13 @@ impl Priorities {
     pub fn new(
         skeleton: &Skeleton,
         clip: &Clip,
-        loops: bool,
+        wrap: Wrap,
         weights: &Weights,
         user: &[f32],
     ) -> Result<Self, InputError> {
         weights.validate()?;
         check_user(skeleton, user)?;
-        let differences = Differences::new(skeleton, clip, loops)?;
+        let differences = Differences::new(skeleton, clip, wrap)?;
         let weigh = |(key, first): (&Difference, [f64; 5])| {
             let terms = [first[0], first[1], first[2], first[3], first[4], user[key.bone as usize].into()];
             let sum: f64 = terms.iter().zip(weights.0).map(|(term, weight)| term * weight).sum();
@@ -179,8 +180,8 @@ mod tests {
         Clip::new("test", &skeleton(), &bones, 0.0).expect("valid")
     }
 
-    fn of(loops: bool, weights: Weights) -> Priorities {
-        Priorities::new(&skeleton(), &clip(), loops, &weights, &[USER_DEFAULT; 4]).expect("valid")
+    fn of(wrap: Wrap, weights: Weights) -> Priorities {
+        Priorities::new(&skeleton(), &clip(), wrap, &weights, &[USER_DEFAULT; 4]).expect("valid")
     }
 
     fn close(found: &[KeyPriority], expected: &[(f32, [f32; 6])]) {
@@ -195,7 +196,7 @@ mod tests {
 
     #[test]
     fn terms_are_those_computed_by_hand() {
-        let found = of(false, Weights::default());
+        let found = of(Wrap::Clamp, Weights::default());
         assert_eq!(found.offsets, [0, 3, 6, 9, 9]);
         // The largest values: 2 m, ¼ turn, 0.6; 3 descendants, depth 2.
         close(
@@ -236,14 +237,14 @@ mod tests {
         let bones: Vec<_> = bones.into_iter().chain(vec![BoneKeys::default(); 3]).collect();
         let clip = Clip::new("test", &skeleton(), &bones, 0.0).expect("valid");
         let found =
-            Priorities::new(&skeleton(), &clip, false, &Weights::default(), &[0.5; 4]).expect("valid");
+            Priorities::new(&skeleton(), &clip, Wrap::Clamp, &Weights::default(), &[0.5; 4]).expect("valid");
         let terms: Vec<f32> = found.of(0).iter().map(|key| key.terms[0]).collect();
         assert_eq!(terms, [0.0, 1.0, 0.0, 0.0]);
     }
 
     #[test]
     fn loops_lead_back_to_the_first_key() {
-        let found = of(true, Weights::default());
+        let found = of(Wrap::Loop, Weights::default());
         // From (2, 1) to 0: √5 m is now the largest translation, and ⅜ of a turn the largest rotation.
         let far = 5.0_f32.sqrt();
         assert!(
@@ -262,12 +263,12 @@ mod tests {
     fn weights_choose_terms() {
         let only = |term: usize| Weights(std::array::from_fn(|at| if at == term { 1.0 } else { 0.0 }));
         for term in 0..6 {
-            for key in of(true, only(term)).keys {
+            for key in of(Wrap::Loop, only(term)).keys {
                 assert_eq!(key.priority, key.terms[term]);
             }
         }
         let user = [0.0, 1.0, 0.25, 0.5];
-        let found = Priorities::new(&skeleton(), &clip(), true, &only(5), &user).expect("valid");
+        let found = Priorities::new(&skeleton(), &clip(), Wrap::Loop, &only(5), &user).expect("valid");
         assert!(found.keys.iter().all(|key| key.priority == user[key.bone as usize]));
     }
 
@@ -278,7 +279,8 @@ mod tests {
         let bones: Vec<_> = bones.into_iter().chain(vec![BoneKeys::default(); 3]).collect();
         let clip = Clip::new("test", &skeleton(), &bones, 0.0).expect("valid");
         // The skeleton is 2 m tall: 1e-6 m is less than 1e-6 of it.
-        let found = Priorities::new(&skeleton(), &clip, true, &Weights::default(), &[0.5; 4]).expect("valid");
+        let found =
+            Priorities::new(&skeleton(), &clip, Wrap::Loop, &Weights::default(), &[0.5; 4]).expect("valid");
         assert!((size(&skeleton()) - 2.0).abs() < 1e-6);
         assert!(found.keys.iter().all(|key| key.terms[..3] == [0.0; 3]));
     }
@@ -312,8 +314,8 @@ mod tests {
                 BoneKeys::default(),
             ];
             let clip = Clip::new("test", &skeleton, &bones, 0.0).expect("valid");
-            let found =
-                Priorities::new(&skeleton, &clip, false, &Weights::default(), &[0.5; 4]).expect("valid");
+            let found = Priorities::new(&skeleton, &clip, Wrap::Clamp, &Weights::default(), &[0.5; 4])
+                .expect("valid");
             found.keys.iter().step_by(2).map(|key| [key.terms[0], key.terms[2]]).collect::<Vec<_>>()
         };
         for scale in [1.0, 0.01, 100.0, 1.0 / 64.0] {
@@ -332,14 +334,17 @@ mod tests {
         let moves = keys(&[0.0, 1.0], &[[0.0; 4], [1.0, 0.0, 0.0, 0.0]]);
         let bones = [BoneKeys { translation: moves, ..BoneKeys::default() }];
         let clip = Clip::new("test", &skeleton, &bones, 0.0).expect("valid");
-        let found = Priorities::new(&skeleton, &clip, true, &Weights::default(), &[0.5]).expect("valid");
+        let found =
+            Priorities::new(&skeleton, &clip, Wrap::Loop, &Weights::default(), &[0.5]).expect("valid");
         assert_eq!(found.keys[0].terms, [1.0, 0.0, 0.0, 0.0, 1.0, 0.5]);
     }
 
     #[test]
     fn bad_weights_and_user_values_are_refused() {
         let refused = |weights: [f64; 6], user: &[f32]| {
-            Priorities::new(&skeleton(), &clip(), true, &Weights(weights), user).expect_err("refused").path
+            Priorities::new(&skeleton(), &clip(), Wrap::Loop, &Weights(weights), user)
+                .expect_err("refused")
+                .path
         };
         let good = Weights::default().0;
         assert_eq!(refused([0.5; 6], &[0.5; 4]), "weights");

@@ -100,7 +100,7 @@ impl UpdatedBones {
         self.bits.write(gpu, words)
     }
 
-    /// Adds a reader. It is behind at first.
+    /// Adds a reader, which has not read the present bits yet.
     pub fn reader(&self) -> UpdatedBonesReader {
         UpdatedBonesReader { number: self.lock().add(), updated: self.clone() }
     }

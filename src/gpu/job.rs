@@ -95,14 +95,15 @@ impl Job {
         Ok(Self { label, steps })
     }
 
-    /// A single dispatch with one bind group, as [`Step::spread`].
+    /// A single dispatch with one bind group for at least `invocations` threads, as [`Step::spread`].
     ///
     /// # Errors
     /// As [`Job::new`].
     pub fn spread(
         gpu: &Gpu,
         label: &'static str,
-        (kernel, group): (&Kernel, Group),
+        kernel: &Kernel,
+        group: Group,
         invocations: u32,
     ) -> Result<Self, GpuError> {
         Self::new(gpu, label, vec![Step::spread(gpu, kernel, vec![group], invocations)])

@@ -154,6 +154,20 @@ impl Renderer {
     ///
     /// # Errors
     /// [`InputError`] for a scene on another device; errors of the driver's compiler.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::gpu::Gpu;
+    /// # use relievo::render::{Renderer, TargetFormat};
+    /// # use relievo::scene::Scene;
+    /// # fn example(gpu: &Gpu, scene: &Scene) -> Result<(), relievo::Error> {
+    /// let format = TargetFormat::new(wgpu::TextureFormat::Bgra8UnormSrgb).with_samples(4);
+    /// let mut renderer = Renderer::new(gpu, &format)?;
+    /// renderer.prepare(scene)?; // after objects were added, and before the first draw
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         self.check_device(scene)?;
         self.prepare_objects(scene.drawables(), scene.is_shadowed())
@@ -191,6 +205,27 @@ impl Renderer {
     /// - a layer for which the format has no attachment;
     /// - objects that were added since [`Renderer::prepare`];
     /// - [`Layer::Velocity`] in a scene without motion history.
+    ///
+    /// # Examples
+    ///
+    /// Opaque surfaces, the program's own drawing, then blended surfaces.
+    ///
+    /// ```no_run
+    /// # use relievo::render::{Layer, Renderer};
+    /// # use relievo::scene::{Scene, View};
+    /// # fn example(
+    /// #     renderer: &Renderer,
+    /// #     scene: &Scene,
+    /// #     view: &View,
+    /// #     mut pass: wgpu::RenderPass<'_>,
+    /// #     draw_sky: impl Fn(&mut wgpu::RenderPass<'_>),
+    /// # ) -> Result<(), relievo::Error> {
+    /// renderer.draw(&mut pass, scene, view, Layer::Color)?;
+    /// draw_sky(&mut pass);
+    /// renderer.draw(&mut pass, scene, view, Layer::Transparent)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn draw<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,

@@ -46,6 +46,19 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
+    ///
+    /// # Examples
+    ///
+    /// A camera that frames an instance.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Camera, InstanceId, Scene, View};
+    /// # fn example(scene: &Scene, view: &mut View, fox: InstanceId) -> Result<(), relievo::Error> {
+    /// let [low, high] = scene.bounds(fox)?.world();
+    /// view.set(Camera::framing(low, high, [960, 540]))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
         let placed = self.placed_instance(instance)?;
         match self.object_of(instance)?.kind.wide_box(&placed)? {
@@ -64,6 +77,20 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
+    ///
+    /// # Examples
+    ///
+    /// A name above a head.
+    ///
+    /// ```no_run
+    /// # use glam::DVec3;
+    /// # use relievo::scene::{InstanceId, Scene};
+    /// # fn example(scene: &Scene, fighter: InstanceId, label: impl Fn(DVec3)) -> Result<(), relievo::Error> {
+    /// let [low, high] = scene.tight_bounds(fighter)?.world();
+    /// label(DVec3::new((low.x + high.x) / 2.0, high.y + 0.2, (low.z + high.z) / 2.0));
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn tight_bounds(&self, instance: InstanceId) -> Result<Bounds, InputError> {
         let placed = self.placed_instance(instance)?;
         let corners = self.object_of(instance)?.kind.tight_box(&placed)?;

@@ -26,8 +26,9 @@ pub(crate) struct Chunk {
 /// A part of an object with sorted draws.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SortedParts {
-    /// Index of the drawable, and of the part in it.
+    /// Index of the drawable.
     pub drawable: usize,
+    /// Index of the part in the drawable.
     pub part: usize,
     /// Index of the first instance's draw.
     pub first: u32,

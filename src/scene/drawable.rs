@@ -89,7 +89,7 @@ pub(crate) struct DrawnObject<'a> {
 /// Sorted draws: instances that are drawn one by one.
 #[derive(Debug, Clone)]
 pub(crate) struct SortedDraws<'a> {
-    /// The draws of all of them.
+    /// Indirect arguments, one draw per instance and part.
     pub draws: &'a Buffer<SceneDraw>,
     /// Instance list of each draw; each has one entry.
     pub entries: &'a Buffer<u32>,

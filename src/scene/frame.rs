@@ -27,6 +27,20 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// A frame that is recorded but never submitted.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Scene, View};
+    /// # fn example(scene: &mut Scene, view: &mut View, mut kept: wgpu::CommandEncoder) -> Result<(), relievo::Error> {
+    /// scene.record(&mut kept, &mut [view])?;
+    /// // … `kept` stays alive and is not submitted.
+    /// scene.invalidate()?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn invalidate(&mut self) -> Result<(), Error> {
         self.is_broken = false;
         self.staging.invalidate();
@@ -65,6 +79,22 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// Motion vectors for temporal anti-aliasing.
+    ///
+    /// ```no_run
+    /// # use relievo::gpu::Gpu;
+    /// # use relievo::render::{Renderer, TargetFormat};
+    /// # use relievo::scene::Scene;
+    /// # fn example(gpu: &Gpu, scene: &mut Scene) -> Result<(), relievo::Error> {
+    /// scene.keep_motion_history(true)?;
+    /// let mut motion = Renderer::new(gpu, &TargetFormat::velocity())?; // draws Layer::Velocity
+    /// motion.prepare(scene)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn keep_motion_history(&mut self, keeps: bool) -> Result<(), Error> {
         if std::mem::replace(&mut self.keeps_last, keeps) == keeps {
             return Ok(());
@@ -91,6 +121,33 @@ impl Scene {
     /// [`InputError`] for no view, for a view of another scene or without a camera, and for an encoder of another
     /// [`wgpu::Instance`]. (wgpu panics there. The panic is caught, but the program's panic hook sees it.) Also if
     /// [`FRAMES_IN_FLIGHT`] recorded frames await execution. [`crate::gpu::GpuError`], also for the loss of the device.
+    ///
+    /// # Examples
+    ///
+    /// A split screen: both halves are recorded in one call.
+    ///
+    /// ```no_run
+    /// # use relievo::render::{Layer, Renderer};
+    /// # use relievo::scene::{Scene, View};
+    /// # fn example(
+    /// #     scene: &mut Scene,
+    /// #     renderer: &Renderer,
+    /// #     left: &mut View,
+    /// #     right: &mut View,
+    /// #     mut encoder: wgpu::CommandEncoder,
+    /// #     begin: impl Fn(&mut wgpu::CommandEncoder) -> wgpu::RenderPass<'static>,
+    /// # ) -> Result<(), relievo::Error> {
+    /// scene.record(&mut encoder, &mut [left, right])?;
+    /// let mut pass = begin(&mut encoder); // the program's own attachments
+    /// pass.set_viewport(0.0, 0.0, 960.0, 1080.0, 0.0, 1.0);
+    /// renderer.draw(&mut pass, scene, left, Layer::Color)?;
+    /// pass.set_viewport(960.0, 0.0, 960.0, 1080.0, 0.0, 1.0);
+    /// renderer.draw(&mut pass, scene, right, Layer::Color)?;
+    /// drop(pass);
+    /// scene.gpu().queue().submit([encoder.finish()]);
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

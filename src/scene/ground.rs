@@ -20,6 +20,21 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene or no terrain, and for a position that is not finite.
+    ///
+    /// # Examples
+    ///
+    /// An instance that stands on the ground.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, ObjectId, Placement, Scene};
+    /// # fn example(scene: &mut Scene, land: ObjectId, fox: InstanceId) -> Result<(), relievo::Error> {
+    /// let (x, z) = (120.0, -45.5);
+    /// if let Some(point) = scene.ground(land, x, z)? {
+    ///     scene.move_to(fox, Placement::at_world([x, point.height, z]))?;
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn ground(&self, terrain: ObjectId, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
         for (path, value) in [("x", x), ("z", z)] {
             if !value.is_finite() {
@@ -43,6 +58,24 @@ impl Scene {
     /// [`InputError`] for an object that is not of this scene, no terrain, or one that the scene generated; for more
     /// patches than fields, a patch that is given twice or whose samples exceed the range of `i32`; and for heights that
     /// are not finite or out of order. Nothing has changed then. [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// A streaming world of one field: its next patch, with heights from −20 to 80 units.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(
+    /// #     scene: &mut Scene,
+    /// #     land: ObjectId,
+    /// #     compute: impl Fn([i32; 2]) -> wgpu::CommandBuffer,
+    /// # ) -> Result<(), relievo::Error> {
+    /// let patch = [4, -2];
+    /// scene.gpu().queue().submit([compute(patch)]); // writes the heights into the field
+    /// scene.set_patches(land, &[patch], [-20.0, 80.0])?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_patches(
         &mut self,
         terrain: ObjectId,
@@ -65,6 +98,17 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, no terrain, or one without a target, and for a time outside
     /// 0..=1. Nothing has changed then.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene, TerrainMorph};
+    /// # fn example(scene: &mut Scene, land: ObjectId) -> Result<(), relievo::Error> {
+    /// let time = (scene.time() / 10.0).min(1.0); // over the first ten seconds
+    /// scene.morph_terrain(land, TerrainMorph { time })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn morph_terrain(&mut self, terrain: ObjectId, morph: Morph) -> Result<(), InputError> {
         let entry = self.object_mut(terrain)?;
         terrain_of_mut(&mut *entry.kind)?.morph(&mut entry.instances, morph)
@@ -77,6 +121,18 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, no terrain, or one that the scene generated;
     /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(scene: &mut Scene, land: ObjectId, eroded: wgpu::CommandBuffer) -> Result<(), relievo::Error> {
+    /// scene.gpu().queue().submit([eroded]); // changes the heights in the terrain's fields
+    /// scene.read_ground(land)?;
+    /// let new = scene.ground(land, 10.0, 10.0)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_ground(&mut self, terrain: ObjectId) -> Result<(), Error> {
         self.gpu.clone().block_on(self.read_ground_async(terrain))

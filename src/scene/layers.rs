@@ -18,6 +18,19 @@ impl Scene {
     ///
     /// # Errors
     /// As for [`Scene::play`]; [`InputError`] for a layer that the character does not have, and for a weight outside 0..=1.
+    ///
+    /// # Examples
+    ///
+    /// Waving while walking, on layer 1.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Play, Scene};
+    /// # fn example(scene: &mut Scene, walker: InstanceId) -> Result<(), relievo::Error> {
+    /// scene.play(walker, &Play::new("walk"))?;
+    /// scene.play_layer(walker, 1, &Play::new("wave"), 1.0)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn play_layer(
         &mut self,
         instance: InstanceId,
@@ -37,6 +50,21 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a layer that it does not have,
     /// for a weight outside 0..=1, and for seconds outside 0..=1e6.
+    ///
+    /// # Examples
+    ///
+    /// A wave that begins and ends softly.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Play, Scene};
+    /// # fn example(scene: &mut Scene, walker: InstanceId) -> Result<(), relievo::Error> {
+    /// scene.play_layer(walker, 1, &Play::new("wave"), 0.0)?;
+    /// scene.fade_layer(walker, 1, 1.0, 0.3)?;
+    /// // … two seconds later
+    /// scene.fade_layer(walker, 1, 0.0, 0.3)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn fade_layer(
         &mut self,
         instance: InstanceId,
@@ -54,6 +82,18 @@ impl Scene {
     ///
     /// # Errors
     /// As for [`Scene::play_layer`] and [`Scene::fade_layer`]; [`InputError`] for a layer with a mask.
+    ///
+    /// # Examples
+    ///
+    /// From walking to running in a quarter of a second. Layer 1 is a [`LayerMask::All`](crate::scene::LayerMask::All).
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Play, Scene};
+    /// # fn example(scene: &mut Scene, walker: InstanceId) -> Result<(), relievo::Error> {
+    /// scene.cross_fade(walker, 1, &Play { start: scene.time(), ..Play::new("run") }, 0.25)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn cross_fade(
         &mut self,
         instance: InstanceId,
@@ -77,6 +117,21 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, is no character, or has no extracted motion, and for
     /// times that are not finite.
+    ///
+    /// # Examples
+    ///
+    /// In each frame, the instance moves as far as its clip has walked.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Scene};
+    /// # fn example(scene: &mut Scene, walker: InstanceId) -> Result<(), relievo::Error> {
+    /// let before = scene.time();
+    /// scene.advance(1.0 / 60.0)?;
+    /// let motion = scene.root_motion(walker, before, scene.time())?;
+    /// scene.move_to(walker, scene.placement(walker)?.moved_by(&motion))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn root_motion(&self, instance: InstanceId, from: f64, to: f64) -> Result<Transform, InputError> {
         let character = self.object_of(instance)?.character().ok_or_else(no_character)?;
         character.root_motion(instance.index, from, to)

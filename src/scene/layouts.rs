@@ -29,7 +29,8 @@ pub(crate) struct SceneLayouts {
 /// Buffers with one element per instance of a scene, for one view.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InstancesInView<'a> {
-    /// Transforms from model space to the corner of the view's cell. With motion history, as many of the last frame follow.
+    /// Transforms from model space to the corner of the view's cell. With motion history, those of the last
+    /// frame follow.
     pub placements: &'a Buffer<Affine>,
     /// Instances of the scene.
     pub instances: &'a Buffer<SceneInstance>,

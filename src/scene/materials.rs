@@ -33,6 +33,20 @@ impl Scene {
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for a material or an image that the
     /// model does not have, for values out of range, for a change from or to blending, and for a sampling that differs from
     /// the other materials drawn together with this one; [`crate::gpu::GpuError`]. The material then stays unchanged.
+    ///
+    /// # Examples
+    ///
+    /// A coat of another colour; everything else stays.
+    ///
+    /// ```no_run
+    /// # use relievo::asset::Material;
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(scene: &mut Scene, fox: ObjectId) -> Result<(), relievo::Error> {
+    /// let coat = scene.material(fox, "coat")?.clone();
+    /// scene.set_material(fox, "coat", &Material { color: [0.3, 0.2, 0.1, 1.0], ..coat })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_material(&mut self, object: ObjectId, material: &str, new: &Material) -> Result<(), Error> {
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let mut staged = std::mem::take(&mut self.staged);
@@ -61,7 +75,7 @@ impl Scene {
     }
 
     /// Replaces an image of a mesh or a character in all materials that use it, or adds one. `index` is the image's index
-    /// in the model; the number of images adds a new one. Colours are sRGB with linear alpha, normal maps linear. The image
+    /// in the model; an index equal to the number of images adds one. Colours are sRGB with linear alpha, normal maps linear. The image
     /// is uploaded at once, with the other images in its texture array. That allocates memory, and render bundles must be
     /// made anew.
     ///
@@ -69,6 +83,16 @@ impl Scene {
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels or
     /// larger than the device's textures, and for an index above the number of images; [`crate::gpu::GpuError`]. The images
     /// then stay unchanged.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(scene: &mut Scene, screen: ObjectId, page: image::RgbaImage) -> Result<(), relievo::Error> {
+    /// scene.set_image(screen, 0, page)?; // the model's first image, in all materials that show it
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_image(&mut self, object: ObjectId, index: usize, image: RgbaImage) -> Result<(), Error> {
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let mut staged = std::mem::take(&mut self.staged);

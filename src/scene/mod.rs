@@ -65,7 +65,7 @@ mod watch;
 pub(crate) mod wgsl;
 
 #[doc(inline)]
-pub use crate::animation::Wrap;
+pub use crate::animation::{Wrap, crowd::Local as LocalTransform, root_motion::Taken as RootMotionParts};
 #[doc(inline)]
 pub use crate::lod::criterion::{Criterion, DistanceTo, SizeOf};
 #[doc(inline)]
@@ -81,9 +81,21 @@ pub use crate::surface::{
 };
 #[doc(inline)]
 pub use crate::terrain::{
-    blend::Shading as TerrainShading, config::TerrainConfig, fields::Fields as TerrainFields,
-    mesh::GroundPoint, morph::Morph as TerrainMorph, recipe::Recipe as TerrainRecipe,
+    blend::{Shading as TerrainShading, WeightMode},
+    config::{
+        Border as TerrainBorder, BuiltIn as BuiltInTexture, HeightInterpolation, Offset as TerrainOffset,
+        Slope as TerrainSlope, TerrainConfig, Zone as TerrainZone, ZoneTexture,
+    },
+    despike::Despike,
+    features::{FeatureFile, Features as TerrainFeatures},
+    fields::Fields as TerrainFields,
+    fixed::FeatureMode,
+    hydraulic::Hydraulic,
+    mesh::GroundPoint,
+    morph::Morph as TerrainMorph,
+    recipe::Recipe as TerrainRecipe,
     texture::TerrainTexture,
+    thermal::Thermal,
 };
 pub use bounds::Bounds;
 pub use camera::{Camera, Depth};
@@ -105,7 +117,7 @@ pub use statistics::{
 pub use terrain::TerrainSource;
 pub(crate) use view::ViewShadow;
 pub use view::{DitherPattern, View};
-pub use watch::{WatchedBone, WatchedBones};
+pub use watch::{InstanceBone, WatchedBone, WatchedBones};
 
 use crate::asset::Light;
 use crate::gpu::{Gpu, GpuError, Staged, StagingRing};
@@ -272,6 +284,22 @@ impl Scene {
     ///
     /// # Errors
     /// Those of [`Gpu::check`].
+    ///
+    /// # Examples
+    ///
+    /// In a browser, once a frame:
+    ///
+    /// ```no_run
+    /// # use relievo::gpu::GpuError;
+    /// # use relievo::scene::Scene;
+    /// # fn example(scene: &Scene) -> Result<(), relievo::Error> {
+    /// match scene.health() {
+    ///     Err(GpuError::DeviceLost { .. }) => { /* open another device: Scene::rebuild_all_async */ }
+    ///     checked => checked?,
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn health(&self) -> Result<(), GpuError> {
         self.gpu.check()
     }
@@ -285,6 +313,24 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] as [`Light::validate`].
+    ///
+    /// # Examples
+    ///
+    /// A low, warm sun in the west.
+    ///
+    /// ```no_run
+    /// # use glam::Vec3;
+    /// # use relievo::asset::Light;
+    /// # use relievo::scene::Scene;
+    /// # fn example(scene: &mut Scene) -> Result<(), relievo::Error> {
+    /// scene.set_light(Light {
+    ///     direction: Vec3::new(-1.0, 0.3, 0.0), // towards the light
+    ///     color: Vec3::new(1.4, 1.2, 1.0),
+    ///     ambient: 0.2,
+    /// })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_light(&mut self, light: Light) -> Result<(), InputError> {
         light.validate()?;
         self.light = light;
@@ -312,6 +358,18 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] as [`ErrorBudget::validate`].
+    ///
+    /// # Examples
+    ///
+    /// Bones that are fast and visible get half of the allowed displacement.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ErrorBudget, Scene};
+    /// # fn example(scene: &mut Scene) -> Result<(), relievo::Error> {
+    /// scene.set_error_budget(ErrorBudget { mesh: 0.45, bones: 0.5, influences: 0.02 })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_error_budget(&mut self, budget: ErrorBudget) -> Result<(), InputError> {
         budget.validate()?;
         self.budget = budget;
@@ -327,6 +385,18 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for a value that is not finite.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::Scene;
+    /// # fn example(scene: &mut Scene, last: &mut std::time::Instant) -> Result<(), relievo::Error> {
+    /// let now = std::time::Instant::now();
+    /// scene.advance(now.duration_since(*last).as_secs_f32())?;
+    /// *last = now;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn advance(&mut self, seconds: f32) -> Result<(), InputError> {
         crate::animation::instance::check_seconds("seconds", seconds)?;
         self.now += f64::from(seconds);
@@ -340,6 +410,19 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(scene: &Scene, crowd: ObjectId) -> Result<(), relievo::Error> {
+    /// let bias = scene.lod_bias(crowd)?;
+    /// if bias > 1.0 {
+    ///     eprintln!("out of memory: the crowd is up to {bias} times as far off as the views allow");
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn lod_bias(&self, object: ObjectId) -> Result<f32, InputError> {
         Ok(self.object_at(object)?.lod_bias)
     }
@@ -369,6 +452,21 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for `pixels` that is negative or not finite; [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// A main view within half a pixel, and a mirror within two.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Camera, Quality, Scene};
+    /// # fn example(scene: &Scene, camera: Camera, mirrored: Camera) -> Result<(), relievo::Error> {
+    /// let mut main = scene.view(Quality::pixels(0.5))?;
+    /// let mut mirror = scene.view(Quality::pixels(2.0))?;
+    /// main.set(camera)?;
+    /// mirror.set(mirrored)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
         View::new(&self.gpu, (self.objects.scene(), self.device), quality)
     }

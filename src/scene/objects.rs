@@ -22,6 +22,20 @@ impl Scene {
     /// [`InputError`] for a configuration or patches out of bounds, for no patch, for a patch that is given twice, and for
     /// fields that have no margin, have another size, or are fewer than the patches;
     /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// Nine patches around the origin, from a seed.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Scene, TerrainConfig, TerrainSource};
+    /// # fn example(scene: &mut Scene) -> Result<(), relievo::Error> {
+    /// let config = TerrainConfig::new(257, 80.0, "any text")?;
+    /// let patches: Vec<[i32; 2]> = (0..9).map(|at| [at % 3 - 1, at / 3 - 1]).collect();
+    /// let land = scene.add_terrain(&TerrainSource::new(config).with_patches(&patches))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     #[cfg(not(target_arch = "wasm32"))]
     pub fn add_terrain(&mut self, source: &TerrainSource) -> Result<ObjectId, Error> {
         self.gpu.clone().block_on(self.add_terrain_async(source))
@@ -49,6 +63,22 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
     /// images that are larger than the device's textures; [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// Room for 50 stones, with levels of detail.
+    ///
+    /// ```no_run
+    /// # use relievo::asset::Model;
+    /// # use relievo::scene::{Placement, Scene, add_levels};
+    /// # fn example(scene: &mut Scene) -> Result<(), relievo::Error> {
+    /// let mut stone = Model::from_file("stone.glb".as_ref())?;
+    /// add_levels(&mut stone, &[], 1)?;
+    /// let stones = scene.add_mesh(&stone, 50)?;
+    /// scene.spawn(stones, Placement::at_world([10.0, 0.0, -4.0]))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn add_mesh(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.mesh(model, capacity)?;
         Ok(self.add(object))
@@ -84,6 +114,23 @@ impl Scene {
     /// # Errors
     /// As for [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, and
     /// for root motion that cannot be extracted ([`RootMotion::extract`](crate::animation::RootMotion::extract)).
+    ///
+    /// # Examples
+    ///
+    /// An upper body that may wave while the legs walk, and walking that moves the instance.
+    ///
+    /// ```no_run
+    /// # use relievo::asset::Model;
+    /// # use relievo::scene::{CharacterOptions, LayerMask, RootMotionParts, RootOptions, Scene};
+    /// # fn example(scene: &mut Scene, model: &Model) -> Result<(), relievo::Error> {
+    /// let options = CharacterOptions {
+    ///     layers: vec![LayerMask::Below("spine"), LayerMask::All], // layers 1 and 2
+    ///     root_motion: Some(RootOptions { bone: "hips", taken: RootMotionParts::default() }),
+    /// };
+    /// let people = scene.add_character_with(model, 100, &options)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn add_character_with(
         &mut self,
         model: &Model,
@@ -138,6 +185,19 @@ impl Scene {
     /// [`InputError`] for a capacity out of range, for maps, options or a mesh that do not fit each other, for a mesh with
     /// values that are not finite, and for images without texels or larger than the device's textures;
     /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// A brick wall, 4 units wide, with its maps twice along each edge.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{HeightMap, Placement, Relief, Scene};
+    /// # fn example(scene: &mut Scene, heights: HeightMap, colors: image::RgbaImage) -> Result<(), relievo::Error> {
+    /// let wall = scene.add_relief(&Relief::wall(2.0, heights, colors), 1)?;
+    /// scene.spawn(wall, Placement::at_world([0.0, 2.0, -10.0]).scaled(4.0))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn add_relief(&mut self, relief: &Relief, capacity: usize) -> Result<ObjectId, Error> {
         let object = self.relief(relief, capacity)?;
         Ok(self.add(object))
@@ -159,6 +219,21 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for a capacity out of range, and for invalid levels, parts, indices or an invalid sphere of the kind;
     /// the error names the field (`kind.parts[0].levels[1]`). [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// Two patches of the caller's grass, a [`Kind`] as in `examples/kind`.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::kind::Kind;
+    /// # use relievo::scene::{Placement, Scene};
+    /// # fn example(scene: &mut Scene, grass: impl Kind) -> Result<(), relievo::Error> {
+    /// let meadow = scene.add_kind(grass, 2)?;
+    /// scene.spawn(meadow, Placement::at_world([0.0, 0.0, 0.0]))?;
+    /// scene.spawn(meadow, Placement::at_world([16.0, 0.0, 0.0]))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn add_kind(&mut self, kind: impl Kind, capacity: usize) -> Result<ObjectId, Error> {
         let (gpu, pending) = self.uploader();
         let object = Object::of_kind(&gpu, &self.layouts_of_groups, Box::new(kind), capacity)?;
@@ -225,6 +300,16 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene; [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(scene: &mut Scene, land: ObjectId, is_indoors: bool) -> Result<(), relievo::Error> {
+    /// scene.show(land, !is_indoors)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn show(&mut self, object: ObjectId, is_shown: bool) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
@@ -248,6 +333,20 @@ impl Scene {
     /// [`Transition::Geomorph`], also for an object without levels of detail or without partners in its meshes
     /// ([`add_levels`](crate::skinning::add_levels) finds them): terrain, reliefs, and meshes that exceed a binding of the
     /// device.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::render::Renderer;
+    /// # use relievo::scene::{ObjectId, Scene, Transition};
+    /// # fn example(scene: &mut Scene, renderer: &mut Renderer, crowd: ObjectId) -> Result<(), relievo::Error> {
+    /// if scene.can_morph(crowd)? {
+    ///     scene.set_level_of_detail(crowd, &Transition::Geomorph.into())?;
+    ///     renderer.prepare(scene)?;
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_level_of_detail(
         &mut self,
         object: ObjectId,

@@ -29,6 +29,20 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] as [`Ray::validate`].
+    ///
+    /// # Examples
+    ///
+    /// What is under the pointer.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Camera, Ray, Scene};
+    /// # fn example(scene: &mut Scene, camera: &Camera, pointer: [f32; 2]) -> Result<(), relievo::Error> {
+    /// if let Some(hit) = scene.pick(&Ray::through(camera, pointer)?)? {
+    ///     println!("{:?} at {}, {} units away", hit.instance, hit.world(), hit.distance);
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn pick(&self, ray: &Ray) -> Result<Option<Hit>, InputError> {
         ray.validate()?;
         let direction = ray.direction.normalize();

@@ -15,7 +15,7 @@ impl Playing {
     /// The first clip, from time 0 on.
     pub const REST: Self = Self { clip: 0, wrap: Wrap::Loop, start: 0.0, rate: 1.0 };
 
-    /// The same in device format, with a start relative to `epoch`. For a looping clip of `duration` seconds, the start is
+    /// The play state in device format, with a start relative to `epoch`. For a looping clip of `duration` seconds, the start is
     /// moved by whole repetitions, so that it stays close to the epoch.
     pub fn on_device(&self, duration: f64, epoch: f64) -> Instance {
         let mut start = self.start - epoch;

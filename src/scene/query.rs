@@ -17,6 +17,20 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
+    ///
+    /// # Examples
+    ///
+    /// All patches of a terrain but the first are hidden.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(scene: &mut Scene, land: ObjectId) -> Result<(), relievo::Error> {
+    /// for patch in scene.instances(land)?.into_iter().skip(1) {
+    ///     scene.set_visibility_mask(patch, 0)?;
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn instances(&self, object: ObjectId) -> Result<Vec<InstanceId>, InputError> {
         let all = self.object_at(object)?.instances.each();
         Ok(all.map(|[index, generation]| InstanceId { object, index, generation }).collect())
@@ -69,6 +83,22 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
+    ///
+    /// # Examples
+    ///
+    /// A jump that has ended.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Play, Scene};
+    /// # fn example(scene: &mut Scene, fighter: InstanceId, jump: usize, duration: f32) -> Result<(), relievo::Error> {
+    /// // `jump` is the clip's index in the model, and `duration` is `model.clips[jump].duration()`.
+    /// let playing = scene.clip_time(fighter)?;
+    /// if playing.is_some_and(|at| at.clip == jump && at.seconds >= duration) {
+    ///     scene.cross_fade(fighter, 1, &Play { start: scene.time(), ..Play::new("walk") }, 0.2)?;
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn clip_time(&self, instance: InstanceId) -> Result<Option<ClipTime>, InputError> {
         let character = self.object_of(instance)?.character();
         character.map(|character| character.clip_time(instance.index, self.now)).transpose()

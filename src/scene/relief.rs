@@ -22,7 +22,7 @@ use crate::surface::mesh::{SurfaceMesh, SurfaceVertex};
 use crate::surface::mips::Mips;
 use crate::surface::relief::March;
 use crate::surface::relief::textures::SurfaceTextures;
-use crate::surface::{Address, Green, ReliefMaps, ReliefMaterial, ReliefOptions};
+use crate::surface::{Green, ReliefMaps, ReliefMaterial, ReliefOptions};
 use crate::{Error, InputError};
 
 /// A relief-mapped mesh, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
@@ -36,7 +36,7 @@ pub struct Relief {
     pub mesh: SurfaceMesh,
     /// Heights, colours and normals.
     pub maps: ReliefSource,
-    /// Method, shadows and silhouette. Textures on the device are made for one method.
+    /// Method, shadows and silhouette. With [`ReliefSource::Textures`], the method must be that of the textures.
     pub options: ReliefOptions,
     /// Depth, plane and width of shadows. Its light is not used, because a scene has one light.
     pub material: ReliefMaterial,
@@ -243,7 +243,7 @@ fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<Relief
         ReliefSource::Textures { textures, albedo, normals } => bound(textures, albedo, normals.as_deref()),
         ReliefSource::Images { heights, albedo, normals } => {
             let (address, method) = (relief.march.address, relief.options.method);
-            let texture = |mips: Mips| ColorTexture::new(gpu, &mips, address == Address::Wrap);
+            let texture = |mips: Mips| ColorTexture::new(gpu, &mips, address);
             let textures = SurfaceTextures::new(gpu, heights, method, address)?;
             let albedo = texture(Mips::of_color(albedo.clone()))?;
             let normals = normals.clone().map(|normals| texture(Mips::of_data(normals))).transpose()?;

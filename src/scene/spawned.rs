@@ -18,6 +18,18 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain, whose instances are its patches, and as
     /// [`Placement::checked`]; [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Placement, Scene};
+    /// # fn example(scene: &mut Scene, fox: ObjectId) -> Result<(), relievo::Error> {
+    /// // A model in centimetres, a kilometre to the east, turned by a quarter turn to the left.
+    /// let place = Placement::at_world([1000.0, 0.0, 0.0]).turned(std::f32::consts::FRAC_PI_2).scaled(0.01);
+    /// let instance = scene.spawn(fox, place)?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn spawn(&mut self, object: ObjectId, placement: Placement) -> Result<InstanceId, Error> {
         let placement = placement.checked()?;
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
@@ -62,6 +74,19 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and as
     /// [`Placement::checked`].
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use glam::DVec3;
+    /// # use relievo::scene::{InstanceId, Placement, Scene};
+    /// # fn example(scene: &mut Scene, fox: InstanceId) -> Result<(), relievo::Error> {
+    /// let here = scene.placement(fox)?;
+    /// let there = here.world() + DVec3::new(0.0, 0.0, -1.5);
+    /// scene.move_to(fox, Placement { turn: here.turn, scale: here.scale, ..Placement::at_world(there) })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn move_to(&mut self, instance: InstanceId, placement: Placement) -> Result<(), InputError> {
         let placement = placement.checked()?;
         self.spawned_mut(instance)?;
@@ -78,6 +103,19 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a clip that its model does
     /// not have, and as [`Play::validate`].
+    ///
+    /// # Examples
+    ///
+    /// Walking backwards at half speed, and a jump that ends in its last pose.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Play, Scene, Wrap};
+    /// # fn example(scene: &mut Scene, one: InstanceId, other: InstanceId) -> Result<(), relievo::Error> {
+    /// scene.play(one, &Play { rate: -0.5, ..Play::new("walk") })?;
+    /// scene.play(other, &Play { start: scene.time(), wrap: Wrap::Clamp, ..Play::new("jump") })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn play(&mut self, instance: InstanceId, play: &Play<'_>) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
         let character = object.character_mut().ok_or_else(no_character)?;
@@ -104,6 +142,26 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
+    ///
+    /// # Examples
+    ///
+    /// A number per instance, which a shading reads.
+    ///
+    /// ```no_run
+    /// # use relievo::render::Renderer;
+    /// # use relievo::scene::{InstanceId, Scene};
+    /// # fn example(scene: &mut Scene, renderer: Renderer, fox: InstanceId) -> Result<(), relievo::Error> {
+    /// scene.set_user_data(fox, 1)?; // selected
+    /// let renderer = renderer.with_shading(
+    ///     "fn shade(surface: Surface, view: View) -> vec4<f32> {
+    ///         let glow = select(0.0, 0.3, surface.user_data == 1u);
+    ///         return vec4<f32>(surface.color + glow, surface.alpha);
+    ///     }",
+    ///     None,
+    /// )?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_user_data(&mut self, instance: InstanceId, user_data: u32) -> Result<(), InputError> {
         self.instance_mut(instance)?
             .instances
@@ -116,6 +174,20 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
+    ///
+    /// # Examples
+    ///
+    /// A body that its own camera does not show, but the others do.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Scene, View};
+    /// # fn example(scene: &mut Scene, body: InstanceId, first_person: &mut View) -> Result<(), relievo::Error> {
+    /// const OWN_BODY: u16 = 1 << 15;
+    /// scene.set_visibility_mask(body, OWN_BODY)?;
+    /// first_person.set_mask(!OWN_BODY);
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_visibility_mask(&mut self, instance: InstanceId, mask: u16) -> Result<(), InputError> {
         let object = self.instance_mut(instance)?;
         object.instances.change(instance.index, |instance| instances::set_mask(instance, mask));

@@ -20,6 +20,24 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for 0 bytes.
+    ///
+    /// # Examples
+    ///
+    /// A level that is loaded while the program draws, 2 MiB a frame.
+    ///
+    /// ```no_run
+    /// # use relievo::asset::Model;
+    /// # use relievo::scene::Scene;
+    /// # fn example(scene: &mut Scene, models: &[Model]) -> Result<(), relievo::Error> {
+    /// scene.set_upload_budget(Some(2 << 20))?;
+    /// for model in models {
+    ///     scene.add_mesh(model, 10)?;
+    /// }
+    /// // In each frame, after Scene::record:
+    /// let is_loaded = scene.waiting() == 0;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_upload_budget(&mut self, bytes: Option<usize>) -> Result<(), InputError> {
         if bytes == Some(0) {
             return Err(InputError::new("bytes", 0, "must be at least 1"));

@@ -16,6 +16,15 @@ use crate::{Error, InputError};
 /// Largest number of frames whose bones are in flight. If all are taken, a frame's bones are left out.
 const FRAMES: usize = 8;
 
+/// A bone of an instance, for [`Scene::watch_bones`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InstanceBone<'a> {
+    /// The instance of a character.
+    pub instance: InstanceId,
+    /// Name of the bone, or its index in digits.
+    pub bone: &'a str,
+}
+
 /// Watched bones, as posed in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WatchedBones {
@@ -74,15 +83,31 @@ pub(super) struct Watch {
 const BYTES: u64 = (size_of::<Affine>() + size_of::<f32>()) as u64;
 
 impl Scene {
-    /// Watches bones of characters, each given by its name or its index in digits. From the next frame on,
+    /// Watches bones of characters. From the next frame on,
     /// [`Scene::watched_bones`] returns their matrices. The list replaces the previous one. Each bone costs two small
     /// copies per frame.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
     /// not have; [`GpuError`].
-    pub fn watch_bones(&mut self, bones: &[(InstanceId, &str)]) -> Result<(), Error> {
-        let chosen = bones.iter().map(|(instance, bone)| Ok((*instance, self.bone(*instance, bone)?)));
+    ///
+    /// # Examples
+    ///
+    /// Where a hand is, a few frames late and without waiting.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceBone, InstanceId, Scene};
+    /// # fn example(scene: &mut Scene, fighter: InstanceId) -> Result<(), relievo::Error> {
+    /// scene.watch_bones(&[InstanceBone { instance: fighter, bone: "hand_right" }])?; // once
+    /// // In each frame:
+    /// if let Some(watched) = scene.watched_bones() {
+    ///     println!("at {} s: {}", watched.time, watched.bones[0].world());
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn watch_bones(&mut self, bones: &[InstanceBone<'_>]) -> Result<(), Error> {
+        let chosen = bones.iter().map(|of| Ok((of.instance, self.bone(of.instance, of.bone)?)));
         let chosen = chosen.collect::<Result<Vec<_>, InputError>>()?;
         self.watch = match chosen.is_empty() {
             true => None,

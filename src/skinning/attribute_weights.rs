@@ -46,7 +46,7 @@ impl TextureArea {
 mod tests {
     use super::*;
 
-    /// A mesh twice as large, and a texture twice as large, each with its own factor.
+    /// The factor does not depend on the mesh's scale; it is halved where texture coordinates grow twice as fast.
     #[test]
     fn a_texture_counts_by_how_far_it_slips() {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
@@ -56,7 +56,7 @@ mod tests {
             area.add(corners.map(|corner| corner * scale), uv.map(|uv| uv * texture));
             area.factor(scale)
         };
-        // A unit of texture covers a unit of length, the mesh's size.
+        // Texture coordinates from 0 to 1 span one unit of length, which is also the mesh's size.
         let one = (1.0 / SQUARE) as f32;
         assert!((factor(1.0, 1.0) - one).abs() < 1e-3);
         assert!((factor(8.0, 1.0) - one).abs() < 1e-3);

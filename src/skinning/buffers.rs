@@ -126,7 +126,7 @@ pub struct SkinnedCrowd {
     /// The palette that [`super::palette::PalettePass`] writes, at `instance · bones of the skin + bone`: three
     /// vectors per bone, or four for dual quaternions.
     pub palette: Buffer<[f32; 4]>,
-    /// One per instance, full quality at first; [`InstanceLod::UNSEEN`] for instances that are not skinned.
+    /// Level of detail of each instance, full quality at first; [`InstanceLod::UNSEEN`] for instances that are not skinned.
     pub instance_lods: Buffer<InstanceLod>,
     /// Weights of morph targets, instance by instance; 0 at first.
     pub weights: Buffer<f32>,

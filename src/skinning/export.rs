@@ -6,6 +6,15 @@ use crate::asset::mesh::Mesh;
 use crate::asset::obj::{ObjWriter, Object};
 use crate::skinning::vertex::Vertex;
 
+/// A mesh with its skinned vertices, for [`write_obj`].
+#[derive(Debug, Clone, Copy)]
+pub struct ObjMesh<'a> {
+    /// The mesh: its name, texture coordinates and triangles are written.
+    pub mesh: &'a Mesh,
+    /// Its skinned vertices, one per vertex of the mesh, in the mesh's order.
+    pub vertices: &'a [Vertex],
+}
+
 /// Writes one OBJ object per mesh, in order. Each has vertices in the mesh's order with all digits that `f32` needs,
 /// texture coordinates (v up, as in OBJ), normals and triangles.
 ///
@@ -14,9 +23,9 @@ use crate::skinning::vertex::Vertex;
 ///
 /// # Panics
 /// If the number of vertices differs from the mesh's.
-pub fn write_obj(out: &mut impl Write, meshes: &[(&Mesh, &[Vertex])]) -> io::Result<()> {
+pub fn write_obj(out: &mut impl Write, meshes: &[ObjMesh<'_>]) -> io::Result<()> {
     let mut writer = ObjWriter::new(out);
-    for (mesh, vertices) in meshes {
+    for ObjMesh { mesh, vertices } in meshes {
         assert_eq!(vertices.len(), mesh.vertices());
         let normals: Vec<_> = vertices.iter().map(|vertex| vertex.normal).collect();
         writer.object(Object {

@@ -82,8 +82,8 @@ impl Extent {
     /// The projected distances from which levels with these `errors`
     /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used.
     ///
-    /// From there on, no point of a level is drawn more than `pixels` from the mesh's surface, and no point of that
-    /// surface more than that from the level, as far as the errors hold at the point. Placements must not scale. With 0
+    /// From there on, the level and the mesh's surface are at most `pixels` apart on the screen: every point of one is that
+    /// near to the other, wherever the errors hold. Placements must not scale. With 0
     /// pixels, levels with an error begin at the largest number. `docs/pixel-bounds.md` has the derivation. Errors add
     /// up: split the allowed pixels between a fade and levels.
     pub fn level_ranges(

@@ -16,6 +16,17 @@ use crate::gpu::{Buffer, Gpu, Job, compute_pass};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
+/// What a [`SkinFrame`] skins, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SkinOptions {
+    /// Index of the mesh in the model.
+    pub mesh: usize,
+    /// Number of instances, at least 1.
+    pub instances: usize,
+    /// Blending of bones.
+    pub blend: Blend,
+}
+
 /// The prepared skinning of all instances of one mesh.
 #[derive(Debug, Clone)]
 pub struct SkinFrame {
@@ -42,7 +53,7 @@ pub struct SkinFrame {
 }
 
 impl SkinFrame {
-    /// Prepares a model's mesh for `instances` instances, with bones posed by `matrices`.
+    /// Prepares the instances of a model's mesh, with bones posed by `matrices`.
     ///
     /// # Errors
     /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for fewer
@@ -52,11 +63,10 @@ impl SkinFrame {
     pub fn new(
         gpu: &Gpu,
         model: &Model,
-        mesh: usize,
         matrices: &ModelMatrices,
-        instances: usize,
-        blend: Blend,
+        options: SkinOptions,
     ) -> Result<Self, Error> {
+        let SkinOptions { mesh, instances, blend } = options;
         if blend == Blend::DualQuaternion {
             matrices.consumer().check(Consumer::DualQuaternions)?;
         }

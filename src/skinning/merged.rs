@@ -31,7 +31,7 @@ pub struct Merged {
     pub materials: Vec<Vec<Option<usize>>>,
     /// For each mesh, the original mesh of each of its vertices, as an index.
     pub sources: Vec<Vec<u32>>,
-    /// The parts, each drawn at once. Every triangle belongs to one part.
+    /// The parts: one draw per part and level. Every triangle belongs to one part.
     pub parts: Vec<Part>,
 }
 

@@ -18,6 +18,17 @@ use crate::skinning::vertex::Blend;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::skinning::vertex::Vertex;
 
+/// How much a [`PagedSkin`] holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PagedSkinOptions {
+    /// Number of instances, at least 1.
+    pub instances: usize,
+    /// Number of pages; a page holds one cluster of one instance.
+    pub pages: u32,
+    /// Whether each vertex's position of the frame before is kept ([`PageBuffers::last`]).
+    pub keeps_last: bool,
+}
+
 /// The prepared skinning of all instances of one mesh into pages, by linear blending.
 #[derive(Debug, Clone)]
 pub struct PagedSkin {
@@ -64,8 +75,8 @@ impl Paging {
 }
 
 impl PagedSkin {
-    /// Prepares a mesh for `instances` instances with `pages` pages. `matrices` poses the bones and must record the
-    /// updated bones.
+    /// Prepares a mesh. `clusters` is the arrangement of its vertices. `matrices` poses the bones and must record the updated
+    /// bones.
     ///
     /// With last positions, the pages are followed by each vertex's position before the last [`PagedSkin::dispatch`]
     /// ([`PageBuffers::last`]). A page then takes 3584 bytes instead of 2560. A moving vertex is skinned once more
@@ -76,10 +87,12 @@ impl PagedSkin {
     /// [`crate::gpu::GpuError`].
     pub fn of_mesh(
         gpu: &Gpu,
-        (mesh, clusters): (MeshBuffers, Arc<Clusters>),
+        mesh: MeshBuffers,
+        clusters: Arc<Clusters>,
         matrices: &ModelMatrices,
-        (instances, pages, keeps_last): (usize, u32, bool),
+        options: PagedSkinOptions,
     ) -> Result<Self, Error> {
+        let PagedSkinOptions { instances, pages, keeps_last } = options;
         let Some(updated) = matrices.updated_bones() else {
             return Err(InputError::new("matrices.updated_bones", "none", "must be recorded").into());
         };

@@ -3,6 +3,7 @@
 use crate::asset::material::{Filter, Sampling, Wrapping};
 use crate::gpu::{Gpu, GpuError};
 use crate::srgb::linear;
+use crate::surface::map::Address;
 use crate::surface::mips::Mips;
 
 /// A colour texture with its sampler.
@@ -15,24 +16,25 @@ pub struct ColorTexture {
 }
 
 impl ColorTexture {
-    /// Uploads mip levels as 8-bit texels. `mips` selects the format: sRGB for colours, linear for data.
+    /// Uploads mip levels as 8-bit texels. `mips` selects the format: sRGB for colours, linear for data. `address` applies
+    /// outside of the image.
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn new(gpu: &Gpu, mips: &Mips, wraps: bool) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, mips: &Mips, address: Address) -> Result<Self, GpuError> {
         let format = match mips.is_srgb {
             true => wgpu::TextureFormat::Rgba8UnormSrgb,
             false => wgpu::TextureFormat::Rgba8Unorm,
         };
-        upload(gpu, mips, wraps, format, |level| level.as_raw().clone())
+        upload(gpu, mips, address, format, |level| level.as_raw().clone())
     }
 
     /// Uploads mip levels as linear half floats, for pictures that are compared across drivers. It takes twice the memory, but
-    /// does not depend on the driver's sRGB decoding.
+    /// does not depend on the driver's sRGB decoding. `address` applies outside of the image.
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn linear(gpu: &Gpu, mips: &Mips, wraps: bool) -> Result<Self, GpuError> {
+    pub fn linear(gpu: &Gpu, mips: &Mips, address: Address) -> Result<Self, GpuError> {
         let value = |channel: usize, byte: u8| match mips.is_srgb && channel < 3 {
             true => linear(byte),
             false => f32::from(byte) / 255.0,
@@ -44,7 +46,7 @@ impl ColorTexture {
             });
             texels.flat_map(|light| half::f16::from_f32(light).to_le_bytes()).collect()
         };
-        upload(gpu, mips, wraps, wgpu::TextureFormat::Rgba16Float, halves)
+        upload(gpu, mips, address, wgpu::TextureFormat::Rgba16Float, halves)
     }
 }
 
@@ -82,7 +84,7 @@ pub(crate) fn sampler_of(gpu: &Gpu, sampling: &Sampling) -> Result<wgpu::Sampler
 fn upload(
     gpu: &Gpu,
     mips: &Mips,
-    wraps: bool,
+    address: Address,
     format: wgpu::TextureFormat,
     bytes: impl Fn(&image::RgbaImage) -> Vec<u8>,
 ) -> Result<ColorTexture, GpuError> {
@@ -93,6 +95,6 @@ fn upload(
         for (mip_level, level) in (0..).zip(&mips.levels) {
             gpu.fill_level(&texture, [mip_level, 0], &bytes(level));
         }
-        ColorTexture { texture, sampler: gpu.trilinear_sampler("colour", wraps) }
+        ColorTexture { texture, sampler: gpu.trilinear_sampler("colour", address == Address::Wrap) }
     })
 }

@@ -129,6 +129,11 @@ impl Cover {
         self.texels.iter().map(packed).collect()
     }
 
+    /// Number of planes from which textures are projected onto the ground: 3 if triplanar, otherwise 1.
+    pub fn planes(&self) -> u32 {
+        planes(self.triplanar)
+    }
+
     /// Tiles per sample and per unit of height, in 2^-22 tiles.
     pub fn steps(&self) -> [u32; 2] {
         [self.terrain_scale / self.tile, 1.0 / self.tile].map(|tiles| (tiles * TILE_ONE).round() as u32)
@@ -144,9 +149,8 @@ impl Cover {
     }
 }
 
-/// Number of planes from which textures are projected onto the ground.
-#[cfg(feature = "gpu")]
-pub fn planes(triplanar: bool) -> u32 {
+/// Number of planes from which textures are projected: 3 if triplanar, otherwise 1.
+pub(crate) fn planes(triplanar: bool) -> u32 {
     if triplanar { TRIPLANAR_PLANES } else { 1 }
 }
 

@@ -13,7 +13,7 @@ use crate::terrain::config::{Border, HeightInterpolation};
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
-use crate::terrain::height::{HeightPass, HeightScratch};
+use crate::terrain::height::{HeightBuffers, HeightPass, HeightScratch};
 use crate::terrain::hydraulic::HydraulicPass;
 use crate::terrain::levels::LevelPass;
 use crate::terrain::pad::{PadPass, Surround, surrounds};
@@ -21,7 +21,7 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::smooth::SmoothPass;
 use crate::terrain::thermal::ThermalPass;
 use crate::terrain::window::Lattice;
-use crate::terrain::window::Window;
+use crate::terrain::window::{Window, Windows};
 use crate::terrain::wrap::WrapPass;
 use erosion::after;
 
@@ -54,7 +54,10 @@ impl Generator {
             },
             border: BorderPass::new(gpu)?,
             pad: PadPass::new(gpu)?,
-            despike: DespikePass::new(gpu, injection.is_some())?,
+            despike: match injection {
+                Some(_) => DespikePass::with_features(gpu)?,
+                None => DespikePass::new(gpu)?,
+            },
             thermal: ThermalPass::new(gpu)?,
             hydraulic: recipe.hydraulic.map(|_| HydraulicPass::new(gpu)).transpose()?,
             recipe,
@@ -141,8 +144,9 @@ impl Generator {
         let config = &self.recipe.config;
         let count = patches.len() as u32;
         let fields = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, count)?;
-        let scratch = HeightScratch::new(gpu, config, [count, apron])?;
-        let job = self.levels.prepare(gpu, config, [count, apron], capacity, &fields.heights, &scratch)?;
+        let scratch = HeightScratch::new(gpu, config, Windows { count, apron })?;
+        let buffers = HeightBuffers { output: &fields.heights, scratch: &scratch };
+        let job = self.levels.prepare(gpu, config, Windows { count, apron }, capacity, buffers)?;
         job.set(gpu, patches, &self.recipe.features)?;
         gpu.run_async(self.levels.label, |encoder| job.record(encoder)).await?;
         Ok(fields)

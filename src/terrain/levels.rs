@@ -7,7 +7,7 @@ use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
 use crate::terrain::lattice::base_lattice;
-use crate::terrain::window::{Lattice, SMOOTH_RIM, Span, Window};
+use crate::terrain::window::{Lattice, SMOOTH_RIM, Span, Window, Windows};
 use crate::{Error, InputError};
 
 /// A kernel that computes a level from the next coarser one.
@@ -31,8 +31,8 @@ pub(in crate::terrain) struct LevelBuffers<'a> {
 }
 
 impl LevelPass {
-    /// Prepares the generation of `count` windows with `apron`. The configuration must be valid, with the borders that
-    /// the kernel was compiled for.
+    /// Prepares the generation of `windows`. The configuration must be valid, with the borders that the kernel was compiled
+    /// for.
     ///
     /// # Errors
     /// [`InputError`] for an apron out of bounds, and for buffers that are too short; [`GpuError`].
@@ -40,14 +40,14 @@ impl LevelPass {
         &self,
         gpu: &Gpu,
         config: &TerrainConfig,
-        [count, apron]: [u32; 2],
+        windows: Windows,
         feature_capacity: usize,
-        output: &Buffer<i32>,
-        scratch: &HeightScratch,
+        buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
+        let (Windows { count, apron }, HeightBuffers { output, scratch }) = (windows, buffers);
         Window { patch: [0, 0], apron }.validate(config)?;
         let widths = level_widths(config, apron);
-        output.check_holds("output", HeightJob::output_points(config, count, apron))?;
+        output.check_holds("output", HeightJob::output_points(config, windows))?;
         scratch.check(&widths, count)?;
         let grids: Vec<u32> = widths[1..].iter().map(|width| width + 2 * (rim(config) - 1)).collect();
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
@@ -111,6 +111,15 @@ fn points(width: u32, count: u32) -> usize {
     count as usize * (width as usize).pow(2)
 }
 
+/// Buffers of a generation of windows.
+#[derive(Debug, Clone, Copy)]
+pub struct HeightBuffers<'a> {
+    /// Written: the heights, window by window; at least [`HeightJob::output_points`].
+    pub output: &'a Buffer<i32>,
+    /// Scratch of the same configuration and windows.
+    pub scratch: &'a HeightScratch,
+}
+
 /// Scratch memory for the levels between the base lattice and the output: about a third of the output's size. Jobs with the
 /// same configuration, count and apron may share it.
 #[derive(Debug, Clone)]
@@ -120,12 +129,12 @@ pub struct HeightScratch {
 }
 
 impl HeightScratch {
-    /// Allocates scratch for `count` windows with `apron`.
+    /// Allocates scratch for `windows`.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
-    pub fn new(gpu: &Gpu, config: &TerrainConfig, [count, apron]: [u32; 2]) -> Result<Self, GpuError> {
-        let [first, second] = Self::points(&level_widths(config, apron), count);
+    pub fn new(gpu: &Gpu, config: &TerrainConfig, windows: Windows) -> Result<Self, GpuError> {
+        let [first, second] = Self::points(&level_widths(config, windows.apron), windows.count);
         let buffer =
             |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
@@ -167,9 +176,9 @@ pub struct HeightJob {
 }
 
 impl HeightJob {
-    /// Number of heights that the output must hold.
-    pub fn output_points(config: &TerrainConfig, count: u32, apron: u32) -> usize {
-        points(config.patch_size + 2 * apron, count)
+    /// Number of heights of `windows`, which the output must hold.
+    pub fn output_points(config: &TerrainConfig, windows: Windows) -> usize {
+        points(config.patch_size + 2 * windows.apron, windows.count)
     }
 
     /// Sets the patches, at most `count`, and the features of the next recordings.

@@ -20,6 +20,15 @@ pub struct Window {
     pub apron: u32,
 }
 
+/// The windows of a batch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Windows {
+    /// Number of windows.
+    pub count: u32,
+    /// Samples beyond each patch on every side, at most [`MAX_APRON`].
+    pub apron: u32,
+}
+
 /// An inclusive range of lattice indices along one axis, in units of the lattice's spacing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Span {

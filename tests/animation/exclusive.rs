@@ -15,7 +15,7 @@ use relievo::ops::animation::sample::SamplePass;
 use relievo::ops::animation::{AnimatedBones, BoundTable, ClipSet, Gate, GateState, ModelMatrices, Order};
 use relievo::ops::skinning::Blend;
 use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::frame::{SkinFrame, SkinOptions};
 use relievo::ops::skinning::palette::PalettePass;
 use relievo_samples::creature;
 
@@ -99,7 +99,8 @@ impl Rig {
     }
 
     fn skinned(&self, matrices: &ModelMatrices, blend: Blend) -> Result<(), Error> {
-        SkinFrame::new(&self.gpu, &self.model, 0, matrices, 1, blend).map(drop)
+        let options = SkinOptions { mesh: 0, instances: 1, blend };
+        SkinFrame::new(&self.gpu, &self.model, matrices, options).map(drop)
     }
 
     fn blended(&self, matrices: &ModelMatrices, blend: Blend) -> Result<(), Error> {
@@ -162,7 +163,8 @@ fn nothing_else_is_excluded() {
     rig.framed(&crowd, &rig.uniform).expect("no bound is promised");
     // A refused preparation excludes nothing: here there are fewer matrices than instances need.
     let crowd = rig.crowd();
-    let two = SkinFrame::new(&rig.gpu, &rig.model, 0, crowd.model_matrices(), 2, Blend::DualQuaternion);
+    let options = SkinOptions { mesh: 0, instances: 2, blend: Blend::DualQuaternion };
+    let two = SkinFrame::new(&rig.gpu, &rig.model, crowd.model_matrices(), options);
     assert!(two.is_err());
     rig.bound(0, &crowd).expect("a way").expect("nothing precedes it");
 }

@@ -245,7 +245,7 @@ fn skip_period_skips_as_often_as_in_the_example_of_a() {
 /// The gate by the priorities of the creature's keys. The period of a second has 65,536 ticks.
 fn skip_period(stage: &Stage, weights: &Weights) -> Gate {
     let user = vec![USER_DEFAULT; stage.skeleton.len()];
-    let of = |clip| Priorities::new(&stage.skeleton, clip, true, weights, &user).expect("fits");
+    let of = |clip| Priorities::new(&stage.skeleton, clip, Wrap::Loop, weights, &user).expect("fits");
     let priorities: Vec<_> = stage.clips.iter().map(of).collect();
     let table = PriorityTable::new(&stage.order, &stage.set, &stage.clips(), &priorities).expect("fits");
     Gate::SkipPeriod { table, period: 65536 }

@@ -6,7 +6,7 @@ use relievo::asset::{Model, Transform};
 use relievo::gpu::Gpu;
 use relievo::ops::animation::Pose;
 use relievo::ops::animation::local_to_model::reference::local_to_model;
-use relievo::scene::{InstanceId, Placement, Poses, View};
+use relievo::scene::{InstanceBone, InstanceId, Placement, Poses, View};
 use relievo::wgpu;
 
 use crate::frame::{Frame, device};
@@ -275,7 +275,7 @@ fn programs_pose_bones() {
     });
     let watched = [BONE, below.expect("a bone below"), 0, 152];
     let names = watched.map(|bone| bone.to_string());
-    let pairs: Vec<_> = names.iter().map(|name| (instance, name.as_str())).collect();
+    let pairs: Vec<_> = names.iter().map(|bone| InstanceBone { instance, bone }).collect();
     world.scene.watch_bones(&pairs).expect("bones");
     let turn = Turn::new(&gpu, 1);
     let mut view = world.view(0.0);

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use relievo::gpu::Gpu;
-use relievo::scene::{Camera, Placement, Quality, Scene, View};
+use relievo::scene::{Camera, InstanceBone, Placement, Quality, Scene, View};
 use relievo::wgpu;
 
 use crate::frame::device;
@@ -125,7 +125,7 @@ fn counts_arrive_late() {
     let gpu = device();
     let mut world = World::new(&gpu, 3);
     world.scene.set_statistics(true).expect("room");
-    let watched = [(world.crowd[0], "0")];
+    let watched = [InstanceBone { instance: world.crowd[0], bone: "0" }];
     world.scene.watch_bones(&watched).expect("a bone");
     let mut view = world.view(1.0);
     let mut held = 0;
@@ -195,7 +195,9 @@ fn bones_arrive_where_they_are() {
     let mirrored =
         Placement { cell: [900_000, -3, 7], scale: Vec3::new(-3.0, 3.0, 2.0), ..world.placement(1) };
     world.scene.move_to(near, Placement { offset: mirrored.offset, ..mirrored }).expect("there");
-    world.scene.watch_bones(&[(near, name), (far, "152"), (near, "0")]).expect("bones");
+    let watched = [(near, &name[..]), (far, "152"), (near, "0")];
+    let watched = watched.map(|(instance, bone)| InstanceBone { instance, bone });
+    world.scene.watch_bones(&watched).expect("bones");
     assert!(world.scene.watched_bones().is_none());
     let mut view = world.view(0.0);
     let eye = Camera {
@@ -229,6 +231,11 @@ fn bones_arrive_where_they_are() {
     let bones = &world.scene.watched_bones().expect("arrived").bones;
     assert_eq!(bones.iter().map(|bone| bone.bone).collect::<Vec<_>>(), [40, 0]);
     let refused = |result: Result<(), relievo::Error>| result.expect_err("refused").to_string();
-    assert!(refused(world.scene.watch_bones(&[(near, "153")])).contains("bone = 153"));
-    assert!(refused(world.scene.watch_bones(&[(far, "1")])).contains("instance"));
+    assert!(
+        refused(world.scene.watch_bones(&[InstanceBone { instance: near, bone: "153" }]))
+            .contains("bone = 153")
+    );
+    assert!(
+        refused(world.scene.watch_bones(&[InstanceBone { instance: far, bone: "1" }])).contains("instance")
+    );
 }

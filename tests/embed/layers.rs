@@ -5,10 +5,11 @@ use relievo::asset::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::ops::animation::Pose;
 use relievo::ops::animation::layers::mask_below;
 use relievo::ops::animation::local_to_model::reference::local_to_model;
-use relievo::ops::animation::root_motion::Taken;
+
 use relievo::ops::animation::sample::reference::blend;
 use relievo::scene::{
-    CharacterOptions, InstanceId, LayerMask, Placement, Play, Quality, RootOptions, Scene, View,
+    CharacterOptions, InstanceBone, InstanceId, LayerMask, Placement, Play, Quality, RootMotionParts,
+    RootOptions, Scene, View,
 };
 
 use crate::frame::{Frame, device};
@@ -52,7 +53,7 @@ fn layers_are_blended() {
     let (mut scene, instance, mut view) = scene(&gpu);
     let model = model();
     let names = BONES.map(|bone| bone.to_string());
-    let pairs: Vec<_> = names.iter().map(|name| (instance, name.as_str())).collect();
+    let pairs: Vec<_> = names.iter().map(|bone| InstanceBone { instance, bone }).collect();
     scene.watch_bones(&pairs).expect("bones");
     scene.play(instance, &Play { start: -0.3, ..Play::new("0") }).expect("a clip");
     scene.play_layer(instance, 1, &Play { rate: 0.5, ..Play::new("1") }, 0.4).expect("a layer");
@@ -151,7 +152,7 @@ fn roots_keep_their_place() {
     keys[0].rotation = Some(linear(vec![turned(0.0), turned(0.5), turned(0.9)]));
     model.clips = vec![Clip::new("stride", &model.skeleton, &keys, 1.0).expect("valid")];
     let mut scene = Scene::new(&gpu).expect("compiled");
-    let taken = Taken { yaw: true, ..Taken::default() };
+    let taken = RootMotionParts { yaw: true, ..RootMotionParts::default() };
     let root = Some(RootOptions { bone: "0", taken });
     let options = CharacterOptions { root_motion: root, ..CharacterOptions::default() };
     let walker = scene.add_character_with(&model, 1, &options).expect("added");
@@ -170,7 +171,9 @@ fn roots_keep_their_place() {
         let middle = boxes.map(|found| found.world().into_iter().sum::<DVec3>() / 2.0);
         assert!(middle[0].distance(middle[1]) < 0.1, "{middle:?}");
         // Bones, more precisely.
-        scene.watch_bones(&[(moved, "40"), (fixed, "40")]).expect("bones");
+        scene
+            .watch_bones(&[moved, fixed].map(|instance| InstanceBone { instance, bone: "40" }))
+            .expect("bones");
         let mut view = scene.view(Quality::pixels(0.0)).expect("a view");
         let eye = relievo::scene::Camera::looking_at(
             Vec3::new(0.0, 20.0, 40.0),

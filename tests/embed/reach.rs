@@ -6,7 +6,9 @@ use relievo::asset::Transform;
 use relievo::asset::material::Alpha;
 use relievo::gpu::Gpu;
 use relievo::render::Layer;
-use relievo::scene::{Camera, InstanceId, InstancePose, Placement, Play, Quality, Ray, Scene, View};
+use relievo::scene::{
+    Camera, InstanceBone, InstanceId, InstancePose, Placement, Play, Quality, Ray, Scene, View,
+};
 
 use crate::frame::{Frame, device};
 use crate::host;
@@ -78,7 +80,7 @@ fn hands_reach() {
         let scale = Vec3::new(3.0 * mirror, 3.0, 3.0);
         let turn = Quat::from_rotation_y(0.4) * Quat::from_rotation_x(0.1);
         let mut stage = Stage::new(Placement { scale, turn, ..Placement::at_world(at) });
-        let watched = [ARM[2], "hand_right"].map(|bone| (stage.waver, bone));
+        let watched = [ARM[2], "hand_right"].map(|bone| InstanceBone { instance: stage.waver, bone });
         stage.scene.watch_bones(&watched).expect("bones");
         let mut pictures = Vec::new();
         for (step, aside) in [(0.3, [0.4, 0.6]), (0.0, [0.9, -0.5]), (0.21, [0.1, -1.3])] {
@@ -123,7 +125,8 @@ fn poses_on_the_host_are_those_of_the_device() {
     let bones = [0, 40, 80, 152];
     let names = bones.map(|bone| bone.to_string());
     stage.scene.drive(stage.waver, &[]).expect("there");
-    stage.scene.watch_bones(&names.each_ref().map(|name| (stage.waver, name.as_str()))).expect("bones");
+    let watched = names.each_ref().map(|bone| InstanceBone { instance: stage.waver, bone });
+    stage.scene.watch_bones(&watched).expect("bones");
     stage.scene.advance(0.7).expect("finite");
     stage.shot(None);
     let pose = stage.pose();
@@ -244,7 +247,7 @@ fn offsets_in_world_units() {
 fn every_place_is_one_of_the_world() {
     let at = DVec3::new(1e6 + 0.25, 254.0, -2e6 - 10.0);
     let mut stage = Stage::new(Placement::at_world(at).scaled(3.0));
-    stage.scene.watch_bones(&[(stage.waver, "pelvis")]).expect("a bone");
+    stage.scene.watch_bones(&[InstanceBone { instance: stage.waver, bone: "pelvis" }]).expect("a bone");
     stage.shot(None);
     let pelvis =
         stage.pose().world(stage.scene.bone(stage.waver, "pelvis").expect("a bone")).expect("a bone");

@@ -59,9 +59,8 @@ fn textures_of_the_caller_look_like_images() {
     let mut last: Option<RgbaImage> = None;
     for (method, address) in [(ReliefMethod::Quadtree, Address::Wrap), (ReliefMethod::Cone, Address::Clamp)] {
         let textures = SurfaceTextures::new(&gpu, &heights, method, address).expect("uploaded");
-        let wraps = address == Address::Wrap;
-        let albedo = ColorTexture::new(&gpu, &Mips::of_color(colors.clone()), wraps).expect("uploaded");
-        let normals = ColorTexture::new(&gpu, &Mips::of_data(bumps.clone()), wraps).expect("uploaded");
+        let albedo = ColorTexture::new(&gpu, &Mips::of_color(colors.clone()), address).expect("uploaded");
+        let normals = ColorTexture::new(&gpu, &Mips::of_data(bumps.clone()), address).expect("uploaded");
         for normals in [None, Some(&normals)] {
             let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals };
             let shared = Relief::of_maps(mesh.clone(), maps);
@@ -88,7 +87,8 @@ fn linear_light_is_encoded_to_the_same_picture() {
     let (heights, colors, _) = images();
     let textures =
         SurfaceTextures::new(&gpu, &heights, ReliefMethod::Quadtree, Address::Wrap).expect("uploaded");
-    let albedo = ColorTexture::linear(&gpu, &Mips::of_color(colors.clone()), true).expect("uploaded");
+    let albedo =
+        ColorTexture::linear(&gpu, &Mips::of_color(colors.clone()), Address::Wrap).expect("uploaded");
     let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: None };
     let mesh = SurfaceMesh::square(2.0);
     let target = Offscreen::linear(&gpu, SIZE).expect("a target");
@@ -117,7 +117,7 @@ fn mistakes_about_maps_are_told() {
     let gpu = device();
     let (heights, colors, bumps) = images();
     let textures = SurfaceTextures::new(&gpu, &heights, ReliefMethod::Cone, Address::Wrap).expect("uploaded");
-    let albedo = ColorTexture::new(&gpu, &Mips::of_color(colors), true).expect("uploaded");
+    let albedo = ColorTexture::new(&gpu, &Mips::of_color(colors), Address::Wrap).expect("uploaded");
     let maps = ReliefMaps { textures: &textures, albedo: &albedo, normals: None };
     let good = Relief::of_maps(SurfaceMesh::square(1.0), maps);
     assert_eq!((good.options.method, good.march.address), (ReliefMethod::Cone, Address::Wrap));

@@ -6,7 +6,7 @@ use relievo::asset::transform::Affine;
 use relievo::asset::{Bone, Influence, Influences, Mesh, Model, Skeleton, Skin, Transform};
 use relievo::gpu::Buffer;
 use relievo::ops::animation::ModelMatrices;
-use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::frame::{SkinFrame, SkinOptions};
 use relievo::ops::skinning::instance_lod::InstanceLod;
 use relievo::ops::skinning::still;
 use relievo::ops::skinning::vertex::Blend;
@@ -91,7 +91,8 @@ fn limbs(lower: Mat4) -> RgbaImage {
         let pose = [rows(Mat4::IDENTITY), rows(lower)];
         let models = Buffer::from_slice(&gpu, "model matrices", &pose.repeat(3)).expect("uploaded");
         let matrices = ModelMatrices::new(&models);
-        let frame = SkinFrame::new(&gpu, &model, 0, &matrices, 3, blend).expect("prepared");
+        let options = SkinOptions { mesh: 0, instances: 3, blend };
+        let frame = SkinFrame::new(&gpu, &model, &matrices, options).expect("prepared");
         let fades = [0.0, 0.5, 1.0].map(|fade| InstanceLod::fade(fade).expect("in range"));
         frame.crowd.instance_lods.write(&gpu, &fades).expect("written");
         gpu.run("skin", |encoder| frame.record_updated_bones(encoder)).expect("run");

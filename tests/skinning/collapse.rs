@@ -367,7 +367,7 @@ fn a_crowd_of_it_is_skinned_on_the_device() {
     use relievo::ops::animation::sample::SamplePass;
     use relievo::ops::animation::sample::reference::sample;
     use relievo::ops::animation::{ClipSet, Instance, RotationPath, Wrap};
-    use relievo::ops::skinning::frame::SkinFrame;
+    use relievo::ops::skinning::frame::{SkinFrame, SkinOptions};
     use relievo::ops::skinning::morph::reference::morph;
     use relievo::ops::skinning::palette::reference::palette_for;
     use relievo::ops::skinning::skin::reference::skin;
@@ -387,7 +387,8 @@ fn a_crowd_of_it_is_skinned_on_the_device() {
     let sampled = pass.prepare(&gpu, &clips, &crowd).expect("fits");
     let pass = LocalToModelPass::new(&gpu).expect("compiled");
     let concatenated = pass.prepare(&gpu, &model.skeleton, &crowd).expect("fits");
-    let frame = SkinFrame::new(&gpu, &model, 0, crowd.model_matrices(), 3, Blend::Linear).expect("fits");
+    let options = SkinOptions { mesh: 0, instances: 3, blend: Blend::Linear };
+    let frame = SkinFrame::new(&gpu, &model, crowd.model_matrices(), options).expect("fits");
     frame.crowd.instance_lods.write(&gpu, &[InstanceLod::FULL; 3]).expect("written");
     gpu.run("test", |encoder| {
         place.record(encoder);

@@ -5,6 +5,7 @@ use relievo::asset::keyframe::RotationPath;
 use relievo::asset::skeleton::{Bone, Skeleton};
 use relievo::asset::{MeshLevel, bone_radii};
 use relievo::asset::{Model, Transform};
+use relievo::ops::animation::Wrap;
 use relievo::ops::animation::priority::{Priorities, Weights};
 use relievo::ops::animation::{BoundTable, ClipSet, ExpectationTable, Order, PriorityTable};
 use relievo::ops::skinning::add_levels;
@@ -219,7 +220,7 @@ fn tables_of_models_of_any_size_are_the_same() {
         let (order, set) = (Order::new(skeleton), ClipSet::new(&clips).expect("valid"));
         let bone_radii = bone_radii(skeleton.len(), &model.skins, &model.meshes);
         let (weights, user) = (Weights::default(), vec![0.5; skeleton.len()]);
-        let priorities = [Priorities::new(skeleton, clips[0], true, &weights, &user).expect("valid")];
+        let priorities = [Priorities::new(skeleton, clips[0], Wrap::Loop, &weights, &user).expect("valid")];
         let path = RotationPath::Slerp;
         (
             PriorityTable::new(&order, &set, &clips, &priorities).expect("valid"),

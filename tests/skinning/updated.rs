@@ -8,7 +8,7 @@ use relievo::ops::animation::frame::GatedFrame;
 use relievo::ops::animation::{
     AnimatedBones, BoundTable, ClipSet, ExpectationTable, Frame, Gate, Instance, Lod, Order, Wrap,
 };
-use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::frame::{SkinFrame, SkinOptions};
 use relievo::ops::skinning::{Blend, InstanceLod, Vertex};
 
 use crate::harness::gpu;
@@ -38,7 +38,8 @@ impl<'a> Player<'a> {
 
     fn skin(&self) -> SkinFrame {
         let matrices = self.frame.model_matrices();
-        SkinFrame::new(self.gpu, self.model, 0, matrices, COUNT, Blend::Linear).expect("prepared")
+        let options = SkinOptions { mesh: 0, instances: COUNT, blend: Blend::Linear };
+        SkinFrame::new(self.gpu, self.model, matrices, options).expect("prepared")
     }
 
     /// Plays a frame with these levels of detail, followed by these meshes.

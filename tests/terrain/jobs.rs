@@ -10,13 +10,14 @@ use relievo::ops::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use relievo::ops::terrain::features::{FeatureIndex, Features};
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::fixed::FeatureMode;
-use relievo::ops::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::ops::terrain::height::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
 use relievo::ops::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use relievo::ops::terrain::morph::{HeightMorphPass, MorphBuffers};
 use relievo::ops::terrain::normals::NormalsPass;
 use relievo::ops::terrain::pad::PadPass;
 use relievo::ops::terrain::texture::TerrainTexture;
 use relievo::ops::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
+use relievo::ops::terrain::window::Windows;
 use relievo::ops::terrain::wrap::WrapPass;
 
 fn gpu() -> Gpu {
@@ -130,7 +131,7 @@ fn blend() {
 #[test]
 fn despike() {
     let gpu = gpu();
-    let pass = DespikePass::new(&gpu, true).expect("compiled");
+    let pass = DespikePass::with_features(&gpu).expect("compiled");
     let params = Despike { threshold: 1.0 };
     let index = |widths: &[u32]| FeatureIndex::new(&gpu, widths, 2, 1).expect("allocated");
     let prepare = |windows: &Fields, widths: &[u32], cropped: usize| {
@@ -249,16 +250,16 @@ fn generation() {
     let gpu = gpu();
     let config = TerrainConfig::new(5, 1.0, "short").expect("valid");
     let height = HeightPass::new(&gpu, Offset::Signed, Some(FeatureMode::Keep)).expect("compiled");
-    let scratch = HeightScratch::new(&gpu, &config, [2, 1]).expect("allocated");
-    let points = HeightJob::output_points(&config, 2, 1);
+    let scratch = HeightScratch::new(&gpu, &config, Windows { count: 2, apron: 1 }).expect("allocated");
+    let points = HeightJob::output_points(&config, Windows { count: 2, apron: 1 });
     let prepare = |apron, output| {
-        height.prepare(&gpu, &config, [2, apron], 0, &buffer(&gpu, output), &scratch).map(|_| ())
+        let buffers = HeightBuffers { output: &buffer(&gpu, output), scratch: &scratch };
+        height.prepare(&gpu, &config, Windows { count: 2, apron }, 0, buffers)
     };
-    assert!(prepare(1, points).is_ok());
-    refuses(prepare(1, points - 1), &["output = [97 elements]", "at least 98"]);
-    refuses(prepare(2, 2 * points), &["scratch = "]);
-    refuses(prepare(u32::MAX, points), &["apron = 4294967295: must be at most 4096"]);
-    let job = height.prepare(&gpu, &config, [2, 1], 0, &buffer(&gpu, points), &scratch).expect("prepared");
+    let job = prepare(1, points).expect("prepared");
+    refuses(prepare(1, points - 1).map(|_| ()), &["output = [97 elements]", "at least 98"]);
+    refuses(prepare(2, 2 * points).map(|_| ()), &["scratch = "]);
+    refuses(prepare(u32::MAX, points).map(|_| ()), &["apron = 4294967295: must be at most 4096"]);
     let three = [[0, 0], [1, 0], [2, 0]];
     let features = Features::default();
     refuses(job.set(&gpu, &three, &features), &["patches.len = 3: must be at most 2, the batch's count"]);
@@ -266,8 +267,10 @@ fn generation() {
     let config = TerrainConfig { border: Border::Wrap, ..config };
     let wrap = WrapPass::new(&gpu, Offset::Signed, None).expect("compiled");
     let prepare = |output, scratch_for| {
-        let scratch = HeightScratch::new(&gpu, &config, [scratch_for, 0]).expect("allocated");
-        wrap.prepare(&gpu, &config, 2, 0, &buffer(&gpu, output), &scratch).map(|_| ())
+        let scratch =
+            HeightScratch::new(&gpu, &config, Windows { count: scratch_for, apron: 0 }).expect("allocated");
+        let buffers = HeightBuffers { output: &buffer(&gpu, output), scratch: &scratch };
+        wrap.prepare(&gpu, &config, 2, 0, buffers).map(|_| ())
     };
     assert!(prepare(50, 2).is_ok());
     refuses(prepare(49, 2), &["output = [49 elements]", "at least 50"]);

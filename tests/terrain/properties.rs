@@ -574,7 +574,7 @@ proptest! {
 
     #[test]
     fn additive_shares_are_equation_3_6(zones in zones(), height in -300.0..300.0_f32) {
-        let fractions = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Additive);
+        let fractions = zone_fractions(&zones, height, 0.3, &LEVEL[..zones.len()], WeightMode::Additive);
         prop_assert_eq!(fractions.len(), zones.len());
         for (fraction, zone) in fractions.into_iter().zip(&zones) {
             let [min, max, height] = [zone.min, zone.max, height].map(f64::from);
@@ -585,8 +585,8 @@ proptest! {
 
     #[test]
     fn normalized_shares_sum_to_one_everywhere(zones in zones(), height in -300.0..300.0_f32) {
-        let fractions = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Normalized);
-        let weights = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Additive);
+        let fractions = zone_fractions(&zones, height, 0.3, &LEVEL[..zones.len()], WeightMode::Normalized);
+        let weights = zone_fractions(&zones, height, 0.3, &LEVEL[..zones.len()], WeightMode::Additive);
         prop_assert!(fractions.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
         prop_assert!((fractions.iter().copied().map(f64::from).sum::<f64>() - 1.0).abs() < 1e-6);
         if weights.iter().any(|weight| *weight > 0.0) {
@@ -603,7 +603,7 @@ proptest! {
         let ends = |zone: &ShaderZone| if above { 2.0 * zone.max - zone.min } else { -zone.min };
         let outermost = zones.iter().map(ends).fold(f32::MIN, f32::max);
         let height = if above { outermost + beyond } else { -outermost - beyond };
-        let fractions = zone_fractions(&zones, (height, 0.3), &LEVEL[..zones.len()], WeightMode::Normalized);
+        let fractions = zone_fractions(&zones, height, 0.3, &LEVEL[..zones.len()], WeightMode::Normalized);
         let nearest = fractions.iter().position(|fraction| *fraction == 1.0);
         prop_assert_eq!(fractions.iter().filter(|fraction| **fraction != 0.0).count(), 1);
         prop_assert!(nearest.is_some_and(|index| outermost - ends(&zones[index]) < 1e-3), "{:?}", fractions);
@@ -658,12 +658,12 @@ fn what_stands_high_in_its_texture_shows_first() {
     let zone = |height_blend| zone_of(&Zone { height_blend, ..Zone::new(0.0, 10.0, None) });
     let fraction = |height_blend, texels: [f32; 2]| {
         let zones = [zone(height_blend); 2];
-        zone_fractions(&zones, (5.0, 0.0), &texels, WeightMode::Normalized)[0]
+        zone_fractions(&zones, 5.0, 0.0, &texels, WeightMode::Normalized)[0]
     };
     assert_eq!(fraction(0.0, [1.0, 0.0]), 0.5);
     assert!(fraction(1.0, [1.0, 0.5]) > 0.9 && fraction(1.0, [0.5, 1.0]) < 0.1);
     assert!(fraction(0.3, [1.0, 0.5]) > 0.6 && fraction(0.3, [1.0, 0.5]) < 0.9);
-    let additive = zone_fractions(&[zone(1.0); 2], (5.0, 0.0), &[1.0, 0.2], WeightMode::Additive);
+    let additive = zone_fractions(&[zone(1.0); 2], 5.0, 0.0, &[1.0, 0.2], WeightMode::Additive);
     assert!((additive[0] + additive[1] - 1.0).abs() < 1e-6, "the weights are halves: {additive:?}");
 }
 

@@ -27,8 +27,9 @@ struct SceneMaterial {
     color: vec4<f32>,
     // Alpha cutoff: pixels with a lower alpha are discarded. Or one of the constants above.
     cutoff: f32,
-    // Array layers of the texture and of the normal map, or `NO_LAYER`.
+    // Array layer of the texture, or `NO_LAYER`.
     layer: u32,
+    // Array layer of the normal map, or `NO_LAYER`.
     normal_layer: u32,
     // Scale of the normal map's x and y.
     normal_scale: f32,

@@ -21,8 +21,9 @@ struct Surface {
     tint: vec4<f32>,
     // The user data of the instance (`Scene::set_user_data`); 0 unless it is set.
     user_data: u32,
-    // Number of the object (from 1) and of the instance in it (from 0), as in handles.
+    // Number of the object, from 1, as in handles.
     object: u32,
+    // Number of the instance in the object, from 0, as in handles.
     instance: u32,
     // The position in the target in pixels, from its upper left corner.
     pixel: vec2<f32>,

@@ -27,15 +27,19 @@ struct TerrainView {
 
 // Parameters that the patches of a terrain share.
 struct TerrainParams {
-    // Samples along an edge of a window, and along an edge of the patch inside it.
+    // Samples along an edge of a window.
     in_width: u32,
+    // Samples along an edge of the patch inside a window.
     size: u32,
-    // World units between samples, and twice that in 1/65536 units.
+    // Distance between samples, in world units.
     spacing: f32,
+    // Twice the distance between samples, in 1/65536 units.
     run: f32,
-    // Texture tiles per sample, and per unit of height.
+    // Texture tiles per sample.
     tiling: f32,
+    // Texture tiles per unit of height.
     tiles_per_unit: f32,
+    // Number of zones.
     zone_count: u32,
     // 1 if zone weights are added as they are, 0 if they are normalized.
     additive: u32,
@@ -62,7 +66,7 @@ struct TerrainPatch {
 @group(2) @binding(0) var<uniform> terrain: TerrainParams;
 // Windows of heights in 1/65536 units, row by row.
 @group(2) @binding(1) var<storage, read> heights: array<i32>;
-// One per instance.
+// Patch of each instance.
 @group(2) @binding(2) var<storage, read> patches: array<TerrainPatch>;
 @group(2) @binding(3) var<storage, read> zones: array<Zone>;
 // One layer per zone.

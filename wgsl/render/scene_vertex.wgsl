@@ -17,7 +17,7 @@ struct MeshParams {
     clusters: u32,
     // The index in `vertices` of the last frame's positions, two pairs per vertex in pages; 0 if vertices do not move.
     last: u32,
-    // The index in `material_of` of the vertices' partners; 0 if there are none.
+    // The index of the first partner word in `material_of`; 0 if there are no partners.
     partners: u32,
 }
 
@@ -26,8 +26,8 @@ struct MeshParams {
 @group(1) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
 // The page of each cluster of each instance of the object, if vertices lie in pages.
 @group(1) @binding(4) var<storage, read> page_table: array<u32>;
-// Per vertex of the mesh: the index of its material in the part's table. From `MeshParams.partners` on, per vertex: its partner
-// word, with the vertex that it morphs towards.
+// Two tables. From 0: per vertex of the mesh, the index of its material in the part's table. From `MeshParams.partners`: per
+// vertex, its partner word, which names the vertex that it morphs towards.
 @group(1) @binding(3) var<storage, read> material_of: array<u32>;
 // One pair per vertex of the mesh.
 @group(1) @binding(2) var<storage, read> texture_coordinates: array<vec2<f32>>;

@@ -15,8 +15,9 @@ const SURFACE_NEVER: f32 = 2.0;
 
 // The cells that a ray crosses.
 struct SurfaceGrid {
-    // Texels and cells of a tile.
+    // Texels of a tile.
     size: vec2<i32>,
+    // Cells of a tile.
     cells: vec2<i32>,
     // The cell in which the ray enters, reduced to the tile if it wraps, and the ray's position in that cell.
     // Other cells are counted from it, which keeps f32 exact.

@@ -1,6 +1,6 @@
 // Injected heights of a window (B section 3.3.1, feature injection). A grid has one bit per point, in rows of
-// 32-bit words that cover one point more than the window on every side, and with each word the index of its
-// first value. A lookup takes one load where there is no feature, and a population count where there is one.
+// 32-bit words. It covers one point more than the window on every side. Each word comes with the index of its first
+// value. A lookup takes one load where there is no feature, and a population count where there is one.
 
 const FEATURES_NONE = 0u;
 const FEATURES_KEEP = 1u;

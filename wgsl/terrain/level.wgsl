@@ -9,8 +9,9 @@ override DISTRIBUTION: u32 = 0u;
 
 struct Level {
     key: vec2<u32>,
-    // Points along an edge of a window at the fine and at the coarse level.
+    // Points along an edge of a window at the fine level.
     fine_width: u32,
+    // Points along an edge of a window at the coarse level.
     coarse_width: u32,
     // World coordinates between neighbouring fine points.
     spacing: u32,

@@ -25,7 +25,7 @@ struct Zone {
 struct ZoneBlend {
     // Sum of the zones' colours, each weighted by its zone's weight and height map.
     color: vec3<f32>,
-    // Sum of the same weights.
+    // Sum of the weights of `color`.
     total: f32,
     // Sum of the zones' weights alone, without height maps.
     weight: f32,

@@ -71,10 +71,9 @@ impl Priorities {
     pub fn run(&self) -> Result<(), Error> {
         let model = self.model.open_bare()?;
         let clip = &model.clips[self.model.clip(&model, &self.clip)?];
-        let loops = self.wrap == Wrap::Loop;
-        let weights = weights(self.weights.as_deref(), &model.skeleton, clip, loops)?;
+        let weights = weights(self.weights.as_deref(), &model.skeleton, clip, self.wrap)?;
         let user = vec![USER_DEFAULT; model.skeleton.len()];
-        let mut keys = priority::Priorities::new(&model.skeleton, clip, loops, &weights, &user)?.keys;
+        let mut keys = priority::Priorities::new(&model.skeleton, clip, self.wrap, &weights, &user)?.keys;
         // The sort is stable: equal priorities stay in the order of bones and keys.
         keys.sort_by(|a, b| b.priority.total_cmp(&a.priority));
         let row = |own: KeyPriority| {
@@ -86,7 +85,15 @@ impl Priorities {
         let shown: Vec<_> = TERMS.iter().zip(weights.0).map(|(term, w)| format!("{term} {w:.4}")).collect();
         let table = table(&keys);
         if let Some(path) = &self.json {
-            write_json(path, &Report { clip: clip.name(), loops, weights: terms(weights.0), keys })?;
+            write_json(
+                path,
+                &Report {
+                    clip: clip.name(),
+                    loops: self.wrap == Wrap::Loop,
+                    weights: terms(weights.0),
+                    keys,
+                },
+            )?;
         }
         say(format_args!("weights: {}\n{table}", shown.join(", ")))
     }
@@ -97,11 +104,11 @@ pub fn weights(
     text: Option<&str>,
     skeleton: &Skeleton,
     clip: &Clip,
-    loops: bool,
+    wrap: Wrap,
 ) -> Result<Weights, InputError> {
     match text {
         None => Ok(Weights::default()),
-        Some("analyze") => Weights::analyze(skeleton, clip, loops),
+        Some("analyze") => Weights::analyze(skeleton, clip, wrap),
         Some(text) => six(text),
     }
 }

@@ -180,7 +180,7 @@ impl Scene {
         }
         let quality = match (self.full, self.pixels) {
             (true, _) => Some(Quality::pixels(0.0)),
-            (false, pixels) => pixels.map(|pixels| Quality::pixels(pixels)),
+            (false, pixels) => pixels.map(Quality::pixels),
         };
         let (layer, depth) = (self.layer, self.depth);
         let samples = self.samples.unwrap_or(if layer == Layer::Color { 4 } else { 1 });

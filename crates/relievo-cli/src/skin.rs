@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use image::RgbaImage;
 use relievo::asset::Model;
-use relievo::ops::skinning::export::write_obj;
+use relievo::ops::skinning::export::{ObjMesh, write_obj};
 use relievo::ops::skinning::instance_lod::InstanceLod;
 use relievo::ops::skinning::vertex::{Blend, Vertex};
 use relievo::{Error, InputError};
@@ -82,7 +82,7 @@ impl Skin {
         let Made { model, vertices, picture, notes } = self.made(context)?;
         let mut staged = Staged::new(&self.out)?;
         let meshes: Vec<_> =
-            model.meshes.iter().zip(&vertices).map(|(mesh, vertices)| (mesh, &vertices[..])).collect();
+            model.meshes.iter().zip(&vertices).map(|(mesh, vertices)| ObjMesh { mesh, vertices }).collect();
         let (skinned, attached) = meshes.split_at(model.skinned);
         for (name, meshes) in [("mesh.obj", skinned), ("attached.obj", attached)] {
             if !meshes.is_empty() {

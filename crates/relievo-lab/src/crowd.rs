@@ -4,7 +4,7 @@ use relievo::InputError;
 use relievo::asset::keyframe::RotationPath;
 use relievo::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 use relievo::ops::animation::active::PAIR_AHEAD;
-use relievo::ops::animation::clip_clock::reference::clip_clocks;
+use relievo::ops::animation::clip_clock::reference::{PlayedCrowd, clip_clocks};
 use relievo::ops::animation::clip_set::ClipSet;
 use relievo::ops::animation::compact::reference::{Work, compact};
 use relievo::ops::animation::gate::reference::gate;
@@ -74,7 +74,8 @@ impl<'a> Crowd<'a> {
         let now = cursors(set, instances, elapsed);
         // Without a lead nothing is sampled ahead.
         let ahead = if lead == 0.0 { Vec::new() } else { cursors(set, instances, elapsed + lead) };
-        let clip_clocks = clip_clocks(set, instances, &[], lods, elapsed, lead, &mut self.history);
+        let played = PlayedCrowd { set, instances, layers: &[], lods, elapsed, ahead: lead };
+        let clip_clocks = clip_clocks(&played, &mut self.history);
         let work = compact(order, &gate(by, frame, lods, &clip_clocks, &mut self.sampled));
         for listed in &work.pairs {
             let pair = (listed & !PAIR_AHEAD) as usize;

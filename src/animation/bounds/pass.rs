@@ -52,6 +52,6 @@ impl BoundsPass {
             bounds: bounds.slice().cast(),
         };
         let (group, threads) = (group.bind(gpu, &self.kernel)?, THREADS * params.instances);
-        Ok(Job::spread(gpu, "animation/bounds", (&self.kernel, group), threads)?)
+        Ok(Job::spread(gpu, "animation/bounds", &self.kernel, group, threads)?)
     }
 }

@@ -54,7 +54,7 @@ impl ClipClockPass {
             clip_clocks: state.clip_clocks.slice(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        let job = Job::spread(gpu, "animation/clip_clock", (&self.kernel, group), params.instances)?;
+        let job = Job::spread(gpu, "animation/clip_clock", &self.kernel, group, params.instances)?;
         Ok(ParamsJob { params, uniform, job })
     }
 }

@@ -11,20 +11,29 @@ use crate::asset::keyframe::keyframe_cursor;
 use crate::shared::animation::clip_clock::CLIP_HASH_FACTOR;
 use crate::shared::animation::gate_state::FRACTION_ONE;
 
-/// Clip clock of each instance. `layers` are the layers above the base. `ahead` is how far ahead of their time bones may be
-/// sampled, in seconds. `history` is kept from frame to frame and is zero at first.
+/// Input of [`clip_clocks`]: a crowd at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct PlayedCrowd<'a> {
+    /// The clips that the instances play.
+    pub set: &'a ClipSet,
+    /// The instances.
+    pub instances: &'a [Instance],
+    /// The layers above the base, the lowest first.
+    pub layers: &'a [AnimationLayer],
+    /// Level of detail of each instance.
+    pub lods: &'a [Lod],
+    /// Seconds since the instances' starts.
+    pub elapsed: f32,
+    /// How far ahead of their time bones may be sampled, in seconds; 0 = not at all.
+    pub ahead: f32,
+}
+
+/// Clip clock of each instance. `history` has four words per instance; it is zero at first and is kept from frame to frame.
 ///
 /// # Panics
 /// If there are fewer levels of detail or histories than instances.
-pub fn clip_clocks(
-    set: &ClipSet,
-    instances: &[Instance],
-    layers: &[AnimationLayer],
-    lods: &[Lod],
-    elapsed: f32,
-    ahead: f32,
-    history: &mut [[u32; 4]],
-) -> Vec<ClipClock> {
+pub fn clip_clocks(crowd: &PlayedCrowd<'_>, history: &mut [[u32; 4]]) -> Vec<ClipClock> {
+    let PlayedCrowd { set, instances, layers, lods, elapsed, ahead } = *crowd;
     let of = |(index, instance): (usize, &Instance)| {
         let clip = &set.clips()[instance.clip as usize];
         let inside = |elapsed: f32| {

@@ -15,19 +15,25 @@ pub use pass::DrivePass;
 use super::order::Order;
 pub use crate::shared::animation::drive::DrivenWord;
 
-/// The bit words that contain driven bones, each once and in ascending order. The input lists, per instance index, the indices
-/// of its driven bones.
+/// Driven bones of one instance, for [`driven_words`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DrivenBones<'a> {
+    /// Index of the instance in its crowd.
+    pub instance: u32,
+    /// Indices of its driven bones in the skeleton, in any order.
+    pub bones: &'a [u32],
+}
+
+/// The bit words that contain driven bones, each once and in ascending order. An instance may occur several times in `driven`;
+/// its bones add up.
 ///
 /// # Panics
 /// For bones that the order does not have.
-pub fn driven_words<'a>(
-    order: &Order,
-    driven: impl IntoIterator<Item = (u32, &'a [u32])>,
-) -> Vec<DrivenWord> {
+pub fn driven_words<'a>(order: &Order, driven: impl IntoIterator<Item = DrivenBones<'a>>) -> Vec<DrivenWord> {
     let slot_of = order.slots_of_bones();
     let words = order.words() as u32;
     let mut all = std::collections::BTreeMap::new();
-    for (instance, bones) in driven {
+    for DrivenBones { instance, bones } in driven {
         for bone in bones {
             let slot = slot_of[*bone as usize] as u32;
             *all.entry(instance * words + slot / 32).or_insert(0) |= 1_u32 << (slot % 32);
@@ -49,7 +55,8 @@ mod tests {
         };
         let skeleton = Skeleton::of_joints((0..40).map(bone).collect()).expect("valid");
         let order = Order::new(&skeleton);
-        let words = driven_words(&order, [(2, &[33, 1, 0][..]), (0, &[39]), (2, &[1])]);
+        let driven = [(2, &[33, 1, 0][..]), (0, &[39]), (2, &[1])];
+        let words = driven_words(&order, driven.map(|(instance, bones)| DrivenBones { instance, bones }));
         let found: Vec<_> = words.iter().map(|word| (word.at, word.bones)).collect();
         assert_eq!(found, [(1, 1 << 7), (4, 0b11), (5, 0b10)]);
     }

@@ -53,6 +53,6 @@ impl DrivePass {
             bits: active.bits.slice(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "animation/drive", (&self.kernel, group), count)?)
+        Ok(Job::spread(gpu, "animation/drive", &self.kernel, group, count)?)
     }
 }

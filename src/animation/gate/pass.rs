@@ -108,7 +108,7 @@ impl GatePass {
         };
         // One thread per word of bits, or one per instance if words depend on each other.
         let threads = params.instances * if is_bounded { 1 } else { params.words };
-        let job = Job::spread(gpu, "animation/gate", (kernel, group.bind(gpu, kernel)?), threads)?;
+        let job = Job::spread(gpu, "animation/gate", kernel, group.bind(gpu, kernel)?, threads)?;
         Ok(GateJob { work: Work::Gate { params, uniform, job } })
     }
 }

@@ -38,7 +38,7 @@ impl KeyframeCursorPass {
         let listed = Listed { instances: &words, dispatches: &dispatches, history: &history };
         let group = bind(&self.all, gpu, &uniform, clips, crowd, &listed)?;
         let threads = params.entries * params.timelines;
-        let job = Job::spread(gpu, "animation/keyframe_cursor", (&self.all, group), threads)?;
+        let job = Job::spread(gpu, "animation/keyframe_cursor", &self.all, group, threads)?;
         Ok(ParamsJob { params, uniform, job })
     }
 

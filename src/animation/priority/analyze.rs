@@ -3,6 +3,7 @@
 
 use super::{Differences, Weights};
 use crate::InputError;
+use crate::animation::instance::Wrap;
 use crate::animation::local_to_model::reference::{affine, local_to_model, product};
 use crate::animation::sample::reference::{sample, sample_bone};
 use crate::asset::clip::Clip;
@@ -14,7 +15,7 @@ use crate::asset::transform::{Affine, Transform};
 const MOMENTS: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
 
 impl Weights {
-    /// Derives the weights of the first five terms from a clip. It freezes each bone from each of its keys to the next and
+    /// Derives the weights of the first five terms from a clip that plays with `wrap`. It freezes each bone from each of its keys to the next and
     /// measures the errors in model space. A non-negative least squares fit of the terms to these errors gives the weights. The
     /// user's term keeps its default weight, and the fit divides the rest. The result is the default weights if nothing moves
     /// in the clip, or if no term has an effect.
@@ -24,8 +25,8 @@ impl Weights {
     ///
     /// # Errors
     /// [`InputError`] for a clip of another skeleton.
-    pub fn analyze(skeleton: &Skeleton, clip: &Clip, loops: bool) -> Result<Self, InputError> {
-        let differences = Differences::new(skeleton, clip, loops)?;
+    pub fn analyze(skeleton: &Skeleton, clip: &Clip, wrap: Wrap) -> Result<Self, InputError> {
+        let differences = Differences::new(skeleton, clip, wrap)?;
         let errors = freezing_errors(skeleton, clip, &differences);
         let largest = errors.iter().copied().fold(0.0, f64::max);
         // Nothing is left to freeze after the last key.
@@ -233,7 +234,7 @@ mod tests {
     #[test]
     fn the_error_of_freezing_is_the_one_computed_by_hand() {
         let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [4.0, 0.0, 0.0, 0.0]]), None, None]);
-        let differences = Differences::new(&skeleton, &clip, true).expect("fits");
+        let differences = Differences::new(&skeleton, &clip, Wrap::Loop).expect("fits");
         let errors = freezing_errors(&skeleton, &clip, &differences);
         let expected = (2.0 * (1.0 + 4.0 + 9.0 + 16.0) / 12.0_f64).sqrt();
         assert!((errors[0] - expected).abs() < 1e-6 && errors[1] == 0.0, "{errors:?} {expected}");
@@ -244,7 +245,7 @@ mod tests {
     fn the_part_that_moves_gets_the_weight() {
         let distances = [0.0, 1.0, 1.5, 4.0, 0.0].map(|x| [x, 0.0, 0.0, 0.0]);
         let (skeleton, clip) = chain([keys(&[0.0, 1.0, 2.0, 3.0, 4.0], &distances), None, None]);
-        let weights = Weights::analyze(&skeleton, &clip, true).expect("fits");
+        let weights = Weights::analyze(&skeleton, &clip, Wrap::Loop).expect("fits");
         assert!(weights.validate().is_ok());
         assert!(
             (weights.0[0] - 5.0 / 6.0).abs() < 1e-3 && (weights.0[5] - 1.0 / 6.0).abs() < 1e-12,
@@ -255,7 +256,7 @@ mod tests {
     #[test]
     fn nothing_moving_gives_the_default() {
         let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [0.0; 4]]), None, None]);
-        assert_eq!(Weights::analyze(&skeleton, &clip, true), Ok(Weights::default()));
+        assert_eq!(Weights::analyze(&skeleton, &clip, Wrap::Loop), Ok(Weights::default()));
     }
 
     /// The fit explains the errors better than equal weights do.
@@ -263,9 +264,9 @@ mod tests {
     fn the_creatures_weights_fit_better_than_equal_ones() {
         let model = creature().expect("valid");
         for clip in &model.clips {
-            let weights = Weights::analyze(&model.skeleton, clip, true).expect("fits");
+            let weights = Weights::analyze(&model.skeleton, clip, Wrap::Loop).expect("fits");
             assert!(weights.validate().is_ok());
-            let differences = Differences::new(&model.skeleton, clip, true).expect("fits");
+            let differences = Differences::new(&model.skeleton, clip, Wrap::Loop).expect("fits");
             let terms = differences.terms(&model.skeleton);
             let errors = freezing_errors(&model.skeleton, clip, &differences);
             // Each with its best scale.

@@ -2,6 +2,7 @@
 
 use super::NOISE;
 use crate::InputError;
+use crate::animation::instance::Wrap;
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::animation::sample::reference::sample_bone;
 use crate::asset::clip::{Clip, TransformPart};
@@ -28,7 +29,7 @@ pub(super) struct Differences {
 }
 
 impl Differences {
-    pub(super) fn new(skeleton: &Skeleton, clip: &Clip, loops: bool) -> Result<Self, InputError> {
+    pub(super) fn new(skeleton: &Skeleton, clip: &Clip, wrap: Wrap) -> Result<Self, InputError> {
         InputError::check_same("clip.bones", clip.bones(), skeleton.len(), "as the skeleton's")?;
         let mut all = Self { keys: Vec::new(), offsets: vec![0], size: size(skeleton) };
         let above = skeleton.scales_above();
@@ -40,7 +41,7 @@ impl Differences {
             };
             let at = |time: f32| sample_bone(clip, bone, time, RotationPath::Slerp);
             for (key, time) in times.iter().enumerate() {
-                let next = times.get(key + 1).or_else(|| times.first().filter(|_| loops));
+                let next = times.get(key + 1).or_else(|| times.first().filter(|_| wrap == Wrap::Loop));
                 let change = next.map_or([0.0; 3], |next| change(&at(*time), &at(*next)));
                 let until = times.get(key + 1).copied().unwrap_or(*time);
                 let (bone, key) = (bone as u32, key as u32);

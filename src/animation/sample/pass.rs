@@ -59,7 +59,7 @@ impl SamplePass {
         let dispatched = Buffer::from_slice(gpu, "no pairs", &[0; 4])?;
         let kernel = &self.all[usize::from(clips.has_splines)];
         let group = bind(kernel, gpu, clips, crowd, [&pairs, &dispatched])?;
-        Ok(Job::spread(gpu, "animation/sample", (kernel, group), crowd.pairs() as u32)?)
+        Ok(Job::spread(gpu, "animation/sample", kernel, group, crowd.pairs() as u32)?)
     }
 
     /// Prepares the sampling of the active pairs; all other local transforms stay unchanged.

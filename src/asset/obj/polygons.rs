@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn polygons_are_covered_once() {
         assert_eq!(covered(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), 2.0);
-        // An arrowhead, started at every corner: fans from three of its corners leave it.
+        // An arrowhead, listed from each of its corners. A triangle fan from three of them leaves the polygon.
         let arrow = [[0.0, 0.0], [2.0, 3.0], [0.0, 2.0], [-2.0, 3.0]];
         for turn in 0..4 {
             let mut arrow = arrow;

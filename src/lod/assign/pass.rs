@@ -37,6 +37,6 @@ impl AssignPass {
     ) -> Result<Job, Error> {
         let lengths = bindings::Lengths { instances: instances as usize };
         let group = buffers.bind(gpu, &self.kernel, params, &lengths)?;
-        Ok(Job::spread(gpu, "lod/assign", (&self.kernel, group), instances)?)
+        Ok(Job::spread(gpu, "lod/assign", &self.kernel, group, instances)?)
     }
 }

@@ -41,6 +41,6 @@ impl AttachPass {
         let placements = if is_kept { 2 } else { 1 } * instances;
         let lengths = bindings::Lengths { attachments, instances, placements };
         let group = buffers.bind(gpu, &self.kernel, params, &lengths)?;
-        Ok(Job::spread(gpu, "lod/attach", (&self.kernel, group), attachments as u32)?)
+        Ok(Job::spread(gpu, "lod/attach", &self.kernel, group, attachments as u32)?)
     }
 }

@@ -32,6 +32,6 @@ impl DecidePass {
     pub fn prepare(&self, gpu: &Gpu, buffers: DecideBuffers<'_>) -> Result<Job, Error> {
         let blocks = buffers.block_objects.len();
         let group = buffers.bind(gpu, &self.kernel, &bindings::Lengths { blocks })?;
-        Ok(Job::spread(gpu, "lod/decide", (&self.kernel, group), BLOCK * blocks as u32)?)
+        Ok(Job::spread(gpu, "lod/decide", &self.kernel, group, BLOCK * blocks as u32)?)
     }
 }

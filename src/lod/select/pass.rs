@@ -31,6 +31,6 @@ impl SelectPass {
     pub fn prepare(&self, gpu: &Gpu, buffers: SelectBuffers<'_>) -> Result<Job, Error> {
         let blocks = buffers.block_objects.len();
         let group = buffers.bind(gpu, &self.kernel, &bindings::Lengths { blocks })?;
-        Ok(Job::spread(gpu, "lod/select", (&self.kernel, group), BLOCK * blocks as u32)?)
+        Ok(Job::spread(gpu, "lod/select", &self.kernel, group, BLOCK * blocks as u32)?)
     }
 }

@@ -32,6 +32,6 @@ impl SortedPass {
         let uniform = Uniform::new(gpu, "single", &SortedParams { count })?;
         let lengths = bindings::Lengths { sorted: count as usize };
         let group = buffers.bind(gpu, &self.kernel, &uniform, &lengths)?;
-        Ok(Job::spread(gpu, "lod/sorted", (&self.kernel, group), count)?)
+        Ok(Job::spread(gpu, "lod/sorted", &self.kernel, group, count)?)
     }
 }

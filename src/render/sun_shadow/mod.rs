@@ -115,7 +115,7 @@ impl SunShadow {
     }
 
     /// Restricts casters to instances whose visibility mask ([`Scene::set_visibility_mask`]) shares a bit with `mask`.
-    /// At first all instances that cast do.
+    /// The default shows all casters.
     pub fn set_mask(&mut self, mask: u16) {
         self.view.set_mask(mask);
     }

@@ -84,6 +84,26 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for instances that do not exist any more, for a mesh or a character that is not one, for a bone that
     /// the model does not have, and for an offset that is not finite, has no rotation, or scales by 0.
+    ///
+    /// # Examples
+    ///
+    /// A sword in a hand, 10 cm along the bone's +Y axis in the world.
+    ///
+    /// ```no_run
+    /// # use relievo::asset::Transform;
+    /// # use relievo::scene::{InstanceId, Scene};
+    /// # fn example(scene: &mut Scene, sword: InstanceId, fighter: InstanceId) -> Result<(), relievo::Error> {
+    /// let hand = scene.bone(fighter, "hand_right")?;
+    /// let offset = Transform { translation: [0.0, 0.1, 0.0], ..Transform::IDENTITY };
+    /// let offset = scene.pose(fighter)?.offset_of_world_units(hand, offset)?;
+    /// scene.attach(sword, fighter, "hand_right", offset)?;
+    /// // … later, it falls where it is:
+    /// let (_, _, place) = scene.world_from_model(sword)?.to_scale_rotation_translation();
+    /// scene.detach(sword)?;
+    /// scene.move_to(sword, relievo::scene::Placement::at_world(place))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn attach(
         &mut self,
         mesh: InstanceId,

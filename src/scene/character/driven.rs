@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Character;
 use crate::animation::compact::CompactPass;
-use crate::animation::drive::{DrivePass, driven_words};
+use crate::animation::drive::{DrivePass, DrivenBones, driven_words};
 use crate::animation::order::Order;
 use crate::asset::Transform;
 use crate::gpu::{Gpu, Staged, Upload as _};
@@ -83,7 +83,8 @@ impl Character {
         }
         for runtime in self.runtimes.iter_mut().filter(|runtime| runtime.driven_version != *version) {
             let (from, to) = (runtime.slots.start as u32, runtime.slots.end as u32);
-            let own = bones.range(from..to).map(|(index, bones)| (*index - from, &bones[..]));
+            let own =
+                bones.range(from..to).map(|(index, bones)| DrivenBones { instance: *index - from, bones });
             let words = driven_words(&Order::new(&self.merged.model.skeleton), own);
             runtime.driven = None;
             if !words.is_empty() {

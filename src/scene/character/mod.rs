@@ -55,7 +55,7 @@ pub(super) struct Character {
     /// Root motion extracted from each clip.
     motions: Option<Vec<RootMotion>>,
     shared: Shared,
-    /// One per chunk of instances, in ascending order.
+    /// Runtime of each chunk of instances, in ascending order.
     runtimes: Vec<Runtime>,
     /// Resources replaced since the last frame.
     replaced: Replaced,

@@ -25,7 +25,7 @@ impl Character {
         Ok(self.sphere_as_played(index))
     }
 
-    /// Resets an instance to the first clip. Returns a sphere around it.
+    /// Resets an instance to the first clip. Returns the instance's bounding sphere.
     pub fn play_first(&mut self, index: u32) -> BoundingSphere {
         self.plays[index as usize] = Playing::REST;
         self.changed.add(index, self.plays.len());

@@ -19,7 +19,7 @@ use crate::shared::lod::assign::AssignParams;
 use crate::skinning::buffers::MeshBuffers;
 use crate::skinning::clusters::Clusters;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
-use crate::skinning::paged::PagedSkin;
+use crate::skinning::paged::{PagedSkin, PagedSkinOptions};
 
 /// Data shared by all chunks.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl Shared {
         Ok(Self { set, gate, masks, clips, meshes })
     }
 
-    /// The same on another device.
+    /// Shared data of the same character on another device.
     pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
         Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
     }
@@ -122,9 +122,9 @@ impl Runtime {
         for (mesh, (buffers, clusters)) in model.meshes.iter().zip(&shared.meshes) {
             let of_levels = buffers.levels.iter().map(|level| level.clusters).collect();
             let paging = Paging::new(of_levels, slots.len(), gpu.max_binding(), keeps_last);
-            let own = (buffers.clone(), clusters.clone());
-            let room = (slots.len(), paging.initial(), keeps_last);
-            let skin = PagedSkin::of_mesh(gpu, own, frame.model_matrices(), room)?;
+            let room = PagedSkinOptions { instances: slots.len(), pages: paging.initial(), keeps_last };
+            let matrices = frame.model_matrices();
+            let skin = PagedSkin::of_mesh(gpu, buffers.clone(), clusters.clone(), matrices, room)?;
             if !mesh.targets.is_empty() {
                 let keys = WeightSet::new(mesh, &shared.set, &every)?;
                 let pass = MorphWeightsPass::new(gpu)?;

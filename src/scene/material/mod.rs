@@ -86,7 +86,7 @@ impl PartMaterials {
         Ok(all.with_kinds(&table))
     }
 
-    /// The same, with the flags for pipelines that a table implies.
+    /// These materials, with the flags for pipelines that a table implies.
     fn with_kinds(self, table: &[SceneMaterial]) -> Self {
         Self {
             normal_mapped: table.iter().any(|entry| entry.normal_layer != NO_LAYER),
@@ -106,8 +106,8 @@ impl PartMaterials {
         self.colors.images.contains(&image) || self.normals.images.contains(&image)
     }
 
-    /// The same, with the present materials and images of `looks`. Only the table changes if every image is in the arrays
-    /// already. Otherwise, or if `anew`, everything is uploaded again.
+    /// These materials with the present materials and images of `looks`. If every image is in the texture arrays already, only
+    /// the table changes. Otherwise, or with `anew`, all textures are uploaded again.
     ///
     /// # Errors
     /// As for [`PartMaterials::new`].

@@ -178,22 +178,13 @@ impl KindProgram {
         })
     }
 
-    /// Creates bind group 2 for a [`KindPart`](crate::scene::kind::KindPart), from the resources of its bindings in any
-    /// order.
+    /// Creates bind group 2 for a [`KindPart`](crate::scene::kind::KindPart) from its entries, in any order.
     ///
     /// # Errors
     /// [`GpuError`] for a resource that does not fit.
-    pub fn bind(
-        &self,
-        gpu: &Gpu,
-        resources: &[(u32, wgpu::BindingResource<'_>)],
-    ) -> Result<wgpu::BindGroup, GpuError> {
-        let entries: Vec<_> = (resources.iter())
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
-            .collect();
+    pub fn bind(&self, gpu: &Gpu, entries: &[wgpu::BindGroupEntry<'_>]) -> Result<wgpu::BindGroup, GpuError> {
         let layout = self.layout(gpu)?;
-        let descriptor =
-            wgpu::BindGroupDescriptor { label: Some(&self.0.name), layout: &layout, entries: &entries };
+        let descriptor = wgpu::BindGroupDescriptor { label: Some(&self.0.name), layout: &layout, entries };
         gpu.scoped(|| gpu.device().create_bind_group(&descriptor))
     }
 }

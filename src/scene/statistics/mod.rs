@@ -123,6 +123,23 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Scene, View};
+    /// # fn example(scene: &mut Scene, view: &mut View) -> Result<(), relievo::Error> {
+    /// scene.set_statistics(true)?; // once
+    /// // In each frame; the counts are some frames old.
+    /// for object in view.statistics().map_or(&[][..], |counted| &counted.objects) {
+    ///     println!("{:?}: {} triangles", object.object, object.triangles());
+    /// }
+    /// if let Some(times) = scene.stage_times() {
+    ///     println!("skinning: {} of {}", times.skin, times.total());
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_statistics(&mut self, counted: bool) -> Result<(), Error> {
         self.counted = counted;
         self.counts = None;

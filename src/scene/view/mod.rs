@@ -177,6 +177,19 @@ impl View {
     /// # Errors
     /// [`InputError`] as [`Camera::validate`], for a projection that is neither perspective nor parallel, and for a near
     /// plane that, by `depth`, is not ahead of the eye. The camera then stays unchanged.
+    ///
+    /// # Examples
+    ///
+    /// In each frame, from the south and above.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Camera, View};
+    /// # fn example(view: &mut View, size: [u32; 2]) -> Result<(), relievo::Error> {
+    /// let (eye, target) = ([650.0, 40.0, 700.0], [650.0, 20.0, 600.0]);
+    /// view.set(Camera::looking_at_world(eye, target, 0.8, [0.1, 2000.0], size))?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set(&mut self, camera: Camera) -> Result<(), InputError> {
         camera.validate()?;
         lod_camera(&camera, camera.cell, self.quality.pixels)?;
@@ -188,6 +201,19 @@ impl View {
     ///
     /// # Errors
     /// [`InputError`] as [`Quality::validate`].
+    ///
+    /// # Examples
+    ///
+    /// Coarser while the camera moves, and never more than a million triangles.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{Quality, View};
+    /// # fn example(view: &mut View, is_moving: bool) -> Result<(), relievo::Error> {
+    /// let pixels = if is_moving { 2.0 } else { 0.5 };
+    /// view.set_quality(Quality { triangles: Some(1_000_000), ..Quality::pixels(pixels) })?;
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_quality(&mut self, quality: Quality) -> Result<(), InputError> {
         quality.validate()?;
         let had = self.has_budget();
@@ -226,6 +252,20 @@ impl View {
 
     /// Sets the view's mask: it shows only instances whose visibility mask
     /// ([`Scene::set_visibility_mask`](super::Scene::set_visibility_mask)) shares a bit with `mask`. The default shows all.
+    ///
+    /// # Examples
+    ///
+    /// A minimap without the instances that are marked as small.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{InstanceId, Scene, View};
+    /// # fn example(scene: &mut Scene, minimap: &mut View, flower: InstanceId) -> Result<(), relievo::Error> {
+    /// const SMALL: u16 = 1;
+    /// scene.set_visibility_mask(flower, SMALL)?;
+    /// minimap.set_mask(!SMALL);
+    /// # Ok(())
+    /// # }
+    /// ```
     pub fn set_mask(&mut self, mask: u16) {
         self.mask = mask;
     }

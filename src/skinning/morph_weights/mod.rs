@@ -49,7 +49,7 @@ impl WeightEntry {
 /// The keys of a mesh's morph weights in several clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightSet {
-    /// One per clip of the set.
+    /// Keys of each clip of the set.
     pub entries: Vec<WeightEntry>,
     /// Key times in seconds.
     pub times: Vec<f32>,

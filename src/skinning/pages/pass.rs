@@ -132,6 +132,6 @@ impl PagesPass {
         };
         // One workgroup processes all instances.
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "skinning/pages", (&self.kernel, group), 1)?)
+        Ok(Job::spread(gpu, "skinning/pages", &self.kernel, group, 1)?)
     }
 }

@@ -60,6 +60,6 @@ impl PalettePass {
             palette: crowd.palette.slice(),
         };
         let group = group.bind(gpu, kernel)?;
-        Ok(Job::spread(gpu, "skinning/palette", (kernel, group), params.pairs)?)
+        Ok(Job::spread(gpu, "skinning/palette", kernel, group, params.pairs)?)
     }
 }

@@ -9,7 +9,7 @@ use crate::skinning::select::ClusterState;
 pub struct Now<'a> {
     /// The updated bones of each instance, in [`Clusters::mask_words`] words per instance.
     pub updated_bones: &'a [u32],
-    /// One per instance.
+    /// Level of detail of each instance.
     pub instance_lods: &'a [InstanceLod],
     /// Weights of morph targets, instance by instance.
     pub weights: &'a [f32],

@@ -13,7 +13,7 @@ use crate::{Error, InputError};
 pub struct SkinPass {
     /// Kernels for the mesh's vertices, and for morphed ones.
     kernels: [Kernel; 2],
-    /// The same for paged vertices.
+    /// Kernels for paged vertices, in the same order.
     paged: [Kernel; 2],
     blend: Blend,
 }

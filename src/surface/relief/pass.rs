@@ -61,6 +61,6 @@ impl ReliefPass {
             hits: hits.slice(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "surface/relief", (&self.kernel, group), rays.len() as u32)?)
+        Ok(Job::spread(gpu, "surface/relief", &self.kernel, group, rays.len() as u32)?)
     }
 }

@@ -84,6 +84,6 @@ impl TangentPass {
             tangents: tangents.slice(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "surface/tangent", (&self.kernel, group), vertices)?)
+        Ok(Job::spread(gpu, "surface/tangent", &self.kernel, group, vertices)?)
     }
 }

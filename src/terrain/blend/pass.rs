@@ -7,7 +7,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::blend::MapParams;
 use crate::shared::terrain::light::Light;
 use crate::terrain::config::HEIGHT_ONE;
-use crate::terrain::cover::{Cover, planes};
+use crate::terrain::cover::Cover;
 use crate::terrain::fields::Fields;
 
 /// Draws the top-down colour maps of patches.
@@ -78,7 +78,7 @@ fn params(cover: &Cover, shading: &Shading, windows: &Fields) -> MapParams {
         run: (2.0 * cover.terrain_scale * HEIGHT_ONE) as f32,
         zone_count: cover.zones.len() as u32,
         additive: shading.weights.code(),
-        planes: planes(cover.triplanar),
+        planes: cover.planes(),
         tiles_per_sample,
         tiles_per_unit,
         variation: cover.variation,

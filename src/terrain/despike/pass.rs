@@ -26,13 +26,20 @@ pub struct DespikePass {
 }
 
 impl DespikePass {
-    /// Compiles the pipeline. `with_features` tells whether there are injected points, which the kernel leaves alone.
+    /// Compiles the pipeline for windows without injected points; it ignores [`DespikeBuffers::features`].
     ///
     /// # Errors
     /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu, with_features: bool) -> Result<Self, GpuError> {
-        let constants = bindings::Constants { features: with_features.into() };
-        Ok(Self { kernel: bindings::kernel(gpu, &constants)? })
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { features: 0 })? })
+    }
+
+    /// Compiles the pipeline for windows with injected points, which the kernel leaves alone.
+    ///
+    /// # Errors
+    /// Shader compilation errors of the driver.
+    pub fn with_features(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { features: 1 })? })
     }
 
     /// Prepares the despiking of windows.

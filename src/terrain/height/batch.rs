@@ -1,11 +1,11 @@
 //! Batches of windows of any size, split where they exceed a storage binding.
 
-use super::{HeightJob, HeightPass, HeightScratch};
+use super::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
 use crate::gpu::Gpu;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fields::Fields;
-use crate::terrain::window::Window;
+use crate::terrain::window::{Window, Windows};
 use crate::{Error, InputError};
 
 /// A batch of any size. It is split at storage bindings of 128 MiB, and recorded as one.
@@ -17,7 +17,7 @@ pub struct HeightBatch {
 }
 
 impl HeightBatch {
-    /// Allocates all buffers for `count` windows with `apron`, and for `feature_capacity` injected points in each part.
+    /// Allocates all buffers for `windows`, and for `feature_capacity` injected points in each part.
     ///
     /// # Errors
     /// [`InputError`] as [`HeightPass::prepare`]; [`crate::gpu::GpuError`].
@@ -25,25 +25,26 @@ impl HeightBatch {
         gpu: &Gpu,
         pass: &HeightPass,
         config: &TerrainConfig,
-        [count, apron]: [u32; 2],
+        windows: Windows,
         feature_capacity: usize,
     ) -> Result<Self, Error> {
+        let Windows { count, apron } = windows;
         config.validate()?;
         Window { patch: [0, 0], apron }.validate(config)?;
         let largest = Fields::most(gpu, config.patch_size + 2 * apron) as u32;
         let parts = count.div_ceil(largest).max(1);
-        let scratch = HeightScratch::new(gpu, config, [count.div_ceil(parts), apron])?;
+        let scratch = HeightScratch::new(gpu, config, Windows { count: count.div_ceil(parts), apron })?;
         let (mut jobs, mut fields) = (Vec::new(), Vec::new());
         for part in 0..parts {
             let size = count * (part + 1) / parts - count * part / parts;
             let output = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, size)?;
+            let buffers = HeightBuffers { output: &output.heights, scratch: &scratch };
             jobs.push(pass.prepare(
                 gpu,
                 config,
-                [size, apron],
+                Windows { count: size, apron },
                 feature_capacity,
-                &output.heights,
-                &scratch,
+                buffers,
             )?);
             fields.push(output);
         }

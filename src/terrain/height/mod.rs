@@ -8,7 +8,7 @@ mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use crate::terrain::levels::{HeightJob, HeightScratch};
+pub use crate::terrain::levels::{HeightBuffers, HeightJob, HeightScratch};
 #[cfg(feature = "gpu")]
 pub use batch::HeightBatch;
 #[cfg(feature = "gpu")]

@@ -1,10 +1,11 @@
 //! The GPU pass of `kernels/terrain/height.wgsl`: one dispatch per level, for a batch of windows.
 
 use crate::gpu::bindings::terrain::height as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
+use crate::gpu::{Gpu, GpuError, Group, Kernel};
 use crate::terrain::config::{Border, HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
+use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass};
+use crate::terrain::window::Windows;
 use crate::{Error, InputError};
 
 /// Diamond-square heights of `seamless` windows. A pass is compiled for one distribution and one mode of
@@ -24,8 +25,8 @@ impl HeightPass {
         Ok(Self(LevelPass { label: "terrain/height", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `count` windows with `apron` into `output`, which must hold [`HeightJob::output_points`]
-    /// heights. `feature_capacity` is the largest number of injected points; a point counts once for every window that sees it.
+    /// Prepares the generation of `windows`. `feature_capacity` is the largest number of injected points; a point counts once for
+    /// every window that sees it.
     ///
     /// # Errors
     /// [`InputError`] for a configuration that is not `seamless` or out of bounds, an apron out of bounds, or buffers that are
@@ -34,10 +35,9 @@ impl HeightPass {
         &self,
         gpu: &Gpu,
         config: &TerrainConfig,
-        [count, apron]: [u32; 2],
+        windows: Windows,
         feature_capacity: usize,
-        output: &Buffer<i32>,
-        scratch: &HeightScratch,
+        buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
         config.validate()?;
         if config.border != Border::Seamless {
@@ -50,7 +50,7 @@ impl HeightPass {
             let bound = "must be \"linear\" in this pass: SmoothPass makes the others";
             return Err(InputError::new("interpolation", "smooth", bound).into());
         }
-        self.0.prepare(gpu, config, [count, apron], feature_capacity, output, scratch)
+        self.0.prepare(gpu, config, windows, feature_capacity, buffers)
     }
 }
 

@@ -62,7 +62,7 @@ impl HeightMorphPass {
             heights: heights.slice().cast(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        let job = Job::spread(gpu, "terrain/morph", (&self.kernel, group), vectors)?;
+        let job = Job::spread(gpu, "terrain/morph", &self.kernel, group, vectors)?;
         Ok(ParamsJob { params, uniform, job })
     }
 }

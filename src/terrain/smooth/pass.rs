@@ -1,10 +1,11 @@
 //! The GPU pass of `kernels/terrain/smooth.wgsl`: one dispatch per level, for a batch of windows.
 
 use crate::gpu::bindings::terrain::smooth as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
+use crate::gpu::{Gpu, GpuError, Group, Kernel};
 use crate::terrain::config::{HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
+use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass};
+use crate::terrain::window::Windows;
 use crate::{Error, InputError};
 
 /// Heights of smooth `seamless` windows. A pass is compiled for one distribution and one mode of injection.
@@ -23,8 +24,8 @@ impl SmoothPass {
         Ok(Self(LevelPass { label: "terrain/smooth", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `count` windows with `apron` into `output`, which must hold [`HeightJob::output_points`]
-    /// heights. `feature_capacity` is the largest number of injected points; a point counts once for every window that sees it.
+    /// Prepares the generation of `windows`. `feature_capacity` is the largest number of injected points; a point counts once for
+    /// every window that sees it.
     ///
     /// # Errors
     /// [`InputError`] for a configuration that is not smooth or out of bounds, an apron out of bounds, or buffers that are too
@@ -33,17 +34,16 @@ impl SmoothPass {
         &self,
         gpu: &Gpu,
         config: &TerrainConfig,
-        [count, apron]: [u32; 2],
+        windows: Windows,
         feature_capacity: usize,
-        output: &Buffer<i32>,
-        scratch: &HeightScratch,
+        buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
         config.validate()?;
         if config.interpolation != HeightInterpolation::Smooth {
             let bound = "must be \"smooth\" in this pass: HeightPass makes the others";
             return Err(InputError::new("interpolation", "linear", bound).into());
         }
-        self.0.prepare(gpu, config, [count, apron], feature_capacity, output, scratch)
+        self.0.prepare(gpu, config, windows, feature_capacity, buffers)
     }
 }
 

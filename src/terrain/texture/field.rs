@@ -10,7 +10,7 @@ const EDGE: usize = TEXTURE_SIZE as usize;
 /// One number per texel, row by row.
 pub type Field = Vec<f32>;
 
-/// Evaluates `of` at the middle of each texel, 0 to 1 along each edge.
+/// Evaluates `of` at the texture coordinates of each texel's centre, 0 to 1. The results are row by row.
 pub fn made<T: Send>(of: impl Fn([f32; 2]) -> T + Sync) -> Vec<T> {
     let middle = |index: usize| (index as f32 + 0.5) / EDGE as f32;
     (0..EDGE * EDGE).into_par_iter().map(|at| of([middle(at % EDGE), middle(at / EDGE)])).collect()

@@ -68,9 +68,9 @@ pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
 /// Cell of a point in Worley noise, with one random feature point per lattice square.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
-    /// Distances to the nearest and the second nearest feature point, in squares.
+    /// Distances to the nearest and the second nearest feature point, in edges of a lattice square.
     pub distances: [f32; 2],
-    /// Vector from the nearest feature point, in squares.
+    /// Vector from the nearest feature point, in edges of a lattice square.
     pub offset: [f32; 2],
     /// Random word of the cell.
     pub word: u32,

@@ -1,10 +1,11 @@
 //! The GPU pass of `kernels/terrain/wrap.wgsl`: one dispatch per level, for a batch of patches.
 
 use crate::gpu::bindings::terrain::wrap as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Kernel};
+use crate::gpu::{Gpu, GpuError, Group, Kernel};
 use crate::terrain::config::{Border, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::levels::{HeightJob, HeightScratch, LevelBuffers, LevelPass};
+use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass};
+use crate::terrain::window::Windows;
 use crate::{Error, InputError};
 
 /// Diamond-square heights of patches that are generated alone. A pass is compiled for one distribution and one mode of
@@ -24,8 +25,8 @@ impl WrapPass {
         Ok(Self(LevelPass { label: "terrain/wrap", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `count` patches into `output`, which must hold patchSize² heights per patch.
-    /// `feature_capacity` is the largest number of injected points. `scratch` must have been made for windows without an apron.
+    /// Prepares the generation of `count` patches into an output of patchSize² heights per patch. `feature_capacity` is the
+    /// largest number of injected points. The scratch must have been made for windows without an apron.
     ///
     /// # Errors
     /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short; [`GpuError`].
@@ -35,15 +36,14 @@ impl WrapPass {
         config: &TerrainConfig,
         count: u32,
         feature_capacity: usize,
-        output: &Buffer<i32>,
-        scratch: &HeightScratch,
+        buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
         config.validate()?;
         if config.border == Border::Seamless {
             let bound = "must be \"wrap\" or {\"blend\": samples} for patches by themselves";
             return Err(InputError::new("border", "\"seamless\"", bound).into());
         }
-        self.0.prepare(gpu, config, [count, 0], feature_capacity, output, scratch)
+        self.0.prepare(gpu, config, Windows { count, apron: 0 }, feature_capacity, buffers)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Converts and checks the arguments of `relievo crowd` before a model is read.
 
 use relievo::asset::Model;
-use relievo::ops::animation::Range;
 use relievo::ops::animation::priority::Weights;
+use relievo::ops::animation::{Range, Wrap};
 use relievo::{Error, InputError};
 use relievo_lab::measure::{
     CrowdOptions, Detail, DrawnOptions, GateMode, GateName, LodOptions, ParetoOptions, Subject,
@@ -49,7 +49,7 @@ impl Plan {
         let model = if a.is_drawn() { a.model.open()? } else { a.model.open_bare()? };
         let clip = a.model.clip(&model, &a.clip)?;
         pareto.weights =
-            priorities::weights(a.weights.as_deref(), &model.skeleton, &model.clips[clip], true)?;
+            priorities::weights(a.weights.as_deref(), &model.skeleton, &model.clips[clip], Wrap::Loop)?;
         if let GateMode::SkipPeriod { weights, .. } = &mut lod.gate {
             *weights = pareto.weights;
         }

@@ -6,11 +6,12 @@ use relievo::Error;
 use relievo::asset::Model;
 use relievo::gpu::{Gpu, Options};
 use relievo::ops::animation::ModelMatrices;
-use relievo::ops::skinning::frame::SkinFrame;
+use relievo::ops::skinning::frame::{SkinFrame, SkinOptions};
 use relievo::ops::skinning::{Blend, InstanceLod};
 use relievo::ops::terrain::config::{Offset, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::height::{HeightBatch, HeightPass};
+use relievo::ops::terrain::window::Windows;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Placement, Scene, TerrainSource, View};
 use relievo_samples::creature;
@@ -22,20 +23,33 @@ mod own {
 
 /// A scene in the render pass of a program.
 #[rustfmt::skip]
-fn draw(
-    (device, queue): (&wgpu::Device, &wgpu::Queue),
-    (mut encoder, mut pass): (wgpu::CommandEncoder, wgpu::RenderPass<'_>),
-    (mut scene, mut view, camera): (Scene, View, Camera),
-) -> Result<(), Error> {
+mod drawing {
     // begin README.md
-    let gpu = Gpu::from_wgpu(device.clone(), queue.clone());             // WebGPU's default limits suffice
-    let mut renderer = Renderer::new(&gpu, &TargetFormat::new(own::COLOR).with_samples(4))?;
-    renderer.prepare(&scene)?;                                           // compiles the pipelines
-    view.set(camera)?;                                                   // per frame: your own matrices
-    scene.record(&mut encoder, &mut [&mut view])?;                       // compute passes; no submission, no wait
-    renderer.draw(&mut pass, &scene, &view, Layer::Color)?;              // your render pass
+    use relievo::render::{Layer, Renderer, TargetFormat};
+    use relievo::scene::{Camera, Quality, Scene, View};
+    use relievo::{Error, gpu::Gpu, wgpu};
+
+    struct Drawing { scene: Scene, view: View, renderer: Renderer }
+
+    impl Drawing {
+        fn new(device: &wgpu::Device, queue: &wgpu::Queue, color: wgpu::TextureFormat) -> Result<Self, Error> {
+            let gpu = Gpu::from_wgpu(device.clone(), queue.clone()); // yours; WebGPU's default limits suffice
+            let scene = Scene::new(&gpu)?; // then add objects
+            let mut renderer = Renderer::new(&gpu, &TargetFormat::new(color).with_samples(4))?; // and Depth32Float
+            renderer.prepare(&scene)?; // compiles the pipelines
+            Ok(Self { view: scene.view(Quality::default())?, scene, renderer })
+        }
+
+        fn record(&mut self, camera: Camera, encoder: &mut wgpu::CommandEncoder) -> Result<(), Error> {
+            self.view.set(camera)?; // your own matrices
+            self.scene.record(encoder, &mut [&mut self.view]) // compute passes; no submission, no wait
+        }
+
+        fn draw(&self, pass: &mut wgpu::RenderPass<'_>) -> Result<(), Error> {
+            Ok(self.renderer.draw(pass, &self.scene, &self.view, Layer::Color)?) // your render pass, in each frame
+        }
+    }
     // end
-    Ok(())
 }
 
 /// A scene in a program, with what that has already.
@@ -102,7 +116,8 @@ fn heights(
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());              // yours, or Gpu::headless
     let config = TerrainConfig::new(257, 40.0, "any text")?;
     let pass = HeightPass::new(&gpu, Offset::Signed, None)?;              // compiles once
-    let batch = HeightBatch::new(&gpu, &pass, &config, [64, 1], 0)?;      // 64 patches, a sample of margin; allocates once
+    let windows = Windows { count: 64, apron: 1 };                         // patches, with a sample of margin
+    let batch = HeightBatch::new(&gpu, &pass, &config, windows, 0)?;      // no injected points; allocates once
     let land = TerrainSource::from_fields(config, batch.fields()[0].clone(), &[]); // a scene shares the heights
     let land = scene.add_terrain(&land)?;
     batch.set(&gpu, &patches, &Features::default())?;                     // which patches, and their features
@@ -120,7 +135,8 @@ fn skinning(
     lods: &[InstanceLod],
 ) -> Result<(), Error> {
     // begin docs/embedding.md
-    let skin = SkinFrame::new(&gpu, &fox, 0, matrices, 1000, Blend::Linear)?; // a mesh of 1000 instances
+    let options = SkinOptions { mesh: 0, instances: 1000, blend: Blend::Linear };
+    let skin = SkinFrame::new(&gpu, &fox, matrices, options)?;
     skin.crowd.instance_lods.write(&gpu, lods)?;                          // who is seen, how coarse
     skin.record_updated_bones(&mut encoder);                              // per frame: clusters with a bone that moved
     let (vertices, triangles) = (&skin.skinned, &skin.mesh.indices);      // instance · vertices + index

@@ -89,7 +89,7 @@ impl<'a> Stage<'a> {
             GateMode::Random => Gate::Random(animated_bones()?),
             GateMode::SkipPeriod { period, weights } => {
                 let user = vec![USER_DEFAULT; skeleton.len()];
-                let priorities = Priorities::new(skeleton, self.clip, true, &weights, &user)?;
+                let priorities = Priorities::new(skeleton, self.clip, Wrap::Loop, &weights, &user)?;
                 let table = PriorityTable::new(order, set, &clips, &[priorities])?;
                 Gate::SkipPeriod { table, period: (period * f64::from(TICKS)).round() as u32 }
             }

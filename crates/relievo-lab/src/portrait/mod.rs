@@ -26,7 +26,10 @@ use relievo::ops::skinning::vertex::{Blend, Vertex, check_range, vertices_of};
 #[cfg(not(target_arch = "wasm32"))]
 use relievo::{
     gpu::Buffer,
-    ops::{animation::ModelMatrices, skinning::frame::SkinFrame},
+    ops::{
+        animation::ModelMatrices,
+        skinning::frame::{SkinFrame, SkinOptions},
+    },
 };
 
 /// A model at one time of a clip, and how it is skinned.
@@ -128,7 +131,8 @@ impl PosedModel<'_> {
         let pose = pose(gpu, &model.skeleton, &model.clips[self.clip], self.time)?;
         let bones = ModelMatrices::new(&Buffer::from_slice(gpu, "bones", &pose.model_matrices)?);
         let skinned = |mesh: usize| {
-            let frame = SkinFrame::new(gpu, model, mesh, &bones, 1, self.blend)?;
+            let options = SkinOptions { mesh, instances: 1, blend: self.blend };
+            let frame = SkinFrame::new(gpu, model, &bones, options)?;
             frame.crowd.instance_lods.write(gpu, &[self.instance_lod])?;
             frame.crowd.weights.write(gpu, &self.weights(&model.meshes[mesh]))?;
             gpu.run("skin", |encoder| frame.record_updated_bones(encoder))?;

@@ -59,6 +59,6 @@ impl ShadePass {
             shades: shades.slice(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "surface/shade", (&self.kernel, group), points.len() as u32)?)
+        Ok(Job::spread(gpu, "surface/shade", &self.kernel, group, points.len() as u32)?)
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use relievo::ops::surface::relief::reference::ReliefSurface;
 use relievo::ops::surface::relief::{LEAST_COSINE, March, ReliefHit, ReliefMethod, ReliefRay};
 
-use crate::shade::shadow::{light_ray, shaded, soft_shadow};
+use crate::shade::shadow::{SoftShadow, light_ray, shaded, soft_shadow};
 use crate::shade::{Shade, ShadePoint, ShadeView};
 
 /// The distance of a hit behind the polygon along the eye's ray, in uv units. `scale` is the relief's depth in
@@ -49,8 +49,15 @@ pub fn shade(
     let ShadePoint { light, scale, position, world, ray, hit } = point;
     let first = surface.trace(method, &light_ray(hit, *light, *scale), march);
     let march = March { address: surface.address, ..*march };
-    let (steps, softness) = (view.shadow_steps, view.softness);
-    let soft = soft_shadow(surface.map, hit, *light, *scale, &march, steps, softness);
+    let soft = SoftShadow {
+        map: surface.map,
+        light: *light,
+        scale: *scale,
+        march: &march,
+        steps: view.shadow_steps,
+        softness: view.softness,
+    };
+    let soft = soft_shadow(&soft, hit);
     let towards = towards(view.eye.to_array(), *position);
     let distance = distance(ray, hit, *scale) * world;
     let depth = depth(view.clip_from_world.to_cols_array_2d(), *position, towards, distance);

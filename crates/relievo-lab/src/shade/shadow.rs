@@ -22,16 +22,26 @@ pub fn shaded(first: &ReliefHit, hit: &ReliefHit) -> bool {
     first.parameter < 1.0 - hit.height - BIAS
 }
 
+/// Input of [`soft_shadow`] besides the point.
+#[derive(Debug, Clone, Copy)]
+pub struct SoftShadow<'a> {
+    /// Heights, 0 to 1.
+    pub map: &'a HeightMap,
+    /// Unit vector towards the light, in tangent space.
+    pub light: [f32; 3],
+    /// Depth of the relief in uv units, 0 or more.
+    pub scale: f32,
+    /// Addressing of the map.
+    pub march: &'a March,
+    /// Number of height samples on the way to the light, 1 to [`MAX_STEPS`].
+    pub steps: u32,
+    /// Ratio at which the shadow is full, > 0 ([`ReliefMaterial::softness`](relievo::scene::ReliefMaterial::softness)).
+    pub softness: f32,
+}
+
 /// The light that reaches a point, 0 in full shadow to 1 in full light.
-pub fn soft_shadow(
-    map: &HeightMap,
-    hit: &ReliefHit,
-    light: [f32; 3],
-    scale: f32,
-    march: &March,
-    steps: u32,
-    softness: f32,
-) -> f32 {
+pub fn soft_shadow(shadow: &SoftShadow<'_>, hit: &ReliefHit) -> f32 {
+    let SoftShadow { map, light, scale, march, steps, softness } = *shadow;
     if light[2] <= 0.0 {
         return 0.0;
     }

@@ -35,7 +35,7 @@ impl Maps {
         let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(64).expect("a map"));
         Self {
             textures: SurfaceTextures::new(gpu, &height, method, Address::Wrap).expect("uploaded"),
-            albedo: ColorTexture::new(gpu, &albedo, true).expect("uploaded"),
+            albedo: ColorTexture::new(gpu, &albedo, Address::Wrap).expect("uploaded"),
         }
     }
 

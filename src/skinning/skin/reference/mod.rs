@@ -28,18 +28,29 @@ pub fn skin(
     vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
 }
 
-/// As [`skin`], for one instance of a crowd. The vertices of an invisible instance stay unchanged, as do those in
-/// clusters beyond its level of detail. `clusters` are those of the mesh.
+/// A mesh to skin, for [`skin_seen`].
+#[derive(Debug, Clone, Copy)]
+pub struct SkinnedMesh<'a> {
+    /// Its vertices, morphed or not.
+    pub vertices: &'a [Vertex],
+    /// Influences of each vertex.
+    pub influences: &'a Influences,
+    /// The arrangement of its vertices.
+    pub clusters: &'a Clusters,
+}
+
+/// As [`skin`], for one instance of a crowd. `skinned` has one vertex per vertex of the mesh. The vertices of an invisible
+/// instance stay unchanged, as do those in clusters beyond its level of detail.
 ///
 /// # Panics
 /// As [`skin`].
 pub fn skin_seen(
     skinned: &mut [Vertex],
-    vertices: &[Vertex],
-    (influences, clusters): (&Influences, &Clusters),
+    mesh: SkinnedMesh<'_>,
     palette: &Palette,
     instance_lod: InstanceLod,
 ) {
+    let SkinnedMesh { vertices, influences, clusters } = mesh;
     if instance_lod.max_influences > 0 {
         let all = skin(vertices, influences, palette, instance_lod);
         let slots = CLUSTER * clusters.level(instance_lod.mesh_lod).clusters as usize;

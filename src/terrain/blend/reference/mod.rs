@@ -31,11 +31,12 @@ fn prominence(zone: &ShaderZone, texel_height: f32) -> f32 {
     squared * squared
 }
 
-/// Fraction of each zone's colour at a height and a steepness, in the order of `zones`. `height` is in height units.
-/// `texel_heights` are the heights of the zones' texels there, 0 to 1.
+/// Fraction of each zone's colour at a height and a steepness, in the order of `zones`. `height` is in height units, `steep` is
+/// the [`steepness`], 0 to 1. `texel_heights` are the heights of the zones' texels there, 0 to 1.
 pub fn zone_fractions(
     zones: &[ShaderZone],
-    (height, steep): (f32, f32),
+    height: f32,
+    steep: f32,
     texel_heights: &[f32],
     weights: WeightMode,
 ) -> Vec<f32> {
@@ -90,9 +91,10 @@ fn ground_color(
     let texels: Vec<[f32; 4]> =
         cover.zones.iter().map(|zone| texturing::texel(cover, zone, normal, tiles)).collect();
     let texel_heights: Vec<f32> = texels.iter().map(|texel| texel[3]).collect();
-    let place = (height as f32 / 65_536.0, steepness(normal));
+    let (height, steep) = (height as f32 / 65_536.0, steepness(normal));
     let mut color = [0.0; 3];
-    for (fraction, texel) in zone_fractions(zones, place, &texel_heights, weights).iter().zip(&texels) {
+    for (fraction, texel) in zone_fractions(zones, height, steep, &texel_heights, weights).iter().zip(&texels)
+    {
         for (sum, channel) in color.iter_mut().zip(texel) {
             *sum += fraction * channel;
         }

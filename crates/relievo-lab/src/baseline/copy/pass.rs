@@ -47,6 +47,6 @@ impl CopyPass {
             destination: destination.slice().cast(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "baseline/copy", (&self.kernel, group), vectors)?)
+        Ok(Job::spread(gpu, "baseline/copy", &self.kernel, group, vectors)?)
     }
 }

@@ -50,6 +50,6 @@ impl GatherPass {
             gathered: crowd.locals.slice().cast(),
         };
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "baseline/gather", (&self.kernel, group), params.pairs)?)
+        Ok(Job::spread(gpu, "baseline/gather", &self.kernel, group, params.pairs)?)
     }
 }

@@ -4,7 +4,7 @@ use relievo::Error;
 use relievo::gpu::bindings::baseline::texels as bindings;
 use relievo::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use relievo::ops::terrain::blend::BlendBuffers;
-use relievo::ops::terrain::cover::{Cover, planes};
+use relievo::ops::terrain::cover::Cover;
 use relievo::shared::baseline::texels::TexelsParams;
 
 /// Loads the texels of colour maps.
@@ -37,7 +37,7 @@ impl TexelsPass {
         let params = TexelsParams {
             width: windows.width,
             zone_count: cover.zones.len() as u32,
-            planes: planes(cover.triplanar),
+            planes: cover.planes(),
             tiles_per_sample,
             tiles_per_unit,
         };

@@ -41,6 +41,6 @@ impl WordsPass {
         let uniform = Uniform::new(gpu, "words", &params)?;
         let group = bindings::Group { params: &uniform, words: words.slice().cast() };
         let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "baseline/words", (&self.kernel, group), params.vectors)?)
+        Ok(Job::spread(gpu, "baseline/words", &self.kernel, group, params.vectors)?)
     }
 }

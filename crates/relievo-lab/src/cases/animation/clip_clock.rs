@@ -1,7 +1,7 @@
 //! Parity and benchmark cases of `kernels/animation/clip_clock.wgsl`.
 
 use relievo::Error;
-use relievo::ops::animation::clip_clock::reference::clip_clocks;
+use relievo::ops::animation::clip_clock::reference::{PlayedCrowd, clip_clocks};
 use relievo::ops::animation::clip_clock::{ClipClock, ClipClockPass};
 use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
 use relievo::ops::animation::gate_state::GateState;
@@ -71,7 +71,15 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let ahead = [0.0, 0.25, -0.5, 1.0, 0.125][frame];
             job.set(gpu, elapsed, ahead)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
-            let expected = clip_clocks(&set, &instances, &layers, &lods, elapsed, ahead, &mut history);
+            let played = PlayedCrowd {
+                set: &set,
+                instances: &instances,
+                layers: &layers,
+                lods: &lods,
+                elapsed,
+                ahead,
+            };
+            let expected = clip_clocks(&played, &mut history);
             let near = |actual: &[ClipClock]| compare::exact(&settled(actual, &expected), &expected);
             cases.check(format!("{bones} bones × {count}, frame {frame}"), &output, near).await?;
         }
@@ -112,7 +120,9 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let (lods, mut history) = (vec![Lod::FULL; count], vec![[0; 4]; count]);
         let name = format!("{count} instances");
         measure(bench, name, (count, "instance"), 18 * count, &|encoder| job.record(encoder), || {
-            clip_clocks(&scene.set, &scene.instances, &[], &lods, 0.4, 0.0, &mut history)
+            let (set, instances) = (&scene.set, &scene.instances);
+            let played = PlayedCrowd { set, instances, layers: &[], lods: &lods, elapsed: 0.4, ahead: 0.0 };
+            clip_clocks(&played, &mut history)
         })?;
     }
     Ok(())

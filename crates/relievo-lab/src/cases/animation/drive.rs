@@ -4,7 +4,7 @@ use relievo::Error;
 use relievo::ops::animation::active::Active;
 use relievo::ops::animation::crowd::Crowd;
 use relievo::ops::animation::drive::reference::drive;
-use relievo::ops::animation::drive::{DrivePass, DrivenWord, driven_words};
+use relievo::ops::animation::drive::{DrivePass, DrivenBones, DrivenWord, driven_words};
 use relievo::ops::animation::gate_state::GateState;
 use relievo::ops::animation::order::Order;
 use relievo::ops::animation::{BoneSampling, Lod};
@@ -67,7 +67,7 @@ fn random_driven(draw: &mut Draw, kind: &str, order: &Order, count: usize) -> Ve
         (instance, (0..bones).filter(is_driven).collect::<Vec<_>>())
     };
     let all: Vec<_> = (0..count as u32).map(of_instance).collect();
-    driven_words(order, all.iter().map(|(instance, bones)| (*instance, &bones[..])))
+    driven_words(order, all.iter().map(|(instance, bones)| DrivenBones { instance: *instance, bones }))
 }
 
 /// Measures crowds of which each instance has a driven limb of eight bones.
@@ -83,7 +83,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let active = Active::new(gpu, &order, &scene.crowd)?;
         let state = GateState::new(gpu, &scene.crowd)?;
         let limb: Vec<u32> = (40..48).collect();
-        let driven = driven_words(&order, (0..count as u32).map(|instance| (instance, &limb[..])));
+        let driven =
+            driven_words(&order, (0..count as u32).map(|instance| DrivenBones { instance, bones: &limb }));
         let job = pass.prepare(gpu, &driven, &scene.crowd, &state, &active)?;
         // The kernel reads a word of driven bones, the flags of an instance, and reads and writes two words of bits.
         let words = 4 * driven.len();

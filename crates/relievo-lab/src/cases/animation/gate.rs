@@ -13,6 +13,7 @@ use relievo::ops::animation::gate::reference::gate;
 use relievo::ops::animation::gate::{Frame, Gate, GatePass};
 use relievo::ops::animation::gate_state::GateState;
 use relievo::ops::animation::gate_table::{AnimatedBones, BoundTable, PriorityTable};
+use relievo::ops::animation::instance::Wrap;
 use relievo::ops::animation::lod::{Lod, OMEGA_ONE};
 use relievo::ops::animation::order::Order;
 use relievo::ops::animation::priority::{Priorities, USER_DEFAULT, Weights};
@@ -47,7 +48,7 @@ pub(crate) fn gates(skeleton: &Skeleton, set: &ClipSet, clips: &[&Clip]) -> Resu
     let order = Order::new(skeleton);
     let weights = Weights::default();
     let user = vec![USER_DEFAULT; skeleton.len()];
-    let of = |clip: &&Clip| Priorities::new(skeleton, clip, true, &weights, &user);
+    let of = |clip: &&Clip| Priorities::new(skeleton, clip, Wrap::Loop, &weights, &user);
     let priorities = clips.iter().map(of).collect::<Result<Vec<_>, _>>()?;
     let bones = AnimatedBones::new(&order, set, clips)?;
     let bone_radii = vec![0.5; skeleton.len()];

@@ -9,7 +9,7 @@ use relievo::ops::animation::instance::{Instance, Wrap};
 use relievo::ops::animation::keyframe_cursor::reference::inside_clip;
 use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use relievo::ops::skinning::instance_lod::InstanceLod;
-use relievo::ops::skinning::morph_weights::reference::morph_weights;
+use relievo::ops::skinning::morph_weights::reference::{MorphedCrowd, morph_weights};
 use relievo::ops::skinning::morph_weights::{MORPH_WEIGHTS_BOUND, MorphWeightsPass, WeightSet};
 use relievo::ops::skinning::vertex::Blend;
 use relievo::{Error, InputError};
@@ -65,7 +65,15 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 job.set(gpu, elapsed)?;
                 gpu.submit("verify", |encoder| job.record(encoder))?;
                 let mut expected = vec![f32::from_bits(POISON); count * shape.targets];
-                morph_weights(mesh, (&set, &clips), &instances, &instance_lods, elapsed, &mut expected);
+                let crowd = MorphedCrowd {
+                    mesh,
+                    set: &set,
+                    clips: &clips,
+                    instances: &instances,
+                    instance_lods: &instance_lods,
+                    elapsed,
+                };
+                morph_weights(&crowd, &mut expected);
                 let jumps: Vec<bool> = instances
                     .iter()
                     .enumerate()
@@ -169,7 +177,9 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let name = format!("4 targets × {count}");
         measure(bench, name, (all, "weight"), words * all, &|encoder| job.record(encoder), || {
             let weights = std::hint::black_box(&mut weights);
-            morph_weights(mesh, (&set, &[0]), &instances, &instance_lods, 0.5, weights);
+            let (instances, instance_lods) = (&instances[..], &instance_lods[..]);
+            let crowd = MorphedCrowd { mesh, set: &set, clips: &[0], instances, instance_lods, elapsed: 0.5 };
+            morph_weights(&crowd, weights);
         })?;
     }
     Ok(())

@@ -14,7 +14,7 @@ use relievo::ops::skinning::palette::Palette;
 use relievo::ops::skinning::palette::reference::palette_for;
 use relievo::ops::skinning::select::ClusterState;
 use relievo::ops::skinning::skin::reference::weights::reduced;
-use relievo::ops::skinning::skin::reference::{blended, skin, skin_seen};
+use relievo::ops::skinning::skin::reference::{SkinnedMesh, blended, skin, skin_seen};
 use relievo::ops::skinning::skin::{SKIN_BOUND, SkinPass, TRUNCATED};
 use relievo::ops::skinning::vertex::{Blend, Vertex};
 
@@ -246,7 +246,7 @@ fn expect(
 ) -> Vec<Expected> {
     let influences = &model.meshes[0].influences;
     let mut skinned = vec![poisoned(); vertices.len()];
-    skin_seen(&mut skinned, vertices, (influences, clusters), palette, instance_lod);
+    skin_seen(&mut skinned, SkinnedMesh { vertices, influences, clusters }, palette, instance_lod);
     if instance_lod == InstanceLod::UNSEEN {
         return skinned.into_iter().map(|vertex| Expected { vertex, ..Expected::untouched() }).collect();
     }

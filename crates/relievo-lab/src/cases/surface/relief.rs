@@ -144,7 +144,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
 fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
     let gpu = bench.gpu;
     let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
-    let albedo = ColorTexture::new(gpu, &albedo, true)?;
+    let albedo = ColorTexture::new(gpu, &albedo, Address::Wrap)?;
     let target = Offscreen::new(gpu, [EDGE, EDGE])?;
     let plain = Drawing::new(gpu, &target, (map, &albedo), ReliefMethod::Plain)?;
     let (rays, march) = (rays(EDGE, towards()), March::default());

@@ -54,7 +54,11 @@ async fn check(
         marked.map(|(at, _)| (at as u32 % width + 1, at as u32 / width + 1, 7)).collect()
     })?;
     let buffers = DespikeBuffers { windows: &windows, features: &index, cropped: &cropped };
-    let job = DespikePass::new(gpu, features.is_some())?.prepare(gpu, params, buffers)?;
+    let pass = match features {
+        Some(_) => DespikePass::with_features(gpu)?,
+        None => DespikePass::new(gpu)?,
+    };
+    let job = pass.prepare(gpu, params, buffers)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> = (heights.chunks_exact(points).zip(&marks))
         .flat_map(|(window, marks)| {
@@ -78,7 +82,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let features = FeatureIndex::new(gpu, &[width], count, 0)?;
     let params = Despike { threshold: 1.0 };
     let buffers = DespikeBuffers { windows: &windows, features: &features, cropped: &cropped };
-    let job = DespikePass::new(gpu, false)?.prepare(gpu, params, buffers)?;
+    let job = DespikePass::new(gpu)?.prepare(gpu, params, buffers)?;
     measure(
         bench,
         "257x257 batch 64",

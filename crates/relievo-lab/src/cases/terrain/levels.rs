@@ -11,10 +11,10 @@ use relievo::ops::terrain::config::{Border, HeightInterpolation, Offset, Terrain
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::fixed::FeatureMode;
 use relievo::ops::terrain::height::reference::height;
-use relievo::ops::terrain::height::{HeightJob, HeightPass, HeightScratch};
+use relievo::ops::terrain::height::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
 use relievo::ops::terrain::smooth::SmoothPass;
 use relievo::ops::terrain::smooth::reference::smooth;
-use relievo::ops::terrain::window::Window;
+use relievo::ops::terrain::window::{Window, Windows};
 use relievo::ops::terrain::wrap::WrapPass;
 use relievo::ops::terrain::wrap::reference::wrap;
 
@@ -30,22 +30,22 @@ fn prepared(
     gpu: &Gpu,
     config: &TerrainConfig,
     features: &Features,
-    [count, apron]: [u32; 2],
+    windows: Windows,
     output: &Buffer<i32>,
 ) -> Result<HeightJob, Error> {
-    let scratch = HeightScratch::new(gpu, config, [count, apron])?;
+    let scratch = HeightScratch::new(gpu, config, windows)?;
     let (offset, mode) = (config.offset, features.injection());
     // A point counts in every window that sees it.
-    let capacity = features.len() * count as usize;
-    let shape = [count, apron];
+    let capacity = features.len() * windows.count as usize;
+    let buffers = HeightBuffers { output, scratch: &scratch };
     match (config.border, config.interpolation) {
         (Border::Seamless, HeightInterpolation::Linear) => {
-            HeightPass::new(gpu, offset, mode)?.prepare(gpu, config, shape, capacity, output, &scratch)
+            HeightPass::new(gpu, offset, mode)?.prepare(gpu, config, windows, capacity, buffers)
         }
         (Border::Seamless, HeightInterpolation::Smooth) => {
-            SmoothPass::new(gpu, offset, mode)?.prepare(gpu, config, shape, capacity, output, &scratch)
+            SmoothPass::new(gpu, offset, mode)?.prepare(gpu, config, windows, capacity, buffers)
         }
-        _ => WrapPass::new(gpu, offset, mode)?.prepare(gpu, config, count, capacity, output, &scratch),
+        _ => WrapPass::new(gpu, offset, mode)?.prepare(gpu, config, windows.count, capacity, buffers),
     }
 }
 
@@ -66,9 +66,9 @@ pub(super) async fn check(
     apron: u32,
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
-    let count = patches.len() as u32;
-    let output = Poisoned::new(gpu, HeightJob::output_points(config, count, apron))?;
-    let job = prepared(gpu, config, features, [count, apron], &output.buffer)?;
+    let windows = Windows { count: patches.len() as u32, apron };
+    let output = Poisoned::new(gpu, HeightJob::output_points(config, windows))?;
+    let job = prepared(gpu, config, features, windows, &output.buffer)?;
     job.set(gpu, patches, features)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> =
@@ -76,8 +76,11 @@ pub(super) async fn check(
     let (size, offset, k) = (config.patch_size, config.offset, config.coarse_levels);
     let injected =
         features.injection().map_or(String::new(), |mode| format!(" {mode:?} {} features", features.len()));
-    let name =
-        format!("{size}×{size} {offset:?} k={k} apron {apron} × {count} at {:?}{injected}", patches[0]);
+    let name = format!(
+        "{size}×{size} {offset:?} k={k} apron {apron} × {} at {:?}{injected}",
+        patches.len(),
+        patches[0]
+    );
     check_exact(cases, name, &output, &expected).await
 }
 
@@ -105,9 +108,10 @@ pub(super) fn measure_levels(
 ) -> Result<(), Error> {
     let gpu = bench.gpu;
     let patches = some_patches(count);
-    let points = HeightJob::output_points(config, count, 0);
+    let windows = Windows { count, apron: 0 };
+    let points = HeightJob::output_points(config, windows);
     let output = Buffer::new(gpu, "heights", points)?;
-    let job = prepared(gpu, config, features, [count, 0], &output)?;
+    let job = prepared(gpu, config, features, windows, &output)?;
     job.set(gpu, &patches, features)?;
     let copied = copy_of(gpu, points)?;
     let words = Buffer::new(gpu, "words", points.next_multiple_of(1024))?;

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::view::SquareView;
-use crate::shade::shadow::{light_ray, shaded, soft_shadow};
+use crate::shade::shadow::{SoftShadow, light_ray, shaded, soft_shadow};
 use relievo::ops::surface::linear_image::LinearImage;
 use relievo::ops::surface::map::Address;
 use relievo::ops::surface::mips::Mips;
@@ -90,7 +90,8 @@ impl Scene<'_> {
             }
             ReliefShadow::Soft => {
                 let (steps, softness) = (self.material.shadow_steps, self.material.softness);
-                soft_shadow(self.surface.map, hit, light, scale, self.march, steps, softness)
+                let (map, march) = (self.surface.map, self.march);
+                soft_shadow(&SoftShadow { map, light, scale, march, steps, softness }, hit)
             }
         }
     }

@@ -5,7 +5,7 @@ use relievo::Error;
 use relievo::asset::Light;
 use relievo::gpu::Gpu;
 use relievo::ops::surface::{
-    Address, ColorTexture, ReliefMaps, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceTextures,
+    ColorTexture, ReliefMaps, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceTextures,
 };
 use relievo::scene::{Camera, Depth, Placement, Relief, Scene};
 
@@ -18,9 +18,10 @@ impl ReliefSquare {
     /// # Errors
     /// [`relievo::InputError`] for parameters out of range; [`relievo::gpu::GpuError`].
     pub(super) fn scene(&self, gpu: &Gpu, textures: &SurfaceTextures) -> Result<Scene, Error> {
-        let wraps = self.march.address == Address::Wrap;
-        let albedo = ColorTexture::linear(gpu, &self.albedo, wraps)?;
-        let normals = self.normals.as_ref().map(|mips| ColorTexture::linear(gpu, mips, wraps)).transpose()?;
+        let address = self.march.address;
+        let albedo = ColorTexture::linear(gpu, &self.albedo, address)?;
+        let normals =
+            self.normals.as_ref().map(|mips| ColorTexture::linear(gpu, mips, address)).transpose()?;
         let options = ReliefOptions {
             method: textures.method,
             shadow: self.shadow,
