@@ -43,7 +43,7 @@ impl Pacer {
         }
         self.too_many = self.too_many.filter(|(_, frames)| *frames < PATIENCE);
         let ratio = (target / average.max(1e-6)).sqrt();
-        let next = if average > target {
+        let next = if average > target && time > target {
             self.too_many = Some((limit, 0));
             limit * ratio.max(FALL)
         } else if average < (1.0 - DEAD_BAND) * target {

@@ -82,7 +82,8 @@ impl View {
 
     /// The number of triangles that the view may draw; `None` without a limit.
     pub fn triangle_limit(&self) -> Option<u32> {
-        let paced = self.quality.milliseconds.and(self.budget.pacer.as_ref()?.limit());
+        let paced =
+            self.budget.pacer.as_ref().and_then(Pacer::limit).filter(|_| self.quality.milliseconds.is_some());
         match (self.quality.triangles, paced) {
             (Some(limit), Some(paced)) => Some(limit.min(paced)),
             (limit, paced) => limit.or(paced),

@@ -1,0 +1,6 @@
+//! Choosing and changing levels of detail in a scene: criteria, hysteresis, transitions and budgets.
+
+mod budgets;
+mod criteria;
+mod stage;
+mod transitions;
