@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::{DVec3, Quat, Vec3};
 
 use crate::animation::Wrap;
-use crate::scene::Transition;
+use crate::scene::{LevelOfDetail, Transition};
 use crate::surface::ReliefShadow;
 use crate::surface::relief::ReliefMethod;
 use crate::terrain::morph::Morph;
@@ -29,6 +29,8 @@ pub(super) struct ObjectEntry {
     pub kind: EntryKind,
     /// Transition of its levels of detail; `None`: the scene's.
     pub transition: Option<Transition>,
+    /// How its levels of detail are chosen; `None`: by error.
+    pub level_of_detail: Option<LevelOfDetail>,
     pub instances: Vec<InstanceEntry>,
     pub scatter: Option<Scatter>,
 }

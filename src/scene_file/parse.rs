@@ -5,11 +5,11 @@ use glam::{DVec3, Vec3};
 use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
 use super::entries::{ObjectEntry, Spot, TerrainEntry};
 use super::json::{At, COORDINATE, Fields, Json};
+use super::parse_lod::quality;
 use super::parse_object::{character, mesh};
 use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
-use crate::scene::{Quality, Transition};
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
@@ -205,12 +205,6 @@ fn shadow(at: &At<'_>) -> Result<Option<SunOptions>, InputError> {
 /// Linear red, green and blue.
 fn color(at: &At<'_>, most: f64) -> Result<[f32; 3], InputError> {
     Ok(at.numbers::<3>(0.0, most)?.map(|channel| channel as f32))
-}
-
-fn quality(at: &At<'_>) -> Result<(Quality, Transition), InputError> {
-    let fields = at.fields(&["pixels", "transition"])?;
-    let pixels = fields.number("pixels", 0.0, 1e4, Quality::default().pixels.into())? as f32;
-    Ok((Quality::pixels(pixels), fields.one_of("transition", Transition::NAMES, Transition::default())?))
 }
 
 fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {

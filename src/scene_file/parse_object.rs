@@ -8,6 +8,7 @@ use super::entries::{
     BUILT_IN, EntryKind, InstanceEntry, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
 };
 use super::json::{At, COORDINATE, Fields};
+use super::parse_lod::{level_of_detail, transition};
 use crate::InputError;
 use crate::animation::Wrap;
 use crate::asset::import::ENDINGS;
@@ -29,7 +30,7 @@ const SHADOWS: [(&str, ReliefShadow); 3] =
 
 /// An entry of `meshes`.
 pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    let fields = at.fields(&["file", "material", "transition", "instances", "scatter"])?;
+    let fields = at.fields(&["file", "material", "transition", "lod", "instances", "scatter"])?;
     let source = model(&fields)?;
     let kind = fields.maybe("material", |at| relief(&at))?.map_or(EntryKind::Mesh, EntryKind::Relief);
     placed(at, &fields, (source, kind), MAX_MESHES)
@@ -38,7 +39,7 @@ pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
 /// An entry of `characters`.
 pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
     let fields =
-        at.fields(&["file", "clip", "rate", "start", "wrap", "transition", "instances", "scatter"])?;
+        at.fields(&["file", "clip", "rate", "start", "wrap", "transition", "lod", "instances", "scatter"])?;
     let source = model(&fields)?;
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
     let kind = EntryKind::Character(play(&fields, &all)?);
@@ -63,13 +64,14 @@ fn placed(
         return Err(fields.missing("instances", "or scatter, to say where it stands"));
     }
     let instances = instances.unwrap_or_default();
-    let transition = fields.maybe("transition", |at| at.one_of(Transition::NAMES))?;
+    let transition = fields.maybe("transition", |at| transition(&at))?;
+    let level_of_detail = fields.maybe("lod", |at| level_of_detail(&at, transition.unwrap_or_default()))?;
     if let (Some(Transition::Geomorph), EntryKind::Relief(_)) = (transition, &kind) {
         let path = format!("{}.transition", at.path);
         let bound = "must be hard: a mesh with a relief has one level of detail";
         return Err(InputError::new(path, "geomorph", bound));
     }
-    Ok(ObjectEntry { path: at.path.clone(), source, kind, transition, instances, scatter })
+    Ok(ObjectEntry { path: at.path.clone(), source, kind, transition, level_of_detail, instances, scatter })
 }
 
 /// The model's source, from the field `file`.

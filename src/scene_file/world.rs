@@ -12,7 +12,7 @@ use super::scatter::{self, Drawn};
 use super::spec::SunOptions;
 use crate::asset::Model;
 use crate::gpu::Gpu;
-use crate::scene::{ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
+use crate::scene::{LevelOfDetail, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
 use crate::{Error, InputError};
 
 /// A scene built from a file, with the file's camera and quality.
@@ -102,7 +102,7 @@ impl LoadedScene {
         }
         for (entry, loaded) in file.objects.iter().zip(&self.objects) {
             let found = added(&mut scene, entry, loaded).await?;
-            self.set_transition(&mut scene, entry, found.object)?;
+            self.set_level_of_detail(&mut scene, entry, found.object)?;
             self.spawn(&mut scene, land, entry, &found)?;
             objects.push(found);
         }
@@ -110,17 +110,28 @@ impl LoadedScene {
         Ok(World { scene, objects, camera, quality, shadow: file.shadow, background })
     }
 
-    /// Sets an object's transition. If the object's entry names one, the object must support it.
-    fn set_transition(&self, scene: &mut Scene, entry: &ObjectEntry, object: ObjectId) -> Result<(), Error> {
-        let transition = entry.transition.unwrap_or(self.file.transition);
-        if transition == Transition::Hard || entry.transition.is_none() && !scene.can_morph(object)? {
+    /// Sets how an object's levels of detail are chosen and change. If the object's entry names a transition, the object must
+    /// support it.
+    fn set_level_of_detail(
+        &self,
+        scene: &mut Scene,
+        entry: &ObjectEntry,
+        object: ObjectId,
+    ) -> Result<(), Error> {
+        let named = entry.transition.unwrap_or(self.file.transition);
+        let may_morph = entry.transition.is_some() || scene.can_morph(object)?;
+        let transition = if named == Transition::Geomorph && !may_morph { Transition::Hard } else { named };
+        let level_of_detail = entry.level_of_detail.clone().unwrap_or_default();
+        if entry.level_of_detail.is_none() && transition == Transition::Hard {
             return Ok(());
         }
-        let path = format!("{}.transition", entry.path);
-        scene.set_level_of_detail(object, &transition.into()).map_err(|error| match error {
-            Error::Input(error) => {
+        let level_of_detail = LevelOfDetail { transition, ..level_of_detail };
+        scene.set_level_of_detail(object, &level_of_detail).map_err(|error| match error {
+            Error::Input(error) if transition == Transition::Geomorph && error.path == "object.levels" => {
+                let path = format!("{}.transition", entry.path);
                 InputError::new(path, "geomorph", format!("{} {}", error.path, error.bound)).into()
             }
+            Error::Input(error) => in_file(error, &entry.path).into(),
             other => other,
         })
     }
@@ -229,4 +240,14 @@ fn below(path: &str, error: Error) -> Error {
         Error::Input(error) => Error::Input(error.below(path)),
         other => other,
     }
+}
+
+/// A refused setting of levels of detail, with its path in the file: `criterion.from[0]` of `meshes[1]` is
+/// `meshes[1].lod.from[0]`.
+fn in_file(error: InputError, entry: &str) -> InputError {
+    let groups = ["criterion.", "choice.", "perceptual."];
+    let path =
+        groups.iter().find_map(|group| error.path.strip_prefix(group)).unwrap_or(&error.path).to_owned();
+    let parent = if path.starts_with("transition") { entry.to_owned() } else { format!("{entry}.lod") };
+    InputError { path, ..error }.below(&parent)
 }

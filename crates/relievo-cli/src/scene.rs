@@ -24,11 +24,12 @@ use crate::output::say;
 use crate::progress::{bar, during};
 use layers::Extremes;
 
-const LAYERS: [(&str, Layer); 4] = [
+const LAYERS: [(&str, Layer); 5] = [
     ("color", Layer::Color),
     ("depth", Layer::Depth),
     ("velocity", Layer::Velocity),
     ("surface", Layer::Surface),
+    ("levels", Layer::Levels),
 ];
 const DEPTHS: [(&str, Depth); 2] = [("forward", Depth::Forward), ("reversed", Depth::Reversed)];
 
@@ -60,8 +61,12 @@ pub struct Scene {
     /// By how many pixels anything may be off. Default: the scene's own.
     #[arg(long, value_name = "E", conflicts_with = "full", allow_hyphen_values = true)]
     pixels: Option<f32>,
-    /// How levels of detail change: at once, or by a geomorph, in which they move into each other. Default: the scene's own.
-    /// It applies to all objects that have levels.
+    /// The largest number of triangles to draw: levels of detail are coarser, all by one factor, until they fit. Default: the
+    /// scene's own.
+    #[arg(long, value_name = "N", conflicts_with = "full", value_parser = RangedU64ValueParser::<u32>::new().range(1..))]
+    triangles: Option<u32>,
+    /// How levels of detail change: at once, by a geomorph, in which they move into each other, or by a fade in a band around
+    /// each threshold. Default: the scene's own. It applies to all objects; a geomorph, to those that can.
     #[arg(long, value_parser = one_of(Transition::NAMES))]
     transition: Option<Transition>,
     /// Draws everything in full detail.
@@ -73,6 +78,7 @@ pub struct Scene {
     /// report.json.
     /// surface: normals (-1 to 1 in world axes); frame_0000_albedo.png has colours before light, and frame_0000_id.png the
     /// numbers of object (red) and instance (green), with 16 bits.
+    /// levels: the level of detail of each instance: red for the finest, then orange, yellow, green, teal, blue, violet.
     #[arg(verbatim_doc_comment, long, default_value = "color", value_parser = one_of(LAYERS))]
     layer: Layer,
     /// Samples a pixel: 1 or 4. Default: 4, and 1 for other layers than color, which have one alone.
@@ -178,10 +184,6 @@ impl Scene {
             let bound = "must be color where frames are compared";
             return Err(InputError::new("layer", name_of(LAYERS, self.layer), bound).into());
         }
-        let quality = match (self.full, self.pixels) {
-            (true, _) => Some(Quality::pixels(0.0)),
-            (false, pixels) => pixels.map(Quality::pixels),
-        };
         let (layer, depth) = (self.layer, self.depth);
         let samples = self.samples.unwrap_or(if layer == Layer::Color { 4 } else { 1 });
         let given = Rendering {
@@ -190,13 +192,25 @@ impl Scene {
             depth,
             layer,
             is_split: self.split,
-            quality: quality.unwrap_or_default(),
+            quality: self.quality(Quality::default()),
             transition: self.transition,
         };
         given.validate()?;
         let loaded = during("loading", || LoadedScene::from_path(&self.file, &relievo_samples::Samples))?;
-        let quality = quality.unwrap_or(loaded.file().quality());
+        let quality = self.quality(loaded.file().quality());
         Ok((loaded, Rendering { quality, ..given }))
+    }
+
+    /// The quality: what the arguments say, and else the scene's own.
+    fn quality(&self, own: Quality) -> Quality {
+        match self.full {
+            true => Quality::pixels(0.0),
+            false => Quality {
+                pixels: self.pixels.unwrap_or(own.pixels),
+                triangles: self.triangles.or(own.triangles),
+                ..own
+            },
+        }
     }
 
     /// Draws and writes all frames.

@@ -13,7 +13,10 @@ use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::height::{HeightBatch, HeightPass};
 use relievo::ops::terrain::window::Windows;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
-use relievo::scene::{Camera, Placement, Scene, TerrainSource, View};
+use relievo::scene::{
+    Camera, Criterion, DistanceTo, LevelChoice, LevelOfDetail, ObjectId, Pace, Placement, Quality, Scene,
+    TerrainSource, Transition, View,
+};
 use relievo_samples::creature;
 
 /// What the program of the README has.
@@ -140,6 +143,24 @@ fn skinning(
     skin.crowd.instance_lods.write(&gpu, lods)?;                          // who is seen, how coarse
     skin.record_updated_bones(&mut encoder);                              // per frame: clusters with a bone that moved
     let (vertices, triangles) = (&skin.skinned, &skin.mesh.indices);      // instance · vertices + index
+    // end
+    Ok(())
+}
+
+/// Levels of detail by distance, with a fade and a budget.
+#[rustfmt::skip]
+fn levels((mut scene, mut view): (Scene, View), mut renderer: Renderer, tree: ObjectId) -> Result<(), Error> {
+    // begin docs/levels.md
+    let criterion = Criterion::Distance { to: DistanceTo::Center, from: vec![20.0, 60.0, 200.0] }; // world units
+    let level_of_detail = LevelOfDetail {
+        choice: LevelChoice::By(criterion),
+        transition: Transition::Dither(Pace::Seconds(0.3)),
+        rank: Some(0),                                                    // coarsened first
+        ..LevelOfDetail::default()
+    };
+    scene.set_level_of_detail(tree, &level_of_detail)?;
+    renderer.prepare(&scene)?;                                            // a new transition has pipelines of its own
+    view.set_quality(Quality { triangles: Some(500_000), ..Quality::pixels(1.0) })?;
     // end
     Ok(())
 }

@@ -9,12 +9,16 @@ use relievo::ops::lod::LodCamera;
 use relievo::ops::mesh::{Simplified, SimplifyOptions};
 use relievo::ops::skinning::Extent;
 use relievo::ops::surface::ReliefOptions;
-use relievo::render::{Layer, OutputProgram, Renderer, TargetFormat};
+use relievo::render::{Layer, OutputProgram, Renderer, SunShadow, TargetFormat};
 use relievo::scene::kind::{Kind, KindProgram};
-use relievo::scene::{Scene, Transition};
+use relievo::scene::{
+    Criterion, Culling, DistanceTo, DitherPattern, LevelChoice, LevelOfDetail, Pace, Quality, Scene, SizeOf,
+    Transition, View, ViewStatistics,
+};
 
 #[rustfmt::skip]
 fn items() {
+    use relievo::scene::LevelStatistics as _; // LevelStatistics
     use relievo::gpu::shaders::MODULES as _; // gpu::shaders::MODULES
     use relievo::ops::mesh::ProgressiveMesh as _; // ops::mesh::ProgressiveMesh
     use relievo_lab::reduce::Reducer as _; // reduce::Reducer
@@ -124,4 +128,38 @@ fn decided() {
 #[rustfmt::skip]
 fn generic(scene: &mut Scene, kind: impl Kind) {
     let _ = Scene::add_kind(scene, kind, 1); // Scene::add_kind
+    let _ = |from| Criterion::Distance { to: DistanceTo::Center, from }; // Criterion::Distance
+    let _ = Criterion::Error; // Criterion::Error
+    let _ = |below| Criterion::Magnification { below }; // Criterion::Magnification
+    let _ = Criterion::Ratio { to: DistanceTo::Center, near: 0.0, far: 1.0 }; // Criterion::Ratio
+    let _ = |below| Criterion::Size { of: SizeOf::Box, below }; // Criterion::Size
+    let _ = Culling::Never; // Culling::Never
+    let _ = DitherPattern::PerFrame; // DitherPattern::PerFrame
+    let _ = Layer::Levels; // Layer::Levels
+    let _ = LevelChoice::Forced(0); // LevelChoice::Forced
+    let _ = |of: LevelOfDetail| of.bias; // LevelOfDetail::bias
+    let _ = |of: LevelOfDetail| of.hysteresis; // LevelOfDetail::hysteresis
+    let _ = |of: LevelOfDetail| of.rank; // LevelOfDetail::rank
+    let _ = Pace::Band(0.1); // Pace::Band
+    let _ = Pace::Seconds(0.3); // Pace::Seconds
+    let _ = |quality: Quality| quality.milliseconds; // Quality::milliseconds
+    let _ = |quality: Quality| quality.triangles; // Quality::triangles
+    let _ = Scene::can_morph; // Scene::can_morph
+    let _ = Scene::share_budget; // Scene::share_budget
+    let _ = SunShadow::fit; // SunShadow::fit
+    let _ = TargetFormat::levels; // TargetFormat::levels
+    let _ = Transition::Alpha { opaque: 600.0, gone: 800.0 }; // Transition::Alpha
+    let _ = Transition::CrossFade(Pace::Band(0.1)); // Transition::CrossFade
+    let _ = Transition::Dither(Pace::Band(0.1)); // Transition::Dither
+    let _ = Transition::FadeIn(Pace::Band(0.1)); // Transition::FadeIn
+    let _ = Transition::Hard; // Transition::Hard
+    let _ = Transition::TwoPhase(Pace::Band(0.1)); // Transition::TwoPhase
+    let _ = View::cut; // View::cut
+    let _ = View::frame_took; // View::frame_took
+    let _ = View::set_dither; // View::set_dither
+    let _ = View::set_lod_cameras; // View::set_lod_cameras
+    let _ = View::statistics; // View::statistics
+    let _ = View::triangle_limit; // View::triangle_limit
+    let _ = |view: ViewStatistics| view.budget; // ViewStatistics::budget
+    let _ = |view: ViewStatistics| view.pixels; // ViewStatistics::pixels
 }

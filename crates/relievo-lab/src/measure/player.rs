@@ -7,7 +7,7 @@ use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
-use relievo::scene::{Camera, Depth, Quality, Transition, View};
+use relievo::scene::{Camera, Depth, LevelOfDetail, Quality, Transition, View};
 use relievo::scene_file::{SunOptions, World, WorldObject};
 use relievo::{Error, InputError};
 use wgpu::TextureFormat;
@@ -22,7 +22,7 @@ pub struct Rendering {
     /// The direction of depth.
     pub depth: Depth,
     /// What is drawn: [`Layer::Color`], and what is transparent above it; or with one sample [`Layer::Depth`],
-    /// [`Layer::Surface`] or [`Layer::Velocity`].
+    /// [`Layer::Surface`], [`Layer::Velocity`] or [`Layer::Levels`].
     pub layer: Layer,
     /// Whether two views of one submission draw the left half and the right half of the picture.
     pub is_split: bool,
@@ -57,7 +57,8 @@ impl Rendering {
         if ![1, 4].contains(&self.samples) {
             return Err(InputError::new("samples", self.samples, "must be 1 or 4"));
         }
-        if ![Layer::Color, Layer::Depth, Layer::Surface, Layer::Velocity].contains(&self.layer) {
+        if ![Layer::Color, Layer::Depth, Layer::Surface, Layer::Velocity, Layer::Levels].contains(&self.layer)
+        {
             let bound = "must be color, depth, surface or velocity";
             return Err(InputError::new("layer", format!("{:?}", self.layer), bound));
         }
@@ -105,8 +106,9 @@ impl Player {
         let Rendering { size, samples, depth, layer, is_split, quality, transition } = rendering;
         if let Some(transition) = transition {
             for WorldObject { object, .. } in &world.objects {
-                if world.scene.can_morph(*object)? {
-                    world.scene.set_level_of_detail(*object, &transition.into())?;
+                if transition != Transition::Geomorph || world.scene.can_morph(*object)? {
+                    let own = world.scene.level_of_detail(*object)?.clone();
+                    world.scene.set_level_of_detail(*object, &LevelOfDetail { transition, ..own })?;
                 }
             }
         }
@@ -297,6 +299,7 @@ fn format_of(layer: Layer) -> TargetFormat {
         Layer::Depth => TargetFormat::depth_only(TextureFormat::Depth32Float),
         Layer::Surface => TargetFormat { color: color(&SURFACE), ..TargetFormat::surface() },
         Layer::Velocity => TargetFormat { color: color(&[VELOCITY]), ..TargetFormat::velocity() },
+        Layer::Levels => TargetFormat { color: color(&[COLOR_FORMAT]), ..TargetFormat::levels() },
         _ => TargetFormat::new(COLOR_FORMAT),
     }
 }
