@@ -2,5 +2,6 @@
 
 mod budgets;
 mod criteria;
+mod promise;
 mod stage;
 mod transitions;

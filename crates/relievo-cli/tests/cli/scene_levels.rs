@@ -51,3 +51,54 @@ fn levels_move_into_each_other_where_that_is_asked_for() {
     let alone = json!({"meshes": [one], "camera": {"at": [0, 3, 12], "look": [0, 1, -4]}}).to_string();
     assert_refused(&folder.run(&alone, &[]), &["one.obj"], &["meshes[0].transition = geomorph", "levels"]);
 }
+
+/// Levels are chosen as the file says: a forced level, distances, a budget; and they are what the layer of levels shows.
+#[test]
+fn levels_are_chosen_as_the_file_says() {
+    let folder = Folder::new();
+    let report = |lod: serde_json::Value, quality: serde_json::Value, arguments: &[&str]| {
+        let mesh = json!({
+            "file": "builtin:rock",
+            "lod": lod,
+            "transition": {"kind": "dither", "band": 0.05},
+            "instances": [{"at": [0, 0, 0]}, {"at": [1, 0, -20]}, {"at": [2, 0, -40]}],
+        });
+        let camera = json!({"at": [0, 3, 12], "look": [0, 1, -4]});
+        let scene = json!({"meshes": [mesh], "camera": camera, "quality": quality}).to_string();
+        let run = folder.run(&scene, &[&["--size", "160x100", "--samples", "1"], arguments].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        folder.report()["frames"][0]["objects"][0]["levels"].clone()
+    };
+    let instances = |levels: serde_json::Value| {
+        let of_level = |level: &serde_json::Value| level["instances"].as_u64().expect("a number");
+        levels.as_array().expect("a list").iter().map(of_level).collect::<Vec<_>>()
+    };
+    assert_eq!(instances(report(json!({"level": 2}), json!({}), &[]))[2], 3);
+    let distances = json!({"criterion": "distance", "from": [20, 40], "hysteresis": 0});
+    assert_eq!(instances(report(distances.clone(), json!({}), &[]))[..3], [1, 1, 1]);
+    // All pixels of an instance have the colour of its level.
+    let forced = report(json!({"level": 0}), json!({}), &["--layer", "levels"]);
+    assert_eq!(instances(forced)[0], 3);
+    let red = |picture: &image::RgbImage| {
+        picture.pixels().filter(|pixel| pixel[0] > 2 * pixel[1] && pixel[0] > 60).count()
+    };
+    let picture = folder.frame(0).into_rgb8();
+    assert!(red(&picture) > 200, "level 0 is red: {} pixels", red(&picture));
+    report(json!({"level": 4}), json!({}), &["--layer", "levels"]);
+    assert_eq!(red(&folder.frame(0).into_rgb8()), 0, "level 4 is not");
+    // A budget, of the file and of the command line.
+    let sum = |levels: serde_json::Value| {
+        let of_level = |level: &serde_json::Value| level["triangles"].as_u64().expect("a number");
+        levels.as_array().expect("a list").iter().map(of_level).sum::<u64>()
+    };
+    let full = sum(report(json!({}), json!({"pixels": 0}), &[]));
+    let limit = full / 6;
+    for (quality, arguments) in [
+        (json!({"pixels": 0.01, "triangles": limit}), vec![]),
+        (json!({"pixels": 0.01}), vec!["--triangles".to_owned(), limit.to_string()]),
+    ] {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let drawn = sum(report(json!({}), quality, &arguments));
+        assert!(drawn <= limit && drawn > limit / 3, "{drawn} of {limit}, {full} in all");
+    }
+}

@@ -18,6 +18,7 @@ use relievo::scene::{
 
 #[rustfmt::skip]
 fn items() {
+    use relievo::scene::LevelOfDetail as _; // LevelOfDetail
     use relievo::scene::LevelStatistics as _; // LevelStatistics
     use relievo::gpu::shaders::MODULES as _; // gpu::shaders::MODULES
     use relievo::ops::mesh::ProgressiveMesh as _; // ops::mesh::ProgressiveMesh
