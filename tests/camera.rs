@@ -2,7 +2,7 @@
 
 use glam::camera::rh::{proj::directx, view::look_at_mat4};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, Vec3, Vec4};
-use relievo::ops::lod::{LodCamera, is_mirrored, planes};
+use relievo::ops::lod::{Depth, LodCamera, is_mirrored, planes};
 use relievo_lab::cases::animation::Draw;
 use relievo_lab::cases::lod::{look, parallel, perspective};
 
@@ -17,7 +17,7 @@ struct Matrices {
 
 impl Matrices {
     fn camera(&self, pixels: f32) -> LodCamera {
-        LodCamera::new(self.view, self.clip, self.viewport, self.reversed, pixels).expect("valid")
+        LodCamera::new(self.view, self.clip, self.viewport, depth_of(self.reversed), pixels).expect("valid")
     }
 
     fn clip_from_cell(&self) -> DMat4 {
@@ -30,6 +30,10 @@ impl Matrices {
         let [width, height] = self.viewport.map(|size| 0.5 * f64::from(size));
         (clip.w > 0.0).then(|| DVec2::new(width * clip.x, height * clip.y) / clip.w)
     }
+}
+
+fn depth_of(reversed: bool) -> Depth {
+    if reversed { Depth::Reversed } else { Depth::Forward }
 }
 
 /// The kinds of random matrices.
@@ -164,8 +168,9 @@ fn spheres_at_the_near_plane_and_behind() {
 #[test]
 fn near_planes_are_those_of_the_matrices() {
     let view = look(Vec3::new(7.0, 8.0, 9.0), Vec3::new(1.0, 1.0, -0.3));
-    let near =
-        |clip, reversed| LodCamera::new(view, clip, [300, 200], reversed, 1.0).map(|camera| camera.near);
+    let near = |clip, reversed| {
+        LodCamera::new(view, clip, [300, 200], depth_of(reversed), 1.0).map(|camera| camera.near)
+    };
     for reversed in [false, true] {
         let found = near(perspective(0.5, 1.5, 0.25, reversed, 0.1), reversed).expect("valid");
         assert!((found - 0.25).abs() < 1e-5, "{found}");
@@ -192,7 +197,7 @@ fn near_planes_are_those_of_the_matrices() {
 fn what_is_wrong_is_named() {
     let (view, clip) = (look(Vec3::ONE, Vec3::X), perspective(0.5, 1.0, 0.1, false, 0.0));
     let path = |view, clip, viewport, pixels| {
-        LodCamera::new(view, clip, viewport, false, pixels).expect_err("refused").path
+        LodCamera::new(view, clip, viewport, Depth::Forward, pixels).expect_err("refused").path
     };
     let size = [64, 64];
     assert_eq!(path(Mat4::NAN, clip, size, 1.0), "camera.view_from_cell");

@@ -6,6 +6,16 @@ use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 use super::LodCamera;
 use crate::InputError;
 
+/// The direction of depth in clip space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Depth {
+    /// 0 at the near plane, 1 at the far plane.
+    #[default]
+    Forward,
+    /// 1 at the near plane, 0 at the far plane or at infinity.
+    Reversed,
+}
+
 /// Relative length of a plane's normal below which f32 rounding of the matrices decides its direction. The normal is
 /// the difference of two rows of the matrix, and the length is relative to those rows.
 const LOST: f64 = 1e-4;
@@ -43,21 +53,20 @@ impl LodCamera {
     /// from there to clip space with depth 0 to 1.
     ///
     /// Any perspective works (also infinite, off-axis, jittered, oblique), and any parallel projection. View matrices
-    /// may mirror and scale. `viewport` is width and height in pixels. `reversed`: depth is 1 at the near plane.
-    /// `pixels` is the largest displacement on the screen.
+    /// may mirror and scale. `viewport` is width and height in pixels. `pixels` is the largest displacement on the screen.
     ///
     /// # Errors
     /// [`InputError`] for:
     /// - `camera.view_from_cell` that is not finite, affine and invertible;
     /// - `camera.clip_from_view` that is not finite, collapses the picture, or has no near plane ahead of the eye where
-    ///   `reversed` says;
+    ///   `depth` says;
     /// - `camera.viewport` without pixels;
     /// - `quality.pixels` that is negative or not finite.
     pub fn new(
         view_from_cell: Mat4,
         clip_from_view: Mat4,
         viewport: [u32; 2],
-        reversed: bool,
+        depth: Depth,
         pixels: f32,
     ) -> Result<Self, InputError> {
         check_view(&view_from_cell)?;
@@ -72,12 +81,13 @@ impl LodCamera {
         if !(0.0..f32::INFINITY).contains(&pixels) {
             return Err(InputError::new("quality.pixels", pixels, "must be finite, and not negative"));
         }
-        Self::of(&(clip_from_view.as_dmat4() * view_from_cell.as_dmat4()), viewport, reversed, pixels)
-            .ok_or_else(|| refused(&clip_from_view))
+        let clip_from_cell = clip_from_view.as_dmat4() * view_from_cell.as_dmat4();
+        Self::of(&clip_from_cell, viewport, depth, pixels).ok_or_else(|| refused(&clip_from_view))
     }
 
     /// `None` if the matrix is not a camera's.
-    fn of(clip_from_cell: &DMat4, viewport: [u32; 2], reversed: bool, pixels: f32) -> Option<Self> {
+    fn of(clip_from_cell: &DMat4, viewport: [u32; 2], depth: Depth, pixels: f32) -> Option<Self> {
+        let reversed = depth == Depth::Reversed;
         let [x, y, z, w] = rows(clip_from_cell);
         let perspective = perspective([x, y, w])?;
         let ahead = perspective.as_ref().map(|perspective| perspective.ahead);

@@ -43,4 +43,4 @@ pub use crate::shared::lod::instance::{
 };
 pub use crate::shared::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 pub use crate::shared::lod::view::{LodCamera, SelectView, VIEW_CAMERAS};
-pub use camera::{is_mirrored, planes};
+pub use camera::{Depth, is_mirrored, planes};

@@ -47,7 +47,8 @@ pub enum Transition {
     Geomorph,
     /// Both levels, each in its own pixels of an ordered pattern that stands still. Together they cover every pixel.
     Dither(Pace),
-    /// Both levels blended, with weights λ and 1 − λ (thesis A, section 7.3.1). What is behind them shows through.
+    /// Both levels blended, with weights λ and 1 − λ (thesis A, section 7.3.1). What is behind them shows through, and so does
+    /// their inside, since neither writes depth.
     CrossFade(Pace),
     /// The level opaque; the next one is blended over it with weight 1 − λ and without writing depth (section 7.3.2).
     /// The level disappears at once in the end.
@@ -55,8 +56,9 @@ pub enum Transition {
     /// The level opaque while the next one fades in over it, then the next one opaque while the level fades out
     /// (section 7.3.3). Nothing behind shows through.
     TwoPhase(Pace),
-    /// Levels change at once, and instances fade out to nothing (section 7.4). The numbers have the unit of the object's
-    /// criterion: distance, fraction of the viewport, or pixels per world unit. [`Criterion::Error`] has none.
+    /// Levels change at once, and instances fade out to nothing (section 7.4). They write depth, which hides their inside. The
+    /// numbers have the unit of the object's criterion: distance, fraction of the viewport, or pixels per world unit.
+    /// [`Criterion::Error`] has none.
     Alpha {
         /// Where instances begin to fade.
         opaque: f32,

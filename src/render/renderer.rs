@@ -276,15 +276,33 @@ impl Renderer {
     ) -> Result<(), InputError> {
         self.check(view, objects.clone(), layer)?;
         pass.set_bind_group(0, view.group);
-        for object in objects.filter(|object| object.lod.instances > 0) {
-            let Some(group) = object.drawable.group().or(object.view_group) else { continue };
-            pass.set_bind_group(1, group);
-            pass.set_index_buffer(object.drawable.indices().slice(..));
-            for (index, part) in (0..).zip(object.drawable.parts()) {
-                self.draw_part(pass, view, &object, (index, part), layer);
+        let objects = objects.filter(|object| object.lod.instances > 0);
+        if layer == Layer::Transparent && self.format.depth.is_some() {
+            let fades_out = |object: &DrawnObject<'_>| matches!(object.transition, Transition::Alpha { .. });
+            for object in objects.clone().filter(fades_out) {
+                self.draw_object(pass, view, &object, |part| hidden_of(part).into_iter().collect());
             }
         }
+        for object in objects {
+            self.draw_object(pass, view, &object, |part| lists_of(part, object.transition, layer));
+        }
         Ok(())
+    }
+
+    /// Draws the parts of an object. `lists` gives what to draw of a part.
+    fn draw_object<'a>(
+        &'a self,
+        pass: &mut impl ScenePass<'a>,
+        view: &DrawnView<'a>,
+        object: &DrawnObject<'a>,
+        lists: impl Fn(&Specialization) -> Vec<ListDraw>,
+    ) {
+        let Some(group) = object.drawable.group().or(object.view_group) else { return };
+        pass.set_bind_group(1, group);
+        pass.set_index_buffer(object.drawable.indices().slice(..));
+        for (index, part) in (0..).zip(object.drawable.parts()) {
+            self.draw_part(pass, view, object, (index, part), &lists(part.specialization));
+        }
     }
 
     /// Draws parts of single instances in the host's order.
@@ -332,28 +350,38 @@ impl Renderer {
         view: &DrawnView<'a>,
         object: &DrawnObject<'a>,
         (index, part): (u32, Part<'a>),
-        layer: Layer,
+        lists: &[ListDraw],
     ) {
-        let mut lists = lists_of(part.specialization, object.transition, layer).peekable();
-        if lists.peek().is_none() {
+        if lists.is_empty() {
             return;
         }
         pass.set_bind_group(2, part.group);
-        for fade in lists {
+        for list in lists {
             for is_mirrored in [false, true] {
                 let is_flipped = is_mirrored != view.mirrors;
-                let pipeline = self.pipeline(layer, part.specialization, (is_flipped, fade), view);
+                let pipeline = self.pipeline(list.layer, part.specialization, (is_flipped, list.fade), view);
                 let is_listed = object.sides[usize::from(is_mirrored)];
                 let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
                 pass.set_pipeline(pipeline);
-                draw_lists(pass, view, object, index, (is_mirrored, fade));
+                draw_lists(pass, view, object, index, (is_mirrored, list.is_fading));
             }
         }
     }
 }
 
-/// The lists of a part that a layer draws: how their instances fade.
-fn lists_of(part: &Specialization, transition: Transition, layer: Layer) -> impl Iterator<Item = Fade> {
+/// A draw of a part's lists.
+#[derive(Debug, Clone, Copy)]
+struct ListDraw {
+    /// The layer of the pipeline.
+    layer: Layer,
+    /// How instances fade.
+    fade: Fade,
+    /// Whether the lists are those of instances that fade.
+    is_fading: bool,
+}
+
+/// The lists of a part that a layer draws.
+fn lists_of(part: &Specialization, transition: Transition, layer: Layer) -> Vec<ListDraw> {
     let is_transparent = layer == Layer::Transparent;
     let fading = match transition {
         Transition::Hard | Transition::Geomorph => None,
@@ -364,9 +392,16 @@ fn lists_of(part: &Specialization, transition: Transition, layer: Layer) -> impl
             (layer != Layer::Color).then_some(Fade::Heavier)
         }
     };
-    let solid = (!is_transparent).then_some(Fade::None);
+    let solid = (!is_transparent).then_some(ListDraw { layer, fade: Fade::None, is_fading: false });
+    let fading = fading.map(|fade| ListDraw { layer, fade, is_fading: true });
     // Blended parts are drawn one by one.
-    solid.into_iter().chain(fading).filter(|_| !part.state().blended)
+    solid.into_iter().chain(fading).filter(|_| !part.state().blended).collect()
+}
+
+/// What hides the inside of a part that fades out: its depth, drawn before it is blended.
+fn hidden_of(part: &Specialization) -> Option<ListDraw> {
+    let depth = ListDraw { layer: Layer::Depth, fade: Fade::None, is_fading: true };
+    (!part.state().blended).then_some(depth)
 }
 
 /// How a sorted draw of an object with this transition fades.
@@ -379,7 +414,7 @@ fn fades_of(part: &Specialization, transition: Transition, layer: Layer) -> Vec<
     if part.state().blended && layer == Layer::Transparent {
         return vec![sorted_fade(transition)];
     }
-    lists_of(part, transition, layer).collect()
+    lists_of(part, transition, layer).iter().map(|list| list.fade).collect()
 }
 
 /// Draws a part of all mirrored instances, or of all others, of those that fade or of those that do not.
@@ -388,10 +423,10 @@ fn draw_lists<'a>(
     view: &DrawnView<'a>,
     object: &DrawnObject<'a>,
     part: u32,
-    (is_mirrored, fade): (bool, Fade),
+    (is_mirrored, is_fading): (bool, bool),
 ) {
     let lod = object.lod;
-    let first = if fade == Fade::None { 0 } else { lod.levels };
+    let first = if is_fading { lod.levels } else { 0 };
     for list in (first..first + lod.levels).map(|level| 2 * level + u32::from(is_mirrored)) {
         let first = u64::from(lod.first_list) + u64::from(list) * u64::from(lod.instances);
         let bytes = [first, first + u64::from(lod.instances)].map(|word| word * size_of::<u32>() as u64);

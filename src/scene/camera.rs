@@ -6,18 +6,9 @@ use glam::camera::rh::proj::directx;
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
 use crate::InputError;
+pub use crate::lod::Depth;
 use crate::lod::is_mirrored;
 use crate::scene::placement::{Placement, check_world};
-
-/// The direction of depth in clip space.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Depth {
-    /// 0 at the near plane, 1 at the far plane.
-    #[default]
-    Forward,
-    /// 1 at the near plane, 0 at the far plane or at infinity.
-    Reversed,
-}
 
 /// A camera: perspective (with a finite or infinite far plane, off-axis or jittered) or parallel.
 ///

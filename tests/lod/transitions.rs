@@ -303,6 +303,43 @@ fn a_cross_fade_blends_with_its_weights() {
     }
 }
 
+/// An instance that fades out is as its opaque picture in every pixel, over what is behind: its inside does not show.
+#[test]
+fn an_instance_that_fades_out_hides_its_inside() {
+    let level = |gone: f32| LevelOfDetail {
+        choice: LevelChoice::By(Criterion::Distance { to: DistanceTo::Point(TARGET), from: Vec::new() }),
+        transition: Transition::Alpha { opaque: 600.0, gone },
+        ..LevelOfDetail::default()
+    };
+    for kind in KINDS {
+        let at = [Placement::at([0.0; 3])];
+        let mut stages = [kind(&level(800.0), &at), kind(&forced(0), &at)];
+        let format = TargetFormat::new(wgpu::TextureFormat::Rgba8Unorm);
+        let mut picture = |stage: usize, distance: f32| {
+            let stage = &mut stages[stage];
+            let shot = Shot::new(stage, format.clone());
+            stage.view.set(zoomed_from(distance)).expect("a camera");
+            stage.shot(&shot, &COLORS);
+            let read = shot.target.read_color(&stage.gpu, 0, wgpu::TextureFormat::Rgba8Unorm);
+            stage.gpu.block_on(read).expect("read")
+        };
+        for distance in [640.0, 700.0, 780.0] {
+            let weight = (800.0 - distance) / 200.0;
+            let (found, opaque) = (picture(0, distance), picture(1, distance));
+            let mut covered = 0;
+            for (at, (found, opaque)) in found.chunks(4).zip(opaque.chunks(4)).enumerate() {
+                covered += u32::from(opaque[1] > 0);
+                for (channel, behind) in [255.0, 0.0, 255.0].into_iter().enumerate() {
+                    let right = behind + weight * (f32::from(opaque[channel]) - behind);
+                    let off = (f32::from(found[channel]) - right).abs();
+                    assert!(off < 4.0, "at {distance}, pixel {at}: {found:?}, opaque {opaque:?}");
+                }
+            }
+            assert!(covered > 500, "{covered}");
+        }
+    }
+}
+
 /// Thesis A's alpha level of detail: (600, 1) to (800, 0). Nothing is drawn beyond, and half is blended between.
 #[test]
 fn instances_fade_out_between_two_distances() {

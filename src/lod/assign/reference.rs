@@ -5,10 +5,20 @@ use crate::animation::{BoneSampling, Lod};
 use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The gate's and the skinning's level of detail for an instance. `allowed` is its allowed displacement in the model's
-/// units, negative if no view sees it, `finest` the finest level that is drawn. With `carries`, the instance carries a mesh,
-/// and no bone may be off.
-pub fn assign(params: &AssignParams, allowed: f32, finest: u32, carries: bool) -> (Lod, InstanceLod) {
+/// An instance whose level of detail is assigned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AssignInstance {
+    /// The displacement that the frame's views allow, in the model's units; negative if no view sees it.
+    pub allowed: f32,
+    /// The finest level that is drawn.
+    pub finest: u32,
+    /// Whether it carries a mesh: then no bone may be off.
+    pub carries: bool,
+}
+
+/// The gate's and the skinning's level of detail for an instance.
+pub fn assign(params: &AssignParams, instance: &AssignInstance) -> (Lod, InstanceLod) {
+    let AssignInstance { allowed, finest, carries } = *instance;
     if allowed < 0.0 {
         return (Lod { sampling: BoneSampling::Hidden, ..Lod::FULL }, InstanceLod::UNSEEN);
     }

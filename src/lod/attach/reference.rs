@@ -15,10 +15,17 @@ pub fn local(params: &AttachParams, attachment: &Attachment, model_matrices: &[A
     product(bone, &attachment.offset)
 }
 
-/// The placement of an attached mesh: the transform from its space to the corner of a cell.
-///
-/// `instances` are the scene's instances, `allowed` the displacement that the frame's views allow each of them, and
-/// `local` the product of bone and offset.
+/// The instances of a scene, and the displacement that the frame's views allow each of them.
+#[derive(Debug, Clone, Copy)]
+pub struct AttachScene<'a> {
+    /// The instances.
+    pub instances: &'a [SceneInstance],
+    /// What is allowed, in model units; negative for an instance that no view sees.
+    pub allowed: &'a [f32],
+}
+
+/// The placement of an attached mesh: the transform from its space to the corner of a cell. `local` is the product of bone
+/// and offset.
 ///
 /// # Panics
 /// For an attachment to an instance that does not exist.
@@ -26,9 +33,10 @@ pub fn attached(
     params: &AttachParams,
     attachment: &Attachment,
     cell: IVec3,
-    (instances, allowed): (&[SceneInstance], &[f32]),
+    scene: AttachScene<'_>,
     local: &Affine,
 ) -> Affine {
+    let AttachScene { instances, allowed } = scene;
     let character = (params.first + attachment.character) as usize;
     let instance = &instances[character];
     let ([x, y, z], at) = (instance.axes(), instance.position(cell));

@@ -111,8 +111,9 @@ fn perceptual_factor(
 }
 
 /// The metric word of a view's result for an instance.
-pub fn word(selected: Option<&Selected>, is_mirrored: bool) -> u32 {
-    selected.map_or(UNSEEN_METRIC, |selected| metric_word(selected.metric.to_bits(), is_mirrored.into()))
+pub fn word(selected: Option<&Selected>, instance: &SceneInstance) -> u32 {
+    let word = |selected: &Selected| metric_word(selected.metric.to_bits(), instance.is_mirrored().into());
+    selected.map_or(UNSEEN_METRIC, word)
 }
 
 /// The allowed displacement of an instance after one more view of the frame. `before` is the value after the earlier

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, IVec3, Mat4, UVec2, Vec3, Vec4};
 use crate::InputError;
 use crate::asset::Light;
 use crate::lod::{LodCamera, SelectView, VIEW_CAMERAS};
-use crate::scene::camera::{Camera, Depth};
+use crate::scene::camera::Camera;
 use crate::scene::placement::Placement;
 use crate::scene::view::ViewShadow;
 use crate::shared::render::scene_view::SceneView;
@@ -110,9 +110,8 @@ pub(super) fn clip_rows(camera: &Camera) -> [Vec4; 3] {
 
 /// A camera that decides levels of detail, relative to a cell's corner.
 pub(super) fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result<LodCamera, InputError> {
-    let is_reversed = camera.depth == Depth::Reversed;
-    let Camera { view_from_cell, clip_from_view, viewport, .. } = *camera;
-    let mut own = LodCamera::new(view_from_cell, clip_from_view, viewport, is_reversed, pixels)?;
+    let Camera { view_from_cell, clip_from_view, viewport, depth, .. } = *camera;
+    let mut own = LodCamera::new(view_from_cell, clip_from_view, viewport, depth, pixels)?;
     let cells = |axis: usize| f64::from(camera.cell[axis]) - f64::from(cell[axis]);
     let offset = glam::DVec3::from([0, 1, 2].map(cells)) * f64::from(Placement::CELL);
     own.eye = (own.eye.as_dvec3() + offset).as_vec3();
@@ -122,6 +121,7 @@ pub(super) fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::camera::Depth;
 
     #[test]
     fn cameras_that_show_no_world_are_refused_by_the_callers_field() {

@@ -3,7 +3,7 @@
 use relievo::Error;
 use relievo::gpu::{Buffer, Uniform};
 use relievo::ops::animation::lod::PackedLod;
-use relievo::ops::lod::assign::reference::assign;
+use relievo::ops::lod::assign::reference::{AssignInstance, assign};
 use relievo::ops::lod::assign::{AssignBuffers, AssignParams, AssignPass};
 use relievo::ops::lod::{INSTANCE_CARRIES, SceneInstance};
 use relievo::ops::skinning::instance_lod::InstanceLod;
@@ -49,8 +49,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let job = pass.prepare(gpu, &Uniform::new(gpu, "params", &params)?, buffers, instances)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
             let of_object = params.first as usize..(params.first + instances) as usize;
-            let given = Given::all(&allowed, &all);
-            let given = &given[of_object];
+            let all = given(&allowed, &all);
+            let given = &all[of_object];
             let name =
                 format!("{instances} instances, {} influences", if has_stray { "with" } else { "without" });
             let gates = |found: &[PackedLod]| compared_lods(&params, given, found);
@@ -80,24 +80,16 @@ fn finest(count: usize) -> Vec<u32> {
     (0..count as u32).map(|at| at * 5 % 8).collect()
 }
 
-/// What is given of an instance.
-#[derive(Debug, Clone, Copy)]
-struct Given {
-    allowed: f32,
-    finest: u32,
-    carries: bool,
+/// The instances of a case.
+fn given(allowed: &[f32], instances: &[SceneInstance]) -> Vec<AssignInstance> {
+    let carries = instances.iter().map(|instance| instance.flags & INSTANCE_CARRIES != 0);
+    let given = allowed.iter().zip(finest(allowed.len())).zip(carries);
+    given.map(|((allowed, finest), carries)| AssignInstance { allowed: *allowed, finest, carries }).collect()
 }
 
-impl Given {
-    fn all(allowed: &[f32], instances: &[SceneInstance]) -> Vec<Self> {
-        let carries = instances.iter().map(|instance| instance.flags & INSTANCE_CARRIES != 0);
-        let given = allowed.iter().zip(finest(allowed.len())).zip(carries);
-        given.map(|((allowed, finest), carries)| Self { allowed: *allowed, finest, carries }).collect()
-    }
-
-    fn scaled(self, factor: f32) -> Self {
-        Self { allowed: factor * self.allowed, ..self }
-    }
+/// An instance that may be off `factor` times as far.
+fn scaled(given: AssignInstance, factor: f32) -> AssignInstance {
+    AssignInstance { allowed: factor * given.allowed, ..given }
 }
 
 /// Displacements from 1e-6 to 1e4, and some that are 0, as large as possible, or of unseen instances.
@@ -123,19 +115,19 @@ fn random_carriers(case: u32, count: usize) -> Vec<SceneInstance> {
 }
 
 /// The right results, as the kernel writes them.
-fn packed(params: &AssignParams, given: Given) -> (PackedLod, InstanceLod) {
-    let (lod, instance_lod) = assign(params, given.allowed, given.finest, given.carries);
+fn packed(params: &AssignParams, given: AssignInstance) -> (PackedLod, InstanceLod) {
+    let (lod, instance_lod) = assign(params, &given);
     (lod.packed(), instance_lod)
 }
 
 /// The right results for the displacement as it is, and for the least and the largest to which rounding may change it.
-fn around(params: &AssignParams, given: Given) -> [(PackedLod, InstanceLod); 3] {
-    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, given.scaled(factor)))
+fn around(params: &AssignParams, given: AssignInstance) -> [(PackedLod, InstanceLod); 3] {
+    [1.0, 1.0 - QUOTIENT, 1.0 + QUOTIENT].map(|factor| packed(params, scaled(given, factor)))
 }
 
 /// Units must lie between those of the least and the largest displacement; everything else must be equal.
-fn compared_lods(params: &AssignParams, given: &[Given], found: &[PackedLod]) -> Comparison {
-    let judge = |(found, given): (&PackedLod, &Given)| {
+fn compared_lods(params: &AssignParams, given: &[AssignInstance], found: &[PackedLod]) -> Comparison {
+    let judge = |(found, given): (&PackedLod, &AssignInstance)| {
         let [(right, _), (least, _), (largest, _)] = around(params, *given);
         let is_right = (least.allowed..=largest.allowed).contains(&found.allowed)
             && PackedLod { allowed: right.allowed, ..*found } == right;
@@ -149,8 +141,12 @@ fn compared_lods(params: &AssignParams, given: &[Given], found: &[PackedLod]) ->
 }
 
 /// A fade may be that of the least or of the largest displacement, if these differ.
-fn compared_instance_lods(params: &AssignParams, given: &[Given], found: &[InstanceLod]) -> Comparison {
-    let judge = |(found, given): (&InstanceLod, &Given)| {
+fn compared_instance_lods(
+    params: &AssignParams,
+    given: &[AssignInstance],
+    found: &[InstanceLod],
+) -> Comparison {
+    let judge = |(found, given): (&InstanceLod, &AssignInstance)| {
         let [(_, right), (_, least), (_, largest)] = around(params, *given);
         let is_right = (least.influence_fade..=largest.influence_fade).contains(&found.influence_fade)
             && found.mesh_lod == right.mesh_lod
@@ -189,7 +185,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let words = 10 * count;
         let name = format!("{count} instances");
         measure(bench, name, (count, "instance"), words, &|encoder| job.record(encoder), || {
-            allowed.iter().map(|allowed| assign(&params, *allowed, 0, false)).collect::<Vec<_>>()
+            allowed
+                .iter()
+                .map(|allowed| {
+                    assign(&params, &AssignInstance { allowed: *allowed, finest: 0, carries: false })
+                })
+                .collect::<Vec<_>>()
         })?;
     }
     Ok(())
@@ -204,7 +205,7 @@ mod tests {
     fn what_is_wrong_of_one_instance_is_seen() {
         let params = params(0, 200, true);
         let carriers = random_carriers(5, 200);
-        let given = Given::all(&random_allowed(5, 200), &carriers);
+        let given = given(&random_allowed(5, 200), &carriers);
         let (lods, instance_lods): (Vec<PackedLod>, Vec<InstanceLod>) =
             given.iter().map(|given| packed(&params, *given)).unzip();
         assert!(compared_lods(&params, &given, &lods).holds);
@@ -239,8 +240,8 @@ mod tests {
     fn an_edge_may_go_either_way() {
         let params = params(0, 1, true);
         let edge = 0.25 * params.stray / params.influence_fraction;
-        let given = Given { allowed: edge, finest: 3, carries: false };
-        let (_, right) = packed(&params, given.scaled(1.0 + QUOTIENT));
+        let given = AssignInstance { allowed: edge, finest: 3, carries: false };
+        let (_, right) = packed(&params, scaled(given, 1.0 + QUOTIENT));
         let fade = |steps: f32| {
             let influence_fade = right.influence_fade - steps / 64.0;
             compared_instance_lods(&params, &[given], &[InstanceLod { influence_fade, ..right }])

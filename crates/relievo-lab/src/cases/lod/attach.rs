@@ -6,7 +6,7 @@ use relievo::asset::Affine;
 use relievo::asset::transform::AFFINE_IDENTITY;
 use relievo::gpu::{Buffer, Gpu, Job, Uniform};
 use relievo::ops::animation::ModelMatrices;
-use relievo::ops::lod::attach::reference::{attached, last_local, local, product};
+use relievo::ops::lod::attach::reference::{AttachScene, attached, last_local, local, product};
 use relievo::ops::lod::attach::{
     ATTACH_BOUND, AttachBuffers, AttachParams, AttachPass, Attachment, KeptBone, NO_MESH,
 };
@@ -188,7 +188,7 @@ impl Case {
             let all = [&self.instances[..], &self.last_instances[..]];
             let frames = if self.params.first_last == 0 { 1 } else { 2 };
             for (frame, (instances, local)) in all.into_iter().zip(self.locals(at)).enumerate().take(frames) {
-                let scene = (instances, &self.allowed[..]);
+                let scene = AttachScene { instances, allowed: &self.allowed };
                 let right = attached(&self.params, attachment, cell, scene, &local);
                 let instance = &instances[(FIRST + attachment.character) as usize];
                 let sizes = self.sizes(instance, attachment, &local, cell);
@@ -284,7 +284,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let name = format!("{count} meshes");
         measure(bench, name, (count as usize, "mesh"), words, &|encoder| job.record(encoder), || {
             let Case { params, attachments, instances, allowed, model_matrices, .. } = &case;
-            let scene = (&instances[..], &allowed[..]);
+            let scene = AttachScene { instances, allowed };
             let of = |of| attached(params, of, view.cell, scene, &local(params, of, model_matrices));
             attachments.iter().map(of).collect::<Vec<_>>()
         })?;
@@ -304,7 +304,7 @@ mod tests {
             for (first, instances, local) in
                 [(0, &case.instances, now), (INSTANCES, &case.last_instances, last)]
             {
-                let scene = (&instances[..], &case.allowed[..]);
+                let scene = AttachScene { instances, allowed: &case.allowed };
                 let right = attached(&case.params, attachment, CELL, scene, &local);
                 placements[(first + attachment.mesh) as usize] = right;
             }

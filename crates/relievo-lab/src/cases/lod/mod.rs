@@ -12,8 +12,8 @@ use glam::{IVec3, Mat4, Quat, Vec3};
 use relievo::InputError;
 use relievo::ops::lod::decide::reference::counts;
 use relievo::ops::lod::{
-    BLOCK, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS,
-    SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
+    BLOCK, Depth, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS,
+    OBJECT_LISTS, SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
 };
 use relievo::shared::lod::criterion::CRITERION_MAGNIFICATION;
 use relievo::shared::lod::object::{FADE_PROGRESS, NO_RANK, object_flags_word};
@@ -173,7 +173,8 @@ pub(crate) fn view(
     reversed: bool,
     others: &[LodCamera],
 ) -> Result<SelectView, InputError> {
-    let own = LodCamera::new(look, projection, [1000, 700], reversed, 1.0)?;
+    let depth = if reversed { Depth::Reversed } else { Depth::Forward };
+    let own = LodCamera::new(look, projection, [1000, 700], depth, 1.0)?;
     let mut cameras = [own; VIEW_CAMERAS as usize];
     cameras[1..=others.len()].copy_from_slice(others);
     let clip = projection * look;

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use relievo::InputError;
 use relievo::ops::lod::LodCamera;
-use relievo::scene::{Camera, Depth};
+use relievo::scene::Camera;
 
 /// A camera that projects points, which are relative to the corner of its cell.
 pub(super) struct Eye {
@@ -21,7 +21,7 @@ pub(super) struct Eye {
 impl Eye {
     pub fn new(camera: &Camera) -> Result<Self, InputError> {
         let Camera { view_from_cell, clip_from_view, viewport, depth, .. } = *camera;
-        let own = LodCamera::new(view_from_cell, clip_from_view, viewport, depth == Depth::Reversed, 0.0)?;
+        let own = LodCamera::new(view_from_cell, clip_from_view, viewport, depth, 0.0)?;
         Ok(Self {
             right: clip_from_view.as_dmat4() * view_from_cell.as_dmat4(),
             drawn: camera.clip_from_cell().as_dmat4(),

@@ -18,7 +18,7 @@ fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
         let selected = select(view, object, instance, last);
         let before = (view.is_first == 0).then_some(*before);
         found.allowed[index] = merged(before, selected.as_ref());
-        found.metrics[index] = word(selected.as_ref(), instance.is_mirrored());
+        found.metrics[index] = word(selected.as_ref(), instance);
         if let Some(selected) = selected {
             found.placements[index] = selected.placement;
         }
