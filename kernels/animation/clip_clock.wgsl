@@ -8,7 +8,7 @@ import package::wgsl::animation::timeline::keyframe_cursor;
 
 struct ClipClockParams {
     instances: u32,
-    // Seconds since the starts of the instances.
+    // Elapsed time in seconds, the same for all instances. At 0, the clip time of an instance is its `start`.
     elapsed: f32,
     // Number of layers above the base.
     layers: u32,

@@ -15,7 +15,7 @@ struct KeyframeCursorParams {
     instances: u32,
     // Cursors allocated per instance.
     timelines: u32,
-    // Seconds since the starts of the instances.
+    // Elapsed time in seconds, the same for all instances. At 0, the clip time of an instance is its `start`.
     elapsed: f32,
 }
 

@@ -1,7 +1,7 @@
-// Finds by how much the levels of detail of a view are coarsened so that its triangles fit a budget (A section 6.3). Every level
-// that an instance may take saves triangles from some factor of its metric on. A histogram of these savings over the logarithm of
-// the factor, rank by rank, gives the least factor; a second one divides the bin that was found. Views that share a budget add
-// to the same histograms, stage by stage.
+// Finds by how much the levels of detail of a view are coarsened so that its triangles fit a budget (A section 6.3). Each coarser
+// level of an instance saves triangles from some factor of its metric on. A histogram has these savings over the logarithm of the
+// factor, rank by rank. It gives the bin of the least sufficient factor. A second histogram divides this bin into parts. Views
+// that share a budget add to the same histograms, stage by stage.
 import package::wgsl::lod::budget_state::BudgetState;
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, NO_RANK, OBJECT_LEVELS, RANKS, UNSEEN_METRIC, decision_level, decision_next, decision_steps, metric_bits, metric_mirrored};
 import package::wgsl::lod::transition::{coarsened, held_level, is_faded_out, level_within, threshold_of, transition_decision};
@@ -32,9 +32,9 @@ const ALL_BINS: u32 = 8192u;
 const OCTAVE: f32 = 65536.0;
 // Largest factor: 2 to the power of 16.
 const MAX_FACTOR: f32 = 65536.0;
-// Parts that are kept back for the rounding of `log2` and `exp2`.
+// Safety margin for the rounding of `log2` and `exp2`, in parts.
 const ROUNDED_PARTS: u32 = 2u;
-// Time in which the factor comes nearer to a smaller one by the factor e, in seconds.
+// Time constant of the pressure's exponential decay, in seconds.
 const SETTLING: f32 = 0.15;
 
 struct BudgetParams {
@@ -46,13 +46,15 @@ struct BudgetParams {
 
 // Sums over the instances of all views that share the budget. All are zero between frames.
 struct BudgetWork {
-    // Triangles without a budget, and with the factors that were found, both levels of fades included.
+    // `triangles`: their number without a budget. `fading`: their number with this frame's factors, both levels of each fade
+    // included.
     triangles: atomic<u32>,
     fading: atomic<u32>,
-    // The bin that was found, and the triangles that are left before it.
+    // `bin`: the bin of the least sufficient factor; 0xffffffff if the triangles fit without a budget, `ALL_BINS` if even the
+    // coarsest levels do not fit. `left`: the triangles that remain before the savings of this bin.
     bin: u32,
     left: u32,
-    // Triangles that are saved, per bin, and per part of the bin that was found.
+    // Savings in triangles, per bin, and per part of `bin`.
     bins: array<atomic<u32>, 8192>,
     parts: array<atomic<u32>, 1024>,
 }
@@ -78,9 +80,9 @@ struct BudgetWork {
 // length: 1
 @group(0) @binding(7) var<storage, read_write> work: array<BudgetWork>;
 
-// Triangles that are saved in a run of bins or parts.
+// Savings in triangles, per run of consecutive bins or parts.
 var<workgroup> runs: array<u32, 256>;
-// The bin or part that was found, and the triangles before it.
+// The result of `find_run`.
 var<workgroup> found: array<u32, 2>;
 
 // Number of triangles of a level.
@@ -88,7 +90,7 @@ fn triangles_of(object: LodObject, level: u32) -> u32 {
     return object.triangles[level >> 2u][level & 3u];
 }
 
-// Part of all at which a factor is reached: from there on, `factor_at` is at least that factor.
+// Index of a part of a rank. From this part on, `factor_at` is at least `factor`.
 fn part_of(factor: f32) -> u32 {
     return u32(ceil(max(log2(factor), 0.0) * OCTAVE)) + ROUNDED_PARTS;
 }
@@ -127,7 +129,7 @@ fn chosen(index: u32) -> Chosen {
     return result;
 }
 
-// Adds what an instance saves: level by level, from the factor on at which a coarser level is reached.
+// Adds the savings of an instance, level by level, to the bin or part of the factor at which it reaches the level.
 fn add_savings(chosen: Chosen, stage: u32) {
     if !chosen.is_seen {
         return;
@@ -157,7 +159,7 @@ fn add_savings(chosen: Chosen, stage: u32) {
     }
 }
 
-// Adds the triangles that an instance draws with the factors that were found.
+// Adds the triangles that an instance draws with this frame's factors, both levels of its fade included.
 fn add_fades(chosen: Chosen, index: u32) {
     if !chosen.is_seen {
         return;
@@ -172,8 +174,8 @@ fn add_fades(chosen: Chosen, index: u32) {
     atomicAdd(&work[0].fading, drawn);
 }
 
-// Adds up the runs of 256 threads, and finds the run in which the rest of `triangles` first is within the limit. Returns the index
-// of that run and the triangles before it; 256 if there is none.
+// Finds the first run whose savings, with those of all runs before it, bring `triangles` within the limit. Returns the index of
+// the run, 256 if there is none, and the triangles that remain before the savings of this run.
 fn find_run(lane: u32, triangles: u32) -> vec2<u32> {
     workgroupBarrier();
     if lane == 0u {
@@ -189,7 +191,7 @@ fn find_run(lane: u32, triangles: u32) -> vec2<u32> {
     return vec2<u32>(found[0], found[1]);
 }
 
-// Finds the bin at whose end the triangles fit.
+// Finds the bin whose savings bring the triangles within the limit, and clears the bins.
 fn find_bin(lane: u32) {
     let length = ALL_BINS / 256u;
     var saved = 0u;
@@ -215,7 +217,7 @@ fn find_bin(lane: u32) {
     }
 }
 
-// Finds the part of the bin, and writes the state.
+// Finds the part of the bin, writes the state, and clears the parts.
 fn find_part(lane: u32) {
     let length = BIN_PARTS / 256u;
     var saved = 0u;
@@ -243,7 +245,7 @@ fn find_part(lane: u32) {
     }
 }
 
-// Writes the factors for a pressure. It grows at once, and falls in time.
+// Writes the factors. The pressure rises to `needed` at once, and falls to it with the time constant `SETTLING`.
 fn write_state(needed: u32, is_missed: bool) {
     let last = select(needed, state[0].pressure, view.is_next != 0u);
     let ahead = f32(last - min(needed, last)) * exp(-view.seconds / SETTLING);
@@ -259,7 +261,7 @@ fn write_state(needed: u32, is_missed: bool) {
     state[0].is_missed = u32(is_missed);
 }
 
-// Ends the fades if both levels of each do not fit.
+// Ends all fades of the frame if the triangles with both levels of each fade exceed the limit.
 fn finish() {
     let drawn = atomicLoad(&work[0].fading);
     state[0].ends_fades = u32(drawn > params.limit);

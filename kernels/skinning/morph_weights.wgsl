@@ -12,7 +12,7 @@ struct MorphWeightsParams {
     targets: u32,
     // Number of targets of all instances together.
     pairs: u32,
-    // Seconds since the starts of the instances.
+    // Elapsed time in seconds, the same for all instances. At 0, the clip time of an instance is its `start`.
     elapsed: f32,
 }
 

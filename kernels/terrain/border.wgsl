@@ -15,8 +15,8 @@ struct BorderParams {
 
 @group(0) @binding(0) var<uniform> params: BorderParams;
 @group(0) @binding(1) var<storage, read_write> heights: array<i32>;
-// The neighbours to the left, to the right, above and below each entry's patch; 0xffffffff where there is none
-// to move towards.
+// Per entry of `order`: the index of the patch to the left (x), to the right (y), above (z) and below (w). `NONE`: the samples
+// at this border do not move.
 @group(0) @binding(2) var<storage, read> neighbours: array<vec4<u32>>;
 // Indices of patches, dispatch by dispatch. The patches of one dispatch do not depend on each other.
 @group(0) @binding(3) var<storage, read> order: array<u32>;

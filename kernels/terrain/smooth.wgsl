@@ -11,7 +11,7 @@ const FEATURE_SHIFT = 2;
 // A row of coarse points, seen from one of them.
 struct Row {
     own: i32,
-    // The values in the middle of cells, from two before the own one to the next after it.
+    // Interpolated values at the middles of four cells. The columns of the cells, relative to the own one: -2, -1, 0, 1.
     along: vec4<i32>,
 }
 
@@ -33,13 +33,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let e = row_of(window, cell + vec2<i32>(0, 1));
     let f = row_of(window, cell + vec2<i32>(0, 2));
     let g = row_of(window, cell + vec2<i32>(0, 3));
-    // The centers of the cells from two before the own one to the next after it, in its column and in its row.
+    // The centers of four cells in the own cell's column, and in its row. Their places relative to the own cell: -2, -1, 0, 1.
     let steps = vec4<i32>(-3, -1, 1, 3);
     let column = drawn(window, level.range, vec4<i32>(at.x + 1), at.y + steps, between(
         vec4<i32>(a.along.z, b.along.z, c.along.z, d.along.z), vec4<i32>(e.along.z, f.along.z, g.along.zz)));
     let across = drawn(window, level.range, at.x + steps, vec4<i32>(at.y + 1), four_point(
         c.along, d.along, e.along, f.along));
-    // Between the four centers of the column, the four points of the own column, and the four centers of the row.
+    // Interpolated between four points. Lane x: the centers of the column. Lane y: the coarse points of the own column. Other
+    // lanes: the centers of the row.
     let middles = four_point(
         vec4<i32>(column.x, c.own, across.xx), vec4<i32>(column.y, d.own, across.yy),
         vec4<i32>(column.z, e.own, across.zz), vec4<i32>(column.w, f.own, across.ww));

@@ -22,7 +22,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         coarse_points(patch_index, x, y + 1), coarse_points(patch_index, x + 1, y + 1)));
     // The coarse point, the next to its right, and the next below it.
     let corners = coarse_points(patch_index, at.x + vec4<i32>(0, 1, 0, 0), at.y + vec4<i32>(0, 0, 1, 0));
-    // The points between them, whose other neighbours are centers.
+    // The midpoints of the edges to the right and downwards: each is the mean of two coarse points and two centers.
     let edges = drawn(patch_index, 2 * at.x + vec4<i32>(1, 0, 0, 0), 2 * at.y + vec4<i32>(0, 1, 0, 0), mean_of_four(
         vec4<i32>(corners.x), corners.yzzz, centers.zyyy, vec4<i32>(centers.x)));
     store_four(patch_index, 2 * at, vec4<i32>(corners.x, edges.x, edges.y, centers.x));

@@ -70,13 +70,13 @@ impl Paging {
     }
 }
 
-/// The smallest metric of an instance in a time during which a fade may still show the level of that moment.
+/// Sliding minimum of an instance's metric. A fade may still show the level of the smallest metric.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Held {
     metric: f32,
     /// Scene time of `metric`.
     time: f64,
-    /// The smallest metric since then.
+    /// The smallest metric after `time`.
     next: f32,
 }
 
@@ -124,7 +124,8 @@ impl<'a> Seen<'a> {
         Self { object, metrics }
     }
 
-    /// Pages that some of the instances need, per mesh, if the metric is scaled by `lod_bias`.
+    /// Number of pages per mesh that the visible instances of `slots` need, with the metric scaled by
+    /// `lod_bias`.
     fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u64> {
         let factor = CAUTION * lod_bias * self.object.metric_scale;
         let seen = || self.metrics[slots.clone()].iter().flatten();
@@ -132,7 +133,7 @@ impl<'a> Seen<'a> {
         meshes.iter().map(|mesh| mesh.needed(levels())).collect()
     }
 
-    /// The same pages, per mesh, limited to [`Paging::most`].
+    /// As [`Seen::exactly`], but at most [`Paging::most`] per mesh.
     pub fn pages(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u32> {
         let pages = self.exactly(slots, meshes, lod_bias);
         pages.iter().zip(meshes).map(|(pages, mesh)| (*pages).min(mesh.most.into()) as u32).collect()

@@ -35,11 +35,12 @@ pub struct World {
 /// An object of the scene, and its source.
 #[derive(Debug, Clone)]
 pub struct WorldObject {
-    /// Its handle.
+    /// The object's handle.
     pub object: ObjectId,
-    /// Its kind.
+    /// The object's kind.
     pub kind: WorldKind,
-    /// Its file's name in the scene file, `builtin:` with a name, or the seed of terrain.
+    /// Terrain: the seed. Other kinds: the source as the scene file has it, a file name or `builtin:` and a
+    /// name.
     pub name: String,
     /// The model of a mesh or a character, with its levels of detail.
     pub model: Option<Arc<Model>>,

@@ -58,20 +58,24 @@ pub struct MeshLevels {
 }
 
 impl MeshLevels {
-    /// Simplifies a mesh for its rest pose and these clips, and measures each level in `poses` of each clip, evenly
-    /// spaced from start to end.
+    /// Simplifies a mesh for its rest pose and these clips. The error of each level is measured in `poses`
+    /// poses of each clip, evenly spaced from start to end.
     ///
-    /// [`poses_of`](super::poses_of) gives a sufficient number of poses for a clip. Without clips, only the rest pose
-    /// counts. Blending is linear, with the clips' weights of morph targets. Edges that are hard only in normals do not
-    /// hinder simplification: each remaining corner keeps a vertex whose normal is close to its own, or to its
-    /// triangle's if that is flat-shaded. Texture coordinates count if the mesh's material shows a texture, or if it
-    /// has no material. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
+    /// [`poses_of`](super::poses_of) gives a sufficient number of poses for a clip. Without clips, only the
+    /// rest pose counts. Blending is linear, with the clips' weights of morph targets. Vertices that differ
+    /// only in normals are simplified as one. Each remaining corner then gets the vertex with the normal
+    /// closest to its own. In a flat-shaded triangle, it gets the vertex with the normal closest to the
+    /// triangle's. Texture coordinates count if the mesh's material shows a texture, or if the mesh has no
+    /// material. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
     ///
-    /// The error of a level is the largest distance, in all of these poses, of two kinds: between a vertex of the mesh
-    /// and the level's triangles close to it, and between midpoints of the level's triangles and edges and the mesh's
-    /// triangles that they stand for. It is increased by 3 % for poses in between. Other points of the surfaces may be
-    /// further apart: up to 1.4 times as far for a creature and a cow, and up to 10 times for a mesh that is as coarse
-    /// as its bumps.
+    /// The error of a level is the largest of these distances in all of these poses, plus 3 % for poses in
+    /// between:
+    ///
+    /// - from each vertex of the mesh to the level's triangles close to it;
+    /// - from the midpoint of each triangle and edge of the level to the mesh's triangles in its place.
+    ///
+    /// Other points of the surfaces may be further apart: up to 1.4 times as far for a creature and a cow,
+    /// and up to 10 times for a mesh that is as coarse as its bumps.
     ///
     /// A scaled model has the same levels, with errors scaled alike: exactly for powers of two. For other factors,
     /// rounding may decide between collapses of equal cost.

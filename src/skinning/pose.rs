@@ -19,10 +19,10 @@ use crate::skinning::vertex::Vertex;
 /// A sufficient number of poses per second for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent).
 const POSES_A_SECOND: f32 = 60.0;
 
-/// The longest clip, in seconds, that may be sampled at that rate: an hour, 216,001 poses.
+/// The longest clip that [`poses_of`] accepts, in seconds: an hour, or 216,001 poses at 60 a second.
 pub const LONGEST_LOOK: f32 = 3600.0;
 
-/// The largest number of sampled poses per clip: that of the longest clip.
+/// The largest number of sampled poses per clip: that of a clip of [`LONGEST_LOOK`].
 const MOST_POSES: usize = 216_001;
 
 /// The number of poses for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) to sample a clip 60 times a

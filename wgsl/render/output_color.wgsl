@@ -21,7 +21,8 @@ fn lit(given: Surface) -> vec4<f32> {
     return mix(shade(surface, scene_seen_by()), vec4<f32>(surface.unlit.rgb, 1.0), surface.unlit.w);
 }
 
-// Opaque surfaces have alpha 1: a pixel is drawn fully or discarded. While they fade, they are blended.
+// Writes an opaque surface. Its alpha is 1, or less while a fade is blended. The material's alpha decides only which pixels are
+// discarded.
 fn color_write(given: Surface) -> ColorTargets {
     var surface = given;
     surface.alpha = surface.fade;

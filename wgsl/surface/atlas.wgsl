@@ -14,7 +14,8 @@ fn surface_atlas_at(cells: vec2<u32>, level: u32, index: vec2<i32>) -> vec2<i32>
     if level == 0u {
         return index;
     }
-    // At least the number of rows of the levels in between: (r >> 1) + 1 ≥ ⌈r / 2⌉ for the rest at each level.
+    // Upper bound of the number of rows of levels 1 to level - 1. Level k has at most (r >> 1) + 1 rows, where
+    // r = cells.y >> (k - 1). The bound is the sum over k of the larger number r - (r >> 1) + 1.
     let above = cells.y - (cells.y >> (level - 1u)) + level - 1u;
     return index + vec2<i32>(vec2<u32>((cells.x + 3u) & ~3u, above));
 }

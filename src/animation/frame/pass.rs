@@ -74,8 +74,9 @@ impl GatedFrame {
         &self.model_matrices
     }
 
-    /// Sets the frame and time of the next submission. `elapsed` is in seconds since the starts of the instances. Move the
-    /// starts every few minutes, because `f32` seconds lose precision.
+    /// Sets the frame and time of the next submission. `elapsed` is in seconds. At 0, the clip time of each
+    /// instance is its `start`. Begin again at 0, with new starts, every few minutes: `f32` seconds lose
+    /// precision.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`](crate::gpu::GpuError).

@@ -111,8 +111,8 @@ fn bind(
 pub type KeyframeCursorJob = ParamsJob<KeyframeCursorParams>;
 
 impl KeyframeCursorJob {
-    /// Sets the time of the next submission, in seconds since the starts of the instances. Move the starts
-    /// every few minutes, because `f32` seconds lose precision.
+    /// Sets the time of the next submission. `elapsed` is in seconds. At 0, the clip time of each instance is
+    /// its `start`. Begin again at 0, with new starts, every few minutes: `f32` seconds lose precision.
     ///
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].

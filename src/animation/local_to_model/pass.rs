@@ -65,7 +65,8 @@ impl LocalToModelPass {
             instances: &active.instances,
             dispatches: &active.dispatches,
         };
-        // The first dispatch is per instance; chain levels follow.
+        // Entry 0 of `dispatches` is for one thread per updated instance, so the levels of chains begin at
+        // entry 1.
         let step = |(dispatch, level): (u64, &[u32])| {
             let group = binder.bind(gpu, &self.compacted, level, &lists)?;
             Ok(Step::indirect(&self.compacted, group, active.dispatches.raw(), 16 * dispatch))

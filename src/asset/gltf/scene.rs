@@ -32,7 +32,8 @@ impl Scene {
         let roots: Vec<usize> = scene.nodes.iter().map(|node| node.value()).collect();
         let contains = below(&root.nodes, &roots);
         for (at, node) in roots.iter().enumerate() {
-            // Some exporters list as a root the child of a node that is in no scene. Such a parent is ignored, as in three.js.
+            // Some exporters list a node as a root although its parent is a node outside of the scene. Such a
+            // parent is ignored, as in three.js.
             if parents[*node].take().is_some_and(|parent| contains[parent]) {
                 let bound = "must be a root, and no node's child";
                 return Err(InputError::new(format!("scenes[{default}].nodes[{at}]"), node, bound));

@@ -68,7 +68,8 @@ fn clipped(flat: &[DVec2]) -> Vec<[usize; 3]> {
         }
         triangles.push(ear);
         left.remove(at);
-        // The previous corner has changed, too. Steps of two give triangles that are less thin than a fan's.
+        // Both neighbours of the ear have changed, so all corners are tried again. Skipping the next corner
+        // gives triangles that are less thin than a fan's.
         (at, tried) = ((at + 1) % left.len(), 0);
     }
     triangles.push([left[0], left[1], left[2]]);

@@ -219,7 +219,8 @@ impl<'a> Search<'a> {
         nearest_on_triangle(wanted, corners).distance_squared(wanted)
     }
 
-    /// Those candidates that are nearest, in one of the poses, to a point on a body.
+    /// Corners of the candidates that are nearest to a point in at least one pose. `body` is the rigid body
+    /// of the point.
     fn nearest_in_each(
         &mut self,
         wanted: impl Fn(&Vec<Vec3>) -> Vec3,
@@ -228,7 +229,7 @@ impl<'a> Search<'a> {
     ) -> Vec<[u32; 3]> {
         let corners = |triangle: u32| corners_of(self.indices, triangle);
         let is_rigid = |triangle: u32| body != NO_BODY && common(self.bodies, &corners(triangle)) == body;
-        // On one body, the nearest triangle of one pose is nearest in all poses.
+        // If the point and all candidates are on one rigid body, one triangle is the nearest in all poses.
         if self.keys.len() == 1 || candidates.iter().all(|triangle| is_rigid(*triangle)) {
             return self.nearest(wanted(&self.keys[0]), candidates).map(corners).into_iter().collect();
         }

@@ -8,8 +8,8 @@ use crate::shared::skinning::cluster::{CLUSTER_FRESH, CLUSTER_MOVED, CLUSTER_STI
 pub enum ClusterState {
     /// Not skinned: last positions equal the current ones.
     Still = CLUSTER_STILL,
-    /// Skinned: last positions are those of the frame before.
+    /// Skinned: last positions are those of the last frame.
     Moved = CLUSTER_MOVED,
-    /// Skinned for the first time, or again after it was invisible: last positions are those of this frame.
+    /// Skinned for the first time, or again after it was invisible: last positions equal the current ones.
     Fresh = CLUSTER_FRESH,
 }

@@ -106,7 +106,8 @@ fn leaf_radius(corners: [f32; 4], offset: [i32; 2], own: f32) -> f32 {
     let away = offset.map(|at| at.abs() as f32);
     let center = away.map(|away| (away - 0.5).max(0.0));
     let length = (center[0] * center[0] + center[1] * center[1]).sqrt().max(0.5);
-    // Distances of the leaf's lower and upper edge, along the line to its center.
+    // Offsets along axis `i` of the leaf's lower and upper edge, projected onto the line to the leaf's
+    // center.
     let edges = |i: usize| {
         let direction = center[i] / length;
         let (near, far) = ((away[i] - 1.0).max(0.0) * direction, away[i] * direction);

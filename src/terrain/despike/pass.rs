@@ -13,7 +13,8 @@ use crate::{Error, InputError};
 pub struct DespikeBuffers<'a> {
     /// Read: the windows.
     pub windows: &'a Fields,
-    /// Read: the injected points, which despiking leaves alone; grid 0 covers the windows.
+    /// Read: the injected points, which despiking leaves unchanged. Its first grid must be as wide as the
+    /// windows.
     pub features: &'a FeatureIndex,
     /// Written: the despiked windows, one sample smaller on every side.
     pub cropped: &'a Fields,
