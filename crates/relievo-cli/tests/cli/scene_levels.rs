@@ -80,7 +80,7 @@ fn levels_are_chosen_as_the_file_says() {
     let forced = report(json!({"level": 0}), json!({}), &["--layer", "levels"]);
     assert_eq!(instances(forced)[0], 3);
     let red = |picture: &image::RgbImage| {
-        picture.pixels().filter(|pixel| pixel[0] > 2 * pixel[1] && pixel[0] > 60).count()
+        picture.pixels().filter(|pixel| pixel[0] / 2 > pixel[1] && pixel[0] > 60).count()
     };
     let picture = folder.frame(0).into_rgb8();
     assert!(red(&picture) > 200, "level 0 is red: {} pixels", red(&picture));
