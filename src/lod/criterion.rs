@@ -5,9 +5,11 @@ use glam::Vec3;
 
 use super::{LodCamera, LodObject};
 use crate::InputError;
+#[cfg(feature = "gpu")]
+use crate::shared::lod::criterion::CRITERION_ERROR;
 use crate::shared::lod::criterion::{
-    CRITERION_BOX, CRITERION_DISTANCE, CRITERION_ERROR, CRITERION_MAGNIFICATION, CRITERION_NEAREST,
-    CRITERION_POINT, CRITERION_SPHERE, MAX_METRIC,
+    CRITERION_BOX, CRITERION_DISTANCE, CRITERION_MAGNIFICATION, CRITERION_NEAREST, CRITERION_POINT,
+    CRITERION_SPHERE, MAX_METRIC,
 };
 use crate::shared::lod::object::object_flags_criterion;
 
@@ -78,6 +80,7 @@ pub enum SizeOf {
 
 impl Criterion {
     /// Its code in an object's flags.
+    #[cfg(feature = "gpu")]
     pub(crate) fn code(&self) -> u32 {
         match self {
             Self::Error => CRITERION_ERROR,
@@ -103,6 +106,7 @@ impl Criterion {
 
     /// Threshold per level: the smallest metric at which the level is drawn. Input: errors per level, ascending from 0,
     /// and triangles per level.
+    #[cfg(feature = "gpu")]
     pub(crate) fn thresholds(&self, errors: &[f32], triangles: &[u32]) -> Vec<f32> {
         let levels = errors.len();
         let listed = |list: &[f32], metric: fn(f32) -> f32| {
@@ -127,6 +131,7 @@ impl Criterion {
 
     /// Factors of a threshold for a half width of `width`: where an instance returns to the finer level, and where it
     /// takes the coarser one. Errors are not exceeded: their band lies on the coarser side.
+    #[cfg(feature = "gpu")]
     pub(crate) fn band(&self, width: f32, is_hysteresis: bool) -> [f32; 2] {
         match self {
             Self::Error if is_hysteresis => [1.0, 1.0 / (1.0 - width)],
@@ -178,6 +183,7 @@ impl Criterion {
     }
 }
 
+#[cfg(feature = "gpu")]
 fn of(count: &u32) -> f64 {
     f64::from(*count)
 }

@@ -7,13 +7,16 @@ use crate::shared::lod::object::{
     FADE_PROGRESS, FADE_STEPS, MORPH_STEPS, decision_level, decision_mirrored, decision_next, decision_seen,
     decision_steps, decision_word, fade_word, list_entry_word, object_flags_timed, object_flags_transition,
 };
+#[cfg(feature = "gpu")]
+use crate::shared::lod::transition::TRANSITION_HARD;
 use crate::shared::lod::transition::{
     NO_LEVEL, TRANSITION_ALPHA, TRANSITION_CROSS_FADE, TRANSITION_DITHER, TRANSITION_FADE_IN,
-    TRANSITION_GEOMORPH, TRANSITION_HARD, TRANSITION_TWO_PHASE,
+    TRANSITION_GEOMORPH, TRANSITION_TWO_PHASE,
 };
 
 /// Error allowance for a surface between two levels, as a multiple of the coarser level's error. It comes from
 /// measurements and is not a bound (`docs/pixel-bounds.md`).
+#[cfg(feature = "gpu")]
 const ON_THE_WAY: f32 = 1.2;
 
 /// How an object's instances change from one level of detail to the next.
@@ -99,6 +102,7 @@ impl Transition {
     ];
 
     /// Its code in an object's flags.
+    #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
             Self::Hard => TRANSITION_HARD,
@@ -122,6 +126,7 @@ impl Transition {
     }
 
     /// Whether instances may fade, which takes lists of their own.
+    #[cfg(feature = "gpu")]
     pub(crate) fn fades(self) -> bool {
         !matches!(self, Self::Hard | Self::Geomorph)
     }
@@ -162,6 +167,7 @@ impl Transition {
     /// With a geomorph, the threshold is where the level begins to move: [`ON_THE_WAY`] times the next level's error.
     /// Level 0 is drawn below its threshold too. For the last level, twice its own error takes the place of the next
     /// level's.
+    #[cfg(feature = "gpu")]
     pub(crate) fn begins(self, thresholds: &[f32]) -> Vec<f32> {
         match (self, thresholds.last()) {
             (Self::Geomorph, Some(last)) => {
