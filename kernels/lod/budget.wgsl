@@ -3,8 +3,8 @@
 // factor, rank by rank. It gives the bin of the least sufficient factor. A second histogram divides this bin into parts. Views
 // that share a budget add to the same histograms, stage by stage.
 import package::wgsl::lod::budget_state::BudgetState;
-import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, NO_RANK, OBJECT_LEVELS, RANKS, UNSEEN_METRIC, decision_level, decision_next, decision_steps, metric_bits, metric_mirrored};
-import package::wgsl::lod::transition::{coarsened, held_level, is_faded_out, level_within, threshold_of, transition_decision};
+import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, NO_RANK, OBJECT_LEVELS, RANKS, UNSEEN_METRIC, decision_level, decision_next, decision_steps, metric_bits};
+import package::wgsl::lod::transition::{held_level, is_faded_out, level_within, threshold_of, transition_decision};
 import package::wgsl::lod::view::SelectView;
 
 // One of the constants below.

@@ -223,11 +223,9 @@ fn morphing(object: &LodObject, metric: f32, mirrored: u32) -> u32 {
 }
 
 fn fading_in_band(object: &LodObject, metric: f32, mirrored: u32) -> u32 {
-    let is_passed = |level: &u32| threshold_of(object, *level, 0) <= metric;
-    let levels = object.levels.min(OBJECT_LEVELS);
-    let level = (1..levels).rev().find(is_passed).unwrap_or(0);
+    let level = level_within(object, metric, 0);
     let next = level + 1;
-    if next >= levels {
+    if next >= object.levels.min(OBJECT_LEVELS) {
         return settled(level, mirrored);
     }
     let [begin, end] = [next, 0].map(|last| threshold_of(object, next, last));

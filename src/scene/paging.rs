@@ -6,6 +6,7 @@ use std::ops::Range;
 use crate::lod::allowed::allowed_by;
 use crate::lod::criterion::{Placed, metric};
 use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
+use crate::lod::transition::level_within;
 use crate::lod::{LodCamera, LodObject, SceneInstance, SelectView};
 use crate::scene::object_kind::SeenBy;
 use crate::shared::lod::criterion::{CRITERION_DISTANCE, CRITERION_NEAREST};
@@ -24,6 +25,9 @@ const COARSER: f32 = 1.25;
 
 /// Largest factor to try.
 const COARSEST: f32 = 1e6;
+
+/// The last level for which hysteresis and fades keep the finest levels: whatever a view drew before, it draws none finer.
+const FINEST: u32 = 0;
 
 /// Page counts of one mesh, for some instances.
 #[derive(Debug, Clone)]
@@ -129,7 +133,7 @@ impl<'a> Seen<'a> {
     fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u64> {
         let factor = CAUTION * lod_bias * self.object.metric_scale;
         let seen = || self.metrics[slots.clone()].iter().flatten();
-        let levels = || seen().map(|metric| finest(self.object, factor * metric));
+        let levels = || seen().map(|metric| level_within(self.object, factor * metric, FINEST));
         meshes.iter().map(|mesh| mesh.needed(levels())).collect()
     }
 
@@ -183,11 +187,4 @@ fn least_metric(views: &[SelectView], object: &LodObject, instance: &SceneInstan
 
 fn is_distance(object: &LodObject) -> bool {
     (CRITERION_DISTANCE..=CRITERION_NEAREST).contains(&object_flags_criterion(object.flags))
-}
-
-/// The finest level that a view may draw at a metric, whatever it drew before.
-fn finest(object: &LodObject, metric: f32) -> u32 {
-    let thresholds = object.thresholds.as_flattened();
-    let factor = object.coarser.max(1.0);
-    (1..object.levels).take_while(|level| factor * thresholds[*level as usize] <= metric).count() as u32
 }

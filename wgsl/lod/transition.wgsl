@@ -73,13 +73,8 @@ fn morphing(object: LodObject, metric: f32, mirrored: u32) -> u32 {
 
 // A fade from a level to the next coarser one while the metric passes the band around the threshold.
 fn fading_in_band(object: LodObject, metric: f32, mirrored: u32) -> u32 {
-    // As if all levels were coarser than the last one: the coarsest level whose band is passed.
-    var level = 0u;
-    for (var coarser = 1u; coarser < min(object.levels, OBJECT_LEVELS); coarser++) {
-        if threshold_of(object, coarser, 0u) <= metric {
-            level = coarser;
-        }
-    }
+    // The coarsest level whose band is passed: as if the last level were the finest.
+    let level = level_within(object, metric, 0u);
     if level + 1u >= min(object.levels, OBJECT_LEVELS) {
         return settled(level, mirrored);
     }

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use super::View;
-use super::lists::ViewLists;
-use crate::gpu::{Buffer, Gpu, GpuError, Staged, Uniform, Upload as _};
+use crate::gpu::{Buffer, Gpu, Staged, Uniform, Upload as _};
 use crate::lod::BudgetState;
 use crate::lod::budget::{BudgetBuffers, BudgetParams, BudgetPass, BudgetStage, BudgetStages, BudgetWork};
 use crate::scene::Scene;
@@ -45,7 +44,7 @@ impl Scene {
     /// ([`View::set_quality`]).
     ///
     /// # Errors
-    /// [`InputError`] for 0 triangles, and for a view of another scene; [`GpuError`].
+    /// [`InputError`] for 0 triangles, and for a view of another scene; [`crate::gpu::GpuError`].
     pub fn share_budget(&self, views: &mut [&mut View], triangles: u32) -> Result<(), Error> {
         let quality = Quality { triangles: Some(triangles), ..Quality::default() };
         quality.validate()?;
@@ -152,11 +151,4 @@ pub(super) fn prepared(
         work: &budget.work,
     };
     pass.prepare(gpu, &budget.params, buffers)
-}
-
-impl ViewLists {
-    /// Makes the state of a view without a budget.
-    pub(super) fn free(gpu: &Gpu) -> Result<Buffer<BudgetState>, GpuError> {
-        Buffer::from_slice(gpu, "no budget", &[BudgetState::FREE])
-    }
 }

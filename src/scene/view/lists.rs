@@ -87,7 +87,7 @@ impl ViewLists {
         let counts = Buffer::new(gpu, "counts of blocks", (OBJECT_LISTS * layout.blocks) as usize)?;
         let budget_state = match budget {
             Some(budget) => budget.state.clone(),
-            None => Self::free(gpu)?,
+            None => Buffer::from_slice(gpu, "no budget", &[BudgetState::FREE])?,
         };
         let last_decisions = Buffer::new(gpu, "decisions of the last frame", instances)?;
         let frames = if layout.keeps_last { 2 } else { 1 };
