@@ -22,8 +22,8 @@ const ON_THE_WAY: f32 = 1.2;
 /// How an object's instances change from one level of detail to the next.
 ///
 /// Fades draw an instance twice while it changes. All but [`Transition::Dither`] blend: their blended level is drawn in
-/// [`Layer::Transparent`](crate::render::Layer::Transparent), after everything opaque. Layers other than colour show the
-/// level with the larger weight alone; a dither shows its pattern in every layer. Parts with blended materials change at
+/// [`Layer::Transparent`](crate::render::Layer::Transparent), after everything opaque. Layers other than colour and depth show
+/// the level with the larger weight alone; a dither shows its pattern in every layer. Parts with blended materials change at
 /// once.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
@@ -50,8 +50,7 @@ pub enum Transition {
     Geomorph,
     /// Both levels, each in its own pixels of an ordered pattern that stands still. Together they cover every pixel.
     Dither(Pace),
-    /// Both levels blended, with weights λ and 1 − λ (thesis A, section 7.3.1). What is behind them shows through, and so does
-    /// their inside, since neither writes depth.
+    /// Both levels blended, with weights λ and 1 − λ (thesis A, section 7.3.1). Opaque surfaces behind them show through.
     CrossFade(Pace),
     /// The level opaque; the next one is blended over it with weight 1 − λ and without writing depth (section 7.3.2).
     /// The level disappears at once in the end.
@@ -59,7 +58,7 @@ pub enum Transition {
     /// The level opaque while the next one fades in over it, then the next one opaque while the level fades out
     /// (section 7.3.3). Nothing behind shows through.
     TwoPhase(Pace),
-    /// Levels change at once, and instances fade out to nothing (section 7.4). They write depth, which hides their inside. The
+    /// Levels change at once, and instances fade out to nothing (section 7.4). Opaque surfaces behind them show through. The
     /// numbers have the unit of the object's criterion: distance, fraction of the viewport, or pixels per world unit.
     /// [`Criterion::Error`] has none.
     Alpha {

@@ -16,9 +16,13 @@ pub enum Layer {
     /// target, by their alpha (`wgpu::BlendState::ALPHA_BLENDING`). Instances are drawn from back to front, by the
     /// centers of their bounding spheres. Equally distant ones are drawn in the order of objects and instances, and the
     /// triangles of an instance in the order of the mesh. Each instance in view takes a draw for each of its parts.
+    ///
+    /// Before them come the levels of detail that fade ([`Transition`](crate::scene::Transition)). Of what fades over
+    /// nothing opaque ([`CrossFade`](crate::scene::Transition::CrossFade), [`Alpha`](crate::scene::Transition::Alpha)),
+    /// depth is written first, so that only the nearest surface shows: the order of instances does not matter.
     Transparent,
     /// Depth alone: for shadow maps, and for a prepass before other layers on the same target. Reliefs write their own
-    /// depth.
+    /// depth. What fades over nothing opaque is part of shadow maps alone, while its weight is more than a half.
     Depth,
     /// Surface attributes before lighting, with depth, in three colours (a G-buffer).
     ///

@@ -137,7 +137,7 @@ impl Renderer {
         let layers: Vec<Layer> = self.format.layers().collect();
         for layer in layers {
             for (part, transition) in &parts {
-                for fade in fades_of(part, *transition, layer) {
+                for fade in self.fades_of(part, *transition, layer) {
                     for is_flipped in [false, true] {
                         self.compile(self.key(layer, part, is_flipped, is_shadowed).fading(fade))?;
                     }
@@ -278,15 +278,46 @@ impl Renderer {
         pass.set_bind_group(0, view.group);
         let objects = objects.filter(|object| object.lod.instances > 0);
         if layer == Layer::Transparent && self.format.depth.is_some() {
-            let fades_out = |object: &DrawnObject<'_>| matches!(object.transition, Transition::Alpha { .. });
-            for object in objects.clone().filter(fades_out) {
-                self.draw_object(pass, view, &object, |part| hidden_of(part).into_iter().collect());
+            for object in objects.clone() {
+                self.draw_object(pass, view, &object, |part| {
+                    hiding(part, object.transition).into_iter().collect()
+                });
             }
         }
         for object in objects {
-            self.draw_object(pass, view, &object, |part| lists_of(part, object.transition, layer));
+            self.draw_object(pass, view, &object, |part| self.lists_of(part, object.transition, layer));
         }
         Ok(())
+    }
+
+    /// The lists of a part that a layer draws.
+    fn lists_of(&self, part: &Specialization, transition: Transition, layer: Layer) -> Vec<ListDraw> {
+        let is_transparent = layer == Layer::Transparent;
+        let fading = match transition {
+            Transition::Hard | Transition::Geomorph => None,
+            Transition::Dither(_) => (!is_transparent).then_some(Fade::Dither),
+            _ if is_transparent => Some(Fade::Blend),
+            Transition::FadeIn(_) | Transition::TwoPhase(_) => None,
+            // What is behind shows through, so it must pass the test against depth that was drawn first.
+            Transition::CrossFade(_) | Transition::Alpha { .. } => {
+                let shows = layer != Layer::Color && (layer != Layer::Depth || self.casts);
+                shows.then_some(Fade::Heavier)
+            }
+        };
+        let solid = (!is_transparent).then_some(ListDraw { layer, fade: Fade::None, is_fading: false });
+        let fading = fading.map(|fade| ListDraw { layer, fade, is_fading: true });
+        // Blended parts are drawn one by one.
+        solid.into_iter().chain(fading).filter(|_| !part.state().blended).collect()
+    }
+
+    /// The pipelines of a part in a layer, by how instances fade.
+    fn fades_of(&self, part: &Specialization, transition: Transition, layer: Layer) -> Vec<Fade> {
+        if part.state().blended && layer == Layer::Transparent {
+            return vec![sorted_fade(transition)];
+        }
+        let hiding = hiding(part, transition).filter(|list| list.layer == layer);
+        let lists = self.lists_of(part, transition, layer);
+        lists.into_iter().chain(hiding).map(|list| list.fade).collect()
     }
 
     /// Draws the parts of an object. `lists` gives what to draw of a part.
@@ -380,41 +411,21 @@ struct ListDraw {
     is_fading: bool,
 }
 
-/// The lists of a part that a layer draws.
-fn lists_of(part: &Specialization, transition: Transition, layer: Layer) -> Vec<ListDraw> {
-    let is_transparent = layer == Layer::Transparent;
-    let fading = match transition {
-        Transition::Hard | Transition::Geomorph => None,
-        Transition::Dither(_) => (!is_transparent).then_some(Fade::Dither),
-        _ if is_transparent => Some(Fade::Blend),
-        Transition::FadeIn(_) | Transition::TwoPhase(_) => None,
-        Transition::CrossFade(_) | Transition::Alpha { .. } => {
-            (layer != Layer::Color).then_some(Fade::Heavier)
-        }
+/// What is drawn before a part is blended, to hide its inside and what fades behind it: its depth. A level that is blended over
+/// its opaque one needs nothing.
+fn hiding(part: &Specialization, transition: Transition) -> Option<ListDraw> {
+    let fade = match transition {
+        Transition::Alpha { .. } => Fade::None,
+        Transition::CrossFade(_) => Fade::Pushed,
+        _ => return None,
     };
-    let solid = (!is_transparent).then_some(ListDraw { layer, fade: Fade::None, is_fading: false });
-    let fading = fading.map(|fade| ListDraw { layer, fade, is_fading: true });
-    // Blended parts are drawn one by one.
-    solid.into_iter().chain(fading).filter(|_| !part.state().blended).collect()
-}
-
-/// What hides the inside of a part that fades out: its depth, drawn before it is blended.
-fn hidden_of(part: &Specialization) -> Option<ListDraw> {
-    let depth = ListDraw { layer: Layer::Depth, fade: Fade::None, is_fading: true };
+    let depth = ListDraw { layer: Layer::Depth, fade, is_fading: true };
     (!part.state().blended).then_some(depth)
 }
 
 /// How a sorted draw of an object with this transition fades.
 fn sorted_fade(transition: Transition) -> Fade {
     if matches!(transition, Transition::Alpha { .. }) { Fade::Blend } else { Fade::None }
-}
-
-/// The pipelines of a part in a layer, by how instances fade.
-fn fades_of(part: &Specialization, transition: Transition, layer: Layer) -> Vec<Fade> {
-    if part.state().blended && layer == Layer::Transparent {
-        return vec![sorted_fade(transition)];
-    }
-    lists_of(part, transition, layer).iter().map(|list| list.fade).collect()
 }
 
 /// Draws a part of all mirrored instances, or of all others, of those that fade or of those that do not.

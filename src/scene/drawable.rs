@@ -3,6 +3,8 @@
 use std::any::Any;
 use std::fmt::Debug;
 
+use glam::Vec4;
+
 use crate::Error;
 use crate::gpu::{Buffer, Group, Staged};
 use crate::lod::transition::Transition;
@@ -67,7 +69,8 @@ pub(crate) struct Part<'a> {
 }
 
 /// Object uniform of instances that are not in a layout yet.
-pub(crate) const NO_OBJECT: SceneObject = SceneObject { first_instance: 0, number: 0, first_slot: 0 };
+pub(crate) const NO_OBJECT: SceneObject =
+    SceneObject { first_instance: 0, number: 0, first_slot: 0, push: [Vec4::ZERO; 2] };
 
 /// An object as a view draws it.
 #[derive(Debug, Clone, Copy)]

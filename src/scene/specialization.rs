@@ -8,7 +8,7 @@ use crate::gpu::shaders::{RENDER_SCENE_MESH, RENDER_SCENE_RELIEF, RENDER_SCENE_T
 use crate::scene::options::TerrainStyle;
 use crate::scene::program::{self, KindProgram};
 use crate::scene::wgsl::entries::KindText;
-use crate::shared::render::scene_fade::{FADE_BLEND, FADE_DITHER, FADE_HEAVIER, FADE_NONE};
+use crate::shared::render::scene_fade::{FADE_BLEND, FADE_DITHER, FADE_HEAVIER, FADE_NONE, FADE_PUSHED};
 use crate::surface::{Green, ReliefOptions, ReliefShadow};
 
 /// The shader of a kind of object.
@@ -235,6 +235,8 @@ pub(crate) enum Fade {
     Blend = FADE_BLEND as isize,
     /// Only the level with the larger weight is drawn.
     Heavier = FADE_HEAVIER as isize,
+    /// Pushed away from the eye.
+    Pushed = FADE_PUSHED as isize,
 }
 
 /// The constants that the renderer sets.

@@ -2,6 +2,7 @@
 
 mod budgets;
 mod criteria;
+mod linear;
 mod promise;
 mod stage;
 mod transitions;

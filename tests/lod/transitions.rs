@@ -243,7 +243,7 @@ fn no_background_shows_where_both_levels_cover() {
 }
 
 /// Opaque depth is that of the opaque level at every step, and layers other than colour show it alone: the one with the larger
-/// weight, and with a fade in the level itself.
+/// weight, and with a fade in the level itself. A cross-fade has no opaque depth.
 #[test]
 fn other_layers_show_the_heavier_level() {
     let all = outputs();
@@ -263,9 +263,13 @@ fn other_layers_show_the_heavier_level() {
                         is_color != is_equal || layers[..] == [Layer::Depth],
                         "{transition:?} at {way}, {layers:?}"
                     );
-                    // Nothing of a cross-fade is opaque, unless depth was drawn before.
-                    if layers[..] != COLORS || !matches!(transition, Transition::CrossFade(_)) {
-                        let is_equal = trio.depths(at, CHANGING) == trio.depths(at, alone);
+                    // Nothing of a cross-fade is opaque.
+                    let is_cross = matches!(transition, Transition::CrossFade(_));
+                    let depths = trio.depths(at, CHANGING);
+                    if is_cross && layers[..] == [Layer::Depth] {
+                        assert!(depths.iter().all(|depth| *depth == 1.0), "{way}: nothing is opaque");
+                    } else if !is_cross || !is_color {
+                        let is_equal = depths == trio.depths(at, alone);
                         assert!(is_equal, "{transition:?} at {way}, {layers:?}: depth");
                     }
                 }
@@ -274,32 +278,37 @@ fn other_layers_show_the_heavier_level() {
     }
 }
 
-/// A cross-fade is λ of the one level over 1 − λ of the other over what is behind.
+/// A cross-fade is λ of the one level over 1 − λ of the other over what is behind, also where depth was drawn first. Neither
+/// level's inside shows.
 #[test]
 fn a_cross_fade_blends_with_its_weights() {
     let format = TargetFormat::new(wgpu::TextureFormat::Rgba8Unorm);
-    let mut trio = Trio::new(Stage::of_mesh, vec![(format, COLORS.to_vec())]);
-    trio.set(Transition::CrossFade(Pace::Band(0.1)));
-    for way in [0.25_f32, 0.6] {
-        trio.look(distance_at(way));
-        let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.bytes(0, stage));
-        let (mut off, mut covered) = (0, 0);
-        for ((found, finer), coarser) in found.chunks(4).zip(finer.chunks(4)).zip(coarser.chunks(4)) {
-            // Of both levels, either may be in front; the one that is behind fails no test, as neither writes depth.
-            let mix = |a: f32, b: f32, part: f32| a + (b - a) * part;
-            let channel = |at: usize| {
-                let behind = [255.0, 0.0, 255.0][at];
-                let [finer, coarser] = [finer[at], coarser[at]].map(f32::from);
-                let first = mix(mix(behind, finer, 1.0 - way), coarser, way);
-                let second = mix(mix(behind, coarser, way), finer, 1.0 - way);
-                let found = f32::from(found[at]);
-                (found - first).abs().min((found - second).abs())
-            };
-            off += u32::from((0..3).map(channel).fold(0.0, f32::max) > 6.0);
-            covered += u32::from(finer[1] > 0 || coarser[1] > 0);
+    let prepass = [Layer::Depth, Layer::Color, Layer::Transparent];
+    for kind in KINDS {
+        let mut trio =
+            Trio::new(kind, vec![(format.clone(), COLORS.to_vec()), (format.clone(), prepass.to_vec())]);
+        trio.set(Transition::CrossFade(Pace::Band(0.1)));
+        for (output, way) in [(0, 0.25_f32), (0, 0.6), (1, 0.6)] {
+            trio.look(distance_at(way));
+            let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.bytes(output, stage));
+            let (mut off, mut covered) = (0, 0);
+            for ((found, finer), coarser) in found.chunks(4).zip(finer.chunks(4)).zip(coarser.chunks(4)) {
+                // Either level may be in front.
+                let mix = |a: f32, b: f32, part: f32| a + (b - a) * part;
+                let channel = |at: usize| {
+                    let behind = [255.0, 0.0, 255.0][at];
+                    let [finer, coarser] = [finer[at], coarser[at]].map(f32::from);
+                    let first = mix(mix(behind, finer, 1.0 - way), coarser, way);
+                    let second = mix(mix(behind, coarser, way), finer, 1.0 - way);
+                    let found = f32::from(found[at]);
+                    (found - first).abs().min((found - second).abs())
+                };
+                off += u32::from((0..3).map(channel).fold(0.0, f32::max) > 6.0);
+                covered += u32::from(finer[1] > 0 || coarser[1] > 0);
+            }
+            // Where a level hides itself a little behind its surface, it is blended twice.
+            assert!(8 * off < covered && covered > 1000, "{off} of {covered} pixels at {way}");
         }
-        // Where a level hides itself, it is blended twice.
-        assert!(20 * off < covered && covered > 1000, "{off} of {covered} pixels at {way}");
     }
 }
 
@@ -362,12 +371,16 @@ fn instances_fade_out_between_two_distances() {
         }
         assert!(covered.windows(2).all(|pair| pair[1] < pair[0]), "{covered:?}");
         assert_eq!(covered[4], 0.0, "{covered:?}");
-        // Other layers show it until it is half gone.
-        for (distance, is_shown) in [(690.0, true), (710.0, false)] {
-            stage.view.set(zoomed_from(distance)).expect("a camera");
-            stage.shot(&shot, &[Layer::Depth]);
-            let depth = shot.target.read_depth(&stage.gpu).expect("read");
-            assert_eq!(depth.iter().any(|depth| *depth < 1.0), is_shown, "{distance}");
+        // A prepass has it while it is opaque, other layers until it is half gone.
+        let measure = Shot::new(&stage, TargetFormat::measure());
+        let layers = [(&shot, Layer::Depth, 590.0, 610.0), (&measure, Layer::Measure, 690.0, 710.0)];
+        for (shot, layer, shown, gone) in layers {
+            for (distance, is_shown) in [(shown, true), (gone, false)] {
+                stage.view.set(zoomed_from(distance)).expect("a camera");
+                stage.shot(shot, &[layer]);
+                let depth = shot.target.read_depth(&stage.gpu).expect("read");
+                assert_eq!(depth.iter().any(|depth| *depth < 1.0), is_shown, "{layer:?} at {distance}");
+            }
         }
     }
 }

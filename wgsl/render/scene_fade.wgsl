@@ -12,6 +12,8 @@ const FADE_DITHER = 1u;
 const FADE_BLEND = 2u;
 // Drawn if the weight is more than half of the whole.
 const FADE_HEAVIER = 3u;
+// Pushed away from the eye: depth that hides the inside of both levels of a cross-fade, and neither surface.
+const FADE_PUSHED = 4u;
 
 // Words that the vertex shader passes on after the kind's own: the instance, its fade word, its level, and whether triangles
 // seen from outside run counter-clockwise on screen.

@@ -1,6 +1,7 @@
 // Placements of the drawn object's instances in a view, in this frame and in the last one.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
-import package::wgsl::lod::object::list_entry_instance;
+import package::wgsl::lod::object::{list_entry_instance, list_entry_level};
+import package::wgsl::render::scene_fade::{FADE, FADE_PUSHED};
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, triangle_surface};
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
@@ -23,6 +24,8 @@ struct SceneObject {
     number: u32,
     // Number in the object of the chunk's first instance.
     first_slot: u32,
+    // Per level: how far `FADE_PUSHED` pushes, in units of the model.
+    push: array<vec4<f32>, 2>,
 }
 
 @group(1) @binding(0) var<uniform> scene_object: SceneObject;
@@ -95,6 +98,19 @@ fn scene_last_rigid(entry: u32, position: vec3<f32>) -> vec3<f32> {
     return placed_position(rows_to_last(instance_index(entry)), position);
 }
 
+// A position of an instance's surface, pushed away from the eye as far as the instance's level and the next may lie apart.
+fn pushed_position(entry: u32, placement: Rows, position: vec3<f32>) -> vec3<f32> {
+    if FADE != FADE_PUSHED {
+        return position;
+    }
+    let level = list_entry_level(entry);
+    let scale = sqrt(max(max(
+        dot(placement.x.xyz, placement.x.xyz), dot(placement.y.xyz, placement.y.xyz)),
+        dot(placement.z.xyz, placement.z.xyz)));
+    let away = normalize(position * view.eye.w - view.eye.xyz);
+    return position + scene_object.push[level >> 2u][level & 3u] * scale * away;
+}
+
 // A model-space vertex, placed with the instance of a list entry. `tangent.w` is the sign of the bitangent in model space.
 fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec4<f32>, uv: vec4<f32>) -> SceneVertex {
     let placement = instance_placement(instance_index(entry));
@@ -104,7 +120,7 @@ fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec
     // If the placement mirrors, cofactors turn the normal inwards, and the sign of the bitangent flips.
     let side = select(1.0, -1.0, determinant < 0.0);
     return SceneVertex(
-        placed_position(placement, position), side * placed_normal(placement, normal),
+        pushed_position(entry, placement, placed_position(placement, position)), side * placed_normal(placement, normal),
         vec4<f32>(along, side * tangent.w), uv, vec4<f32>(0.0), vec3<u32>(0u), side);
 }
 

@@ -57,10 +57,10 @@ const LAYOUTS: [(&str, Layout); 2] = [("grid", Layout::Grid), ("random", Layout:
 ///
 /// A crowd that is drawn needs a clip of at most an hour, which is sampled 60 times a second, and at least 4 frames.
 ///
-/// With --scene (GPU only), the command instead times five scenes at each distance, which are equal but for their level
+/// With --scene (GPU only), the command instead times six scenes at each distance, which are equal but for their level
 /// of detail: "off" (all bones, influences and triangles), "animation" (the pixels of --gate), "skinning" (those of
-/// --skinning), "both" of these, and "all" (both, and those of --mesh unless it is full). It writes DIR/scene.json;
-/// scene.png plots the time of a frame against distance; crowd_<distance>.png shows the last of the five.
+/// --skinning), "both" of these, "mesh" (those of --mesh) and "all" three; the last two are missing if --mesh is full. It
+/// writes DIR/scene.json; scene.png plots the time of a frame against distance; crowd_<distance>.png shows the last scene.
 ///
 /// With --pareto, the command instead compares error against cost for every gate, at one distance (--tall), on the
 /// CPU. All instances stand at one place, each turned by another angle. It writes pareto_max.png, pareto_rms.png

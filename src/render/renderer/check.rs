@@ -1,6 +1,6 @@
 //! Checks before drawing.
 
-use super::{Renderer, fades_of};
+use super::Renderer;
 use crate::InputError;
 use crate::render::layer::Layer;
 use crate::render::output::OutputProgram;
@@ -67,7 +67,7 @@ impl Renderer {
             let mut parts = object.drawable.parts().map(|part| part.specialization);
             let is_compiled = |part, fade| self.pipeline(layer, part, (false, fade), view).is_some();
             let is_ready = |part| {
-                fades_of(part, object.transition, layer).into_iter().all(|fade| is_compiled(part, fade))
+                self.fades_of(part, object.transition, layer).into_iter().all(|fade| is_compiled(part, fade))
             };
             if !parts.all(is_ready) {
                 let value = format!("object {} (ObjectId::number), not compiled", object.number);

@@ -1,5 +1,5 @@
-//! Times the whole frame against distance: without level of detail; with it in animation, in skinning, and in
-//! both; and in these and the meshes.
+//! Times the whole frame against distance: without level of detail; with it in animation, in skinning, in both, and in
+//! meshes; and in all three.
 
 use image::RgbaImage;
 use relievo::Error;
@@ -45,10 +45,12 @@ pub struct SceneRow {
     pub animation: FrameCost,
     /// With the influences of [`DrawnOptions::skinning`](crate::measure::DrawnOptions::skinning).
     pub skinning: FrameCost,
+    /// With the triangles of [`DrawnOptions::mesh`](crate::measure::DrawnOptions::mesh); `None` if the meshes are full.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<FrameCost>,
     /// With the gate and with these influences.
     pub both: FrameCost,
-    /// With both, and the triangles of [`DrawnOptions::mesh`](crate::measure::DrawnOptions::mesh); `None` if the
-    /// meshes are full.
+    /// With all three; `None` if the meshes are full.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub all: Option<FrameCost>,
     /// The times of `off` divided by those of `both`.
@@ -78,22 +80,26 @@ impl Cheaper {
 
 impl SceneRow {
     /// The names that reports and plots give to the entries of [`costs`](Self::costs).
-    pub const NAMES: [&str; 5] = ["off", "animation", "skinning", "both", "all"];
+    pub const NAMES: [&str; 6] = ["off", "animation", "skinning", "both", "mesh", "all"];
 
     /// The costs in the order of [`NAMES`](Self::NAMES).
     pub fn costs(&self) -> impl Iterator<Item = &FrameCost> {
-        [&self.off, &self.animation, &self.skinning, &self.both].into_iter().chain(&self.all)
+        [&self.off, &self.animation, &self.skinning, &self.both]
+            .into_iter()
+            .chain(&self.mesh)
+            .chain(&self.all)
     }
 
     fn new(stage: &Stage<'_>, distance: f32, costs: &[FrameCost]) -> Self {
         let [off, animation, skinning, both] = std::array::from_fn(|variant| costs[variant]);
-        let all = costs.get(4).copied();
+        let [mesh, all] = [4, 5].map(|variant| costs.get(variant).copied());
         Self {
             distance,
             tall_pixels: stage.options.size * stage.projection.focal_pixels / distance,
             off,
             animation,
             skinning,
+            mesh,
             both,
             all,
             cheaper: Cheaper::new(&off, &both),
@@ -102,7 +108,7 @@ impl SceneRow {
     }
 }
 
-/// Draws a crowd at each distance in four or five ways, each a scene with its own pixels and shares, and times whole frames.
+/// Draws a crowd at each distance in four or six ways, each a scene with its own pixels and shares, and times whole frames.
 /// Each distance comes with a picture of the last frame of the last way, 1920 × 1080 pixels.
 ///
 /// The times are medians. The ways take turns, so that other load of the machine affects all of them alike. The camera
@@ -147,7 +153,7 @@ pub fn scene(
 
 /// The ways to draw in the order of [`SceneRow::NAMES`].
 fn ways(all: &Parts, drawn: &DrawnOptions) -> Vec<Parts> {
-    let Parts { bones, influences, .. } = *all;
+    let Parts { bones, influences, mesh } = *all;
     let mut ways = vec![
         Parts::NONE,
         Parts { bones, ..Parts::NONE },
@@ -155,7 +161,7 @@ fn ways(all: &Parts, drawn: &DrawnOptions) -> Vec<Parts> {
         Parts { mesh: 0.0, ..*all },
     ];
     if drawn.mesh != Detail::Full {
-        ways.push(*all);
+        ways.extend([Parts { mesh, ..Parts::NONE }, *all]);
     }
     ways
 }

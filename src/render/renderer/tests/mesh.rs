@@ -12,6 +12,7 @@ use crate::picture::texture::Surface;
 use crate::picture::{self, Part};
 use crate::render::{Layer, TargetFormat};
 use crate::samples::creature::creature;
+use crate::scene::drawable::NO_OBJECT;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::{Looks, PartMaterials};
 use crate::scene::mesh::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
@@ -47,7 +48,7 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
 }
 
 /// The object that a stage draws.
-pub const OBJECT: SceneObject = SceneObject { first_instance: 64, number: 1, first_slot: 0 };
+pub const OBJECT: SceneObject = SceneObject { first_instance: 64, number: 1, ..NO_OBJECT };
 
 /// The model's first mesh. Its instances have their own vertices, in pages in reverse order.
 pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (MeshDrawable, u32) {

@@ -11,7 +11,7 @@
 //!
 //! Terrain and reliefs have one level of detail and are not measured.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use eye::{Eye, is_inside};
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
@@ -55,10 +55,18 @@ pub struct Displacement {
 /// Measures the displacement of meshes and characters of a scene, frame by frame.
 pub struct DisplacementMeter {
     watched: Vec<Watched>,
-    /// The most instances of an object that are measured in a frame.
-    most: usize,
+    /// The instances that are measured in a frame.
+    which: Which,
     /// The offsets of partners of vertices in the last frame, in pixels.
     last: HashMap<Vertex, DVec2>,
+}
+
+/// Some of an object's instances.
+enum Which {
+    /// At most so many, evenly spread.
+    AtMost(usize),
+    /// These, of all objects.
+    These(HashSet<InstanceId>),
 }
 
 /// A vertex of an instance: of which merged mesh, and its index in it.
@@ -100,7 +108,12 @@ impl DisplacementMeter {
     /// A meter that watches nothing yet. In each frame it measures at most so many instances of an object, at least one: each
     /// so-manieth of those that the view may show, in the order of [`Scene::instances`], beginning with the first.
     pub fn of_at_most(instances: usize) -> Self {
-        Self { watched: Vec::new(), most: instances.max(1), last: HashMap::new() }
+        Self { watched: Vec::new(), which: Which::AtMost(instances.max(1)), last: HashMap::new() }
+    }
+
+    /// Measures these instances alone from now on, of whatever it watches.
+    pub fn choose(&mut self, instances: impl IntoIterator<Item = InstanceId>) {
+        self.which = Which::These(instances.into_iter().collect());
     }
 
     /// Watches an object of a scene, which was added as this model: a mesh or a character.
@@ -133,8 +146,15 @@ impl DisplacementMeter {
             let all = scene.drawn_instances(view, watched.object)?;
             let drawn = all.iter().filter_map(|instance| instance.drawn);
             drawn.for_each(|drawn| frame.levels[drawn.list as usize / 2] += 1);
-            let each = all.len().div_ceil(self.most).max(1);
-            let measured: Vec<_> = all.into_iter().step_by(each).collect();
+            let measured: Vec<_> = match &self.which {
+                Which::AtMost(most) => {
+                    let each = all.len().div_ceil(*most).max(1);
+                    all.into_iter().step_by(each).collect()
+                }
+                Which::These(these) => {
+                    all.into_iter().filter(|drawn| these.contains(&drawn.instance)).collect()
+                }
+            };
             for DrawnAs { list, .. } in measured.iter().filter_map(|instance| instance.drawn) {
                 watched.read_list(scene, view, list)?;
             }
