@@ -6,6 +6,8 @@
 //! ```sh
 //! RELIEVO_MODELS=a.glb:b.obj cargo test --test lod scale -- --ignored --nocapture
 //! ```
+//!
+//! `RELIEVO_PICTURES` names a folder for the pictures of its frames.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -19,8 +21,8 @@ use relievo::ops::skinning::bounding_sphere::BoundingSphere;
 use relievo::ops::skinning::{add_levels, poses_of};
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{
-    Camera, InstanceId, ObjectId, ObjectStatistics, Placement, Play, Quality, Relief, Scene, TerrainConfig,
-    TerrainSource, View,
+    Camera, InstanceId, LevelOfDetail, ObjectId, ObjectStatistics, Placement, Play, Quality, Relief, Scene,
+    TerrainConfig, TerrainSource, Transition, View,
 };
 use relievo_lab::measure::{Displacement, DisplacementMeter, mean_flip};
 use relievo_samples::maps::BuiltInMap;
@@ -47,6 +49,8 @@ struct Plan {
     changing: usize,
     /// Frames that are drawn.
     pictures: usize,
+    /// Numbers of pixels whose cost is compared.
+    pixels: &'static [f32],
 }
 
 const SMALL: Plan = Plan {
@@ -57,6 +61,7 @@ const SMALL: Plan = Plan {
     lot: 100,
     changing: 100,
     pictures: 2,
+    pixels: &[0.25, 4.0],
 };
 
 const LARGE: Plan = Plan {
@@ -67,6 +72,7 @@ const LARGE: Plan = Plan {
     lot: 200,
     changing: 50,
     pictures: 10,
+    pixels: &[0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0],
 };
 
 /// A model with its name.
@@ -146,7 +152,7 @@ struct World<'a> {
 }
 
 impl<'a> World<'a> {
-    fn new(plan: &'a Plan, models: &'a [Named], pixels: f32) -> Self {
+    fn new(plan: &'a Plan, models: &'a [Named], pixels: f32, transition: Transition) -> Self {
         let gpu = relievo_testing::gpu();
         let mut scene = Scene::new(&gpu).expect("compiled");
         let side = side(plan);
@@ -166,6 +172,10 @@ impl<'a> World<'a> {
                 _ => (scene.add_character(model, count), BoundingSphere::in_clip(model, 0).radius),
             };
             let object = object.expect("added");
+            if transition != Transition::Geomorph || scene.can_morph(object).expect("the scene's object") {
+                let level_of_detail = LevelOfDetail { transition, ..LevelOfDetail::default() };
+                scene.set_level_of_detail(object, &level_of_detail).expect("valid");
+            }
             for at in 0..count {
                 let cell = placed * 7_919 % (side * side);
                 placed += 1;
@@ -319,6 +329,10 @@ fn walk(world: &mut World<'_>, is_paired: bool) -> Walk {
     for frame in 0..plan.frames {
         let (work, recorded) = world.record(frame);
         found.work.add(work);
+        if frame == 0 {
+            // Drivers compile what the first picture needs.
+            world.picture();
+        }
         // Not the first frame, in which everything is new.
         if frame > 0 && each(plan, plan.pictures, frame - 1).is_some() {
             let (picture, drawn) = world.picture();
@@ -359,8 +373,8 @@ fn measure<'a>(world: &mut World<'a>, pairs: &[[Vec<Key>; 2]]) -> BTreeMap<usize
     let mut all: BTreeMap<usize, Measured> = BTreeMap::new();
     for frame in 0..plan.frames {
         world.record(frame);
-        let begins = each(plan, plan.pairs, frame);
-        let ends = frame.checked_sub(1).and_then(|frame| each(plan, plan.pairs, frame));
+        let begins = each(plan, pairs.len(), frame);
+        let ends = frame.checked_sub(1).and_then(|frame| each(plan, pairs.len(), frame));
         let Some(pair) = ends.or(begins) else { continue };
         let [both, changed] = &pairs[pair];
         let lot = chosen(both, plan.lot, pair).chain(chosen(changed, plan.changing, pair));
@@ -402,55 +416,114 @@ fn ratio(name: &str, full: f64, within: f64) -> String {
     format!("| {name} | {full:.4} | {within:.4} | {:.2} |\n", full / within)
 }
 
+/// A table of what was measured, one line a model.
+fn table(title: &str, measured: &BTreeMap<usize, Measured>, models: &[Named]) -> String {
+    let mut text = format!("\n| {title} | triangles | measured | levels changed | displacement | jump |\n");
+    text += "|---|---:|---:|---:|---:|---:|\n";
+    for (at, Measured { found, instances, changes }) in measured {
+        let Named { name, model } = &models[*at];
+        let Some(found) = found else { continue };
+        let (triangles, largest, jump) = (triangles_of(model), found.largest, found.jump);
+        let line = format!("| {name} | {triangles} | {instances} | {changes} | {largest:.3} | {jump:.3} |\n");
+        text += &line;
+    }
+    text
+}
+
+fn check(measured: BTreeMap<usize, Measured>, models: &[Named], jump: f64) {
+    for (at, Measured { found, .. }) in measured {
+        let (found, name) = (found.expect("instances in view"), &models[at].name);
+        assert!(found.largest <= 1.0 && found.jump <= jump, "{name}: {found:?}");
+        assert!(1000 * found.left_out <= found.samples && found.missing == 0, "{name}: {found:?}");
+    }
+}
+
+/// The work and the time of frames by the number of pixels.
+fn costs(world: &mut World<'_>) -> String {
+    let plan = world.plan;
+    let mut text = String::from(
+        "\n| pixels | triangles, millions | clusters, thousands | bones, thousands | recorded, s | drawn, s |\n\
+         |---:|---:|---:|---:|---:|---:|\n",
+    );
+    for pixels in plan.pixels {
+        world.view.set_quality(Quality::pixels(*pixels)).expect("in range");
+        let (mut all, mut seconds) = (Work::default(), Seconds::default());
+        for at in 0..plan.pictures {
+            let frame = at * plan.frames / plan.pictures;
+            // Bones whose poses fit another number of pixels are sampled in the first frames.
+            world.record(frame);
+            world.record(frame);
+            let (work, recorded) = world.record(frame);
+            all.add(work);
+            seconds.recorded += recorded;
+            seconds.drawn += world.picture().1;
+        }
+        let part = |count: u64, unit: f64| count as f64 / plan.pictures as f64 / unit;
+        let [recorded, drawn] = [seconds.recorded, seconds.drawn].map(|all| all / plan.pictures as f64);
+        let [triangles, clusters, bones] =
+            [part(all.triangles, 1e6), part(all.clusters, 1e3), part(all.bones, 1e3)];
+        let line = format!(
+            "| {pixels} | {triangles:.3} | {clusters:.3} | {bones:.3} | {recorded:.4} | {drawn:.3} |\n"
+        );
+        text += &line;
+    }
+    text
+}
+
+/// Writes pictures into the folder that `RELIEVO_PICTURES` names, if it does.
+fn keep(name: &str, pictures: &[RgbaImage]) {
+    let Some(folder) = std::env::var_os("RELIEVO_PICTURES") else { return };
+    for (at, picture) in pictures.iter().enumerate() {
+        picture.save(Path::new(&folder).join(format!("{name}_{at}.png"))).expect("written");
+    }
+}
+
 /// Runs a plan, and returns the ratios of triangles, clusters and bones.
 fn run(plan: &Plan, models: &[Named]) -> [f64; 3] {
-    let mut full = walk(&mut World::new(plan, models, 0.0), false);
-    let mut world = World::new(plan, models, 1.0);
+    let start = Instant::now();
+    let done = |stage: &str| println!("{stage}: {:.0} s", start.elapsed().as_secs_f64());
+    let full = walk(&mut World::new(plan, models, 0.0, Transition::Hard), false);
+    done("walked in full detail");
+    let mut world = World::new(plan, models, 1.0, Transition::Hard);
     let within = walk(&mut world, true);
-    let mut text = String::from("\n| | full detail | a pixel | ratio |\n|---|---:|---:|---:|\n");
+    done("walked within a pixel");
+    let mut text = String::from("\n| a frame | full detail | a pixel | ratio |\n|---|---:|---:|---:|\n");
     let million = |count: u64| count as f64 / plan.frames as f64 / 1e6;
     let works = [full.work, within.work];
+    let second = |seconds: f64| seconds / plan.pictures as f64;
     let pairs: [(&str, [f64; 2]); 6] = [
         ("instances in view, thousands", works.map(|work| 1e3 * million(work.instances))),
         ("triangles, millions", works.map(|work| million(work.triangles))),
         ("clusters skinned, thousands", works.map(|work| 1e3 * million(work.clusters))),
         ("bones interpolated, thousands", works.map(|work| 1e3 * million(work.bones))),
-        (
-            "seconds of `Scene::record`",
-            [&full, &within].map(|walk| walk.seconds.recorded / plan.pictures as f64),
-        ),
-        ("seconds of drawing", [&full, &within].map(|walk| walk.seconds.drawn / plan.pictures as f64)),
+        ("recorded, s", [&full, &within].map(|walk| second(walk.seconds.recorded))),
+        ("drawn, s", [&full, &within].map(|walk| second(walk.seconds.drawn))),
     ];
     for (name, [full, within]) in pairs {
         text += &ratio(name, full, within);
     }
-    let flips = full.pictures.drain(..).zip(&within.pictures);
-    let flips: Vec<f64> = flips.map(|(full, within)| mean_flip(&full, within).expect("one size")).collect();
+    keep("full", &full.pictures);
+    keep("within", &within.pictures);
+    let flips = full.pictures.iter().zip(&within.pictures);
+    let flips: Vec<f64> = flips.map(|(full, within)| mean_flip(full, within).expect("one size")).collect();
     let worst = flips.iter().copied().fold(0.0, f64::max);
     writeln!(text, "\nFLIP of {} frames: at most {worst:.4}", flips.len()).expect("a string");
+    text += &costs(&mut world);
+    drop(world);
+    done("compared costs");
+    println!("{text}");
     // Without antialiasing, small triangles look otherwise as soon as they move by a part of a pixel.
     assert!(worst > 0.0 && worst < 0.05, "{flips:?}");
 
-    text += "\n| model | triangles | measured | levels changed | displacement | jump |\n|---|---:|---:|---:|---:|---:|\n";
-    let mut fresh = World::new(plan, models, 1.0);
-    let measured = measure(&mut fresh, &within.pairs);
-    for (at, Measured { found, instances, changes }) in &measured {
-        let Named { name, model } = &models[*at];
-        let Some(found) = found else {
-            println!("{name}: never in view");
-            continue;
-        };
-        let triangles = triangles_of(model);
-        let [largest, jump] = [found.largest, found.jump];
-        writeln!(text, "| {name} | {triangles} | {instances} | {changes} | {largest:.3} | {jump:.3} |")
-            .expect("a string");
-    }
-    println!("{text}");
-    for (at, Measured { found, .. }) in measured {
-        let (found, name) = (found.expect("instances in view"), &models[at].name);
-        assert!(found.largest <= 1.0 && found.jump <= 2.0, "{name}: {found:?}");
-        assert!(1000 * found.left_out <= found.samples && found.missing == 0, "{name}: {found:?}");
-    }
+    let hard = measure(&mut World::new(plan, models, 1.0, Transition::Hard), &within.pairs);
+    println!("{}", table("levels change at once", &hard, models));
+    done("measured");
+    check(hard, models, 2.0);
+    let few = &within.pairs[..within.pairs.len().div_ceil(5)];
+    let morphed = measure(&mut World::new(plan, models, 1.0, Transition::Geomorph), few);
+    println!("{}", table("geomorph", &morphed, models));
+    done("measured with geomorphs");
+    check(morphed, models, 1.0);
     [
         works.map(|work| work.triangles as f64),
         works.map(|work| work.clusters as f64),

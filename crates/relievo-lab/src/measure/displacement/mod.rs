@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use relievo::asset::{Affine, Model};
 use relievo::ops::lod::OBJECT_LEVELS;
 use relievo::scene::query::{DrawnAs, DrawnInstance};
-use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Scene, View};
+use relievo::scene::{Camera, ClipTime, InstanceId, ObjectId, Placement, Scene, View};
 use relievo::{Error, InputError, ops::skinning};
 use serde::Serialize;
 use surface::{Primitive, Sample, Surface, Watched};
@@ -203,25 +203,38 @@ fn found_of<'a>(
     let mut all = Vec::with_capacity(instances.len());
     for part in instances.chunks(READ) {
         let vertices = watched.vertices(scene, part)?;
-        for (at, instance) in part.iter().enumerate() {
+        let subject = |(at, instance): (usize, &'a DrawnInstance)| {
             // The instances of a static mesh share their vertices.
-            let own = vertices.get(at).or(vertices.first()).map_or(&[][..], Vec::as_slice);
-            all.push((instance, instance_found(scene, watched, (instance, own), seen)?));
-        }
+            let vertices = vertices.get(at).or(vertices.first()).map_or(&[][..], Vec::as_slice);
+            let placement = scene.placement(instance.instance)?;
+            Ok(Measurable { instance, vertices, placement, time: scene.clip_time(instance.instance)? })
+        };
+        let subjects: Vec<_> = part.iter().enumerate().map(subject).collect::<Result<_, Error>>()?;
+        let found =
+            |subject: &Measurable<'a, '_>| Ok((subject.instance, instance_found(watched, subject, seen)?));
+        all.extend(subjects.par_iter().map(found).collect::<Result<Vec<_>, Error>>()?);
     }
     Ok(all)
 }
 
+/// An instance that is measured, with what the scene tells of it.
+struct Measurable<'a, 'b> {
+    instance: &'a DrawnInstance,
+    /// The vertices that are drawn, mesh by mesh.
+    vertices: &'b [Vec<Option<skinning::Vertex>>],
+    placement: Placement,
+    time: Option<ClipTime>,
+}
+
 /// What is found in the samples of an instance: for each primitive, its merged mesh and both directions.
 fn instance_found(
-    scene: &Scene,
     watched: &Watched,
-    (DrawnInstance { instance, drawn }, vertices): (&DrawnInstance, &[Vec<Option<skinning::Vertex>>]),
+    Measurable { instance, vertices, placement, time }: &Measurable<'_, '_>,
     (camera, eye): (&Camera, &Eye),
 ) -> Result<FoundInMeshes, Error> {
-    let placed = placed(&scene.placement(*instance)?, camera.cell);
-    let right = transformed(&watched.posed(scene.clip_time(*instance)?), &placed);
-    let Some(drawn) = drawn else {
+    let placed = placed(placement, camera.cell);
+    let right = transformed(&watched.posed(*time), &placed);
+    let Some(drawn) = &instance.drawn else {
         let missing = |Primitive { mesh, full, .. }: &Primitive| {
             (*mesh, inside(&Side::new(full, &right[*mesh], &eye.right, None)))
         };
