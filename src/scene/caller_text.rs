@@ -64,8 +64,8 @@ impl CallerText<'_> {
         InputError::new(format!("{}:{line}:{column}", self.path), value, bound)
     }
 
-    /// Checks the parsed text of a kind or an output. It must not have entry points, override constants, discard statements
-    /// or workgroup memory.
+    /// Checks the parsed text of a caller-defined kind or output. It must not have entry points, override
+    /// constants, discard statements or workgroup memory.
     ///
     /// # Errors
     /// [`InputError`] for the first violation.

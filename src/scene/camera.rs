@@ -57,8 +57,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A perspective camera at `eye` that looks at `target`, both in world coordinates, with +Y up. The camera's cell is (0,
-    /// 0, 0). Kilometres from the origin, use [`Camera::looking_at_world`], or the picture trembles.
+    /// A perspective camera at `eye` that looks at `target`, both in world coordinates, with +Y up. The camera's cell is
+    /// (0, 0, 0). Kilometres from the origin, use [`Camera::looking_at_world`], or the picture trembles.
     ///
     /// - `field_of_view` is the vertical angle in radians, between 0 and π.
     /// - `near_far` are the distances of the near and far planes in world units, where depth is 0 and 1. The far distance
@@ -229,8 +229,8 @@ impl Camera {
         is_mirrored(&self.clip_with_distance())
     }
 
-    /// The matrix from cell space to a clip space whose depth grows with distance. The range of depth may differ from 0 to
-    /// 1.
+    /// The matrix from cell space to a clip space whose depth grows with distance. The range of this depth is
+    /// arbitrary.
     fn clip_with_distance(&self) -> Mat4 {
         let direction = if self.depth == Depth::Reversed { -1.0 } else { 1.0 };
         Mat4::from_scale(Vec3::new(1.0, 1.0, direction)) * self.clip_from_cell()

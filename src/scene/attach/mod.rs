@@ -29,7 +29,7 @@ pub(super) struct Attachments {
     all: HashMap<InstanceId, Attached>,
     /// The meshes attached to each character instance.
     carried: HashMap<InstanceId, Vec<InstanceId>>,
-    /// Cache of bone paths, which are costly to compute.
+    /// Cache: the path of each sphere that a bone carries.
     paths: HashMap<PathKey, BonePath>,
     /// One list per chunk that carries a mesh now or carried one before. The key is the slot and generation of the object,
     /// and the index of the chunk.
@@ -85,8 +85,8 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, if `mesh` is no mesh or `character` is no character, for
-    /// a bone that the model does not have, and for an offset that is not finite, scales by 0, or has a rotation of length
-    /// 0.
+    /// a bone that the model does not have, and for an offset that is not finite, scales by 0 along all axes,
+    /// or has a rotation of length 0.
     ///
     /// # Examples
     ///

@@ -1,5 +1,5 @@
 //! Drawables of a character: one per mesh and chunk (group of instances). Each draws the skinned vertices in the chunk's
-//! pages.
+//! pages (blocks of 64 vertices).
 
 use super::{Character, Runtime};
 use crate::Error;

@@ -155,7 +155,7 @@ impl Character {
         }
     }
 
-    /// Whether any layer of the instance has a weight above 0 now or later in its fade.
+    /// Whether any layer of the instance has a weight above 0 at the start or the end of its fade.
     pub fn is_blended(&self, index: u32) -> bool {
         self.layers.iter().any(|layer| layer.weights[index as usize].is_heard())
     }
@@ -219,9 +219,9 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Computes the bounds of a model. `radii` holds the largest distance of a vertex from each bone that it follows. Blends
-    /// lie between the clips. A root bone therefore stays in the box of its positions in all clips. Any other bone is at
-    /// most as far from its parent as in any clip, in any direction.
+    /// Computes the bounds of a model. `radii` holds, per bone, the largest distance between the bone and a vertex that
+    /// follows it; `None` without such a vertex. Blends lie between the clips. A root bone therefore stays in the box of its
+    /// positions in all clips. Any other bone is at most as far from its parent as in any clip, in any direction.
     pub fn new(model: &Model, radii: &[Option<f32>]) -> Self {
         let skeleton = &model.skeleton;
         let mut lengths = vec![[0.0_f32; 2]; skeleton.len()];

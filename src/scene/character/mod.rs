@@ -38,8 +38,8 @@ pub(super) struct Character {
     unit: f32,
     /// Largest displacement of a vertex, in model units, per unit of the influence fade λ ([`Extent::stray`]).
     stray: f32,
-    /// Radius per bone: the largest distance from the bone of a vertex that follows it, in bone space; `None` if no vertex
-    /// does.
+    /// Radius per bone: the largest distance between the bone and a vertex that follows it, in bone space; `None` without
+    /// such a vertex.
     radii: Vec<Option<f32>>,
     /// Bounding sphere per clip.
     spheres: Vec<BoundingSphere>,
@@ -62,7 +62,7 @@ pub(super) struct Character {
     replaced: Replaced,
     /// Whether the device has run out of memory. Chunks are then not divided any more.
     is_memory_short: bool,
-    /// Smallest metric of each instance in the last frames. Kept only while levels of detail fade over time.
+    /// Smallest metric (distance or allowed displacement) of each instance in the last frames, while levels fade over time.
     held: Vec<Held>,
 }
 

@@ -11,7 +11,8 @@ use crate::scene::playing::Playing;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 
-/// Largest time in seconds between the epoch and the present. Then the epoch moves, because `f32` times lose precision.
+/// Largest time in seconds between the epoch and the scene's time. Beyond it, the epoch moves to the scene's time, because
+/// `f32` times lose precision.
 const EPOCH: f64 = 128.0;
 
 impl Character {
