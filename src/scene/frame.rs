@@ -23,8 +23,8 @@ pub(super) type Between<'a> =
 impl Scene {
     /// Discards all recordings that the device has not executed, and starts everything afresh, as [`Scene::refresh`] does.
     /// [`Scene::record`] does the same by itself after an encoder was dropped without submission, because the device then
-    /// misses the changes recorded in that encoder. Call this function if you keep encoders that you will not submit: they
-    /// no longer count as recordings in flight.
+    /// misses the changes recorded in that encoder. Call this function if you keep encoders that you will not submit: their
+    /// recordings then no longer count as in flight.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].

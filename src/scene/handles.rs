@@ -1,5 +1,5 @@
-//! Handles of objects and instances. A handle becomes stale when its object or instance is removed; it never refers to
-//! another.
+//! Handles of objects and instances. A handle becomes stale when its object or instance is removed. A stale
+//! handle never refers to a later object or instance.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -128,8 +128,8 @@ impl InstancePose {
     }
 
     /// Converts an offset in world units along a bone's axes to bone space, for [`Scene::attach`]. A mesh attached with the
-    /// result is `offset.translation` world units away from the bone's origin. Its size is `offset.scale` times the size of
-    /// its model. This holds for any scale of the instance and of its bones in this pose. Rotations stay unchanged. If a
+    /// result is `offset.translation` world units away from the bone's origin. The mesh's size is `offset.scale` times the
+    /// size of its model. This holds for any scale of the instance and of its bones in this pose. Rotations stay unchanged. If a
     /// bone's scale differs between axes, a rotated mesh is sheared, but each of the mesh's axes has the right length.
     ///
     /// # Errors

@@ -39,10 +39,10 @@ pub struct LevelOfDetail {
     /// How instances change from one level to the next.
     pub transition: Transition,
     /// Hysteresis h: half width of the interval around each threshold in which an instance keeps its level (thesis A,
-    /// section 7.2). It is a fraction of the threshold, at least 0 and below 1. For distances, an
-    /// instance takes the coarser level at (1 + h) times the threshold, and returns to the finer level at (1 − h) times the
-    /// threshold; sizes likewise. Errors never exceed the allowed displacement: a coarser level is taken once its error is
-    /// at most (1 − h) times the allowed displacement. Hysteresis applies where levels change at once or fade in time.
+    /// section 7.2). It is a fraction of the threshold, at least 0 and below 1. For distances, an instance takes the coarser
+    /// level at (1 + h) times the threshold, and returns to the finer level at (1 − h) times the threshold; sizes likewise.
+    /// Errors never exceed the allowed displacement: a coarser level is taken once its error is at most (1 − h) times the
+    /// allowed displacement. Hysteresis applies where levels change at once or fade in time.
     pub hysteresis: f32,
     /// Factor of the allowed displacement or of the distance, above 0. With 2, levels are chosen as if an instance were
     /// twice as far away, and errors may reach 2 times [`Quality::pixels`](super::Quality::pixels). Thesis A's *late

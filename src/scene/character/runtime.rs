@@ -50,7 +50,7 @@ impl Shared {
         Ok(Self { set, gate, masks, clips, meshes })
     }
 
-    /// Creates the same data on another device.
+    /// Creates the shared data of the same character on another device.
     pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
         Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
     }
@@ -68,7 +68,7 @@ pub(in crate::scene) struct Runtime {
     pub paging: Vec<Paging>,
     pub weights: Vec<MorphWeightsJob>,
     pub assign: Vec<Job>,
-    /// Jobs that add driven bones to the bones to sample, and then list all of them; `None` without driven bones.
+    /// Two jobs: add the driven bones to the bones to sample, then list all bones to sample. `None` without driven bones.
     pub driven: Option<(Job, CompactJob)>,
     /// The version of the driven bones that `driven` was prepared for.
     pub driven_version: u64,

@@ -53,7 +53,7 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
         Ok(())
     }
 
-    /// Creates the same kind on another device, after its device was lost
+    /// Creates the same kind on another device, after the kind's device was lost
     /// ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
@@ -106,7 +106,7 @@ pub struct KindFrame {
     pub seconds: f64,
     /// The scene's time in the last frame, for velocities.
     pub last_seconds: f64,
-    /// Whether the kind must write everything again: in its first frame, after it grew, and after the scene started afresh
+    /// Whether the kind must write everything again: in its first frame, after its object grew, and if the scene starts afresh
     /// ([`Scene::refresh`](crate::scene::Scene::refresh), a dropped encoder, another device).
     pub is_fresh: bool,
 }
