@@ -45,7 +45,7 @@ pub struct Camera {
     /// reflection in water.
     pub view_from_cell: Mat4,
     /// The projection to clip space: +X to the right, +Y up, depth 0 to 1. The projection also decides the viewing
-    /// direction. Right-handed projections, such as in glam's `camera::rh::proj::directx`, look along −Z. For
+    /// direction. Right-handed projections, such as those in glam's `camera::rh::proj::directx`, look along −Z. For
     /// [`Depth::Reversed`], use `perspective_infinite_reverse` from that module.
     pub clip_from_view: Mat4,
     /// Width and height of the picture in physical pixels, the unit of [`Quality::pixels`](crate::scene::Quality::pixels).

@@ -118,8 +118,8 @@ impl Character {
     }
 
     /// The low and the high corner of a box around a posed instance, in the target space of `placed`. All vertices that
-    /// follow a bone lie in a sphere around the bone's origin. The bone's matrix turns this sphere into an ellipsoid, which the box
-    /// encloses.
+    /// follow a bone lie in a sphere around the bone's origin. The bone's matrix turns this sphere into an ellipsoid, which the
+    /// box encloses.
     pub fn bounds(&self, pose: &Pose, placed: DAffine3) -> [DVec3; 2] {
         let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
         for (matrix, radius) in pose.model_matrices.iter().zip(&self.radii) {
