@@ -10,39 +10,39 @@ use crate::scene::object_kind::Placed;
 use crate::scene::pick::MARGIN;
 use crate::scene::placement::Placement;
 
-/// Enlargement of a box of vertices, relative to its size or its distance from the cell's corner. The host rounds a vertex
-/// to `f32` in a few products, each with an error of 6e-8.
+/// Margin for rounding around a box of vertices, as a fraction of the box's size or of its distance from the cell's corner,
+/// whichever is larger. The host rounds a vertex to `f32` in a few products, each with a relative error of 6e-8.
 const TIGHT: f64 = 1e-6;
 
 /// An axis-aligned box in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The cell whose corner the box's corners are relative to.
+    /// The cell whose corner is the origin of `low_offset` and `high_offset`.
     pub cell: [i32; 3],
-    /// The smallest x, y and z in world units, relative to the cell's corner.
+    /// The smallest x, y and z of the box in world units, relative to the cell's corner.
     pub low_offset: DVec3,
-    /// The largest x, y and z in world units, relative to the cell's corner.
+    /// The largest x, y and z of the box in world units, relative to the cell's corner.
     pub high_offset: DVec3,
 }
 
 impl Bounds {
-    /// The corners with the smallest and the largest x, y and z, in world coordinates.
+    /// Two opposite corners of the box in world coordinates: the smallest x, y and z, then the largest.
     pub fn world(&self) -> [DVec3; 2] {
         [self.low_offset, self.high_offset].map(|offset| Placement::corner(self.cell) + offset)
     }
 }
 
 impl Scene {
-    /// A box that encloses an instance, in the pose at the scene's time. It may be larger than necessary;
-    /// [`Scene::tight_bounds`] returns the smallest.
+    /// A box that encloses an instance, in the pose at the scene's time. The box may be larger than necessary;
+    /// [`Scene::tight_bounds`] returns the smallest box.
     ///
     /// - Mesh: the smallest box, at the cost of one transform per vertex.
-    /// - Character: a box around one ball per bone that holds the vertices following it, so it extends below the feet. The
-    ///   host samples the bones, which takes a few microseconds for a hundred bones.
-    /// - Patch of terrain: a box around its bounding sphere.
+    /// - Character: a box around one ball per bone. Each ball holds the vertices that follow the bone, so the box extends
+    ///   below the feet. The host samples the bones, which takes a few microseconds for a hundred bones.
+    /// - Patch of terrain: a box around the patch's bounding sphere.
     ///
-    /// Bones written in the last frame count as in [`Scene::pick`]. The drawn instance may differ by as much as
-    /// [`Quality::pixels`](crate::scene::Quality) allows, and so may reach beyond the box.
+    /// Bones that the host wrote in the last frame keep the written values, as in [`Scene::pick`]. The drawn instance may
+    /// deviate by up to [`Quality::pixels`](crate::scene::Quality), and so may reach beyond the box.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -70,10 +70,12 @@ impl Scene {
     /// The smallest box around an instance, in full detail and in the pose at the scene's time. A character's feet are at
     /// the bottom of this box.
     ///
-    /// The cost is one transform per vertex of a mesh. For a character it is posing and skinning each vertex, about a
-    /// quarter of a microsecond per vertex. For a patch of terrain, the host scans the heights behind [`Scene::ground`]; if
-    /// these are unknown, it returns the box of [`Scene::bounds`]. Bones written in the last frame count as in
-    /// [`Scene::pick`]. The drawn instance may differ from the box as in [`Scene::bounds`].
+    /// The cost for a mesh is one transform per vertex. A character is posed and skinned, which takes about a quarter of a
+    /// microsecond per vertex. For a patch of terrain, the host scans the heights that [`Scene::ground`] uses; if the
+    /// heights are unknown, it returns the box of [`Scene::bounds`].
+    ///
+    /// Bones that the host wrote in the last frame keep the written values, as in [`Scene::pick`]. The drawn instance may
+    /// deviate by up to [`Quality::pixels`](crate::scene::Quality), and so may reach beyond the box.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -97,7 +99,7 @@ impl Scene {
         Ok(placed.enlarged(corners, TIGHT))
     }
 
-    /// An instance at its place, relative to the corner of its cell.
+    /// An instance with its transform to world axes, relative to the corner of its cell.
     fn placed_instance(&self, instance: InstanceId) -> Result<Placed, InputError> {
         let object = self.object_of(instance)?;
         let cell = object.instances.all()[instance.index as usize].cell;
@@ -106,7 +108,8 @@ impl Scene {
 }
 
 impl Placed {
-    /// The box of these corners, enlarged by a margin for rounding.
+    /// The box with the corners `low` and `high`, enlarged for rounding. `margin` is a fraction of the box's diagonal or of
+    /// the instance's distance from the cell's corner, whichever is larger.
     fn enlarged(&self, [low, high]: [DVec3; 2], margin: f64) -> Bounds {
         let slack = margin * (high - low).length().max(self.place.translation.length());
         Bounds { cell: self.cell, low_offset: low - slack, high_offset: high + slack }
@@ -114,7 +117,8 @@ impl Placed {
 }
 
 impl Object {
-    /// An instance at a given place.
+    /// The instance with this index, with the transform `place` to world axes relative to the corner of `cell`, at scene
+    /// time `now`.
     pub(super) fn placed(&self, index: u32, now: f64, place: DAffine3, cell: [i32; 3]) -> Placed {
         let instance = &self.instances.all()[index as usize];
         let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);

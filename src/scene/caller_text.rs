@@ -1,6 +1,7 @@
-//! Checks of the caller's WGSL. It precedes the crate's text, so that messages about it have the caller's own line numbers.
+//! Checks of WGSL that the caller wrote. The caller's text comes first in the compiled text, so that error messages have the
+//! caller's own line numbers.
 //!
-//! The crate's names start with [`PREFIX`] there, except for `Surface` and `View`.
+//! In the compiled text, all names of the crate start with [`PREFIX`], except for `Surface` and `View`.
 
 use naga::front::wgsl::{ParseError, parse_str};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -11,33 +12,33 @@ use crate::scene::wgsl::prefix::declarations;
 
 pub(crate) use crate::scene::wgsl::prefix::PREFIX;
 
-/// The caller's WGSL, and the complete text to parse, which starts with it.
+/// WGSL that the caller wrote, and the complete text to parse: the caller's text, followed by the crate's.
 pub(crate) struct CallerText<'a> {
-    /// Start of the path in errors.
+    /// Start of the path in errors, before the line and the column.
     pub path: &'a str,
     pub source: &'a str,
     pub text: &'a str,
 }
 
 impl CallerText<'_> {
-    /// Parses the text.
+    /// Parses the complete text.
     ///
     /// # Errors
-    /// [`InputError`] with the path `PATH:LINE:COLUMN`, line and column counted from 1.
+    /// [`InputError`] for a syntax error. Its path is `PATH:LINE:COLUMN`, with line and column counted from 1.
     pub fn parsed(&self) -> Result<Module, InputError> {
         let place = |error: &ParseError| -> Vec<Span> { error.labels().map(|(span, _)| span).collect() };
         parse_str(self.text)
             .map_err(|error| self.refused(place(&error).into_iter(), error.message().to_owned()))
     }
 
-    /// Validates the module of the text.
+    /// Validates the parsed module.
     ///
     /// # Errors
-    /// As for [`CallerText::parsed`].
+    /// [`InputError`] for an invalid module, with a path as in [`CallerText::parsed`].
     pub fn validated(&self, module: &Module) -> Result<ModuleInfo, InputError> {
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
         validator.validate(module).map_err(|error| {
-            // naga names a function and a place inside it; the shortest span is the most exact.
+            // naga reports the span of a function and of a position inside it. The shortest span is the most exact.
             let mut spans: Vec<Span> = error.spans().map(|(span, _)| *span).collect();
             spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
             self.refused(spans.into_iter(), chain(error.as_inner()))
@@ -49,7 +50,8 @@ impl CallerText<'_> {
         at.to_range().is_some_and(|range| range.start < self.source.len())
     }
 
-    /// The error at the first of these spans in the caller's text, or at the text's end if there is none.
+    /// An error with the message `bound`, located at the first of `spans` that starts in the caller's text. If none does,
+    /// the error is located at the end of the caller's text.
     pub fn refused(&self, spans: impl Iterator<Item = Span>, bound: String) -> InputError {
         let mut ranges = spans.filter_map(Span::to_range);
         let range = ranges.find(|range| range.start < self.source.len());
@@ -62,10 +64,11 @@ impl CallerText<'_> {
         InputError::new(format!("{}:{line}:{column}", self.path), value, bound)
     }
 
-    /// Checks a parsed text of a kind or an output: no entry points, override constants, discards or workgroup memory.
+    /// Checks the parsed text of a caller-defined kind or output. It must not have entry points, override
+    /// constants, discard statements or workgroup memory.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake.
+    /// [`InputError`] for the first violation.
     pub fn check(&self, module: &Module) -> Result<(), InputError> {
         let refuse = |at: Span, bound: &str| Err(self.refused(std::iter::once(at), bound.to_owned()));
         if let Some(entry) = module.entry_points.iter().find(|entry| !entry.name.starts_with(PREFIX)) {
@@ -100,11 +103,12 @@ impl CallerText<'_> {
         Ok(())
     }
 
-    /// Checks that every declared name starts with `name` and has more letters, such as `grass_bend`, `GRASS_HEIGHT` and
-    /// `GrassBlade`. A text for several shaders must not have directives.
+    /// Checks that every declared name starts with `name` and is longer than it. Case and underscores do not matter: for
+    /// `grass`, the names `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` pass. The text must not have directives either,
+    /// because it is combined with other texts.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake.
+    /// [`InputError`] for the first violation.
     pub fn check_declarations(&self, name: &str) -> Result<(), InputError> {
         let code = without_comments(self.source);
         let plain = |text: &str| text.replace('_', "").to_lowercase();
@@ -128,7 +132,8 @@ impl CallerText<'_> {
         Ok(())
     }
 
-    /// Checks that no name has the crate's prefix. It reads the text, because naga drops unused constants and aliases.
+    /// Checks that no name starts with [`PREFIX`], which is reserved for the crate. The check scans the text, because naga
+    /// drops unused constants and aliases.
     pub fn check_names(&self) -> Result<(), InputError> {
         let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
         let code = without_comments(self.source);
@@ -141,7 +146,7 @@ impl CallerText<'_> {
 
 const OURS: &str = "must not begin with `relievo_`, as the crate's own names do";
 
-/// The message of an error, followed by its causes.
+/// The message of an error, followed by the messages of its causes, separated by colons.
 fn chain(error: &dyn std::error::Error) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
@@ -151,7 +156,8 @@ fn span(range: std::ops::Range<usize>) -> Span {
     Span::new(range.start as u32, range.end as u32)
 }
 
-/// A valid text with its comments replaced by spaces, so that every byte and line stays in place.
+/// The WGSL text with its comments replaced by spaces. All other bytes keep their offsets, and all lines their numbers. The
+/// text must be valid.
 pub(crate) fn without_comments(source: &str) -> String {
     let (mut code, mut rest) = (String::with_capacity(source.len()), source);
     while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
@@ -170,7 +176,7 @@ pub(crate) fn without_comments(source: &str) -> String {
 /// Characters that end a line comment.
 const LINE_ENDS: &[char] = &['\n', '\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
 
-/// Bytes of the block comment at the start of a text. Block comments nest.
+/// Length in bytes of the block comment at the start of `text`. Block comments nest.
 fn block_comment(text: &str) -> usize {
     let (mut depth, mut at) = (0, 0);
     while let Some(mark) = text[at..].find("/*").into_iter().chain(text[at..].find("*/")).min() {
@@ -183,7 +189,7 @@ fn block_comment(text: &str) -> usize {
     text.len()
 }
 
-/// The first discard statement of a block.
+/// The span of the first discard statement in a block or a block nested in it; `None` without discard statements.
 pub(crate) fn discard_in(block: &Block) -> Option<Span> {
     block.span_iter().find_map(|(statement, span)| match statement {
         Statement::Kill => Some(*span),

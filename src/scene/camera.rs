@@ -14,7 +14,7 @@ use crate::scene::placement::{Placement, check_world};
 ///
 /// # Examples
 ///
-/// [`Camera::looking_at`] is a shortcut. An engine has matrices of its own:
+/// A camera from an engine's own matrices. For a simple camera, [`Camera::looking_at`] is shorter.
 ///
 /// ```
 /// use glam::{DVec3, Mat4, Quat, Vec3};
@@ -40,29 +40,29 @@ pub struct Camera {
     /// The cell whose corner is the origin of `view_from_cell` ([`Placement::corner`](crate::scene::Placement::corner)).
     /// Near the origin of the world, use (0, 0, 0). Kilometres away, use the eye's own cell, or the picture trembles.
     pub cell: [i32; 3],
-    /// The matrix from cell space to view space: a rotation and a translation. Cell space is world space moved to the
-    /// cell's corner, so with cell (0, 0, 0) this is the engine's own view matrix. It may mirror, for example for a
+    /// The matrix from cell space to view space: a rotation and a translation. Cell space is world space moved to the cell's
+    /// corner, so with cell (0, 0, 0) this is the engine's own view matrix. The matrix may mirror, for example for a
     /// reflection in water.
     pub view_from_cell: Mat4,
-    /// The projection to clip space: +X to the right, +Y up, depth 0 to 1. It also decides the viewing direction.
-    /// Right-handed projections, such as those of glam's `camera::rh::proj::directx`, look along −Z. For
-    /// [`Depth::Reversed`], use its `perspective_infinite_reverse`.
+    /// The projection to clip space: +X to the right, +Y up, depth 0 to 1. The projection also decides the viewing
+    /// direction. Right-handed projections, such as those in glam's `camera::rh::proj::directx`, look along −Z. For
+    /// [`Depth::Reversed`], use `perspective_infinite_reverse` from that module.
     pub clip_from_view: Mat4,
-    /// Width and height of the picture in physical pixels. [`Quality::pixels`](crate::scene::Quality::pixels) counts these
-    /// pixels. The size must be that of the viewport set in the caller's pass, which may be a part of the target.
+    /// Width and height of the picture in physical pixels, the unit of [`Quality::pixels`](crate::scene::Quality::pixels).
+    /// They must equal the size of the viewport set in the caller's pass, which may be a part of the target.
     pub viewport: [u32; 2],
-    /// The direction of depth. It must match the projection and the renderer's
+    /// The direction of depth: whether it grows or falls with distance. It must match the projection and the renderer's
     /// [`TargetFormat`](crate::render::TargetFormat).
     pub depth: Depth,
 }
 
 impl Camera {
-    /// A perspective camera at `eye` that looks at `target`, both in world coordinates, with +Y up. Its cell is (0, 0, 0).
-    /// Kilometres from the origin, use [`Camera::looking_at_world`], or the picture trembles.
+    /// A perspective camera at `eye` that looks at `target`, both in world coordinates, with +Y up. The camera's cell is
+    /// (0, 0, 0). Kilometres from the origin, use [`Camera::looking_at_world`], or the picture trembles.
     ///
     /// - `field_of_view` is the vertical angle in radians, between 0 and π.
-    /// - `near_far` are the distances of the near and far planes in world units, where depth is 0 and 1. The far one may be
-    ///   infinite.
+    /// - `near_far` are the distances of the near and far planes in world units, where depth is 0 and 1. The far distance
+    ///   may be infinite.
     /// - `viewport` is width and height in pixels.
     ///
     /// When the camera looks straight up or down, the top of the picture is north. If an argument is out of range, or `eye`
@@ -99,7 +99,7 @@ impl Camera {
         }
     }
 
-    /// Like [`Camera::looking_at`], but precise anywhere in the world: its cell is the eye's.
+    /// Like [`Camera::looking_at`], but precise anywhere in the world: the camera's cell is the cell that contains `eye`.
     pub fn looking_at_world(
         eye: impl Into<DVec3>,
         target: impl Into<DVec3>,
@@ -114,16 +114,17 @@ impl Camera {
 
     /// A perspective camera that frames an axis-aligned box, from the south at a low angle, as large as the picture allows.
     /// `low` and `high` are opposite corners in world coordinates ([`Bounds::world`](crate::scene::Bounds::world)).
-    /// `viewport` is width and height in pixels. [`View::set`](crate::scene::View::set) refuses a camera whose corners are
-    /// not finite, as for [`Camera::looking_at`].
+    /// `viewport` is width and height in pixels. If a corner is not finite, [`View::set`](crate::scene::View::set) refuses
+    /// the camera, as for [`Camera::looking_at`].
     pub fn framing(low: DVec3, high: DVec3, viewport: [u32; 2]) -> Self {
         let (center, extent) = ((low + high) / 2.0, (high - low).max(DVec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;
-        // The circle around the box's footprint fills the height of the picture, because the low angle foreshortens it.
+        // The low angle foreshortens the circle around the box's footprint. At this distance, the circle fills the picture's
+        // height.
         let radius = extent.length() / 2.0;
         let distance = 0.72 * radius / f64::from(field_of_view / 2.0).sin();
         let eye = center + distance * DVec3::new(-0.30, 0.52, 0.80).normalize();
-        // The near edge takes more of the picture than the far edge, so the target is shifted.
+        // The box's near edge takes more of the picture than its far edge, so the target is shifted.
         let target = center + radius * DVec3::new(-0.03, -0.10, 0.05);
         let Placement { cell, offset: eye, .. } = Placement::at_world(eye);
         let forward =
@@ -184,7 +185,7 @@ impl Camera {
         check_world("camera.eye", self.cell, self.eye_offset())
     }
 
-    /// Refuses arguments from which no matrix could be made.
+    /// Returns an error if the camera's constructor got arguments from which no matrix can be computed.
     fn check_arguments(&self) -> Result<(), InputError> {
         if let Some((kind, [first, second])) = arguments(&self.view_from_cell) {
             let paths =
@@ -214,7 +215,7 @@ impl Camera {
         self.clip_from_view * self.view_from_cell
     }
 
-    /// For a parallel camera: the unit viewing direction. Motion along it does not change the picture.
+    /// The viewing direction of a parallel camera, a unit vector. Motion along this direction does not change the picture.
     pub(crate) fn ahead(&self) -> Vec3 {
         let [right, up, depth] =
             [0, 1, 2].map(|row| self.clip_with_distance().row(row).truncate().as_dvec3());
@@ -223,13 +224,13 @@ impl Camera {
         ahead.normalize_or(DVec3::NEG_Z).as_vec3()
     }
 
-    /// Whether the picture is a mirror image, so that triangles which are counter-clockwise seen from outside appear
-    /// clockwise.
+    /// Whether the picture is a mirror image. Triangles that are counter-clockwise seen from outside then appear clockwise.
     pub(crate) fn is_mirrored(&self) -> bool {
         is_mirrored(&self.clip_with_distance())
     }
 
-    /// The matrix to a clip space whose depth grows with distance, of any range.
+    /// The matrix from cell space to a clip space whose depth grows with distance. The range of this depth is
+    /// arbitrary.
     fn clip_with_distance(&self) -> Mat4 {
         let direction = if self.depth == Depth::Reversed { -1.0 } else { 1.0 };
         Mat4::from_scale(Vec3::new(1.0, 1.0, direction)) * self.clip_from_cell()
@@ -246,18 +247,19 @@ impl Camera {
     }
 }
 
-/// Tags of [`unusable`] matrices: arguments of [`Camera::looking_at`] or of [`Camera::framing`].
+/// Tags of [`unusable`] matrices: they tell whether the arguments are those of [`Camera::looking_at`] or of
+/// [`Camera::framing`].
 const LOOKING: f32 = 0.0;
 const FRAMING: f32 = 1.0;
 
-/// Placeholder for a matrix that cannot be made: the tag and the arguments, and NaN elsewhere. They survive
-/// [`Camera::reversed`], which changes only the third row.
+/// Placeholder for a matrix that cannot be computed. It holds the tag `kind` and the constructor's arguments, and NaN
+/// elsewhere. Tag and arguments survive [`Camera::reversed`], which changes only the third row.
 fn unusable(kind: f32, [first, second]: [Vec3; 2]) -> Mat4 {
     let column = |Vec3 { x, y, z }| Vec4::new(x, y, f32::NAN, z);
     Mat4::from_cols(Vec4::NAN.with_x(kind), column(first), column(second), Vec4::NAN)
 }
 
-/// The tag and arguments stored by [`unusable`].
+/// The tag and the arguments stored by [`unusable`]; `None` for an ordinary matrix.
 fn arguments(matrix: &Mat4) -> Option<(f32, [Vec3; 2])> {
     let kind = matrix.x_axis.x;
     let rest = [matrix.x_axis.with_x(f32::NAN), matrix.w_axis];
@@ -280,7 +282,7 @@ mod tests {
         assert_eq!(reversed.reversed(), camera);
         let finite = Camera::looking_at(eye, Vec3::ZERO, 0.7, [0.5, 40.0], size).reversed();
         let depth = |distance: f32| finite.clip_from_view.project_point3(Vec3::Z * -distance).z;
-        // The matrix holds 1.01…, rounded by less than 1e-7.
+        // The matrix has an entry of 1.01…, which is rounded by less than 1e-7.
         assert!(
             (depth(0.5) - 1.0).abs() < 1e-6 && depth(40.0).abs() < 1e-6,
             "{} {}",
@@ -323,7 +325,7 @@ mod tests {
         assert_eq!(camera([3, 2]).validate(), Ok(()));
     }
 
-    /// Arguments that make no camera are refused by the caller's name for them, with their value.
+    /// Invalid arguments of a camera are refused. The error has the argument's name and value.
     #[test]
     fn arguments_that_make_no_camera_are_named() {
         let refused = |target, field_of_view, near_far| {

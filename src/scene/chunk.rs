@@ -1,5 +1,5 @@
-//! Chunks of an object: consecutive instances with their own buffers, lists and draws. An object has one chunk, unless its
-//! instances need more than a binding of the device.
+//! Chunks of an object: consecutive instances with their own buffers, lists and draws. An object has one chunk, unless the
+//! buffers of its instances would exceed a buffer binding of the device.
 
 use std::ops::Range;
 
@@ -7,35 +7,36 @@ use crate::scene::drawable::Drawable;
 use crate::scene::layout::ObjectRange;
 use crate::shared::lod::object::{BLOCK, LodObject};
 
-/// A chunk of an object.
+/// A chunk of an object: consecutive instances that are drawn together.
 #[derive(Debug)]
 pub(crate) struct Chunk {
-    /// Indices of its instances within the object.
+    /// Range of the chunk's instances in the object's instance array.
     pub slots: Range<usize>,
-    /// Its index among the chunks of the layout.
+    /// Index of the chunk among all chunks of the layout.
     pub number: usize,
     pub range: ObjectRange,
-    /// The drawables, part by part.
+    /// The drawables of the chunk, each with one or more parts.
     pub drawables: Vec<Box<dyn Drawable>>,
-    /// Per drawable: the chunk in kernel format with the draws of the drawable's parts, in the layout it was prepared for.
+    /// Per drawable: the chunk as kernels read it, with the range of the drawable's draws. Valid for the layout it was
+    /// prepared for.
     pub lods: Vec<LodObject>,
-    /// Its parts with sorted draws.
+    /// The parts of the chunk whose instances are drawn one by one, from back to front.
     pub sorted: Vec<SortedParts>,
 }
 
-/// A part of an object with sorted draws.
+/// A part of a drawable whose instances are drawn one by one, from back to front.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SortedParts {
     /// Index of the drawable.
     pub drawable: usize,
     /// Index of the part in the drawable.
     pub part: usize,
-    /// Index of the first instance's draw.
+    /// Index of the draw of the chunk's first instance.
     pub first: u32,
 }
 
 impl Chunk {
-    /// A chunk that is not in a layout yet.
+    /// A chunk that does not belong to a layout yet.
     pub fn new(slots: Range<usize>, drawables: Vec<Box<dyn Drawable>>) -> Self {
         Self {
             slots,
@@ -47,12 +48,13 @@ impl Chunk {
         }
     }
 
-    /// Number of instances reserved in the scene's instance buffers: whole blocks.
+    /// Number of entries that the chunk takes in the scene's instance buffers: its instances, rounded up to a multiple of
+    /// [`BLOCK`].
     pub fn room(&self) -> u32 {
         (self.slots.len() as u32).next_multiple_of(BLOCK)
     }
 
-    /// Index of one of its instances in the scene's instance buffers.
+    /// Index in the scene's instance buffers of the chunk's instance with index `slot` in the object.
     pub fn place(&self, slot: usize) -> usize {
         self.range.first as usize + slot - self.slots.start
     }

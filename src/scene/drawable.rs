@@ -12,32 +12,32 @@ use crate::lod::{LodObject, SceneDraw};
 use crate::scene::specialization::Specialization;
 use crate::shared::render::scene_instances::SceneObject;
 
-/// A drawable: triangles in parts, with one draw per part and list of instances.
+/// Triangles that are divided into parts. Each part has one draw per list of instances.
 pub(crate) trait Drawable: Any + Debug + wgpu::WasmNotSendSync {
     /// Number of parts.
     fn part_count(&self) -> usize;
 
-    /// The part with index `at`.
+    /// The part with index `at`; `None` beyond the last part.
     fn part(&self, at: usize) -> Option<Part<'_>>;
 
-    /// Bind group 1; `None` if the view has it.
+    /// Bind group 1; `None` if each view has its own ([`DrawnObject::view_group`]).
     fn group(&self) -> Option<&Group>;
 
-    /// The triangles of all parts.
+    /// The index buffer with the triangles of all parts.
     fn indices(&self) -> &wgpu::Buffer;
 
-    /// Stages the ranges of the instances, after a layout or its buffers changed.
+    /// Stages the uniform `object`, which holds the range of instances, after a layout or its buffers changed.
     fn stage(&self, staged: &mut Staged, object: &SceneObject) -> Result<(), Error> {
         let _ = (staged, object);
         Ok(())
     }
 
-    /// Whether its levels of detail can geomorph.
+    /// Whether the drawable's levels of detail can geomorph.
     fn can_morph(&self) -> bool {
         false
     }
 
-    /// Sets whether levels that can geomorph do.
+    /// Sets whether the levels of detail geomorph. Has no effect if they cannot.
     fn set_morphed(&mut self, morphed: bool) {
         let _ = morphed;
     }
@@ -49,7 +49,7 @@ impl dyn Drawable {
         (0..self.part_count()).filter_map(|at| self.part(at))
     }
 
-    /// The drawable as `D`, if it is one.
+    /// The drawable as type `D`; `None` if it has another type.
     pub fn downcast<D: Drawable>(&self) -> Option<&D> {
         (self as &dyn Any).downcast_ref()
     }
@@ -68,61 +68,61 @@ pub(crate) struct Part<'a> {
     pub group: &'a Group,
 }
 
-/// Object uniform of instances that are not in a layout yet.
+/// The uniform of an object whose instances are not in a layout yet.
 pub(crate) const NO_OBJECT: SceneObject =
     SceneObject { first_instance: 0, number: 0, first_slot: 0, push: [Vec4::ZERO; 2] };
 
-/// An object as a view draws it.
+/// A drawable of an object, with the data for drawing it in one view.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawnObject<'a> {
     /// The object's number ([`ObjectId::number`](crate::scene::ObjectId::number)).
     pub number: u32,
     /// The triangles to draw.
     pub drawable: &'a dyn Drawable,
-    /// Ranges of its lists and draws, and its number of levels.
+    /// Ranges of the object's lists and draws, and its number of levels of detail.
     pub lod: &'a LodObject,
-    /// Whether to draw the lists of instances that are not mirrored, and the lists of mirrored ones.
+    /// Two flags: whether to draw the instances that are not mirrored, and whether to draw the mirrored ones.
     pub sides: [bool; 2],
-    /// How its levels change.
+    /// How instances change from one level of detail to the next.
     pub transition: Transition,
-    /// Bind group 1, if the view has it.
+    /// The object's bind group 1 in this view; `None` if the drawable has the group.
     pub view_group: Option<&'a Group>,
 }
 
-/// Sorted draws: instances that are drawn one by one.
+/// The draws of instances that a view draws one by one, from back to front.
 #[derive(Debug, Clone)]
 pub(crate) struct SortedDraws<'a> {
     /// Indirect arguments, one draw per instance and part.
     pub draws: &'a Buffer<SceneDraw>,
-    /// Instance list of each draw; each has one entry.
+    /// The instance lists of the draws. Each list has one entry, because a draw has one instance.
     pub entries: &'a Buffer<u32>,
     /// The parts, in the order in which they are drawn.
     pub parts: Vec<SortedPart<'a>>,
 }
 
-/// One part of one sorted instance.
+/// One part of an instance that is drawn by itself, in sorted order.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SortedPart<'a> {
-    /// The drawable.
+    /// The drawable that the part belongs to.
     pub drawable: &'a dyn Drawable,
-    /// The part of the drawable.
+    /// The part's pipeline specialization and bind group.
     pub part: Part<'a>,
-    /// Index of its draw.
+    /// Index of the part's draw in [`SortedDraws::draws`].
     pub draw: u32,
     /// Whether the instance's placement mirrors.
     pub is_mirrored: bool,
-    /// How the levels of its object change.
+    /// How instances of the object change from one level of detail to the next.
     pub transition: Transition,
 }
 
-/// A view, for a renderer.
+/// The data that a renderer needs to draw a view.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DrawnView<'a> {
     /// Bind group 0: [`SceneLayouts::view`](crate::scene::layouts::SceneLayouts::view).
     pub group: &'a Group,
-    /// Instance indices of each list, within the object.
+    /// Instance lists of all objects. An entry holds the instance's index within its object.
     pub lists: &'a Buffer<u32>,
-    /// The draws.
+    /// Arguments of the indirect draws of all objects.
     pub arguments: &'a Buffer<SceneDraw>,
     /// Whether the picture is a mirror image, as in `SceneView::side`.
     pub mirrors: bool,
@@ -130,6 +130,6 @@ pub(crate) struct DrawnView<'a> {
     pub reversed: bool,
     /// Whether the scene keeps motion history.
     pub keeps_last: bool,
-    /// Whether shading looks surfaces up in a sun's shadow map.
+    /// Whether shading reads a sun's shadow map.
     pub is_shadowed: bool,
 }

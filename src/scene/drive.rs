@@ -1,4 +1,4 @@
-//! Driven bones: poses that the caller changes between sampling and model matrices.
+//! Driven bones: the caller changes their local transforms in a frame, before model matrices are computed from them.
 
 use crate::animation::crowd::{Local, packed};
 use crate::asset::Transform;
@@ -11,12 +11,12 @@ use crate::scene::view::View;
 use crate::scene::{FRAMES_IN_FLIGHT, Scene};
 use crate::{Error, InputError};
 
-/// The poses of all characters in a frame, after sampling, for [`Scene::record_with`].
+/// The poses of all characters in a frame, after bones are sampled. [`Scene::record_with`] passes them to the caller.
 #[derive(Debug)]
 pub struct Poses<'a> {
     gpu: &'a Gpu,
     objects: &'a mut Slots<Object>,
-    /// `None` if all buffers are in use.
+    /// Staging memory for the host's writes; `None` if all staging buffers are in use.
     stream: Option<StagingStream<'a>>,
     failure: Option<GpuError>,
 }
@@ -43,14 +43,15 @@ impl<'a> Poses<'a> {
     /// space to the parent's space, as in [`InstancePose::local`](crate::scene::InstancePose::local). `bone` is an index
     /// ([`Scene::bone`]).
     ///
-    /// The write is recorded as a copy of 48 bytes into `encoder`, which must be the one passed to `pose`. Work recorded
-    /// after it there sees the new value. The write holds for this frame only: the next frame samples the bone again, so
-    /// write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] use the values that the last
-    /// frame wrote. Nothing is submitted, and memory is allocated only if a frame writes more than any frame before.
+    /// The write is recorded as a copy of 48 bytes into `encoder`, which must be the encoder passed to `pose`. Work recorded
+    /// later in the same encoder sees the new value. The write holds for this frame only: the next frame samples the bone
+    /// again, so write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] use the values that
+    /// the last frame wrote. Nothing is submitted, and memory is allocated only if a frame writes more than any frame
+    /// before.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, as
-    /// [`Transform::checked`], and for an encoder of another [`wgpu::Instance`].
+    /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, for a
+    /// transform that [`Transform::checked`] refuses, and for an encoder of another [`wgpu::Instance`].
     pub fn write(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -90,18 +91,20 @@ impl<'a> Poses<'a> {
 }
 
 impl Scene {
-    /// Drops the host's writes to bones in the last frame.
+    /// Forgets the local transforms that the host wrote in the last frame.
     pub(super) fn forget_written(&mut self) {
         let characters = self.objects.iter_mut().filter_map(|object| object.character_mut());
         characters.for_each(Character::forget_written);
     }
 
-    /// Sets the driven bones of an instance, from the next frame on, each by its name or its index in digits. An empty list
-    /// ends driving. In every frame in which a view sees the instance, driven bones are sampled at the frame's time,
-    /// regardless of the gate. Then the caller may change them ([`Scene::record_with`]), and they and all bones below count
-    /// as updated. [`Quality::pixels`](crate::scene::Quality) bounds the sampled pose, not the caller's changes. Culling
-    /// uses the clip's sphere, so bones should stay near. Changing the driven bones of an object allocates memory in the
-    /// next frame.
+    /// Sets the driven bones of an instance, from the next frame on. A bone is given by its name or its index in digits. An
+    /// empty list ends driving.
+    ///
+    /// In every frame in which a view sees the instance, driven bones are sampled at the frame's time, even if their motion
+    /// is too small to be seen. The caller may then change them ([`Scene::record_with`]). Driven bones and all bones below
+    /// them count as updated. [`Quality::pixels`](crate::scene::Quality) bounds the error of the sampled pose, not the
+    /// caller's changes. Culling uses the bounding sphere of the clip, so driven bones should stay near it. Changing the
+    /// driven bones of an object allocates memory in the next frame.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
@@ -113,9 +116,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Like [`Scene::record`], with the caller's passes between the sampling of bones and their model matrices, for inverse
-    /// kinematics and ragdolls. `pose` receives the encoder and the poses. It may change the local transforms of driven
-    /// bones ([`Scene::drive`]) from the host ([`Poses::write`]), or by kernels and copies ([`Poses::of`]).
+    /// Like [`Scene::record`], but calls `pose` after bones are sampled and before their model matrices are computed. This
+    /// serves inverse kinematics and ragdolls. `pose` receives the encoder and the poses. It may change the local transforms
+    /// of driven bones ([`Scene::drive`]) from the host ([`Poses::write`]), or by kernels and copies ([`Poses::of`]).
     ///
     /// # Examples
     ///
@@ -144,8 +147,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// As for [`Scene::record`], and the error of `pose`. The frame is then incomplete: it cannot be drawn, and the next
-    /// one starts afresh.
+    /// The errors of [`Scene::record`], and the error of `pose`. The frame is then incomplete: it cannot be drawn, and the
+    /// next frame starts afresh.
     pub fn record_with(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -16,14 +16,15 @@ use crate::scene::view::{Moment, View};
 use crate::scene::{FRAMES_IN_FLIGHT, Passes, Scene};
 use crate::{Error, InputError};
 
-/// The caller's passes between sampling and model matrices.
+/// The caller's function that records passes after bones are sampled and before model matrices are computed.
 pub(super) type Between<'a> =
     &'a mut dyn FnMut(&mut wgpu::CommandEncoder, &mut Poses<'_>) -> Result<(), InputError>;
 
 impl Scene {
     /// Discards all recordings that the device has not executed, and starts everything afresh, as [`Scene::refresh`] does.
-    /// [`Scene::record`] calls it by itself after an encoder was dropped without submission, because the device then misses
-    /// the changes recorded in it. Call it to free the places of encoders that you keep but will not submit.
+    /// [`Scene::record`] does the same by itself after an encoder was dropped without submission, because the device then
+    /// misses the changes recorded in that encoder. Call this function if you keep encoders that you will not submit: their
+    /// recordings then no longer count as in flight.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -58,8 +59,8 @@ impl Scene {
         self.refresh()
     }
 
-    /// Makes the next frame sample and skin everything visible in full, and upload every instance again. The picture is
-    /// then the same as that of a newly created scene.
+    /// Makes the next frame sample and skin everything visible in full, and upload every instance again. The picture then
+    /// equals the picture of a newly created scene.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -73,9 +74,9 @@ impl Scene {
     }
 
     /// Sets whether the scene keeps placements, vertices and levels of the last frame, from the next frame on. The default
-    /// is false. [`Layer::Velocity`](crate::render::Layer::Velocity) needs this history. It costs 1.4 times the memory for
-    /// skinned vertices. A moving instance is skinned once more after it stops, and host changes are uploaded twice. After
-    /// a switch, all characters are sampled and skinned afresh.
+    /// is false. [`Layer::Velocity`](crate::render::Layer::Velocity) needs this history. The history has a cost: skinned
+    /// vertices take 1.4 times the memory, a moving instance is skinned once more after it stops, and host changes are
+    /// uploaded twice. After a switch, all characters are sampled and skinned afresh.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -104,23 +105,23 @@ impl Scene {
     }
 
     /// Records a frame: pending changes, then visibility and levels of detail per view, then poses and vertices of all
-    /// visible characters. Draw afterwards, in passes of the same encoder or of later ones.
+    /// visible characters. Draw afterwards, in passes of the same encoder or of encoders that are submitted later.
     ///
     /// In one call, pass every view that the frame draws. Characters are posed and skinned once, for the instances that
-    /// these views see, at the finest level that any of the views needs. Each frame may have other views than the one
-    /// before. [`Renderer::draw`](crate::render::Renderer::draw) refuses a view that the last frame left out: its lists may
+    /// these views see, at the finest level that any of the views needs. The views may differ from frame to frame.
+    /// [`Renderer::draw`](crate::render::Renderer::draw) refuses a view that the last frame left out: the view's lists may
     /// refer to vertices whose memory was reused.
     ///
-    /// Each call is a frame, even if one submission holds two of them: every draw uses the frame recorded before it. A
-    /// recording takes one of [`FRAMES_IN_FLIGHT`] places. The place becomes free when the device has executed the
-    /// recording and wgpu has noticed, in a submission or in [`wgpu::Device::poll`]. You may drop an encoder instead: the
-    /// next recording then starts afresh ([`Scene::invalidate`]). Submit recordings in order, because each relies on the
-    /// changes in the ones before it. For an empty scene, nothing is recorded or drawn.
+    /// Each call records one frame, even if one submission holds several frames. Every draw uses the frame recorded last
+    /// before it. At most [`FRAMES_IN_FLIGHT`] recordings may await execution. A recording counts until the device has
+    /// executed it and wgpu has noticed, in a submission or in [`wgpu::Device::poll`]. You may drop an encoder instead: the
+    /// next recording then starts afresh ([`Scene::invalidate`]). Submit recordings in order, because each relies on changes
+    /// in earlier recordings. For an empty scene, nothing is recorded or drawn.
     ///
     /// # Errors
-    /// [`InputError`] for no view, for a view of another scene or without a camera, and for an encoder of another
-    /// [`wgpu::Instance`]. (wgpu panics there. The panic is caught, but the program's panic hook sees it.) Also if
-    /// [`FRAMES_IN_FLIGHT`] recorded frames await execution. [`crate::gpu::GpuError`], also for the loss of the device.
+    /// [`InputError`] if `views` is empty, for a view of another scene or without a camera, if [`FRAMES_IN_FLIGHT`]
+    /// recordings await execution, and for an encoder of another [`wgpu::Instance`]. wgpu panics for such an encoder. The
+    /// panic is caught, but the program's panic hook sees it. [`crate::gpu::GpuError`], also for the loss of the device.
     ///
     /// # Examples
     ///
@@ -156,7 +157,8 @@ impl Scene {
         self.record_frame(encoder, views, None)
     }
 
-    /// Records a frame, with the caller's passes between sampling and model matrices.
+    /// Records a frame. The function `between`, if given, runs after bones are sampled and before model matrices are
+    /// computed.
     pub(super) fn record_frame(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -178,7 +180,7 @@ impl Scene {
         self.provide(views)?;
         self.fit(views)?;
         if let Err(error) = self.stage(views) {
-            // Some changes left their queues without being staged, so the next frame would miss them.
+            // Some changes were taken from their queues without being staged, so the next frame would miss them.
             self.is_broken = true;
             return Err(error);
         }
@@ -196,15 +198,16 @@ impl Scene {
             views.iter_mut().for_each(|view| view.recorded(self.frames, self.now));
         }
         self.frames += 1;
-        // The staged changes are complete only if all stages were recorded.
+        // The device has all staged changes only if all stages were recorded.
         self.is_broken = staged.is_err();
         staged?;
-        // Unless the time advances again, no time passes between this frame and the next.
+        // If the time is not advanced again, no time passes between this frame and the next.
         self.step = 0.0;
         Ok(())
     }
 
-    /// Records all stages: in one compute pass, in one pass each if they are timed, or in two passes around the caller's.
+    /// Records all stages. If the stages are timed, each has its own compute pass. With `between`, there are two passes,
+    /// before and after the caller's. Otherwise all stages share one pass.
     fn record_stages(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -257,7 +260,7 @@ impl Scene {
         }
     }
 
-    /// Records the copies of statistics and of watched bones.
+    /// Records the copies of statistics and watched bones for readback.
     fn count(&mut self, encoder: &mut wgpu::CommandEncoder, views: &mut [&mut View]) {
         if let Some(counts) = &mut self.counts {
             counts.record(encoder, self.frames, &self.objects);
@@ -270,7 +273,7 @@ impl Scene {
         }
     }
 
-    /// The drawables of all objects, with the transitions of their levels.
+    /// The drawables of all objects, each with the transition between its object's levels of detail.
     pub(crate) fn drawables(&self) -> impl Iterator<Item = (&dyn Drawable, Transition)> {
         self.objects.iter().flat_map(|object| {
             let transition = object.level_of_detail.transition();
@@ -282,7 +285,7 @@ impl Scene {
         self.objects.iter().next().is_none()
     }
 
-    /// The renderer's inputs for a view and all shown objects; `None` for a scene without objects.
+    /// The data for drawing a view and all shown objects; `None` for a scene without objects.
     pub(crate) fn drawn<'a>(
         &'a self,
         view: &'a View,
@@ -328,7 +331,7 @@ impl Scene {
         Ok(Some((drawn, objects)))
     }
 
-    /// The instances that a view draws one by one, from back to front.
+    /// The instances that a view draws one by one, from back to front; `None` if the view has no such draws.
     pub(crate) fn sorted_draws<'a>(&'a self, view: &'a View) -> Option<SortedDraws<'a>> {
         let lists = view.lists.as_ref()?;
         let SortedLists { draws, entries, .. } = lists.sorted.as_ref()?;
@@ -362,7 +365,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Allocates pages for the instances that the views see.
+    /// Allocates pages of skinned vertices for the instances that the views see.
     fn provide(&mut self, views: &[&mut View]) -> Result<(), Error> {
         let blocks = self.layout.as_ref().map_or(0, |layout| layout.blocks);
         let seen = views.iter().map(|view| Ok(view.select_view(blocks, true)?.1));

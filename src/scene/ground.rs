@@ -1,4 +1,4 @@
-//! The ground of terrain on the host, and terrain whose heights the caller's passes change.
+//! The ground of terrain on the host, and terrain whose heights or patches the caller changes.
 
 use crate::gpu::{Staged, Upload as _};
 use crate::scene::Scene;
@@ -12,14 +12,14 @@ use crate::{Error, InputError};
 
 impl Scene {
     /// The ground of a terrain at a world position, `x` units east and `z` units south of the origin. Returns the height in
-    /// world units and the normal, both of the triangle that is drawn there; `None` where the terrain has no patch.
+    /// world units and the normal of the triangle that is drawn there; `None` where the terrain has no patch.
     ///
-    /// It is computed on the CPU from heights that the scene keeps on the host. For terrain made from fields, these are the
-    /// heights last read ([`Scene::read_ground`]). They are unknown for patches that [`Scene::set_patches`] has brought
-    /// since.
+    /// The ground is computed on the CPU from heights that the scene keeps on the host. For terrain made from fields, these
+    /// are the heights last read by [`Scene::read_ground`]. For patches that [`Scene::set_patches`] has added since then,
+    /// the heights are unknown.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene or no terrain, and for a position that is not finite.
+    /// [`InputError`] for an object that is not in this scene or is not terrain, and for a position that is not finite.
     ///
     /// # Examples
     ///
@@ -44,24 +44,23 @@ impl Scene {
         Ok(terrain_of(&*self.object_at(terrain)?.kind)?.point_at(x, z))
     }
 
-    /// Sets the patches that the fields of a terrain
-    /// ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields)) show, from the next recording on. The
-    /// first field shows the first patch, and so on; fields without a patch are not drawn. A streaming world keeps its
-    /// fields, computes the heights of new patches into them, and then calls this function. The call allocates nothing on
-    /// the device, and does not wait.
+    /// Sets which patches the fields of a terrain ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields))
+    /// show, from the next recording on. The first field shows the first patch, and so on; fields without a patch are not
+    /// drawn. A streaming world keeps its fields, computes the heights of new patches into them, and then calls this
+    /// function. The call allocates nothing on the device, and does not wait.
     ///
-    /// `heights` are two heights in world units that bound those of all patches. Views cull each patch by the box between
-    /// them. [`Scene::read_ground`] reads the exact bounds. Handles of patches that stay in place remain valid; the others
-    /// become stale.
+    /// `heights` are a lower and an upper bound of the heights of all patches, in world units. Views cull each patch by the
+    /// box between these heights. [`Scene::read_ground`] reads the exact bounds. The handle of a patch remains valid if the
+    /// patch keeps its index in `patches`. All other handles become stale.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, no terrain, or one that the scene generated; for more
-    /// patches than fields, a patch that is given twice or whose samples exceed the range of `i32`; and for heights that
-    /// are not finite or out of order. Nothing has changed then. [`crate::gpu::GpuError`].
+    /// [`InputError`] for an object that is not in this scene, is not terrain, or is terrain that the scene generated; for
+    /// more patches than fields; for a patch that is given twice or whose samples exceed the range of `i32`; and for heights
+    /// that are not finite or not in ascending order. Nothing has changed then. [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
-    /// A streaming world of one field: its next patch, with heights from −20 to 80 units.
+    /// A streaming world of one field, which shows its next patch with heights from −20 to 80 units.
     ///
     /// ```no_run
     /// # use relievo::scene::{ObjectId, Scene};
@@ -89,15 +88,15 @@ impl Scene {
         set
     }
 
-    /// Sets the time at which a terrain with a target
-    /// ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) blends its two recipes. Heights are
-    /// `from + ⌊(to − from) · time⌋` in integers, so the picture equals that of terrain made from these heights. The next frame
-    /// blends heights and normals on the device. [`Scene::ground`] and [`Scene::pick`] use the new heights at once. An
-    /// unchanged time costs nothing. The host takes a few nanoseconds per sample.
+    /// Sets the time, 0 to 1, at which a terrain with a target
+    /// ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) blends its two recipes. The blended
+    /// heights are `from + ⌊(to − from) · time⌋` in integers, so the picture equals the picture of terrain made from these
+    /// heights. The next frame blends heights and normals on the device. [`Scene::ground`] and [`Scene::pick`] use the new
+    /// heights at once. A new time costs the host a few nanoseconds per sample; an unchanged time costs nothing.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, no terrain, or one without a target, and for a time outside
-    /// 0..=1. Nothing has changed then.
+    /// [`InputError`] for an object that is not in this scene, is not terrain, or is terrain without a target, and for a
+    /// time outside 0..=1. Nothing has changed then.
     ///
     /// # Examples
     ///
@@ -114,12 +113,12 @@ impl Scene {
         terrain_of_mut(&mut *entry.kind)?.morph(&mut entry.instances, morph)
     }
 
-    /// Reads back the heights of a terrain made from fields, after all submitted work. From then on, [`Scene::ground`] and
-    /// [`Scene::pick`] use them, and views cull patches by their lowest and highest points. Drawing does not need this
-    /// call: pictures show new heights without it. Waits for the device.
+    /// Waits for all submitted work, then reads back the heights of a terrain made from fields. From then on,
+    /// [`Scene::ground`] and [`Scene::pick`] use these heights, and views cull each patch by its lowest and highest points.
+    /// Drawing does not need this call: pictures show new heights without it.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, no terrain, or one that the scene generated;
+    /// [`InputError`] for an object that is not in this scene, is not terrain, or is terrain that the scene generated;
     /// [`crate::gpu::GpuError`].
     ///
     /// # Examples
@@ -138,11 +137,11 @@ impl Scene {
         self.gpu.clone().block_on(self.read_ground_async(terrain))
     }
 
-    /// Like `Scene::read_ground`, but completes once the device has finished; see
+    /// Like `Scene::read_ground`, but does not block. The future completes once the device has finished; see
     /// [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
     ///
     /// # Errors
-    /// As for `Scene::read_ground`.
+    /// The errors of `Scene::read_ground`.
     pub async fn read_ground_async(&mut self, terrain: ObjectId) -> Result<(), Error> {
         let fields = terrain_of(&*self.object_at(terrain)?.kind)?.fields()?;
         let heights = fields.read(&self.gpu).await?;

@@ -1,4 +1,5 @@
-//! Handles of objects and instances. A handle never refers to anything but what it was made for.
+//! Handles of objects and instances. A handle becomes stale when its object or instance is removed. A stale
+//! handle never refers to a later object or instance.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -25,7 +26,8 @@ pub struct ObjectId {
 }
 
 impl ObjectId {
-    /// The object's number in pictures and shaders, counted from 1. After a removal, a later object may reuse it.
+    /// The object's number in pictures and shaders, counted from 1. After the object is removed, a later object may get this
+    /// number.
     pub fn number(&self) -> u32 {
         self.index + 1
     }
@@ -40,19 +42,19 @@ pub struct InstanceId {
 }
 
 impl InstanceId {
-    /// The handle of its object.
+    /// The handle of the instance's object.
     pub fn object(&self) -> ObjectId {
         self.object
     }
 
-    /// The instance's number within its object in pictures and shaders, counted from 0. After a removal, a later instance
-    /// may reuse it.
+    /// The instance's number within its object in pictures and shaders, counted from 0. After the instance is removed, a
+    /// later instance may get this number.
     pub fn number(&self) -> u32 {
         self.index
     }
 }
 
-/// Values of one scene in reusable slots. Each reuse has a new generation.
+/// Values of one scene in reusable slots. Each reuse of a slot increments its generation, which makes old handles stale.
 #[derive(Debug)]
 pub(super) struct Slots<T> {
     scene: SceneNumber,
@@ -71,7 +73,7 @@ impl<T> Slots<T> {
         self.scene
     }
 
-    /// Stores a value in the first free slot. Returns the slot and its generation.
+    /// Stores a value in the first free slot. Returns the index of the slot and its generation.
     pub fn insert(&mut self, value: T) -> [u32; 2] {
         let free = self.slots.iter().position(|(_, value)| value.is_none());
         let at = free.unwrap_or_else(|| {
@@ -82,7 +84,7 @@ impl<T> Slots<T> {
         [at as u32, self.slots[at].0]
     }
 
-    /// The value in a slot, if it has this generation.
+    /// The value in a slot; `None` if the slot is free or has another generation.
     pub fn get(&self, [index, generation]: [u32; 2]) -> Option<&T> {
         let (now, value) = self.slots.get(index as usize)?;
         value.as_ref().filter(|_| *now == generation)
@@ -94,7 +96,7 @@ impl<T> Slots<T> {
         value.as_mut().filter(|_| *now == generation)
     }
 
-    /// Removes a value. Its handles become stale.
+    /// Removes a value and returns it; `None` if it does not exist any more. Handles of the value become stale.
     pub fn remove(&mut self, [index, generation]: [u32; 2]) -> Option<T> {
         let (now, value) = self.slots.get_mut(index as usize)?;
         if *now != generation {
@@ -105,18 +107,18 @@ impl<T> Slots<T> {
         removed
     }
 
-    /// All values with their slots and generations, slot by slot.
+    /// All values with slot index and generation, in ascending order of slots.
     pub fn numbered(&self) -> impl Iterator<Item = ([u32; 2], &T)> {
         let slots = (0..).zip(&self.slots);
         slots.filter_map(|(index, (generation, value))| Some(([index, *generation], value.as_ref()?)))
     }
 
-    /// All values, slot by slot.
+    /// All values, in ascending order of slots.
     pub fn iter(&self) -> impl Iterator<Item = &T> {
         self.slots.iter().filter_map(|(_, value)| value.as_ref())
     }
 
-    /// All values, slot by slot, mutable.
+    /// All values for modification, in ascending order of slots.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.slots.iter_mut().filter_map(|(_, value)| value.as_mut())
     }
@@ -128,7 +130,7 @@ pub(super) fn stale(path: &str, index: u32, generation: u32) -> InputError {
     InputError::new(path, value, "must still exist")
 }
 
-/// The error for the handle of an instance that the scene does not have.
+/// The error for an instance's handle that is stale or belongs to another scene.
 pub(super) fn missing(scene: SceneNumber, instance: InstanceId) -> InputError {
     match instance.object.scene == scene {
         true => stale("instance", instance.index, instance.generation),

@@ -10,9 +10,8 @@ use crate::scene::Scene;
 use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::matrices::affine_of;
 
-/// The pose of a character's instance on the host ([`Scene::pose`]): the transforms of all of its bones. The caller may
-/// change them, for [`Poses::write`](crate::scene::Poses::write) or its own use. Bones are given by index
-/// ([`Scene::bone`]).
+/// A copy of the pose of a character's instance ([`Scene::pose`]), with the transforms of all bones. The caller may change
+/// the copy, for [`Poses::write`](crate::scene::Poses::write) or its own use. Bones are given by index ([`Scene::bone`]).
 ///
 /// # Examples
 ///
@@ -60,7 +59,8 @@ impl InstancePose {
         self.world_from_model
     }
 
-    /// The local transform of a bone, in its parent's space, as [`Poses::write`](crate::scene::Poses::write) takes it.
+    /// The local transform of a bone, in its parent's space. [`Poses::write`](crate::scene::Poses::write) takes this
+    /// transform.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have.
@@ -68,7 +68,7 @@ impl InstancePose {
         self.pose.locals.get(bone).copied().ok_or_else(|| self.missing(bone))
     }
 
-    /// The transform from bone space to the world. It contains the scales of the instance and of the bones above.
+    /// The transform from bone space to the world. It contains the scales of the instance, the bone and the bones above it.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have.
@@ -77,7 +77,7 @@ impl InstancePose {
         Ok(self.world_from_model * affine_of(matrix))
     }
 
-    /// The world coordinates of a bone's origin, its joint.
+    /// The world coordinates of a bone's origin, which is its joint.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have.
@@ -85,10 +85,10 @@ impl InstancePose {
         Ok(self.world_from_bone(bone)?.translation)
     }
 
-    /// Replaces the local transform of a bone, in its parent's space. The bones below follow.
+    /// Replaces the local transform of a bone, in its parent's space. The bones below it follow.
     ///
     /// # Errors
-    /// [`InputError`] for a bone that the skeleton does not have, and as [`Transform::checked`].
+    /// [`InputError`] for a bone that the skeleton does not have, and for a transform that [`Transform::checked`] refuses.
     pub fn set_local(&mut self, bone: usize, local: Transform) -> Result<(), InputError> {
         self.local(bone)?;
         self.pose.locals[bone] = local.checked("local")?;
@@ -101,7 +101,7 @@ impl InstancePose {
         Ok(())
     }
 
-    /// Turns a bone about its origin by a rotation in world axes. The bones below follow. The result is exact if the
+    /// Turns a bone about its origin by a rotation in world axes. The bones below it follow. The result is exact if the
     /// instance and the bones above have uniform scale. Otherwise, the nearest rotation in the parent's space is used.
     ///
     /// # Errors
@@ -128,12 +128,13 @@ impl InstancePose {
     }
 
     /// Converts an offset in world units along a bone's axes to bone space, for [`Scene::attach`]. A mesh attached with the
-    /// result is `offset.translation` world units away from the bone's origin, and `offset.scale` times the size of its
-    /// model. This holds for any scale of the instance and of its bones in this pose. Rotations stay unchanged. If a bone's
-    /// scale differs between axes, a rotated mesh is sheared, but each of its axes has the right length.
+    /// result is `offset.translation` world units away from the bone's origin. The mesh's size is `offset.scale` times the
+    /// size of its model. This holds for any scale of the instance and of its bones in this pose. Rotations stay unchanged. If a
+    /// bone's scale differs between axes, a rotated mesh is sheared, but each of the mesh's axes has the right length.
     ///
     /// # Errors
-    /// [`InputError`] for a bone that the skeleton does not have, for one that is scaled by 0, and as [`Transform::checked`].
+    /// [`InputError`] for a bone that the skeleton does not have or that is scaled by 0, and for an offset that
+    /// [`Transform::checked`] refuses.
     pub fn offset_of_world_units(&self, bone: usize, offset: Transform) -> Result<Transform, InputError> {
         let offset = offset.checked("offset")?;
         let stretch = self.world_from_bone(bone)?.matrix3;
@@ -163,8 +164,8 @@ fn rotation_of(matrix: DMat3) -> DQuat {
 }
 
 impl Scene {
-    /// The pose of a character's instance at the scene's time, from its clip and layers. It is computed on the CPU, in a
-    /// few microseconds for a hundred bones, and equals the device's pose within rounding. Writes to driven bones
+    /// The pose of a character's instance at the scene's time, from its clip and layers. The pose is computed on the CPU, in
+    /// a few microseconds for a hundred bones, and equals the device's pose within rounding. Writes to driven bones
     /// ([`Poses::write`](crate::scene::Poses::write)) are not included.
     ///
     /// # Errors
@@ -184,7 +185,7 @@ mod tests {
     use super::*;
     use crate::asset::Bone;
 
-    /// A chain of three bones, each two units along +Y from its parent. The first is scaled.
+    /// A chain of three bones, each two units along +Y from its parent. `scale` is the scale of the first bone.
     fn chain(scale: [f32; 3], world_from_model: DAffine3) -> InstancePose {
         let bone = |index: u32| {
             let rest = Transform {
@@ -200,7 +201,7 @@ mod tests {
         InstancePose::new(&skeleton, Pose { locals, model_matrices }, world_from_model)
     }
 
-    /// Bones below turn about the joint as in the world, mirrored or not.
+    /// If a bone turns, the bones below it turn about its joint by the same rotation in the world, mirrored or not.
     #[test]
     fn bones_turn_about_axes_of_the_world() {
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -2.0).normalize(), 0.7);

@@ -1,4 +1,4 @@
-//! The instances of one object on the host, with the changes that are not uploaded yet.
+//! The instances of one object on the host, and the changes to them that are not uploaded yet.
 
 use crate::asset::transform::Transform;
 use crate::scene::placement::Placement;
@@ -8,7 +8,7 @@ use crate::shared::lod::instance::{
 use crate::shared::lod::object::BLOCK;
 use crate::skinning::bounding_sphere::BoundingSphere;
 
-/// An instance that does not exist.
+/// The content of an array element that no instance uses.
 pub(super) const NOBODY: SceneInstance = SceneInstance {
     cell: [0; 3],
     flags: 0,
@@ -20,7 +20,7 @@ pub(super) const NOBODY: SceneInstance = SceneInstance {
     bounding_sphere: [0.0; 4],
 };
 
-/// Largest gap between changed elements that are uploaded together, with the elements in between.
+/// Largest number of unchanged elements between two changed ones that are uploaded together, in one range.
 const GAP: usize = 4;
 
 /// The instances of an object.
@@ -28,7 +28,7 @@ const GAP: usize = 4;
 pub(super) struct Instances {
     all: Vec<SceneInstance>,
     generations: Vec<u32>,
-    /// Free indices; the last is used first.
+    /// Unused indices; the last one is used first.
     free: Vec<u32>,
     /// Number of existing instances that are mirrored.
     mirrored: usize,
@@ -36,16 +36,16 @@ pub(super) struct Instances {
     last: Option<Last>,
 }
 
-/// The instances of the last frame, for motion history.
+/// The state of the instances in the last frame, for motion history.
 #[derive(Debug)]
 struct Last {
     all: Vec<SceneInstance>,
-    /// Elements that must be uploaded.
+    /// Elements of `all` that must be uploaded.
     changed: Changed,
 }
 
 impl Instances {
-    /// Empty storage for at least `capacity` instances.
+    /// An array without instances, with a capacity of at least `capacity`.
     pub fn new(capacity: usize) -> Self {
         let changed = Changed::default();
         let mut instances =
@@ -54,7 +54,7 @@ impl Instances {
         instances
     }
 
-    /// Number of instances there is room for, a multiple of [`BLOCK`].
+    /// Largest number of instances without growing, a multiple of [`BLOCK`].
     pub fn capacity(&self) -> usize {
         self.all.len()
     }
@@ -64,14 +64,14 @@ impl Instances {
         self.all.len() - self.free.len()
     }
 
-    /// Whether there are instances that are not mirrored, and whether there are mirrored ones. Without any instance:
-    /// `[true, false]`.
+    /// Two flags: whether there are instances that are not mirrored, and whether there are mirrored ones. Without any
+    /// instance: `[true, false]`.
     pub fn sides(&self) -> [bool; 2] {
         let plain = self.alive() - self.mirrored;
         [plain > 0 || self.mirrored == 0, self.mirrored > 0]
     }
 
-    /// Makes room for at least `capacity` instances. Marks all as changed.
+    /// Raises the capacity to at least `capacity` instances. Marks all as changed.
     pub fn grow(&mut self, capacity: usize) {
         let before = self.all.len();
         let after = capacity.max(1).next_multiple_of(BLOCK as usize).max(before);
@@ -98,7 +98,7 @@ impl Instances {
         self.change_all();
     }
 
-    /// Adds an instance. Returns its index and generation; `None` if there is no room.
+    /// Adds an instance. Returns its index and generation; `None` if the capacity is used up.
     pub fn spawn(&mut self, placement: &Placement, sphere: &BoundingSphere) -> Option<[u32; 2]> {
         let index = self.free.pop()?;
         let flags = instance_flags_word(INSTANCE_ALIVE | INSTANCE_CASTS, u16::MAX.into());
@@ -108,7 +108,7 @@ impl Instances {
             bound(instance, sphere);
         });
         if let Some(last) = &mut self.last {
-            // A new instance has not moved; the index may have belonged to another one elsewhere.
+            // A new instance has not moved. Its index may have belonged to a removed instance at another position.
             last.all[index as usize] = self.all[index as usize];
             last.changed.add(index, self.all.len());
         }
@@ -136,12 +136,12 @@ impl Instances {
         alive.map(|((_, generation), index)| [index, *generation])
     }
 
-    /// All instances, including those that do not exist.
+    /// The whole array, including elements that no instance uses.
     pub fn all(&self) -> &[SceneInstance] {
         &self.all
     }
 
-    /// Changes an instance.
+    /// Applies `change` to an instance, and marks the instance as changed.
     pub fn change(&mut self, index: u32, change: impl FnOnce(&mut SceneInstance)) {
         let is_counted =
             |instance: &SceneInstance| instance.flags & INSTANCE_ALIVE != 0 && instance.is_mirrored();
@@ -152,8 +152,9 @@ impl Instances {
         self.changed.add(index, self.all.len());
     }
 
-    /// Takes the runs of instances whose last-frame state must be uploaded, each with the index of its first. Call it once
-    /// a frame, before [`Instances::take_changed`]. Changes of the last frame are taken again with their present values.
+    /// Takes the last frame's states that must be uploaded, as ranges of consecutive instances, each with its first index.
+    /// Call this function once per frame, before [`Instances::take_changed`]. An instance that changes in this frame is
+    /// taken twice: now with its old state, and in the next frame with its new state.
     pub fn take_last(&mut self) -> Vec<(usize, Vec<SceneInstance>)> {
         let (Some(last), count) = (&mut self.last, self.all.len()) else { return Vec::new() };
         self.changed.indices.iter().for_each(|index| last.changed.add(*index, count));
@@ -166,7 +167,7 @@ impl Instances {
         runs
     }
 
-    /// Takes the runs of changed instances, each with the index of its first.
+    /// Takes the changed instances, as ranges of consecutive instances, each with its first index.
     pub fn take_changed(&mut self) -> Vec<(usize, &[SceneInstance])> {
         let all = &self.all;
         self.changed.take(all.len()).into_iter().map(|[from, to]| (from, &all[from..to])).collect()
@@ -197,7 +198,7 @@ pub(super) fn bound(instance: &mut SceneInstance, sphere: &BoundingSphere) {
     instance.bounding_sphere = sphere.center.extend(sphere.radius).into();
 }
 
-/// Set of changed elements.
+/// Set of array elements that changed and must be uploaded.
 #[derive(Debug, Default)]
 pub(super) struct Changed {
     is_changed: Vec<bool>,
@@ -205,7 +206,7 @@ pub(super) struct Changed {
 }
 
 impl Changed {
-    /// Marks one of `count` elements.
+    /// Marks the element `index` of `count` elements as changed.
     pub fn add(&mut self, index: u32, count: usize) {
         self.is_changed.resize(count, false);
         if !std::mem::replace(&mut self.is_changed[index as usize], true) {
@@ -213,12 +214,13 @@ impl Changed {
         }
     }
 
-    /// Marks all of `count` elements.
+    /// Marks all of `count` elements as changed.
     pub fn all(&mut self, count: usize) {
         (0..count as u32).for_each(|index| self.add(index, count));
     }
 
-    /// Takes the changes as runs, each a half-open range of indices. Runs that are close to each other are joined.
+    /// Takes the changed elements as half-open ranges of indices, and empties the set. Ranges with at most [`GAP`] elements
+    /// between them are joined.
     pub fn take(&mut self, count: usize) -> Vec<[usize; 2]> {
         self.indices.sort_unstable();
         let mut runs: Vec<[usize; 2]> = Vec::new();
@@ -271,7 +273,7 @@ mod tests {
         assert_eq!(instances.sides(), [true, true]);
         instances.despawn(plain);
         assert_eq!(instances.sides(), [true, false]);
-        // The index is reused, for an instance that is not mirrored.
+        // The index is used again, now for an instance that is not mirrored.
         assert_eq!(instances.spawn(&Placement::default(), &SPHERE), Some([plain, 1]));
         assert_eq!(instances.sides(), [true, false]);
     }

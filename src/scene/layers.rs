@@ -13,11 +13,12 @@ impl Scene {
     /// ([`CharacterOptions::layers`](crate::scene::CharacterOptions::layers)). Rotations are blended along the chord
     /// ([`animation::layers`](crate::animation::layers)). Weights of morph targets always come from the base.
     ///
-    /// While a layer has a weight, all of the instance's bones are sampled in every frame that sees it. Culling then uses a
-    /// sphere that holds any blend of the model's clips.
+    /// While a layer has a weight above 0, all bones of the instance are sampled in every frame that shows it. Culling then
+    /// uses a sphere that holds any blend of the model's clips.
     ///
     /// # Errors
-    /// As for [`Scene::play`]; [`InputError`] for a layer that the character does not have, and for a weight outside 0..=1.
+    /// The errors of [`Scene::play`]; [`InputError`] for a layer that the character does not have, and for a weight outside
+    /// 0..=1.
     ///
     /// # Examples
     ///
@@ -48,8 +49,8 @@ impl Scene {
     /// Changes the weight of a layer linearly to `weight`, over `seconds` of the scene's time from now on.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, for a layer that it does not have,
-    /// for a weight outside 0..=1, and for seconds outside 0..=1e6.
+    /// [`InputError`] for an instance that does not exist any more or is no character, for a layer that the character does
+    /// not have, for a weight outside 0..=1, and for seconds outside 0..=1e6.
     ///
     /// # Examples
     ///
@@ -77,11 +78,12 @@ impl Scene {
         self.bound_again(instance)
     }
 
-    /// Cross-fades to another clip over `seconds`. A layer, which must have all bones, plays the clip with a weight that
-    /// grows from 0 to 1. Then the base takes the clip over, and the layer is free again.
+    /// Cross-fades from the base's clip to another clip over `seconds` of the scene's time. Meanwhile `layer`, which must
+    /// have all bones, plays the new clip with a weight that grows from 0 to 1. Afterwards the base plays the new clip, and
+    /// the layer is free again.
     ///
     /// # Errors
-    /// As for [`Scene::play_layer`] and [`Scene::fade_layer`]; [`InputError`] for a layer with a mask.
+    /// The errors of [`Scene::play_layer`] and [`Scene::fade_layer`]; [`InputError`] for a layer with a mask.
     ///
     /// # Examples
     ///
@@ -109,10 +111,10 @@ impl Scene {
         self.bound_again(instance)
     }
 
-    /// The root motion of an instance between two scene times in seconds, as extracted from the clip of its base
-    /// ([`CharacterOptions::root_motion`](crate::scene::CharacterOptions::root_motion)). It is a rotation about +Y and a
-    /// translation, in model space at the first time. The caller decides how far to apply it. The instance's placement
-    /// times this motion is its new placement ([`Placement::moved_by`](crate::scene::Placement::moved_by)).
+    /// The root motion of an instance between two scene times in seconds, extracted from its base clip
+    /// ([`CharacterOptions::root_motion`](crate::scene::CharacterOptions::root_motion)). The motion is a rotation about +Y
+    /// and a translation, in model space at the first time. The caller decides how much of it to apply. The instance's
+    /// placement times the motion is the new placement ([`Placement::moved_by`](crate::scene::Placement::moved_by)).
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, is no character, or has no extracted motion, and for
@@ -141,7 +143,7 @@ impl Scene {
         self.instance_mut(instance)?.character_mut().ok_or_else(no_character)
     }
 
-    /// Updates the sphere of an instance after its clip or layers changed.
+    /// Updates the bounding sphere of an instance after its clip or layers changed.
     fn bound_again(&mut self, instance: InstanceId) -> Result<(), InputError> {
         self.instance_mut(instance)?.bound_again(instance.index);
         self.carry(instance)

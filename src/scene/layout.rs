@@ -1,4 +1,4 @@
-//! Layout of all objects' instances and draws in the buffers of a scene and its views.
+//! The positions of all objects' instances, lists and draws in the buffers of a scene and its views.
 
 use std::sync::Arc;
 
@@ -11,49 +11,51 @@ use crate::scene::handles::ObjectId;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
-/// An object's place in the buffers.
+/// Where an object's data begin in the buffers of the scene and its views.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ObjectRange {
-    /// Index of the first instance.
+    /// Index of the first instance in the scene's instance buffers.
     pub first: u32,
-    /// Word offset of the first list in a view's lists.
+    /// Word offset of the object's first list in a view's lists.
     pub first_list: u32,
-    /// Index of the first draw in a view's draws.
+    /// Index of the object's first draw in a view's draws.
     pub first_draw: u32,
 }
 
-/// Instance buffers of a scene, as large as the objects need.
+/// The instance buffers of a scene, sized for all objects.
 #[derive(Debug)]
 pub(crate) struct Layout {
-    /// Number of the layout in its scene. Jobs prepared for another number are outdated.
+    /// Version number of the layout in its scene. Jobs prepared for another version are outdated.
     pub version: u64,
     pub instances: Buffer<SceneInstance>,
-    /// Last frame's instances with motion history, else the same buffer as `instances`.
+    /// With motion history: the instances in the last frame. Otherwise: the same buffer as `instances`.
     pub last_instances: Buffer<SceneInstance>,
     pub keeps_last: bool,
     /// Allowed displacement per instance, in its model's units; −1 for instances that no view sees.
     pub allowed: Buffer<f32>,
-    /// Finest level per instance that the frame's views draw.
+    /// Per instance: the finest level that any of the frame's views draws.
     pub finest: Buffer<u32>,
     pub objects: Buffer<LodObject>,
     pub object_count: u32,
-    /// Object per block.
+    /// Per block of 64 instances ([`BLOCK`]): the index of the object that the block belongs to.
     pub block_objects: Buffer<u32>,
-    /// Number of blocks, words of lists, and draws.
+    /// Number of blocks of 64 instances ([`BLOCK`]) in all objects.
     pub blocks: u32,
+    /// Number of words in the instance lists of a view.
     pub list_words: u32,
-    /// Budgets count triangles in units of 2 to the power of this.
+    /// Binary logarithm of the unit in which budgets count triangles.
     pub triangle_unit: u32,
-    /// Draws of a view that sees nothing.
+    /// Draw arguments of a view that sees no instance.
     pub draws: Vec<SceneDraw>,
-    /// Parts with sorted draws.
+    /// The parts whose instances are drawn one by one, from back to front.
     pub sorted: Buffer<SortedDraw>,
-    /// Objects, for statistics.
+    /// The objects whose draws are counted for statistics.
     pub counted: Arc<Counted>,
 }
 
 impl Layout {
-    /// Allocates the buffers for objects laid out one after the other, up to `end`.
+    /// Allocates the buffers for objects that are laid out one after the other. `end` has the total numbers of instances,
+    /// list words and draws.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -93,30 +95,30 @@ impl Layout {
     }
 }
 
-/// Level errors in kernel format. Missing levels get the largest number.
+/// Errors per level of detail in kernel format. Missing levels get the largest number.
 pub(super) fn error_vectors(errors: &[f32]) -> [Vec4; OBJECT_LEVELS as usize / 4] {
     let error = |at: usize| errors.get(at).copied().unwrap_or(f32::MAX);
     std::array::from_fn(|at| Vec4::from_array(std::array::from_fn(|lane| error(4 * at + lane))))
 }
 
-/// An object with counted draws.
+/// An object whose draws are counted for statistics.
 #[derive(Debug, Clone)]
 pub(super) struct CountedObject {
     pub object: ObjectId,
-    /// First draw of each chunk.
+    /// Index of the first draw of each chunk.
     pub first_draws: Vec<u32>,
     pub parts: u32,
     pub levels: u32,
     pub mesh_fraction: f32,
-    /// Largest factor by which its settings enlarge the allowed displacement.
+    /// Largest factor by which the object's settings enlarge the allowed displacement.
     pub bias: f32,
-    /// Its rank on the device.
+    /// The object's rank within a budget of triangles, in device format: 0 to 7, or `NO_RANK`.
     pub rank: u32,
-    /// Whether instances may fade.
+    /// Whether the object's instances may fade.
     pub fades: bool,
 }
 
-/// All objects of a layout with counted draws.
+/// All objects of a layout whose draws are counted for statistics.
 #[derive(Debug)]
 pub(crate) struct Counted {
     pub(super) objects: Vec<CountedObject>,

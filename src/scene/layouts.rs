@@ -10,37 +10,38 @@ use crate::shared::render::scene_instances::SceneObject;
 use crate::shared::render::scene_terrain::TerrainView;
 use crate::shared::render::scene_view::SceneView;
 
-/// Bind group layouts of all scene shaders. All shaders share the view's layouts, and all mesh shaders share the object's,
-/// so that pipelines can change while the groups stay bound. Two values on one device are interchangeable.
+/// Bind group layouts of all scene shaders. All shaders share the layout of group 0 (view), and all mesh shaders share the
+/// layout of group 1 (object). Pipelines can therefore change while these groups stay bound. Two values of this type on one
+/// device are interchangeable.
 #[derive(Debug, Clone)]
 pub(crate) struct SceneLayouts {
-    /// For meshes with materials.
+    /// Layouts for meshes with materials.
     pub mesh: Layouts,
-    /// For relief-mapped meshes.
+    /// Layouts for relief-mapped meshes.
     pub relief: Layouts,
-    /// For terrain.
+    /// Layouts for terrain.
     pub terrain: Layouts,
-    /// Group 1 of caller-defined kinds.
+    /// Layout of group 1 for caller-defined kinds.
     own_object: wgpu::BindGroupLayout,
-    /// Bindings for views without a shadow.
+    /// The shadow sampler, and the map that is bound for views without a shadow.
     shadow: ShadowBindings,
 }
 
 /// Buffers with one element per instance of a scene, for one view.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InstancesInView<'a> {
-    /// Transforms from model space to the corner of the view's cell. With motion history, those of the last
-    /// frame follow.
+    /// Transforms from model space to world axes, relative to the corner of the view's cell. With motion history, the last
+    /// frame's transforms follow.
     pub placements: &'a Buffer<Affine>,
-    /// Instances of the scene.
+    /// All instances of the scene.
     pub instances: &'a Buffer<SceneInstance>,
     /// Instances in the last frame.
     pub last_instances: &'a Buffer<SceneInstance>,
-    /// The view's decisions in the last frame.
+    /// The view's level-of-detail decisions in the last frame.
     pub last_decisions: &'a Buffer<u32>,
 }
 
-/// The sampler of shadow maps, and a map for views without a shadow.
+/// The sampler of shadow maps, and a map of one texel for views without a shadow.
 #[derive(Debug, Clone)]
 struct ShadowBindings {
     sampler: wgpu::Sampler,
@@ -80,7 +81,7 @@ pub(crate) fn shadow_map(gpu: &Gpu, size: u32) -> wgpu::Texture {
 pub(crate) const SHADOW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 impl SceneLayouts {
-    /// Creates the layouts.
+    /// Creates the layouts on a device.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -94,7 +95,7 @@ impl SceneLayouts {
         })
     }
 
-    /// Group 0: a view, the scene's instances in it, and its shadow map, if any.
+    /// Creates bind group 0: a view, the scene's instances in this view, and the view's shadow map, if any.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -117,7 +118,7 @@ impl SceneLayouts {
         group.bind(gpu, &self.mesh)
     }
 
-    /// Group 1: a terrain in a view.
+    /// Creates bind group 1 for a terrain in a view.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -125,7 +126,7 @@ impl SceneLayouts {
         scene_terrain::Group1 { ground }.bind(gpu, &self.terrain)
     }
 
-    /// Group 1: an object of a caller-defined kind.
+    /// Creates bind group 1 for an object of a caller-defined kind.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -139,7 +140,7 @@ impl SceneLayouts {
         })
     }
 
-    /// The layouts of groups 0 to 2 of a program.
+    /// The layouts of bind groups 0 to 2 of a shader program.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -155,7 +156,7 @@ impl SceneLayouts {
     }
 }
 
-/// Object bindings in shaders of caller-defined kinds: `scene_object` of `wgsl/render/scene_instances.wgsl`.
+/// Layout of group 1 in shaders of caller-defined kinds: the uniform `scene_object` of `wgsl/render/scene_instances.wgsl`.
 const OWN_OBJECT: wgpu::BindGroupLayoutDescriptor<'static> = wgpu::BindGroupLayoutDescriptor {
     label: Some("object of a kind"),
     entries: &[wgpu::BindGroupLayoutEntry {

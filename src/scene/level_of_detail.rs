@@ -8,7 +8,7 @@ use crate::shared::lod::budget::MAX_FACTOR;
 use crate::shared::lod::object::{FADE_PROGRESS, NO_RANK, RANKS, object_flags_word};
 use crate::shared::lod::select::MAX_MOTION;
 
-/// Fraction of the farthest threshold that a budget adds to metrics, inverted: half of the largest factor.
+/// Divisor that turns an object's farthest threshold into its `metric_floor`: half of the largest factor of a budget.
 const FLOOR: f32 = 0.5 * MAX_FACTOR;
 
 /// How the levels of detail of an object are chosen, in every view, and how they change.
@@ -34,64 +34,68 @@ const FLOOR: f32 = 0.5 * MAX_FACTOR;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LevelOfDetail {
-    /// The criterion, or one level for all.
+    /// How a level is chosen: by a criterion, or one level for all instances.
     pub choice: LevelChoice,
-    /// How levels change.
+    /// How instances change from one level to the next.
     pub transition: Transition,
-    /// Half width of the interval around each threshold in which an instance keeps its level (thesis A, section 7.2), as a
-    /// fraction of the threshold: at least 0, below 1. A level is left for a coarser one at (1 + h) times its distance, and
-    /// for a finer one at (1 − h) times; sizes likewise. An error never exceeds what is allowed: a coarser level is taken
-    /// once 1 − h times the allowed displacement suffices. It applies where levels change at once or fade in time.
+    /// Hysteresis h: half width of the interval around each threshold in which an instance keeps its level (thesis A,
+    /// section 7.2). It is a fraction of the threshold, at least 0 and below 1. For distances, an instance takes the coarser
+    /// level at (1 + h) times the threshold, and returns to the finer level at (1 − h) times the threshold; sizes likewise.
+    /// Errors never exceed the allowed displacement: a coarser level is taken once its error is at most (1 − h) times the
+    /// allowed displacement. Hysteresis applies where levels change at once or fade in time.
     pub hysteresis: f32,
-    /// Factor of the allowed displacement or of the distance, above 0: with 2, levels are chosen as if an instance were
-    /// twice as far away. [`Quality::pixels`](super::Quality::pixels) then holds times this factor. Thesis A's *late
+    /// Factor of the allowed displacement or of the distance, above 0. With 2, levels are chosen as if an instance were
+    /// twice as far away, and errors may reach 2 times [`Quality::pixels`](super::Quality::pixels). Thesis A's *late
     /// switching* (section 7.1) is a factor below 1.
     pub bias: f32,
-    /// Importance among the objects that share a budget of triangles ([`Quality::triangles`](super::Quality::triangles)),
-    /// 0 to 7: those of rank 0 are coarsened first (thesis A, section 6.3). Objects without a rank are never coarsened, if
-    /// any object of the scene has one.
+    /// Importance among the objects that share a budget of triangles ([`Quality::triangles`](super::Quality::triangles)), 0
+    /// to 7. Objects of rank 0 are coarsened first (thesis A, section 6.3). If any object of the scene has a rank, objects
+    /// without a rank are never coarsened by the budget.
     pub rank: Option<u8>,
-    /// What is perceived poorly may be coarser.
+    /// Perceptual factors: instances that are perceived poorly may be coarser.
     pub perceptual: Perceptual,
     /// Whether instances outside the view volume are left out.
     pub culling: Culling,
 }
 
-/// The choice of a level.
+/// How the level of an instance is chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LevelChoice {
-    /// By a criterion.
+    /// By a criterion, for each instance in each view.
     By(Criterion),
-    /// This level for all instances in all views, 0 for the finest: for debugging.
+    /// The same level for all instances in all views, for debugging; 0 is the finest level.
     Forced(u32),
 }
 
 /// Strength of the perceptual factors (thesis A, section 6.4). The metric of an instance, which is a distance or an allowed
-/// displacement, is multiplied by 1 + `motion` · v + `periphery` · r. So levels are chosen as if it were further away.
+/// displacement, is multiplied by 1 + `motion` · v + `periphery` · r. Levels are then chosen as if the instance were further
+/// away.
 ///
-/// v is the speed of its middle in the picture in picture heights per second, at most 4, and 0 where the last frame did not
-/// show it. r is the distance of its middle from the picture's, in half heights, at most 1. The formula is ours: thesis A
+/// v is the speed of the instance's middle in the picture, in picture heights per second, at most 4. It is 0 if the last
+/// frame did not show the instance. r is the distance between the instance's middle and the picture's middle, in half
+/// picture heights, at most 1. The formula is ours: thesis A gives none.
 /// gives none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Perceptual {
-    /// Factor per picture height and second, at least 0; 0 by default.
+    /// Strength of the factor for motion, per picture height and second. At least 0; 0 by default.
     pub motion: f32,
-    /// Factor at half a picture height from the middle, at least 0; 0 by default.
+    /// Strength of the factor for the periphery, at half a picture height from the picture's middle. At least 0; 0 by
+    /// default.
     pub periphery: f32,
 }
 
 /// Whether instances outside the view volume are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Culling {
-    /// By the bounding sphere.
+    /// Instances whose bounding sphere is outside the view volume are left out.
     #[default]
     Frustum,
-    /// Never: for debugging, and for shaders that move an instance out of its sphere.
+    /// No instance is left out: for debugging, and for shaders that move an instance out of its sphere.
     Never,
 }
 
 impl Default for LevelOfDetail {
-    /// By projected error, at once, with a hysteresis of a tenth.
+    /// Levels are chosen by projected error and change at once, with a hysteresis of 0.1.
     fn default() -> Self {
         Self {
             choice: LevelChoice::By(Criterion::Error),
@@ -112,7 +116,7 @@ impl From<Transition> for LevelOfDetail {
 }
 
 impl LevelOfDetail {
-    /// Checks the ranges, for an object with `levels` levels.
+    /// Checks the ranges of all fields, for an object with `levels` levels.
     ///
     /// # Errors
     /// [`InputError`] that names the invalid field.
@@ -146,7 +150,7 @@ impl LevelOfDetail {
         }
     }
 
-    /// The criterion; that of errors for a forced level.
+    /// The criterion; [`Criterion::Error`] for a forced level.
     pub(super) fn criterion(&self) -> &Criterion {
         const ERROR: &Criterion = &Criterion::Error;
         match &self.choice {
@@ -155,7 +159,7 @@ impl LevelOfDetail {
         }
     }
 
-    /// The transition in force: a forced level never changes.
+    /// The transition in effect: [`Transition::Hard`] for a forced level, which never changes.
     pub(super) fn transition(&self) -> Transition {
         match self.choice {
             LevelChoice::By(_) => self.transition,
@@ -163,7 +167,8 @@ impl LevelOfDetail {
         }
     }
 
-    /// Smallest metric per level at which the level is drawn or begins to morph. Input: errors and triangles per level.
+    /// Threshold per level: the smallest metric at which the level is drawn or begins to morph. Input: the error and the
+    /// number of triangles of each level.
     pub(super) fn thresholds(&self, errors: &[f32], triangles: &[u32]) -> Vec<f32> {
         match &self.choice {
             LevelChoice::By(criterion) => self.transition.begins(&criterion.thresholds(errors, triangles)),
@@ -174,7 +179,7 @@ impl LevelOfDetail {
         }
     }
 
-    /// The object with these settings. `is_ranked`: whether any object of the scene has a rank.
+    /// The object `of` in device format, with these settings. `is_ranked` tells whether any object of the scene has a rank.
     pub(super) fn on_device(&self, is_shown: bool, is_ranked: bool, of: LodObject) -> LodObject {
         let (criterion, transition) = (self.criterion(), self.transition());
         let pace = transition.pace();
@@ -220,7 +225,7 @@ impl LevelOfDetail {
         }
     }
 
-    /// The rank on the device: without any rank in the scene, all objects have the same.
+    /// The object's rank on the device. If no object of the scene has a rank, all objects have rank 0.
     pub(super) fn rank_on_device(&self, is_ranked: bool) -> u32 {
         if is_ranked { self.rank.map_or(NO_RANK, u32::from) } else { 0 }
     }

@@ -1,4 +1,4 @@
-//! Lists of attached meshes on the device, one per chunk of a character that carries any.
+//! Device lists of attached meshes: one per chunk (group of instances) of a character that carries meshes.
 
 use std::collections::BTreeMap;
 
@@ -12,26 +12,27 @@ use crate::scene::handles::{InstanceId, ObjectId, Slots};
 use crate::scene::layout::Layout;
 use crate::scene::object::Object;
 
-/// The attached meshes of one chunk, on the device.
+/// The meshes attached to the instances of one chunk of a character, on the device.
 #[derive(Debug)]
 pub(in crate::scene) struct List {
     pub params: Uniform<AttachParams>,
     pub attachments: Buffer<Attachment>,
-    /// Earlier bone transforms of the meshes, for velocities.
+    /// Products of bone matrix and mesh offset in the last two frames, for velocities. Two elements per entry of
+    /// `attachments`.
     pub kept: Buffer<KeptBone>,
-    /// Attachment key per entry; `None` for a free entry.
+    /// Key of the attachment in each entry of `attachments`; `None` for a free entry.
     keys: Vec<Option<u32>>,
-    /// Last value of `params`, except for the frame.
+    /// The value last written to `params`, but with both frame numbers 0.
     value: AttachParams,
 }
 
 impl Attachments {
-    /// The lists, each with slot and generation of the character's object and the number of its chunk.
+    /// All lists. Each key is the slot and generation of the character's object, and the index of the chunk in the object.
     pub fn lists(&self) -> impl Iterator<Item = (([u32; 2], usize), &List)> {
         self.lists.iter().map(|(key, list)| (*key, list))
     }
 
-    /// Drops all lists, because their device is lost.
+    /// Drops all lists after their device was lost.
     pub fn forget_device(&mut self) {
         self.lists.clear();
         self.written = None;
@@ -43,7 +44,8 @@ impl Attachments {
         self.starts_afresh = true;
     }
 
-    /// Rewrites the lists if attachments or the layout changed. With motion history, also writes the frame number.
+    /// Rewrites the device lists if attachments or the scene's layout changed. With motion history, also writes the frame
+    /// numbers.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
@@ -127,8 +129,9 @@ impl Attachments {
 }
 
 impl List {
-    /// The entries, up to the last one in use. Known attachments keep their entries, so that their history stays theirs.
-    /// New ones take the first free entries. There is room for all.
+    /// Assigns list entries to `attachments`. Returns all entries up to the last used one. A known attachment keeps its
+    /// entry, so that its motion history stays valid. A new attachment takes the first free entry. The list must have enough
+    /// entries.
     fn arranged(&mut self, attachments: &[Attachment]) -> Vec<Attachment> {
         let known = |key: Option<u32>| {
             let found = attachments.binary_search_by_key(&key?, |attachment| attachment.key).ok()?;
@@ -146,10 +149,11 @@ impl List {
     }
 }
 
-/// A free entry.
+/// The content of a free list entry.
 const FREE: Attachment = Attachment { mesh: NO_MESH, character: 0, bone: 0, key: 0, offset: AFFINE_IDENTITY };
 
-/// An attachment in device format, with the character's chunk whose list holds it.
+/// An attachment in device format, and the key of the list that holds it: the character's object and chunk. `None` if the
+/// mesh or the character no longer exists.
 fn on_device(
     objects: &Slots<Object>,
     mesh: InstanceId,
@@ -170,7 +174,7 @@ fn on_device(
     Some((([index, generation], chunk), attachment))
 }
 
-/// Scene index of the first instance in a character's chunk, and the number of bones.
+/// Index in the scene of the first instance in a character's chunk, and the character's number of bones.
 fn first_of(objects: &Slots<Object>, object: [u32; 2], chunk: usize) -> Option<[u32; 2]> {
     let object = objects.get(object)?;
     let bones = object.character()?.model().skeleton.len() as u32;

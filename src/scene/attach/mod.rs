@@ -19,25 +19,26 @@ use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use lists::List;
 
-/// Key of a bone path: character, clip, whether layers are blended over it, bone, and the bits of the carried sphere.
+/// Cache key of a [`BonePath`]: character, clip, whether layers are blended over the clip, bone, and the bits of the sphere
+/// that the bone carries.
 type PathKey = (ObjectId, (u32, bool), usize, [u32; 4]);
 
-/// All attached meshes.
+/// All attached meshes of a scene.
 #[derive(Debug, Default)]
 pub(super) struct Attachments {
     all: HashMap<InstanceId, Attached>,
-    /// Attached meshes of each character.
+    /// The meshes attached to each character instance.
     carried: HashMap<InstanceId, Vec<InstanceId>>,
-    /// Cached bone paths.
+    /// Cache: the path of each sphere that a bone carries.
     paths: HashMap<PathKey, BonePath>,
-    /// List of each chunk that carries a mesh or has carried one. The key is slot and generation of the object, and the
-    /// chunk.
+    /// One list per chunk that carries a mesh now or carried one before. The key is the slot and generation of the object,
+    /// and the index of the chunk.
     lists: BTreeMap<([u32; 2], usize), List>,
-    /// Number of list allocations. Jobs prepared for another number are outdated.
+    /// Number of times that a list was allocated or dropped. Jobs prepared for another number are outdated.
     pub version: u64,
     /// Version of the layout that the lists were written for; `None` if attachments have changed since.
     written: Option<u64>,
-    /// Number of attachments ever made.
+    /// Number of attachments made so far.
     made: u32,
     /// Whether the next frame ignores the motion history.
     starts_afresh: bool,
@@ -50,40 +51,42 @@ struct Attached {
     bone: usize,
     /// The transform from mesh space to bone space.
     offset: Transform,
-    /// A sphere around the mesh in bone space.
+    /// A bounding sphere of the mesh, in bone space.
     sphere: BoundingSphere,
-    /// The mesh's placement once it is detached.
+    /// The placement that the mesh takes when it is detached.
     own: Placement,
-    /// Its number among all attachments ever made.
+    /// Number of this attachment, counted over all attachments ever made.
     key: u32,
 }
 
 impl Scene {
-    /// Attaches a mesh to a bone of a character. The bone is given by its name or its index in digits. From the next frame
-    /// on, the mesh follows the bone in each frame's pose, with `offset` from mesh space to bone space. No pose passes
-    /// through the host. If the mesh is already attached, it changes to the new bone.
+    /// Attaches a mesh to a bone of a character. The bone is given by its name or its index in digits. `offset` is the
+    /// transform from mesh space to bone space. From the next frame on, the mesh follows the bone in each frame's pose. The
+    /// device computes the pose and the mesh's transform. If the mesh is already attached, it moves to the new bone.
     ///
     /// The offset is in bone space, so the scales of the character and its bones apply to it. Take a character modelled in
     /// centimetres and placed with a scale of 0.01: a translation of 1 is a centimetre, and a mesh in metres is a hundredth
     /// of its size. [`InstancePose::offset_of_world_units`](crate::scene::InstancePose::offset_of_world_units) converts an
     /// offset in world units to bone space: `scene.pose(character)?.offset_of_world_units(bone, offset)?`.
     ///
-    /// Views select the mesh together with its character. They use a sphere that holds both wherever the clip takes the
-    /// bone, and a level of detail that [`Quality::pixels`](crate::scene::Quality) allows there. While a character carries
-    /// a mesh, its bones are sampled in every frame that sees it, so the mesh is in place except for rounding.
-    /// [`Scene::world_from_model`] returns its transform. If no view of a frame sees the character, because it is hidden or
-    /// masked out, the mesh is not drawn either. Despawning the character detaches the mesh.
+    /// Views cull the mesh together with its character. They use one sphere that holds both in every pose of the clip. The
+    /// mesh's level of detail meets [`Quality::pixels`](crate::scene::Quality) for every pose of the bone. While a character
+    /// carries a mesh, all bones of the character are sampled in every frame that shows it. The mesh is therefore in place,
+    /// except for rounding. [`Scene::world_from_model`] returns the mesh's transform. If no view of a frame sees the
+    /// character, because it is hidden or masked out, the mesh is not drawn either. Despawning the character detaches the
+    /// mesh.
     ///
-    /// In [`Layer::Velocity`](crate::render::Layer::Velocity) the mesh moves with its bone. In the frame in which it is
-    /// attached, it moves from its previous place. For one frame it moves with its character alone in three cases: it
-    /// changes to another bone, its character was not seen in the last frame, or the object's characters carry more meshes
-    /// than ever before. When it is detached, it does not move.
+    /// In [`Layer::Velocity`](crate::render::Layer::Velocity), the mesh moves with its bone. In the frame in which it is
+    /// attached, it moves from its previous position. In three cases the mesh moves only with its character's placement for
+    /// one frame: the mesh changes to another bone, its character was not visible in the last frame, or the object's
+    /// characters carry more meshes than ever before. In the frame in which it is detached, the mesh counts as not moving.
     ///
-    /// The call samples each clip that the character plays, once per bone.
+    /// Cost: the host samples each clip that the character plays, once per clip and bone.
     ///
     /// # Errors
-    /// [`InputError`] for instances that do not exist any more, for a mesh or a character that is not one, for a bone that
-    /// the model does not have, and for an offset that is not finite, has no rotation, or scales by 0.
+    /// [`InputError`] for an instance that does not exist any more, if `mesh` is no mesh or `character` is no character, for
+    /// a bone that the model does not have, and for an offset that is not finite, scales by 0 along all axes,
+    /// or has a rotation of length 0.
     ///
     /// # Examples
     ///
@@ -135,8 +138,8 @@ impl Scene {
         self.carry(character)
     }
 
-    /// Detaches a mesh. It returns to its own placement ([`Scene::placement`]): the one from before it was attached, or the
-    /// last one set by [`Scene::move_to`] since.
+    /// Detaches a mesh. The mesh returns to its own placement ([`Scene::placement`]): the placement before it was attached,
+    /// or the last one set by [`Scene::move_to`] since then.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is not attached.
@@ -164,18 +167,18 @@ impl Scene {
         Ok(self.attachments.all.get(&mesh).map(|attached| (attached.character, attached.bone)))
     }
 
-    /// An attached mesh's placement once it is detached.
+    /// The placement that an attached mesh takes when it is detached; `None` if the mesh is not attached.
     pub(super) fn detached_placement(&self, mesh: InstanceId) -> Option<Placement> {
         self.attachments.all.get(&mesh).map(|attached| attached.own)
     }
 
-    /// Sets an attached mesh's placement once it is detached. Returns whether the mesh is attached.
+    /// Sets the placement that an attached mesh takes when it is detached. Returns whether the mesh is attached.
     pub(super) fn move_detached(&mut self, mesh: InstanceId, placement: Placement) -> bool {
         let attached = self.attachments.all.get_mut(&mesh);
         attached.map(|attached| attached.own = placement).is_some()
     }
 
-    /// Removes the attachments of an instance that is despawned, as character and as mesh.
+    /// Ends all attachments of an instance that is despawned, whether it is the character or the attached mesh.
     pub(super) fn let_go(&mut self, instance: InstanceId) -> Result<(), InputError> {
         for mesh in self.attachments.carried.get(&instance).cloned().unwrap_or_default() {
             self.detach(mesh)?;
@@ -186,7 +189,7 @@ impl Scene {
         }
     }
 
-    /// Removes an attachment, if there is one.
+    /// Removes the attachment of a mesh and returns it; `None` if the mesh is not attached.
     fn release(&mut self, mesh: InstanceId) -> Option<Attached> {
         let attached = self.attachments.all.remove(&mesh)?;
         if let Some(carried) = self.attachments.carried.get_mut(&attached.character) {
@@ -196,8 +199,8 @@ impl Scene {
         Some(attached)
     }
 
-    /// Makes views select a character and its meshes together. Call it after the character, a mesh, a placement or a clip
-    /// has changed.
+    /// Gives a character and its attached meshes a common bounding sphere, so that views select them together. Call this
+    /// function after the character, a mesh, a placement or a clip has changed.
     pub(super) fn carry(&mut self, character: InstanceId) -> Result<(), InputError> {
         let Some(meshes) = self.attachments.carried.get(&character).cloned() else { return Ok(()) };
         let ObjectId { index, generation, .. } = character.object;
@@ -231,7 +234,8 @@ impl Scene {
         Ok(())
     }
 
-    /// An attached mesh's transform to world axes, relative to a cell's corner, in the pose at the scene's time.
+    /// The transform of an attached mesh from mesh space to world axes, relative to the corner of `cell`, in the pose at the
+    /// scene's time. `None` if the mesh is not attached.
     pub(super) fn attached_placed(
         &self,
         mesh: InstanceId,
@@ -246,8 +250,8 @@ impl Scene {
     }
 }
 
-/// Makes views select a mesh like its character, with the character's placement and sphere. The scale includes the largest
-/// enlargement of the mesh by bone and offset; x is negated if they mirror the mesh.
+/// Gives an attached mesh the placement and the sphere of its character, so that views select both alike. The mesh's scale
+/// includes the largest enlargement by bone and offset. The scale's x is negated if bone and offset mirror the mesh.
 fn follow(mesh: &mut SceneInstance, leader: &SceneInstance, path: &BonePath, offset: &Transform) {
     let largest = offset.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
     let enlarged = (path.stretch * largest).max(1e-6);

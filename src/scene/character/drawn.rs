@@ -1,4 +1,5 @@
-//! Drawables of a character: its meshes, drawn from the pages of each chunk of instances.
+//! Drawables of a character: one per mesh and chunk (group of instances). Each draws the skinned vertices in the chunk's
+//! pages (blocks of 64 vertices).
 
 use super::{Character, Runtime};
 use crate::Error;
@@ -11,7 +12,7 @@ use crate::scene::material::Looks;
 use crate::scene::mesh::{self, MeshDrawable};
 
 impl Character {
-    /// Binds the pages of all chunks again, after some were replaced.
+    /// Binds the page buffers of all chunks again, after some of them were replaced.
     pub(super) fn rebind(
         &self,
         gpu: &Gpu,
@@ -28,8 +29,8 @@ impl Character {
         Ok(())
     }
 
-    /// The chunks of its instances. Their drawables differ only in the pages; meshes and materials come from the first of
-    /// `known`.
+    /// The chunks of the character, one per element of `runtimes`. Meshes and materials come from the first chunk of
+    /// `known`. The drawables of two chunks differ only in their page buffers.
     pub(super) fn chunks(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -48,7 +49,7 @@ impl Character {
         runtimes.iter().map(chunk).collect()
     }
 
-    /// All chunks, with the given materials.
+    /// All chunks of the character, with the materials of `looks`.
     pub fn chunks_of_looks(
         &self,
         gpu: &Gpu,
@@ -59,7 +60,8 @@ impl Character {
         Self::chunks(gpu, layouts, &[first], &self.runtimes)
     }
 
-    /// The first chunk: every mesh, drawn from vertices per instance.
+    /// The first chunk of the character, with an empty range of instances. It has one drawable per mesh, which reads the
+    /// skinned vertices of each instance.
     pub(super) fn first_chunk(
         &self,
         gpu: &Gpu,
@@ -77,7 +79,7 @@ impl Character {
         Ok(Chunk::new(0..0, drawables))
     }
 
-    /// The draws of all parts of a chunk.
+    /// The draw arguments of one chunk: a draw per part and level of detail, mesh by mesh.
     pub fn draws(&self) -> Vec<SceneDraw> {
         let skins = self.runtimes.first().into_iter().flat_map(|runtime| runtime.skins.iter().enumerate());
         skins.flat_map(|(index, skin)| mesh::part_draws(&self.merged, index, &skin.mesh)).collect()

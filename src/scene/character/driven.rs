@@ -1,4 +1,4 @@
-//! Bones of a character that the caller drives.
+//! Driven bones of a character: the caller may change their local transforms in each frame.
 
 use std::collections::BTreeMap;
 
@@ -11,21 +11,22 @@ use crate::gpu::{Gpu, Staged, Upload as _};
 use crate::scene::poses::PoseBuffers;
 use crate::{Error, InputError};
 
-/// The driven bones of a character.
+/// The driven bones of all instances of a character.
 #[derive(Debug, Default)]
 pub(super) struct Driven {
-    /// Driven bones per instance.
+    /// Indices of the driven bones, per instance.
     bones: BTreeMap<u32, Vec<u32>>,
     /// Number of changes to `bones`.
     version: u64,
-    /// Instances whose poses differ from the gate's records.
+    /// Instances whose recorded sampling history no longer matches their pose. Their bones are sampled afresh in the next
+    /// frame.
     strange: Vec<u32>,
     /// Local transforms that the host wrote in the last frame, by instance and bone.
     pub(super) written: BTreeMap<u32, BTreeMap<usize, Transform>>,
 }
 
 impl Character {
-    /// Sets the driven bones of an instance.
+    /// Sets the driven bones of an instance. An empty list ends driving.
     pub fn drive(&mut self, index: u32, bones: Vec<u32>) {
         let before = if bones.is_empty() {
             self.driven.bones.remove(&index)
@@ -38,7 +39,7 @@ impl Character {
         self.driven.version += 1;
     }
 
-    /// Records the local transform that the host writes to a bone in this frame.
+    /// Notes the local transform that the host writes to a bone in this frame.
     ///
     /// # Errors
     /// [`InputError`] for a bone that is not driven.
@@ -51,7 +52,7 @@ impl Character {
         Ok(())
     }
 
-    /// Drops the host's writes of the last frame.
+    /// Forgets the local transforms that the host wrote in the last frame.
     pub fn forget_written(&mut self) {
         self.driven.written.clear();
     }

@@ -74,12 +74,12 @@ impl ObjectKind for Character {
         self.keeps_last = keeps;
     }
 
-    /// Ends fades that have reached their target weight.
+    /// Ends fades of layers that have reached their target weight by scene time `now`.
     fn settle(&mut self, now: f64) -> Vec<u32> {
         self.end_fades(now)
     }
 
-    /// Allocates pages for visible vertices. If memory is short, levels of detail become coarser.
+    /// Allocates pages for the skinned vertices of visible instances. If memory is short, levels of detail become coarser.
     fn provide(
         &mut self,
         gpu: &Gpu,
@@ -113,12 +113,12 @@ impl ObjectKind for Character {
         self.posed_surfaces(index, now)
     }
 
-    /// A box around one ball per bone.
+    /// A box around one ball per bone. Each ball holds the vertices that follow the bone.
     fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
         Ok(Some(self.bounds(&self.pose(instance.index, instance.now)?, instance.place)))
     }
 
-    /// Written bones may leave the sphere of the clip.
+    /// Whether the host wrote bones of the instance in the last frame. Written bones may leave the clip's bounding sphere.
     fn may_leave_sphere(&self, index: u32) -> bool {
         self.is_written(index)
     }

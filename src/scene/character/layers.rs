@@ -1,4 +1,4 @@
-//! Animation layers above a character's base, and bounds for blends of clips.
+//! Animation layers above a character's base clip, and bounds for blends of clips.
 
 use std::collections::BTreeSet;
 
@@ -17,10 +17,10 @@ use crate::scene::placement::Play;
 use crate::scene::playing::Playing;
 use crate::skinning::bounding_sphere::{BoundingSphere, MARGIN, middle_of, poses};
 
-/// A layer of a character.
+/// An animation layer of a character, for all of its instances.
 #[derive(Debug)]
 pub(super) struct CharacterLayer {
-    /// Weight factor per bone; `None` = 1 for all bones.
+    /// Factor of the layer's weight per bone; `None` = 1 for all bones.
     pub mask: Option<Vec<f32>>,
     pub plays: Vec<Playing>,
     pub weights: Vec<Weight>,
@@ -30,14 +30,14 @@ pub(super) struct CharacterLayer {
     fading: BTreeSet<u32>,
 }
 
-/// An instance's weight of a layer, which may change over time.
+/// The weight of a layer for one instance: a linear change from `from` to `to`, which starts at scene time `start`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Weight {
     from: f32,
     to: f32,
     start: f64,
     seconds: f64,
-    /// Whether the base takes over the layer's clip at the end.
+    /// Whether the base plays the layer's clip after the change.
     hands_over: bool,
 }
 
@@ -61,7 +61,7 @@ impl Weight {
 }
 
 impl CharacterLayer {
-    /// Unused layers with these masks, for `capacity` instances.
+    /// Layers with these bone masks, with weight 0 for each of `capacity` instances.
     pub fn of_masks(
         model: &Model,
         masks: &[LayerMask<'_>],
@@ -86,7 +86,7 @@ impl CharacterLayer {
         masks.iter().map(|of| Ok(layer(mask(of)?))).collect()
     }
 
-    /// Makes room for `capacity` instances, all of which must be uploaded again.
+    /// Changes the capacity to `capacity` instances. All of them must be uploaded again.
     pub fn resize(&mut self, capacity: usize) {
         self.plays.resize(capacity, Playing::REST);
         self.weights.resize(capacity, Weight::default());
@@ -112,7 +112,8 @@ impl Character {
         Ok(())
     }
 
-    /// Changes a layer's weight to `to` over `seconds` from now on. Afterwards the base may take over.
+    /// Changes a layer's weight linearly to `to` over `seconds`, from scene time `now` on. With `hands_over`, the base plays
+    /// the layer's clip afterwards.
     pub fn fade(
         &mut self,
         index: u32,
@@ -147,19 +148,19 @@ impl Character {
         })
     }
 
-    /// Resets the layers of an instance that is spawned or despawned.
+    /// Sets the weights of all layers to 0 for an instance that is spawned or despawned.
     pub fn clear_layers(&mut self, index: u32) {
         for layer in &mut self.layers {
             layer.set(index, Weight::default());
         }
     }
 
-    /// Whether any layer may have a weight above 0.
+    /// Whether any layer of the instance has a weight above 0 at the start or the end of its fade.
     pub fn is_blended(&self, index: u32) -> bool {
         self.layers.iter().any(|layer| layer.weights[index as usize].is_heard())
     }
 
-    /// Ends fades that have reached their target weight by scene time `now`. Returns the instances whose base changed.
+    /// Ends fades that have reached their target weight by scene time `now`. Returns the instances whose base clip changed.
     pub(super) fn end_fades(&mut self, now: f64) -> Vec<u32> {
         let mut changed = Vec::new();
         for layer in &mut self.layers {
@@ -183,7 +184,7 @@ impl Character {
         changed
     }
 
-    /// Stages the clips that instances play on layers, and their weights.
+    /// Stages the changed clips and weights of all layers for upload.
     pub(super) fn stage_layers(&mut self, staged: &mut Staged, now: f64) -> Result<(), crate::Error> {
         let (count, clips) = (self.plays.len(), &self.merged.model.clips);
         let duration = |play: &Playing| f64::from(clips[play.clip as usize].duration());
@@ -208,19 +209,19 @@ impl Character {
     }
 }
 
-/// Bounds of bone positions in any blend of a model's clips.
+/// Bounds of bone positions in any blend of a model's clips, in model space.
 #[derive(Debug, Clone)]
 pub(super) struct Reach {
     center: Vec3,
     radius: f32,
-    /// Per bone: largest distance of its origin from the center, and largest stretch of a length.
+    /// Per bone: largest distance of its origin from `center`, and the largest factor by which the bone enlarges a length.
     bones: Vec<(f32, f32)>,
 }
 
 impl Reach {
-    /// Bounds of a model; `radii` are the distances of vertices from the bones they follow. A root stays in the box of its
-    /// positions in all clips, because blends lie between them. Any other bone is at most as far from its parent as in any
-    /// clip, in any direction.
+    /// Computes the bounds of a model. `radii` holds, per bone, the largest distance between the bone and a vertex that
+    /// follows it; `None` without such a vertex. Blends lie between the clips. A root bone therefore stays in the box of its
+    /// positions in all clips. Any other bone is at most as far from its parent as in any clip, in any direction.
     pub fn new(model: &Model, radii: &[Option<f32>]) -> Self {
         let skeleton = &model.skeleton;
         let mut lengths = vec![[0.0_f32; 2]; skeleton.len()];
@@ -250,12 +251,13 @@ impl Reach {
         Self { center: middle_of(low, high), radius: MARGIN * vertices.fold(0.0, f32::max), bones }
     }
 
-    /// A sphere around all vertices.
+    /// A sphere around all vertices, in any blend of the clips.
     pub fn sphere(&self) -> BoundingSphere {
         BoundingSphere { center: self.center, radius: self.radius }
     }
 
-    /// A sphere around a sphere that a bone carries, and the bone's largest stretch of a length.
+    /// A sphere around all positions of the sphere `carried` that a bone carries, and the largest factor by which the bone
+    /// enlarges a length.
     pub fn of_bone(&self, bone: usize, carried: &BoundingSphere) -> (BoundingSphere, f32) {
         let (reach, stretch) = self.bones[bone];
         let radius = MARGIN * (reach + stretch * (carried.center.length() + carried.radius));
@@ -263,7 +265,8 @@ impl Reach {
     }
 }
 
-/// The pose of a model's bones, with layers over a clip. Each layer has a time, weight and mask.
+/// The pose of a model's bones: the layers `above` blended over a clip. Each layer is a clip, a time in seconds, a weight
+/// and a mask.
 pub(super) fn layered_pose<'a>(
     model: &Model,
     (clip, seconds): (usize, f32),

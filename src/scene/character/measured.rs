@@ -19,7 +19,8 @@ impl Character {
         Ok((all, bones))
     }
 
-    /// The skinned vertices of some instances: per instance, in the order of `indices`, mesh by mesh.
+    /// The skinned vertices of the instances in `indices`, read back from the device. The result has one list per instance,
+    /// with the vertices of each mesh; `None` for a vertex without a page.
     pub fn skinned(&self, gpu: &Gpu, indices: &[u32]) -> Result<Vec<Vec<Vec<Option<Vertex>>>>, Error> {
         let mut all: Vec<Vec<Vec<Option<Vertex>>>> = vec![Vec::new(); indices.len()];
         for runtime in &self.runtimes {

@@ -1,4 +1,4 @@
-//! Characters: sampled, gated, morphed and skinned on the device, as fine as the views need.
+//! Characters. The device samples their bones, and morphs and skins their vertices, in as much detail as the views need.
 
 mod drawn;
 mod driven;
@@ -34,39 +34,40 @@ use runtime::{Runtime, Shared};
 #[derive(Debug)]
 pub(super) struct Character {
     merged: Merged,
-    /// Metres of the model per unit of the gate's motion table.
+    /// Metres of model space per unit of the motion table. The gate uses this table to decide which bones to sample.
     unit: f32,
-    /// Displacement of vertices per step of the influence fade.
+    /// Largest displacement of a vertex, in model units, per unit of the influence fade λ ([`Extent::stray`]).
     stray: f32,
-    /// Bone radius per bone: the largest distance of a vertex that follows it, in bone space; `None` if no vertex does.
+    /// Radius per bone: the largest distance between the bone and a vertex that follows it, in bone space; `None` without
+    /// such a vertex.
     radii: Vec<Option<f32>>,
     /// Bounding sphere per clip.
     spheres: Vec<BoundingSphere>,
     plays: Vec<Playing>,
     changed: Changed,
-    /// Scene time that the device's `f32` times are relative to.
+    /// Scene time in seconds from which the device counts its `f32` times.
     epoch: f64,
-    /// Whether previous positions are kept.
+    /// Whether the vertex positions of the last frame are kept, for velocities.
     keeps_last: bool,
     driven: Driven,
     layers: Vec<CharacterLayer>,
-    /// Bounds of bones in blends; `None` without layers.
+    /// Bounds of bone positions in blends of clips; `None` without layers.
     reach: Option<Reach>,
-    /// Root motion extracted from each clip.
+    /// Root motion of each clip; `None` unless the character was added with root motion.
     motions: Option<Vec<RootMotion>>,
     shared: Shared,
-    /// Runtime of each chunk of instances, in ascending order.
+    /// Device data of each chunk (group of instances), in ascending order of instances.
     runtimes: Vec<Runtime>,
     /// Resources replaced since the last frame.
     replaced: Replaced,
-    /// Whether memory has ended. Chunks are not divided then.
+    /// Whether the device has run out of memory. Chunks are then not divided any more.
     is_memory_short: bool,
-    /// Metrics of the last frames, per instance, while levels fade in time.
+    /// Smallest metric (distance or allowed displacement) of each instance in the last frames, while levels fade over time.
     held: Vec<Held>,
 }
 
 impl Character {
-    /// Prepares a model with clips, with room for `capacity` instances.
+    /// Creates a character from a merged model with clips, for `capacity` instances.
     pub fn new(
         gpu: &Gpu,
         mut merged: Merged,
@@ -123,21 +124,21 @@ impl Character {
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
         self.layers.iter_mut().for_each(|layer| layer.resize(capacity));
-        // A new scene starts at 0 too; equal epochs round start times alike.
+        // A new scene also has the epoch 0. With equal epochs, start times are rounded alike.
         self.epoch = 0.0;
     }
 
-    /// A sphere around an instance that plays the first clip.
+    /// A sphere around an instance that plays the first clip, in model space.
     pub fn sphere(&self) -> BoundingSphere {
         self.spheres[0]
     }
 
-    /// The errors of all levels.
+    /// The error of each level of detail, in model units.
     pub fn errors(&self) -> Vec<f32> {
         mesh::errors(&self.merged)
     }
 
-    /// Prepares the jobs that assign levels in a layout, unless they are up to date.
+    /// Prepares the jobs that assign levels of detail to instances, unless they are up to date with the layout.
     fn fit_levels(&mut self, gpu: &Gpu, fitted: &Fitted<'_>) -> Result<(), Error> {
         for (runtime, chunk) in self.runtimes.iter_mut().zip(fitted.chunks) {
             let params = AssignParams {

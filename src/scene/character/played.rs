@@ -11,11 +11,12 @@ use crate::scene::playing::Playing;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 
-/// Seconds after which the epoch moves, because `f32` start times lose precision.
+/// Largest time in seconds between the epoch and the scene's time. Beyond it, the epoch moves to the scene's time, because
+/// `f32` times lose precision.
 const EPOCH: f64 = 128.0;
 
 impl Character {
-    /// Sets the clip that an instance plays. Returns a sphere around it.
+    /// Sets the clip that an instance plays. Returns a sphere around the instance, in model space.
     pub fn play(&mut self, index: u32, play: &Play<'_>) -> Result<BoundingSphere, InputError> {
         play.validate()?;
         let clip = self.clip(play.clip)?;
@@ -42,7 +43,7 @@ impl Character {
         Ok(self.merged.model.clips.iter().position(|other| std::ptr::eq(other, clip)).unwrap_or(0))
     }
 
-    /// Stages the time, and the clips that instances play.
+    /// Stages the frame's time and the changed clips of instances for upload.
     pub(super) fn stage_played(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
         if (now - self.epoch).abs() > EPOCH {
             self.epoch = now;

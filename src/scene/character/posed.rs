@@ -24,12 +24,12 @@ use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::Blend;
 
 impl Character {
-    /// The index of a bone, by its name or its index.
+    /// The index of a bone that is given by its name or its index in digits.
     pub fn bone(&self, name_or_index: &str) -> Result<usize, InputError> {
         bone_of(&self.merged.model, name_or_index)
     }
 
-    /// The root motion of an instance between two scene times.
+    /// The root motion of an instance between two scene times in seconds.
     pub fn root_motion(&self, index: u32, from: f64, to: f64) -> Result<Transform, InputError> {
         let Some(motions) = &self.motions else {
             let bound = "must be of a character that was added with options.root_motion";
@@ -40,7 +40,7 @@ impl Character {
         motions[clip as usize].delta(&instance, from - start, to - start)
     }
 
-    /// The model matrices of a chunk, for binding.
+    /// The model matrices of all bones in a chunk, for binding; `None` if there is no such chunk.
     pub fn matrices(&self, chunk: usize) -> Option<&ModelMatrices> {
         self.runtimes.get(chunk).map(|runtime| runtime.frame.model_matrices())
     }
@@ -50,7 +50,7 @@ impl Character {
         &self.merged.model
     }
 
-    /// A sphere around an instance with its present clip and layers.
+    /// A sphere around an instance in all poses of its present clip and layers, in model space.
     pub fn sphere_as_played(&self, index: u32) -> BoundingSphere {
         match &self.reach {
             Some(reach) if self.is_blended(index) => reach.sphere(),
@@ -58,7 +58,7 @@ impl Character {
         }
     }
 
-    /// The path on which a bone of an instance carries a sphere, with its present clip and layers.
+    /// The path of a sphere that a bone of an instance carries, through all poses of the instance's present clip and layers.
     pub fn path_of(&self, index: u32, bone: usize, carried: &BoundingSphere) -> BonePath {
         let path = BonePath::new(&self.merged.model, self.plays[index as usize].clip as usize, bone, carried);
         match &self.reach {
@@ -70,7 +70,7 @@ impl Character {
         }
     }
 
-    /// The inputs of `path_of` besides bone and sphere.
+    /// The instance's state that [`Character::path_of`] depends on: its clip, and whether layers are blended over the clip.
     pub fn path_key(&self, index: u32) -> (u32, bool) {
         (self.plays[index as usize].clip, self.is_blended(index))
     }
@@ -95,7 +95,7 @@ impl Character {
         Ok(ClipTime { clip: play.clip as usize, seconds })
     }
 
-    /// An instance's pose at scene time `now`, including the bones written in the last frame.
+    /// An instance's pose at scene time `now`, with the bones that the host wrote in the last frame.
     pub fn pose(&self, index: u32, now: f64) -> Result<Pose, InputError> {
         let mut pose = self.sampled(index, now)?;
         if let Some(written) = self.driven.written.get(&index) {
@@ -105,7 +105,7 @@ impl Character {
         Ok(pose)
     }
 
-    /// An instance's pose at scene time `now`, from its clip and layers.
+    /// An instance's pose at scene time `now`, from its clip and layers alone.
     pub fn sampled(&self, index: u32, now: f64) -> Result<Pose, InputError> {
         let ClipTime { clip, seconds } = self.clip_time(index, now)?;
         let above = self.layers.iter().map(|layer| {
@@ -117,8 +117,9 @@ impl Character {
         Ok(layered_pose(&self.merged.model, (clip, seconds), above.into_iter()))
     }
 
-    /// The corners of a box around a posed instance, along the axes of the target space of `placed`. Every point that
-    /// follows a bone lies in a sphere around the bone's origin, which the bone's matrix turns into an ellipsoid.
+    /// The low and the high corner of a box around a posed instance, in the target space of `placed`. All vertices that
+    /// follow a bone lie in a sphere around the bone's origin. The bone's matrix turns this sphere into an ellipsoid, which the
+    /// box encloses.
     pub fn bounds(&self, pose: &Pose, placed: DAffine3) -> [DVec3; 2] {
         let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
         for (matrix, radius) in pose.model_matrices.iter().zip(&self.radii) {
@@ -132,7 +133,7 @@ impl Character {
         [low, high]
     }
 
-    /// The surface of a posed instance in full detail, at scene time `now`.
+    /// The surface of each mesh of an instance in full detail, in the pose at scene time `now`.
     pub(super) fn posed_surfaces(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
         let (ClipTime { clip, seconds }, pose) = (self.clip_time(index, now)?, self.pose(index, now)?);
         let model = &self.merged.model;
@@ -146,8 +147,8 @@ impl Character {
         Ok(model.meshes.iter().enumerate().map(of_mesh).collect())
     }
 
-    /// The dispatch arguments of each chunk: those that sample bones and, per mesh, those that skin clusters. The fourth
-    /// word of each is the number of bones or clusters.
+    /// The dispatch arguments of each chunk: one buffer for sampling bones, then one per mesh for skinning clusters. The
+    /// fourth word of a buffer is the number of bones or clusters.
     pub fn counters(&self) -> impl Iterator<Item = &Buffer<u32>> {
         self.runtimes.iter().flat_map(|runtime| {
             let clusters = runtime.skins.iter().map(PagedSkin::dispatched);
@@ -155,7 +156,7 @@ impl Character {
         })
     }
 
-    /// The numbers of meshes and of chunks.
+    /// The number of meshes, and the number of chunks.
     pub fn counted(&self) -> [usize; 2] {
         [self.merged.model.meshes.len(), self.runtimes.len()]
     }

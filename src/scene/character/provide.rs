@@ -1,4 +1,4 @@
-//! Pages for the instances of a character that a frame's views see.
+//! Allocation of pages (blocks of 64 skinned vertices) for the character instances that a frame's views see.
 
 use std::ops::Range;
 
@@ -12,8 +12,8 @@ use super::Character;
 use super::runtime::{Runtime, is_out_of_memory};
 
 impl Character {
-    /// Allocates the pages that a frame's views need. A chunk whose pages would exceed a binding is divided. If memory is
-    /// short, the result has an LOD bias above 1.
+    /// Allocates the pages that a frame's views need. A chunk is divided if its pages would exceed a buffer binding of the
+    /// device. If memory is short, the result has an LOD bias above 1, which makes levels coarser.
     pub(super) fn provide_pages(&mut self, gpu: &Gpu, seen: &SeenBy<'_>) -> Result<Provided, Error> {
         let lod_bias = match self.runtimes.iter().all(Runtime::is_full) {
             true => 1.0,
@@ -22,12 +22,12 @@ impl Character {
                 self.provide_seen(gpu, &seen)?
             }
         };
-        // If an error occurred, `replaced` still holds the earlier replacements.
+        // After an error in an earlier frame, `replaced` still holds that frame's replacements.
         let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);
         Ok(Provided { lod_bias, replaced })
     }
 
-    /// Allocates pages for visible instances. Returns the LOD bias.
+    /// Allocates pages for visible instances. Returns the LOD bias, which is above 1 if memory is short.
     fn provide_seen(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<f32, Error> {
         self.divide(gpu, seen)?;
         loop {
@@ -47,7 +47,7 @@ impl Character {
         }
     }
 
-    /// Divides chunks that need more pages than a binding holds.
+    /// Divides chunks that need more pages than a buffer binding holds.
     fn divide(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<(), Error> {
         if self.is_memory_short {
             return Ok(());
@@ -63,7 +63,7 @@ impl Character {
                     .map(|part| Runtime::all(gpu, model, &self.shared, part, self.keeps_last));
                 let parts = parts.collect::<Result<Vec<_>, Error>>();
                 if is_out_of_memory(&parts) {
-                    // Retrying in every frame would cost more than it gains.
+                    // Another attempt in every frame would cost more than it gains.
                     self.is_memory_short = true;
                     return Ok(());
                 }
@@ -82,7 +82,7 @@ impl Character {
     }
 }
 
-/// The instances and pages of a chunk.
+/// The range of instances in a chunk, and the page counts of its meshes.
 fn chunk(runtime: &Runtime) -> (&Range<usize>, &[Paging]) {
     (&runtime.slots, &runtime.paging)
 }

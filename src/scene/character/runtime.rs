@@ -1,4 +1,4 @@
-//! Device data of a chunk of a character's instances.
+//! Device data of a chunk: a group of a character's instances.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -21,12 +21,12 @@ use crate::skinning::clusters::Clusters;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::paged::{PagedSkin, PagedSkinOptions};
 
-/// Data shared by all chunks.
+/// Device data that all chunks of a character share.
 #[derive(Debug)]
 pub(in crate::scene) struct Shared {
     pub set: ClipSet,
     pub gate: Gate,
-    /// Mask of each layer above the base.
+    /// Bone mask of each layer above the base; `None` = all bones.
     masks: Vec<Option<Vec<f32>>>,
     clips: ClipBuffers,
     meshes: Vec<(MeshBuffers, Arc<Clusters>)>,
@@ -50,25 +50,25 @@ impl Shared {
         Ok(Self { set, gate, masks, clips, meshes })
     }
 
-    /// Shared data of the same character on another device.
+    /// Creates the shared data of the same character on another device.
     pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
         Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
     }
 }
 
-/// A chunk of instances on the device.
+/// Device data of a chunk of a character's instances.
 #[derive(Debug)]
 pub(in crate::scene) struct Runtime {
-    /// Indices of its instances within the object.
+    /// Range of the chunk's instances in the object's instance array.
     pub slots: Range<usize>,
     pub crowd: Crowd,
     pub frame: GatedFrame,
     pub skins: Vec<PagedSkin>,
-    /// Paging per skin.
+    /// Page counts of each mesh, in the order of `skins`.
     pub paging: Vec<Paging>,
     pub weights: Vec<MorphWeightsJob>,
     pub assign: Vec<Job>,
-    /// Adds driven bones to the gate's choice, and lists all of them; `None` without driven bones.
+    /// Two jobs: add the driven bones to the bones to sample, then list all bones to sample. `None` without driven bones.
     pub driven: Option<(Job, CompactJob)>,
     /// The version of the driven bones that `driven` was prepared for.
     pub driven_version: u64,
@@ -77,7 +77,8 @@ pub(in crate::scene) struct Runtime {
 }
 
 impl Runtime {
-    /// Instances that start afresh, in as few chunks as bindings permit.
+    /// Creates the chunks for a range of instances, which start afresh. A range is halved until its buffers fit into the
+    /// device's bindings.
     pub fn all(
         gpu: &Gpu,
         model: &Model,
@@ -138,12 +139,12 @@ impl Runtime {
         Ok(Self { slots, crowd, frame, skins, paging, weights, assign, driven, driven_version, version })
     }
 
-    /// Whether the pages suffice for all instances in full detail.
+    /// Whether the allocated pages suffice for all instances in full detail.
     pub fn is_full(&self) -> bool {
         self.skins.iter().zip(&self.paging).all(|(skin, paging)| paging.is_full(skin.pages().pages()))
     }
 
-    /// Prepares the jobs that assign levels in a layout, unless they are up to date.
+    /// Prepares the jobs that assign levels of detail to instances, unless they are up to date with the layout.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
@@ -172,8 +173,8 @@ impl Runtime {
         Ok(())
     }
 
-    /// Allocates `needed` pages per mesh. Returns whether pages were replaced, and whether memory ended first. In that case
-    /// [`Paging::most`] holds the number of pages that there is memory for.
+    /// Allocates at least `needed` pages for each mesh. Returns two flags: whether pages were replaced, and whether memory
+    /// ran out. If memory runs out for a mesh, its [`Paging::most`] becomes its present number of pages.
     pub fn provide(&mut self, gpu: &Gpu, needed: &[u32]) -> Result<[bool; 2], Error> {
         let (mut is_replaced, mut is_short) = (false, false);
         for ((skin, paging), needed) in self.skins.iter_mut().zip(&mut self.paging).zip(needed) {
@@ -195,7 +196,7 @@ impl Runtime {
         Ok([is_replaced, is_short])
     }
 
-    /// Adds a stage to a compute pass.
+    /// Records the dispatches of a stage into a compute pass.
     pub fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
         match stage {
             Stage::Select => {}
@@ -217,7 +218,7 @@ impl Runtime {
     }
 }
 
-/// Whether the error is a lack of memory.
+/// Whether the result is an error for lack of device memory.
 pub(super) fn is_out_of_memory<T>(result: &Result<T, Error>) -> bool {
     matches!(result, Err(Error::Gpu(GpuError::OutOfMemory { .. })))
 }

@@ -1,7 +1,8 @@
 //! Caller-defined kinds of objects, such as grass, particles or imposters.
 //!
-//! A kind is a type that implements [`Kind`], and one WGSL text ([`KindProgram`]). The scene selects its instances like all
-//! others (views, culling, levels of detail, masks), and renderers draw it in every layer. See `examples/kind/`.
+//! A kind consists of a type that implements [`Kind`], and one WGSL text ([`KindProgram`]). The scene selects the instances
+//! of a kind like all others (views, culling, levels of detail, masks), and renderers draw them in every layer. See
+//! `examples/kind/`.
 
 mod own;
 
@@ -23,14 +24,14 @@ pub(in crate::scene) use own::OwnKind;
 /// [`Scene::spawn`](crate::scene::Scene::spawn) its instances. The getters must return the same values as long as the scene
 /// holds the object.
 pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
-    /// The shader.
+    /// The kind's shader.
     fn program(&self) -> &KindProgram;
 
     /// The triangles of all levels and parts, as `u32` vertex indices, counter-clockwise seen from outside. The buffer
     /// needs the usage `INDEX`.
     fn indices(&self) -> &wgpu::Buffer;
 
-    /// The parts, at least one. Each takes one draw per level of detail.
+    /// The parts of the triangles, at least one. Each part takes one draw per level of detail.
     fn parts(&self) -> &[KindPart];
 
     /// The error of each level of detail in the model's units, ascending from 0; at most 8 levels. A view draws the
@@ -39,26 +40,28 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
         &[0.0]
     }
 
-    /// A sphere, in model space, around everything that an instance draws. Views cull instances by it.
+    /// A sphere, in model space, around everything that an instance draws. Views cull instances by this sphere.
     fn bounding_sphere(&self) -> BoundingSphere;
 
-    /// Writes the changes since the last frame. [`Scene::record`](crate::scene::Scene::record) calls it.
+    /// Uploads the kind's changes since the last frame. [`Scene::record`](crate::scene::Scene::record) calls this function
+    /// in each frame.
     ///
     /// # Errors
-    /// Those of [`KindUploads::write`], and the kind's own. The frame is then not recorded.
+    /// The errors of [`KindUploads::write`], and errors of the kind itself. The frame is then not recorded.
     fn upload(&mut self, frame: &KindFrame, uploads: &mut KindUploads<'_>) -> Result<(), Error> {
         let _ = (frame, uploads);
         Ok(())
     }
 
-    /// Creates the same kind on another device, after its own was lost ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
+    /// Creates the same kind on another device, after the kind's device was lost
+    /// ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
-    /// [`crate::gpu::GpuError`], and the kind's own. The scene then stays unchanged.
+    /// [`crate::gpu::GpuError`], and errors of the kind itself. The scene then stays unchanged.
     fn rebuild(&self, gpu: &Gpu) -> Result<Box<dyn Kind>, Error>;
 
-    /// The first hit of an instance by a ray, for [`Scene::pick`](crate::scene::Scene::pick). By default, the bounding
-    /// sphere is hit from outside.
+    /// The first point at which a ray hits an instance, for [`Scene::pick`](crate::scene::Scene::pick); `None` if the ray
+    /// misses. By default, the ray hits the bounding sphere from outside.
     fn hit(&self, ray: &KindRay) -> Option<KindHit> {
         let sphere = self.bounding_sphere();
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
@@ -66,7 +69,7 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
         let (a, b) = (ray.direction.length_squared(), from.dot(ray.direction));
         let inside = b * b - a * (from.length_squared() - radius * radius);
         let distance = (-b - inside.sqrt()) / a;
-        // A ray that misses has a NaN root, for which this is false.
+        // For a ray that misses, the root and the distance are NaN, and the comparison is false.
         (distance >= 0.0).then(|| KindHit { distance, normal: from + distance * ray.direction })
     }
 }
@@ -76,7 +79,7 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
 pub struct KindPart {
     /// Bind group 2, from [`KindProgram::bind`].
     pub group: wgpu::BindGroup,
-    /// Range of [`Kind::indices`] to draw, per level of detail. A range may be empty.
+    /// Range of indices in [`Kind::indices`] to draw, per level of detail. A range may be empty.
     pub levels: Vec<Range<u32>>,
     /// Whether pixels with `Surface.alpha` below `Surface.cutoff` are discarded. The cutoff is 0 unless the shader sets it.
     pub cut_out: bool,
@@ -96,20 +99,20 @@ impl KindPart {
     }
 }
 
-/// Times of the frame for which a kind uploads.
+/// Times of the frame in which a kind uploads its changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KindFrame {
     /// The scene's time in seconds ([`Scene::time`](crate::scene::Scene::time)).
     pub seconds: f64,
     /// The scene's time in the last frame, for velocities.
     pub last_seconds: f64,
-    /// Whether the kind must write everything again: in its first frame, after it grew, and after the scene started afresh
+    /// Whether the kind must write everything again: in its first frame, after its object grew, and if the scene starts afresh
     /// ([`Scene::refresh`](crate::scene::Scene::refresh), a dropped encoder, another device).
     pub is_fresh: bool,
 }
 
-/// Collects a kind's buffer writes for a frame. They are recorded at the start of the frame in its encoder. Each frame
-/// therefore sees its own values, even if several frames are submitted at once.
+/// Collects a kind's buffer writes for a frame. The writes are recorded into the frame's encoder, at the start of the frame.
+/// Each frame therefore sees its own values, even if several frames are submitted at once.
 #[derive(Debug)]
 pub struct KindUploads<'a>(pub(in crate::scene) &'a mut Staged);
 
@@ -138,17 +141,17 @@ impl KindUploads<'_> {
     }
 }
 
-/// A ray in an instance's model space.
+/// A ray in the model space of an instance, for [`Kind::hit`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KindRay {
     /// The start of the ray.
     pub origin: DVec3,
-    /// The vector of one world unit along the ray, in model space.
+    /// The ray's direction in model space. Its length is one world unit, converted to model space.
     pub direction: DVec3,
 }
 
 impl KindRay {
-    /// The hit of a triangle, from either side; `None` if the ray misses it.
+    /// The hit of a triangle, from either side; `None` if the ray misses it. `corners` are in model space.
     pub fn triangle(&self, corners: [DVec3; 3]) -> Option<KindHit> {
         let [a, b, c] = corners;
         let distance = distance_to(corners.map(|corner| corner - self.origin), self.direction)?;
@@ -156,7 +159,7 @@ impl KindRay {
     }
 }
 
-/// A ray's hit of an instance.
+/// The point at which a ray hits an instance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KindHit {
     /// The distance along the ray in world units. The hit point is `origin + distance * direction`.

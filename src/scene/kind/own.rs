@@ -18,14 +18,14 @@ use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
 use crate::shared::render::scene_instances::SceneObject;
 use crate::{Error, InputError};
 
-/// Largest number of draws of an object.
+/// Largest number of draws of an object: parts times levels of detail.
 const MAX_DRAWS: usize = 64;
 
 /// A caller-defined kind.
 #[derive(Debug)]
 pub(in crate::scene) struct OwnKind {
     pub kind: Box<dyn Kind>,
-    /// Whether the kind must write everything again.
+    /// Whether the kind must upload all of its data again.
     pub is_fresh: bool,
 }
 
@@ -33,7 +33,7 @@ impl OwnKind {
     /// A kind with nothing uploaded yet.
     ///
     /// # Errors
-    /// [`InputError`] for errors, parts or a sphere out of bounds.
+    /// [`InputError`] if the errors of levels, the parts or the bounding sphere are out of range.
     pub fn new(kind: Box<dyn Kind>) -> Result<Self, InputError> {
         check(&*kind)?;
         Ok(Self { kind, is_fresh: true })
@@ -42,7 +42,7 @@ impl OwnKind {
     /// The same kind on another device.
     ///
     /// # Errors
-    /// [`InputError`] for a kind whose levels, parts or sphere differ; those of [`Kind::rebuild`].
+    /// [`InputError`] for a kind whose levels, parts or sphere have changed, and the errors of [`Kind::rebuild`].
     pub fn rebuilt(&self, gpu: &Gpu) -> Result<Self, Error> {
         let fresh = Self::new(self.kind.rebuild(gpu)?)?;
         let levels =
@@ -60,10 +60,10 @@ impl OwnKind {
         }
     }
 
-    /// Drawables and draws of the kind.
+    /// The drawable of the kind, and one draw per part and level of detail.
     ///
     /// # Errors
-    /// [`InputError`] for a buffer or a group of another device; [`GpuError`].
+    /// [`InputError`] for an index buffer or a bind group of another device; [`GpuError`].
     pub fn drawn(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<Drawn, Error> {
         check_device(gpu, &*self.kind)?;
         let part = |part: &KindPart| {
@@ -155,7 +155,7 @@ struct OwnDrawable {
 }
 
 impl OwnDrawable {
-    /// Binds the scene's uniform of an object.
+    /// Creates a drawable with the object's uniform, which is bound in group 1.
     fn new(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -190,7 +190,7 @@ impl Drawable for OwnDrawable {
     }
 }
 
-/// Refuses an index buffer or groups of another device.
+/// Returns an error for an index buffer or a bind group of another device.
 fn check_device(gpu: &Gpu, kind: &dyn Kind) -> Result<(), Error> {
     let (indices, format) = (kind.indices(), wgpu::IndexFormat::Uint32);
     check_taken(gpu, "kind.indices", |encoder| encoder.set_index_buffer(indices.slice(..), format))?;
@@ -200,7 +200,7 @@ fn check_device(gpu: &Gpu, kind: &dyn Kind) -> Result<(), Error> {
     })
 }
 
-/// Refuses a resource of another device. wgpu reports it when a render bundle takes it.
+/// Returns an error for a resource of another device. wgpu reports the mismatch when a render bundle uses the resource.
 fn check_taken<'a>(
     gpu: &'a Gpu,
     path: &str,
