@@ -75,7 +75,7 @@ pub struct Surface<'a> {
     pub indices: &'a [u32],
     /// Attributes of all vertices in the first pose: `stride` finite numbers per vertex, such as normals and texture
     /// coordinates. An attribute difference of 1 over a square costs as much as a distance equal to the square's edge.
-    /// Start with a tenth of the unit normal.
+    /// For normals, unit vectors scaled by a tenth are a good start.
     pub attributes: &'a [f32],
     /// Number of attribute values per vertex; may be 0.
     pub stride: usize,

@@ -137,8 +137,8 @@ pub struct SkinnedCrowd {
     pub instance_lods: Buffer<InstanceLod>,
     /// Weights of the morph targets, all weights of instance 0 first; 0 at first.
     pub weights: Buffer<f32>,
-    /// Morphed vertices, written by [`super::morph::MorphPass`] if the mesh has targets, at index `instance · vertices
-    /// + slot`. Clusters beyond an instance's level of detail keep their previous contents. The buffer is empty if
+    /// Morphed vertices at index `instance · vertices + slot`, written by [`super::morph::MorphPass`] if the mesh has
+    /// targets. Clusters beyond an instance's level of detail keep their previous contents. The buffer is empty if
     /// vertices lie in pages ([`PageBuffers::morphed`](super::pages::PageBuffers::morphed)).
     pub morphed: Buffer<Vertex>,
     /// Number of instances.

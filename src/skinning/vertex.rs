@@ -34,7 +34,7 @@ pub enum Blend {
 /// The vertices of a mesh in bind space, without morph targets.
 ///
 /// # Panics
-/// For a mesh that [`Mesh::validate`] refuses.
+/// If [`Mesh::validate`] refuses the mesh.
 pub fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
     let vertex = |vertex: usize| Vertex {
         position: mesh.positions[vertex],

@@ -5,7 +5,7 @@ mod link;
 
 use super::points::Points;
 
-/// A corner of a triangle.
+/// A corner of a triangle: its vertex, and the vertex's point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Corner {
     pub vertex: u32,

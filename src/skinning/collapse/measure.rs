@@ -1,4 +1,4 @@
-//! Error of a collapsed model against the original.
+//! The error of a model with collapsed bones, compared with the original.
 
 use glam::Vec3;
 use rayon::prelude::*;

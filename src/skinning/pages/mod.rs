@@ -15,7 +15,7 @@ pub use pass::{PageBuffers, PagesPass};
 pub use crate::shared::skinning::page::NO_PAGE;
 pub use crate::shared::skinning::pages::PageState;
 
-/// Size of a page in bytes.
+/// Size of a page in bytes, without positions of the previous frame.
 pub const PAGE_BYTES: usize = super::clusters::CLUSTER * size_of::<super::vertex::Vertex>();
 
 /// Size of a page in bytes if vertex positions of the previous frame are kept: four more floats per vertex.

@@ -20,8 +20,8 @@ pub struct Now<'a> {
 pub struct Skinned {
     /// The instance's level of detail in the previous frame.
     pub instance_lod: InstanceLod,
-    /// Visibility: 0 if invisible, otherwise the number of frames in a row in which the instance was visible, at most
-    /// 2. See [`ClusterSelectBuffers::skinned`](crate::skinning::select::ClusterSelectBuffers::skinned).
+    /// Visibility: 0 if invisible, 1 if newly visible, and 2 if visible in the frame before too; see
+    /// [`ClusterSelectBuffers::skinned`](crate::skinning::select::ClusterSelectBuffers::skinned).
     pub seen: u32,
     /// The instance's morph weights in the previous frame.
     pub weights: Vec<f32>,
