@@ -2,18 +2,18 @@
 
 use glam::{DVec3, Vec3};
 
-/// Defines the search for one vector type.
+/// Defines the function for one vector type.
 macro_rules! nearest_on_triangle {
     ($(#[$documentation:meta])* $name:ident, $vector:ty, $number:ty) => {
         $(#[$documentation])*
         #[inline]
         pub fn $name(point: $vector, [a, b, c]: [$vector; 3]) -> $vector {
-            // Returns `one / all` if it is in 0..=1; otherwise 0, also for 0 / 0 and NaN.
+            // Returns `one / all` if the ratio is in 0..=1, otherwise 0. The result for 0 / 0 and NaN is 0 too.
             let ratio = |one: $number, all: $number| {
                 let ratio = one / all;
                 if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
             };
-            // Fraction of `one` in the sum of both.
+            // The fraction of `one` in the sum `one + other`.
             let part = |one: $number, other: $number| ratio(one, one + other);
             let (ab, ac, ap) = (b - a, c - a, point - a);
             let (to_b, to_c) = (ab.dot(ap), ac.dot(ap));
@@ -50,12 +50,13 @@ macro_rules! nearest_on_triangle {
 }
 
 nearest_on_triangle! {
-    /// Point of a triangle that is nearest to `point`, by Voronoi regions of corners, edges and the inside (Ericson, "Real-Time
-    /// Collision Detection", section 5.1.5). The triangle may be degenerate: a line or a point.
+    /// The point of a triangle that is nearest to `point`. Computed from the Voronoi regions of corners, edges and
+    /// inside (Ericson, "Real-Time Collision Detection", section 5.1.5). The triangle may be degenerate: a line or a
+    /// point.
     ///
-    /// For sizes and distances of 1e-8 to 1e9, whose fourth powers `f32` can represent, the result is accurate to about 1e-6 of
-    /// the larger of the two. Beyond that range the result still lies on the triangle. A measured distance may then be too
-    /// large but is never too small.
+    /// For triangle sizes and distances from 1e-8 to 1e9, the result is accurate to about 1e-6 of the larger of both.
+    /// Beyond this range, `f32` cannot represent their fourth powers, but the result still lies on the triangle. A
+    /// measured distance may then be too large but is never too small.
     nearest_on_triangle, Vec3, f32
 }
 
@@ -111,7 +112,7 @@ mod tests {
         }
     }
 
-    /// The sizes are too large or too small for `f32` to represent their fourth powers.
+    /// These triangle sizes are too large or too small for `f32` to represent their fourth powers.
     #[test]
     fn positions_are_always_on_the_triangle() {
         for scale in [1e-30_f32, 1e-18, 1e-11, 1e10, 1e15, 1e18] {

@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 
-/// Distance along a ray from the origin to a triangle, in lengths of `direction`; `None` if the ray misses the triangle or lies
-/// in its plane.
+/// Distance along a ray to a triangle, in multiples of the length of `direction`. The ray starts at the origin. `None`
+/// if the ray misses the triangle or lies in its plane.
 ///
-/// The ray meets the triangle if the tetrahedra between the ray and each edge have volumes of one sign. Adjacent triangles
-/// compute the volume of their common edge alike, up to the sign. No ray therefore slips through between two triangles.
+/// The ray hits the triangle if the tetrahedra spanned by the ray and each edge have volumes of the same sign. Adjacent
+/// triangles compute the same volume for their common edge, up to the sign. Therefore no ray slips through between two
+/// triangles.
 pub fn distance_to([a, b, c]: [DVec3; 3], direction: DVec3) -> Option<f64> {
-    // Six times the signed volume.
+    // Six times the signed volume of a tetrahedron.
     let volume = |from: DVec3, to: DVec3| direction.dot(from.cross(to));
     let all = [volume(b, c), volume(c, a), volume(a, b)];
     let is_inside = all.iter().all(|volume| *volume >= 0.0) || all.iter().all(|volume| *volume <= 0.0);

@@ -1,47 +1,48 @@
-//! Mesh simplification by half-edge collapses. A point of the surface is merged into one of its neighbours, again and again,
-//! the cheapest collapse first. Vertices are neither moved nor created, so that every level uses a subset of the mesh's own
-//! vertices, whatever their attributes. One run records every level (B section 3.2, after Hoppe, "Progressive Meshes", SIGGRAPH
-//! 1996).
+//! Mesh simplification by half-edge collapses. The cheapest collapse is made first, again and again: it merges a point
+//! of the surface into one of its neighbours. Vertices are neither moved nor created. Every level therefore uses a
+//! subset of the mesh's own vertices with their attributes. One run records every level (B section 3.2, after Hoppe,
+//! "Progressive Meshes", SIGGRAPH 1996).
 //!
-//! Vertices that share one position in every pose are the *wedges* of one *point*: copies that differ in attributes. An edge
-//! whose two triangles use different wedges is part of a *seam*.
+//! Vertices that share one position in every pose are grouped into one *point*. They are the *wedges* of the point, and
+//! differ in attributes. An edge whose two triangles use different wedges is part of a *seam*.
 //!
 //! # Legality
 //!
-//! A collapse is legal only if all of the following hold, whatever its cost:
-//! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999): the surface keeps its topology. Closed surfaces stay
-//!   closed and manifold surfaces stay manifold. Points where the input is not manifold are kept.
-//! - No triangle's normal turns by more than 75° in any pose, and no triangle loses its area. (A section 4.1 has 90°, which
-//!   several collapses in a row may add up to.) Triangles without area in the input are not restricted.
-//! - A point of a border moves only along that border.
-//! - Every wedge of the point becomes a wedge with which it shares an edge. Seams therefore collapse only along themselves: no
-//!   triangle leaves its chart of the texture, and no holes appear. Where wedges are split at one end of an edge only, as at
-//!   the poles of a sphere, adjacent wedges count as one. If every triangle has vertices of its own, nothing can collapse:
-//!   index such meshes first, or let seams be crossed ([`Seams::Crossed`]).
+//! A collapse is legal only if all of these conditions hold, at any cost:
+//! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999), so the surface keeps its topology. Closed
+//!   surfaces stay closed, and manifold surfaces stay manifold. Points where the input is not manifold are kept.
+//! - No triangle's normal turns by more than 75° in any pose, and no triangle loses its area. (A section 4.1 has 90°,
+//!   but several collapses in a row may add up to more.) Triangles without area in the input are not restricted.
+//! - A point on a border moves only along that border.
+//! - Every wedge of the point moves to a wedge with which it shares an edge. Seams therefore collapse only along
+//!   themselves: no triangle leaves its texture chart, and no holes appear. Where wedges are split at only one end of
+//!   an edge, as at the poles of a sphere, adjacent wedges count as one. If every triangle has its own vertices,
+//!   nothing can collapse. Index such meshes first, or allow seams to be crossed ([`Seams::Crossed`]).
 //!
 //! # Parts
 //!
-//! A closed part keeps four triangles, however small it is. Unless [`SimplifyOptions::prune`] is off, parts vanish as a whole. A part
-//! vanishes when the next collapse would cost more than half of its distance to the other parts. That distance is taken over
-//! its points, and over the points of neighbouring parts that vanished before. (meshoptimizer's option `Prune` compares the
-//! radius of a part.)
+//! A part is a connected piece of the surface. A closed part keeps at least four triangles, even if it is tiny. Unless
+//! [`SimplifyOptions::prune`] is off, parts can also vanish as a whole. A part vanishes if the next collapse would cost
+//! more than half of the part's distance to the other parts. The distance is measured from the part's points, and from
+//! the points of neighbouring parts that vanished before. (The option `Prune` of meshoptimizer compares the radius of a
+//! part.)
 //!
 //! # Several poses
 //!
-//! A skinned mesh is simplified for all given poses: the cost of a collapse is its largest cost in any of them (after DeCoro
-//! and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, who take the sum).
+//! A skinned mesh is simplified for all given poses. The cost of a collapse is its largest cost in any pose. (DeCoro
+//! and Rusinkiewicz, "Pose-Independent Simplification of Articulated Meshes", I3D 2005, take the sum.)
 //!
 //! # Order
 //!
-//! Collapses are approximately ordered by cost, the cheapest first. Costs whose squares lie in one quarter of an octave count
-//! as equal, and are taken in the order in which they were found. A point's cost is recomputed only when its turn comes, so a
-//! point that has become cheaper since then comes late. In seven of eight steps the cost is within a tenth of the smallest of
-//! any point. A point goes to the neighbour that is cheapest by the mean term of [`Cost::Quadric`]; the other term is computed
-//! afterwards. An exact order takes longer, and gave no smaller error where it was tried.
+//! Collapses are approximately ordered by cost, the cheapest first. Squared costs within a quarter of an octave count
+//! as equal, and are taken in the order in which they were found. A point's cost is recomputed only when its turn
+//! comes, so a point that has become cheaper is taken late. In seven of eight steps, the cost is within a tenth of the
+//! smallest cost of any point. A point's target is the neighbour with the smallest mean term of [`Cost::Quadric`]; the
+//! other term is computed afterwards. An exact order takes longer, and gave no smaller error in tests.
 //!
-//! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and square
-//! roots, in a fixed order. Time grows a little faster than the number of triangles, and linearly with poses. Quadrics take 88
-//! bytes per point and pose.
+//! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and
+//! square roots, in a fixed order. The computing time grows slightly faster than the number of triangles, and linearly
+//! with the number of poses. Quadrics take 88 bytes per point and pose.
 
 mod attributes;
 mod bridged;
@@ -65,133 +66,136 @@ use crate::InputError;
 pub(crate) use points::NO_BODY;
 use points::Points;
 
-/// The mesh to simplify.
+/// A mesh to simplify, in one or several poses.
 #[derive(Debug, Clone, Copy)]
 pub struct Surface<'a> {
-    /// Positions of all vertices in each pose, in the model's units, finite. A rigid mesh has one pose.
+    /// Positions of all vertices in each pose: finite, in the model's units. A rigid mesh has one pose.
     pub poses: &'a [Vec<[f32; 3]>],
     /// Three indices per triangle.
     pub indices: &'a [u32],
-    /// Attributes of each vertex: `stride` numbers (normals, texture coordinates, …), finite, in the first pose. An attribute
-    /// difference of 1 over a square counts as much as a distance equal to the square's edge. A tenth of a unit normal is a
-    /// good start.
+    /// Attributes of all vertices in the first pose: `stride` finite numbers per vertex, such as normals and texture
+    /// coordinates. An attribute difference of 1 over a square costs as much as a distance equal to the square's edge.
+    /// For normals, unit vectors scaled by a tenth are a good start.
     pub attributes: &'a [f32],
     /// Number of attribute values per vertex; may be 0.
     pub stride: usize,
 }
 
-/// The cost function of collapses.
+/// The cost function that orders collapses and limits the error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
-    /// Quadric error (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997): the root mean
-    /// square distance from the planes of all triangles that were merged into the point. The weight of a triangle is the square
-    /// root of its area, so that details count.
+    /// Quadric error (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997). The
+    /// cost is the root mean square distance from the planes of all triangles that were merged into the point. Each
+    /// triangle's weight is the square root of its area, so that details count.
     ///
-    /// A mean hides a single spot. The cost is therefore at least 0.35 of the point's own distance from the planes of its
-    /// triangles after the collapse; on a border, also of its distance from the border's new edge. Planes perpendicular to
-    /// borders and seams hold these in place (their section 6).
+    /// A mean can hide a large error at one spot. The cost is therefore at least 0.35 times the point's own distance
+    /// from the planes of its triangles after the collapse. On a border, the distance from the border's new edge counts
+    /// too. Planes perpendicular to borders and seams hold these in place (section 6 of the paper).
     ///
-    /// Attributes add a cost of their own, separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes with
-    /// Appearance Attributes", Visualization 1999). With attributes, the larger of two distances is added to that cost: 0.63 of
-    /// the point's own distance, and 1.26 of the distance between the middle of a new edge and the triangles before.
+    /// Attributes add a cost, computed separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes
+    /// with Appearance Attributes", Visualization 1999). With attributes, the larger of two distances is added to that
+    /// cost: 0.63 times the point's own distance, and 1.26 times the distance between the middle of a new edge and the
+    /// previous triangles.
     #[default]
     Quadric,
-    /// Edge length times curvature (Melax, "A Simple, Fast, and Effective Polygon Reduction Algorithm", 1998; B equation 3.1).
-    /// The curvature is a measure of how far the normals of the point's triangles turn from those at the edge. It ignores
-    /// attributes and earlier collapses, and leaves a larger error than quadrics.
+    /// Edge length times curvature (Melax, "A Simple, Fast, and Effective Polygon Reduction Algorithm", 1998; B
+    /// equation 3.1). The curvature measures how far the normals of the point's triangles turn from the normals at the
+    /// edge. This cost ignores attributes and earlier collapses, and leaves a larger error than quadrics.
     Melax {
-        /// Whether to refuse a collapse where the normals of the two points are more than 90° apart in the
-        /// first pose (B section 3.2.3).
+        /// Whether to refuse a collapse between two points whose normals are more than 90° apart in the first pose (B
+        /// section 3.2.3).
         ///
-        /// **Decided**: a point's normal is the sum of its triangles' *unit* normals, which B's equation 3.1 compares. B
-        /// defines them as cross products (3.2.3), which would weight them by area.
+        /// **Decided**: a point's normal is the sum of the *unit* normals of its triangles, which B's equation 3.1
+        /// compares. B defines normals as cross products (3.2.3), which would weight them by area.
         check_normals: bool,
     },
 }
 
-/// Treatment of seams.
+/// Whether collapses may cross seams, where adjacent triangles use different wedges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Seams {
     /// Seams collapse only along themselves.
     #[default]
     Held,
-    /// Some seams may be crossed: seams between wedges that differ only in the first `attributes` numbers of
-    /// [`Surface::attributes`]. Each wedge becomes the cheapest vertex of the neighbour that agrees with it in the other
-    /// numbers. For example, if texture coordinates follow the normals, `attributes: 3` lets hard edges of normals collapse and
-    /// holds texture seams. Crossing costs the difference of the attributes over the affected area. (meshoptimizer's option
-    /// `Permissive`.)
+    /// Seams may be crossed if their wedges differ only in the first `attributes` numbers of [`Surface::attributes`].
+    /// Each wedge then moves to the cheapest vertex of the neighbour that has the same other numbers. For example, if
+    /// normals come before texture coordinates, `attributes: 3` allows hard edges to collapse and keeps texture seams.
+    /// Crossing costs the difference of the attributes over the affected area. (The option `Permissive` of
+    /// meshoptimizer.)
     Crossed {
-        /// Number of leading attribute values, 0 to [`Surface::stride`].
+        /// Number of leading attributes that may differ, 0 to [`Surface::stride`].
         attributes: usize,
     },
     /// All seams may be crossed.
     AllCrossed,
 }
 
-/// Cost function and limits. Simplification stops at the first limit that is reached.
+/// Options of [`simplify()`]: cost function and limits. Simplification stops at the first limit that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimplifyOptions {
     /// The cost function of collapses.
     pub cost: Cost,
-    /// Treatment of seams.
+    /// Whether collapses may cross seams.
     pub seams: Seams,
-    /// Target number of triangles. The result may have one less, or fewer where a part vanishes.
+    /// Target number of triangles. The result may have one triangle less, or fewer if a part vanishes.
     pub triangles: usize,
-    /// Largest cost of a collapse, in units of positions; at least 0, may be infinite.
+    /// Largest cost of a collapse, in the units of positions: at least 0, may be infinite.
     pub error: f32,
-    /// Whether parts that no triangle connects to the rest may vanish as a whole. The cost of a part is half of the largest
-    /// distance from its points to the remaining other parts, in the worst pose. The variation of its attributes over its area
-    /// is added. A screw thus vanishes with the details of its plate, and a lone rock stays. One part always stays. With tens
-    /// of thousands of parts, this search takes longer than all collapses. It has an effect with [`Cost::Quadric`] only, and
-    /// not where distances are limited ([`simplify_within`]).
+    /// Whether disconnected parts of the surface may vanish as a whole. The cost of a part is half of the largest
+    /// distance from its points to the other remaining parts, in the worst pose, plus the variation of its attributes
+    /// over its area. A screw thus vanishes with the details of its plate, and a lone rock stays. One part always
+    /// stays. With tens of thousands of parts, this search takes longer than all collapses. The option works with
+    /// [`Cost::Quadric`] only, and has no effect in [`simplify_within`].
     pub prune: bool,
 }
 
 impl Default for SimplifyOptions {
-    /// Quadrics without limits; seams are held, parts may vanish.
+    /// Quadric cost without limits. Seams are held, and parts may vanish.
     fn default() -> Self {
         Self { cost: Cost::Quadric, seams: Seams::Held, triangles: 0, error: f32::INFINITY, prune: true }
     }
 }
 
-/// One collapse: a point was merged into its neighbour, or all points of a part into one of them.
+/// One recorded collapse: a point was merged into its neighbour, or all points of a part into one of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Collapse {
-    /// End of this collapse's range in [`Simplified::moved`].
+    /// End of the collapse's range in [`Simplified::moved`].
     end: u32,
-    /// Largest cost of any collapse so far, in units of positions: the error of the mesh as the cost function estimates it.
+    /// Largest cost of any collapse so far, in the units of positions. It is the cost function's estimate of the mesh's
+    /// error.
     pub error: f32,
-    /// Distance within which every removed point of the mesh lies from the remaining surface after this collapse, in every
-    /// pose. Infinite if distances were not limited.
+    /// After this collapse, every removed point of the mesh lies within this distance of the remaining surface, in
+    /// every pose. Infinite if distances were not limited.
     pub distance: f32,
     /// Number of triangles after this collapse.
     pub triangles: u32,
 }
 
-/// Why simplification stopped.
+/// The reason why simplification stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stopped {
-    /// At most [`SimplifyOptions::triangles`] are left.
+    /// The triangle count has reached [`SimplifyOptions::triangles`].
     Triangles,
-    /// The next collapse costs more than [`SimplifyOptions::error`].
+    /// The next collapse would cost more than [`SimplifyOptions::error`].
     Error,
-    /// No collapse is legal. Reducers other than half-edge collapses give no closer reason.
+    /// No collapse is legal; the reason is not known more closely. Reducers without half-edge collapses report only this.
     Exhausted,
-    /// No collapse is legal, as for all variants below. Most remaining points are on seams that would be broken, or where
-    /// several seams meet. [`Seams::Crossed`] helps.
+    /// No collapse is legal: most remaining points are on seams that would break, or where several seams meet.
+    /// [`Seams::Crossed`] helps.
     Seams,
-    /// Most remaining points are on borders that would be broken.
+    /// No collapse is legal: most remaining points are on borders that would break.
     Borders,
-    /// Most remaining points would turn a triangle by more than 75°, or take its area away.
+    /// No collapse is legal: for most remaining points, a triangle would turn by more than 75° or lose its area.
     Flips,
-    /// Most remaining points would change the topology, or are where the surface is not manifold.
+    /// No collapse is legal: for most remaining points, the topology would change, or the surface is not manifold there.
     Topology,
-    /// Most remaining points would bring a point of the mesh further away than [`simplify_within`] allows.
+    /// No collapse is legal: for most remaining points, a removed point would be farther away than [`simplify_within`]
+    /// allows.
     Distance,
 }
 
 impl Stopped {
-    /// Name in reports.
+    /// Name of the reason in reports, in lower case.
     pub fn name(self) -> &'static str {
         match self {
             Self::Triangles => "triangles",
@@ -217,12 +221,12 @@ pub struct Simplified {
 }
 
 impl Simplified {
-    /// Collapses in the order in which they happened; errors never decrease.
+    /// All collapses, in the order in which they happened. Their errors never decrease.
     pub fn collapses(&self) -> &[Collapse] {
         &self.collapses
     }
 
-    /// Pairs of a removed vertex and its replacement, for one collapse; at least one pair.
+    /// The vertices that one collapse removed, each with its replacement; at least one pair.
     ///
     /// # Panics
     /// If there is no collapse with this number.
@@ -236,17 +240,18 @@ impl Simplified {
         self.collapses.last().map_or(self.triangles, |last| last.triangles as usize)
     }
 
-    /// Largest cost of any collapse; 0 if there was none.
+    /// Largest cost of any collapse, in the units of positions; 0 if there was none.
     pub fn error(&self) -> f32 {
         self.collapses.last().map_or(0.0, |last| last.error)
     }
 
-    /// Why simplification stopped.
+    /// The reason why simplification stopped.
     pub fn stopped(&self) -> Stopped {
         self.stopped
     }
 
-    /// Number of leading collapses after which at most `triangles` triangles are left; all collapses if that is never reached.
+    /// Number of leading collapses that leave at most `triangles` triangles. If this is never reached, the number of
+    /// all collapses.
     pub fn collapses_to(&self, triangles: usize) -> usize {
         if self.triangles <= triangles {
             return 0;
@@ -260,13 +265,13 @@ impl Simplified {
         self.collapses.partition_point(|collapse| collapse.error <= error)
     }
 
-    /// Number of leading collapses after which every removed point is within `distance` of the remaining surface; see
+    /// Number of leading collapses that keep every removed point within `distance` of the remaining surface; see
     /// [`simplify_within`].
     pub fn collapses_near(&self, distance: f32) -> usize {
         self.collapses.partition_point(|collapse| collapse.distance <= distance)
     }
 
-    /// Point of a vertex: the same number for all wedges at one position.
+    /// Number of the point that a vertex belongs to. All vertices at one position have the same number.
     ///
     /// # Panics
     /// If there is no such vertex.
@@ -281,8 +286,9 @@ impl Simplified {
         a != b && b != c && c != a
     }
 
-    /// SHA-256 of the sequence, in hexadecimal digits. For each collapse it covers the number of triangles, the bits of error
-    /// and distance, and the vertices with their replacements. It is the same on every machine.
+    /// SHA-256 of the sequence of collapses, in hexadecimal digits, the same on every machine. For each collapse it
+    /// covers the number of triangles, the bits of error and distance, and the removed vertices with their
+    /// replacements.
     pub fn hash(&self) -> String {
         let mut words = vec![self.points.len() as u32, self.triangles as u32];
         for (at, collapse) in self.collapses.iter().enumerate() {
@@ -292,10 +298,11 @@ impl Simplified {
         crate::hash::sha256(&words)
     }
 
-    /// For each vertex, its replacement after the first `collapses` collapses; itself if it is not removed.
+    /// For each vertex, its replacement after the first `collapses` collapses. A vertex that is not removed is its own
+    /// replacement.
     ///
     /// # Panics
-    /// If there are fewer collapses.
+    /// If the sequence has fewer collapses.
     pub fn remap(&self, collapses: usize) -> Vec<u32> {
         let mut remap: Vec<u32> = (0..self.points.len() as u32).collect();
         let end = collapses.checked_sub(1).map_or(0, |last| self.collapses[last].end);
@@ -306,11 +313,11 @@ impl Simplified {
         remap
     }
 
-    /// Triangles that are left after the first `collapses` collapses, in the mesh's order: those whose corners are still three
-    /// different points. `indices` are the mesh's own.
+    /// The triangles left after the first `collapses` collapses, in the mesh's order. Triangles remain if their corners
+    /// are still three different points. `indices` are the mesh's triangles.
     ///
     /// # Panics
-    /// If there are fewer collapses, or if the indices belong to another mesh.
+    /// If the sequence has fewer collapses, or if the indices belong to another mesh.
     pub fn triangles(&self, indices: &[u32], collapses: usize) -> Vec<u32> {
         let remap = self.remap(collapses);
         let mut left = Vec::new();
@@ -340,22 +347,22 @@ impl Simplified {
 /// ```
 ///
 /// # Errors
-/// [`InputError`] for no pose, poses of different lengths, indices that are out of range or not three per
-/// triangle, attributes that are not `stride` per vertex, numbers that are not finite, an error that is
-/// negative or NaN, and [`Seams::Crossed`] of more attributes than there are.
+/// [`InputError`] in these cases: there is no pose, or poses differ in length; indices are out of range or not three
+/// per triangle; there are not `stride` attributes per vertex; a number is not finite; the error limit is negative or
+/// NaN; [`Seams::Crossed`] has more attributes than there are.
 pub fn simplify(surface: &Surface<'_>, options: &SimplifyOptions) -> Result<Simplified, InputError> {
     simplify_within(surface, options, &[f32::INFINITY])
 }
 
-/// Simplifies a mesh as far as possible within each of `distances` in turn. Every removed point stays within the current
-/// distance of the remaining surface, in every pose. Each removed point is close to one triangle, the same in all poses. No
-/// part vanishes.
+/// Simplifies a mesh as far as possible within each of `distances` in turn. Every removed point stays within the
+/// current distance of the remaining surface, in every pose. Each removed point is close to one triangle, the same in
+/// all poses. No part vanishes.
 ///
-/// These distances are measured, whereas [`SimplifyOptions::error`] is an average. At the same number of triangles, [`simplify()`] has
-/// the smaller average error, and this function the smaller maximum. It takes a few times longer.
+/// These distances are measured, whereas [`SimplifyOptions::error`] limits an average. At the same number of triangles,
+/// [`simplify()`] gives the smaller average error, and this function the smaller maximum. It takes a few times longer.
 ///
 /// # Errors
-/// As [`simplify()`], and [`InputError`] for distances that are negative or that decrease.
+/// The errors of [`simplify()`]; also [`InputError`] for distances that are negative or that decrease.
 pub fn simplify_within(
     surface: &Surface<'_>,
     options: &SimplifyOptions,
@@ -366,12 +373,12 @@ pub fn simplify_within(
     Ok(found)
 }
 
-/// As [`simplify_within`], with rigid bodies and progress. `bodies` has the rigid body of each vertex or [`NO_BODY`]; it may be
-/// empty. Vertices of one body have the same distances from each other in every pose. `watch` is called repeatedly with the
-/// fraction of the triangles that is removed, and may break.
+/// As [`simplify_within`], with rigid bodies and progress reports. `bodies` has the rigid body of each vertex, or
+/// [`NO_BODY`]; the list may be empty. Vertices of one body keep their distances from each other in every pose. `watch`
+/// is called repeatedly with the fraction of triangles removed so far, and may break.
 ///
 /// # Errors
-/// As [`simplify_within`].
+/// The same errors as [`simplify_within`].
 pub(crate) fn simplify_watched<B>(
     surface: &Surface<'_>,
     options: &SimplifyOptions,
@@ -400,15 +407,16 @@ pub(crate) fn simplify_watched<B>(
     Ok(reducer::reduce(surface, options, distances, bodies, watch))
 }
 
-/// Point of each vertex: a number per position, in the order of the points' first vertices.
+/// For each vertex, the number of its point. Vertices with the same position in every pose share a point. Points are
+/// numbered in the order of their first vertices.
 pub fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     Points::new(poses).into_of()
 }
 
-/// Checks a surface. Every reducer calls it first.
+/// Checks a surface before simplification. Every reducer calls this first.
 ///
 /// # Errors
-/// [`InputError`] that names the list and the index.
+/// [`InputError`] that names the list and the index of the first fault.
 pub fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     let Some(first) = surface.poses.first() else {
         return Err(InputError::new("poses.len", 0, "must be at least 1"));
@@ -431,7 +439,7 @@ pub fn validate(surface: &Surface<'_>) -> Result<(), InputError> {
     finite("attributes", surface.attributes, surface.stride)
 }
 
-/// Refuses numbers that are not finite; the error names the first one's vertex.
+/// Refuses numbers that are not finite. The error names the vertex of the first such number.
 fn finite(field: &str, numbers: &[f32], stride: usize) -> Result<(), InputError> {
     match numbers.iter().position(|number| !number.is_finite()) {
         None => Ok(()),

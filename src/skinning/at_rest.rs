@@ -1,5 +1,5 @@
-//! Static models: meshes at rest, or in a given pose, baked into the model's space, so that drawing them needs no
-//! skinning.
+//! Static models: meshes at rest, or in a given pose, whose vertices are baked into the model's space. Drawing them
+//! needs no skinning.
 
 use super::pose::{Moment, Pose};
 use super::vertex::{Vertex, check_range};
@@ -7,34 +7,34 @@ use crate::InputError;
 use crate::asset::skeleton::Bone;
 use crate::asset::{Influences, Mesh, Model, Skeleton, Skin, Transform};
 
-/// The model at rest, without animation. Positions, normals and tangents of all meshes are baked: they are what
-/// skinning computes without a clip, with the morph weights at rest.
+/// Bakes a model at rest into a static model. Positions, normals and tangents of all meshes get the values that
+/// skinning computes in the rest pose, with the morph weights at rest.
 ///
-/// Its only bone and its only skin are identities, so skinning gives the same positions again. Vertices and triangles
-/// keep their order; triangles are counter-clockwise once bones have transformed them ([`Mesh::indices`]). There are no
-/// clips, morph targets or levels of detail. Materials and images are those of the model.
+/// The only bone and the only skin of the result are identities, so skinning does not change the positions. Vertices
+/// and triangles keep their order. Triangles are counter-clockwise in the rest pose ([`Mesh::indices`]). The result has
+/// no clips, morph targets or levels of detail. It keeps the model's materials and images.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or a skin that does not match the model, and for vertices outside the range of
-/// coordinates, as large scales produce.
+/// [`InputError`] for a mesh or a skin that does not match the model, and for baked positions outside the range of
+/// coordinates, which large scales can cause.
 pub fn at_rest(model: &Model) -> Result<Model, InputError> {
     let vertices = (0..model.meshes.len()).map(|mesh| resting(model, mesh));
     still(model, &vertices.collect::<Result<Vec<_>, _>>()?)
 }
 
-/// The vertices of a mesh at rest.
+/// The vertices of a mesh at rest, in the model's space.
 fn resting(model: &Model, index: usize) -> Result<Vec<Vertex>, InputError> {
     let mesh = &model.meshes[index];
     model.check_mesh(index)?;
     Ok(Pose::new(model, mesh, Moment::Rest).vertices(mesh))
 }
 
-/// A static model with these vertices, one list per mesh, in the mesh's own order; otherwise as [`at_rest`]. A scene
-/// draws it as a static mesh, however the vertices were computed.
+/// Makes a static model with the given vertices: one list per mesh, in the order of the mesh's vertices. Everything
+/// else is as in [`at_rest`]. A scene draws the result as a static mesh.
 ///
 /// # Errors
-/// [`InputError`] for another number of meshes or vertices than the model has, and for vertices outside the range of
-/// coordinates.
+/// [`InputError`] if the number of lists or of vertices differs from the model's, and for positions outside the range
+/// of coordinates.
 pub fn still(model: &Model, vertices: &[Vec<Vertex>]) -> Result<Model, InputError> {
     InputError::check_len("vertices", vertices.len(), model.meshes.len(), "list for each mesh")?;
     let bone = Bone { name: "model".to_owned(), parent: None, rest: Transform::IDENTITY };

@@ -1,27 +1,27 @@
-//! Weights of normals and texture coordinates, relative to positions, in mesh simplification
+//! Weights of normals and texture coordinates in mesh simplification, relative to positions
 //! ([`Surface::attributes`](crate::mesh::Surface::attributes)).
 
 use glam::{DVec2, DVec3};
 
 use crate::asset::{Mesh, Model};
 
-/// Weight of normals. Differing normals at one point are averaged. A larger weight would therefore keep the inside of
-/// flat faces and cut their corners.
+/// Weight of normals in mesh simplification. Different normals at one point are averaged. With a larger weight,
+/// simplification would therefore keep the inside of flat faces and cut their corners.
 pub const NORMAL: f32 = 0.05;
 
-/// Edge of a reference square, as a fraction of the mesh's size. On it, a texture that slips by some distance counts as
-/// much as a position that is off by that distance.
+/// Edge of a reference square, as a fraction of the mesh's size. On this square, a texture that slips by some distance
+/// costs the same as a vertex that is off by that distance.
 const SQUARE: f64 = 3e-2;
 
-/// A mesh's texture coordinates for simplification: zeros if its material shows no texture. A mesh without a material
-/// keeps its own, because it may be textured.
+/// Texture coordinates of a mesh for simplification. They are 0 if the mesh's material has no texture and no normal
+/// map. A mesh without a material keeps its texture coordinates, because it may be textured.
 pub fn shown_uv(model: &Model, mesh: &Mesh) -> Vec<[f32; 2]> {
     let material = mesh.material.and_then(|at| model.materials.get(at));
     let is_shown = material.is_none_or(|material| material.texture.is_some() || material.normal.is_some());
     if is_shown { mesh.uv.clone() } else { vec![[0.0; 2]; mesh.uv.len()] }
 }
 
-/// The areas of a mesh's triangles, in the mesh's units and in texture coordinates.
+/// The area of a mesh's triangles, twice: in the mesh's units, and in texture coordinates.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct TextureArea {
     surface: f64,
@@ -29,13 +29,13 @@ pub struct TextureArea {
 }
 
 impl TextureArea {
-    /// Adds a triangle.
+    /// Adds a triangle, given by the positions and the texture coordinates of its corners.
     pub fn add(&mut self, [a, b, c]: [DVec3; 3], [d, e, f]: [DVec2; 3]) {
         self.surface += (b - a).cross(c - a).length();
         self.texture += (e - d).perp_dot(f - d).abs();
     }
 
-    /// The weight of texture coordinates for a mesh of this size; 0 without texture coordinates.
+    /// The weight of texture coordinates for a mesh of this size; 0 if the mesh has none.
     pub fn factor(&self, size: f64) -> f32 {
         let factor = ((self.surface / self.texture).sqrt() / (SQUARE * size)) as f32;
         if factor.is_finite() { factor } else { 0.0 }
@@ -46,7 +46,7 @@ impl TextureArea {
 mod tests {
     use super::*;
 
-    /// The factor does not depend on the mesh's scale; it is halved where texture coordinates grow twice as fast.
+    /// The factor does not depend on the mesh's scale. It is halved if texture coordinates grow twice as fast.
     #[test]
     fn a_texture_counts_by_how_far_it_slips() {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];

@@ -1,4 +1,4 @@
-//! The path of a sphere that a bone carries through a clip.
+//! The space that a sphere sweeps when a bone carries it through a clip.
 
 use glam::{Vec3, Vec3Swizzles as _};
 
@@ -7,20 +7,20 @@ use crate::animation::bounds::reference::bounds;
 use crate::animation::local_to_model::reference::local_to_model;
 use crate::asset::{Affine, Model};
 
-/// The path of a sphere that a bone carries through a clip, and the bone's deformation of it.
+/// The result of moving a sphere with a bone through a clip: the space that it sweeps, and how the bone deforms it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BonePath {
-    /// A sphere around all positions of the carried sphere, in the model's space.
+    /// A sphere around all positions of the moved sphere, in the model's space.
     pub sphere: BoundingSphere,
-    /// The largest factor by which the bone enlarges a length.
+    /// The largest factor by which the bone's transform lengthens a vector, over all poses.
     pub stretch: f32,
-    /// Whether the bone mirrors at the clip's start.
+    /// Whether the bone's transform mirrors at the clip's start.
     pub mirrors: bool,
 }
 
 impl BonePath {
-    /// Follows a bone that carries a sphere, given in the bone's space, through a clip. Sampling and the margin for
-    /// motion between samples are those of [`BoundingSphere::in_clip`].
+    /// Moves the sphere `carried`, given in the bone's space, with a bone through a clip. The number of sampled poses
+    /// and the margin for motion between them are the same as in [`BoundingSphere::in_clip`].
     pub fn new(model: &Model, clip: usize, bone: usize, carried: &BoundingSphere) -> Self {
         let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
         let (mut largest, mut mirrors) = (0.0_f32, None);
@@ -43,10 +43,11 @@ impl BonePath {
     }
 }
 
-/// An upper bound on the stretch of a matrix with these rows.
+/// An upper bound on the factor by which a matrix with these rows lengthens a vector.
 ///
-/// It is the smaller of two square roots: of the largest row sum of the products of columns (Gershgorin), and of the
-/// sum of their squares. Up to rounding it is exact for a rotation combined with any scale before it.
+/// The bound is the smaller of two square roots: of the largest row sum of the products of columns (Gershgorin), and of
+/// the sum of the squares of all elements. Up to rounding, it is exact for a scale along the axes followed by a
+/// rotation.
 fn stretch(rows: [Vec3; 3]) -> f32 {
     let squares: Vec3 = rows.iter().map(|row| row * row).sum();
     let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();
@@ -89,7 +90,7 @@ mod tests {
         let turned = of(Mat3::from_rotation_x(0.7) * Mat3::from_diagonal(Vec3::new(2.0, -3.0, 0.5)));
         assert!((turned - 3.0).abs() < 1e-5, "{turned}");
         let sheared = of(Mat3::from_cols(Vec3::X, Vec3::new(2.0, 1.0, 0.0), Vec3::Z));
-        // 1 + √2, the silver ratio.
+        // The exact value is 1 + √2, the silver ratio.
         assert!((2.414..=2.65).contains(&sheared), "{sheared}");
     }
 

@@ -10,24 +10,24 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::mesh::bone_radii;
 use crate::asset::{Clip, Model, Transform};
 
-/// The smallest and the largest number of samples of a clip; the largest is an hour at 60 per second.
+/// The smallest and the largest number of samples per clip. The largest is one hour at 60 samples per second.
 const MOMENTS: [usize; 2] = [32, 216_001];
 
-/// The factor by which a sphere's radius is enlarged.
+/// Safety factor of a sphere's radius, for motion between samples.
 pub(crate) const MARGIN: f32 = 1.05;
 
-/// A sphere in the model's space, in the model's unit.
+/// A sphere in the model's space and units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundingSphere {
-    /// The sphere's center.
+    /// Center of the sphere.
     pub center: Vec3,
-    /// The sphere's radius.
+    /// Radius of the sphere.
     pub radius: f32,
 }
 
 impl BoundingSphere {
-    /// A sphere around points, such as the vertices of a model at rest, enlarged by a twentieth. Without points it has
-    /// radius 0 and lies at the origin.
+    /// A sphere around points, such as the vertices of a model at rest. Its radius is enlarged by a twentieth. Without
+    /// points, the sphere has radius 0 and lies at the origin.
     pub fn around(points: impl Iterator<Item = Vec3> + Clone) -> Self {
         let (low, high) =
             points.clone().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
@@ -35,7 +35,7 @@ impl BoundingSphere {
         Self { center, radius: MARGIN * points.map(|point| point.distance(center)).fold(0.0, f32::max) }
     }
 
-    /// A sphere around this one and another.
+    /// A sphere around this sphere and another.
     #[cfg(feature = "gpu")]
     pub(crate) fn with(&self, other: &Self) -> Self {
         let (apart, towards) = (self.center.distance(other.center), other.center - self.center);
@@ -46,29 +46,29 @@ impl BoundingSphere {
             return *other;
         }
         let radius = (apart + self.radius + other.radius) / 2.0;
-        // Enlarged slightly to cover rounding.
+        // The radius is enlarged slightly, to cover rounding.
         Self { center: self.center + towards * ((radius - self.radius) / apart), radius: 1.000_01 * radius }
     }
 
-    /// A sphere around all meshes, at rest and in every clip.
+    /// A sphere around all meshes of a model, at rest and in every clip.
     ///
-    /// Clips are sampled 60 times a second, at least 32 times. A clip of more than an hour is sampled 216,001 times, at
-    /// larger intervals. The sphere is enlarged by a twentieth for motion between samples. It is computed only from the
-    /// vertices' distances to their bones, so it may be half again as large as necessary. Morph targets count as
-    /// [`bone_radii`] says.
+    /// Clips are sampled 60 times a second, and at least 32 times. A clip of more than an hour is sampled 216,001
+    /// times, at larger intervals. The sphere is enlarged by a twentieth for motion between samples. Only the distances
+    /// of vertices from their bones are used, so the sphere may be 1.5 times as large as necessary. Morph targets are
+    /// included as [`bone_radii`] describes.
     ///
     /// # Panics
-    /// As [`bone_radii`].
+    /// In the cases of [`bone_radii`].
     pub fn in_clips(model: &Model) -> Self {
         let rest = std::iter::once(model.skeleton.rest());
         Self::in_poses(model, rest.chain(model.clips.iter().flat_map(poses)))
     }
 
-    /// A sphere around all meshes in one clip, computed as in [`BoundingSphere::in_clips`]. The rest pose does not
-    /// count. For a model without clips, only the rest pose counts, whatever clip is given.
+    /// A sphere around all meshes in one clip, computed as in [`BoundingSphere::in_clips`]. The rest pose is not
+    /// included. If the model has no clips at all, the sphere is around the rest pose, for any `clip`.
     ///
     /// # Panics
-    /// For a clip that the model does not have although it has others, and as [`bone_radii`].
+    /// If the model has clips but not this one, and in the cases of [`bone_radii`].
     pub fn in_clip(model: &Model, clip: usize) -> Self {
         if model.clips.is_empty() {
             return Self::in_clips(model);
@@ -76,7 +76,7 @@ impl BoundingSphere {
         Self::in_poses(model, poses(&model.clips[clip]))
     }
 
-    /// A sphere around all meshes in these poses, enlarged for motion between them.
+    /// A sphere around all meshes in the given poses, enlarged for motion between them.
     fn in_poses(model: &Model, poses: impl Iterator<Item = Vec<Transform>>) -> Self {
         let [low, high] = box_in_poses(model, poses);
         Self { center: middle_of(low, high), radius: MARGIN * low.distance(high) / 2.0 }
@@ -88,7 +88,7 @@ pub(crate) fn middle_of(low: Vec3, high: Vec3) -> Vec3 {
     if low.cmple(high).all() { low.midpoint(high) } else { Vec3::ZERO }
 }
 
-/// The transforms of all bones at the sampled moments of a clip.
+/// The local transforms of all bones at the sampled moments of a clip.
 pub(crate) fn poses(clip: &Clip) -> impl Iterator<Item = Vec<Transform>> {
     let [least, most] = MOMENTS;
     let moments = poses_of(clip).unwrap_or(most).max(least);
@@ -96,7 +96,7 @@ pub(crate) fn poses(clip: &Clip) -> impl Iterator<Item = Vec<Transform>> {
     (0..moments).map(move |moment| sample(clip, time(moment), RotationPath::Slerp))
 }
 
-/// The corners of a box around all meshes in these poses.
+/// The lower and upper corner of a box around all meshes in the given poses.
 fn box_in_poses(model: &Model, poses: impl Iterator<Item = Vec<Transform>>) -> [Vec3; 2] {
     let skeleton = &model.skeleton;
     let bone_radii = bone_radii(skeleton.len(), &model.skins, &model.meshes);
@@ -115,7 +115,7 @@ fn box_in_poses(model: &Model, poses: impl Iterator<Item = Vec<Transform>>) -> [
     if low.cmple(high).all() { [low, high] } else { [Vec3::ZERO; 2] }
 }
 
-/// For each bone, whether any vertex follows it.
+/// For each bone, whether at least one vertex follows it.
 pub(crate) fn followed(model: &Model) -> Vec<bool> {
     let mut followed = vec![false; model.skeleton.len()];
     for mesh in &model.meshes {
@@ -137,7 +137,7 @@ mod tests {
     use crate::skinning::skin::reference::skin;
     use crate::skinning::vertex::Blend;
 
-    /// The largest distance of any vertex from a point, in 45 poses of a clip.
+    /// The largest distance of any vertex from `center`, in 45 poses of a clip.
     fn farthest(model: &Model, clip: &Clip, center: Vec3) -> f32 {
         let mesh = &model.meshes[0];
         let in_pose = |moment: u16| {
@@ -197,7 +197,7 @@ mod tests {
         assert!(points.iter().all(|point| point.distance(center) <= radius) && radius < 1.5);
     }
 
-    /// A clip of a minute and a half with a jump of a tenth of a second.
+    /// The clip lasts 90 seconds and contains a jump of a tenth of a second.
     #[test]
     fn the_sphere_holds_what_long_clips_do() {
         let mut model = crate::samples::creature().expect("valid");
@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(BoundingSphere::in_clip(&model, 0).radius, radius);
     }
 
-    /// The rest pose counts only if there is no clip.
+    /// The rest pose is used only if there is no clip.
     #[test]
     fn clips_have_spheres_of_their_own() {
         let mut model = crate::samples::creature().expect("valid");

@@ -1,4 +1,5 @@
-//! Skinning data on the device: a mesh in clusters with its skin, and per instance its palette, weights and vertices.
+//! GPU buffers for skinning: a clustered mesh with its skin, and the palette, morph weights and vertices of each
+//! instance.
 
 use glam::UVec4;
 
@@ -19,45 +20,48 @@ impl SeenAs<[f32; 2]> for Vertex {}
 impl SeenAs<Dispatched> for u32 {}
 impl SeenAs<u32> for InstanceLod {}
 
-/// A mesh and its skin on the device. Vertices lie in clusters; see [`Clusters::order`].
+/// A mesh and its skin in GPU buffers. Vertices are grouped in clusters, in the order of [`Clusters::order`].
 #[derive(Debug, Clone)]
 pub struct MeshBuffers {
-    /// Vertices before morphing.
+    /// Vertices in bind space, before morphing.
     pub vertices: Buffer<Vertex>,
     /// Texture coordinates, one pair per vertex.
     pub uv: Buffer<[f32; 2]>,
-    /// Three indices per triangle, of all levels of detail; see [`Clusters::indices`].
+    /// Three indices per triangle, for all levels of detail; see [`Clusters::indices`].
     pub indices: Buffer<u32>,
-    /// The mesh's range at each level of its character ([`level_errors`]); the first level is the mesh itself.
+    /// The part of the mesh that each level of detail of the whole character ([`level_errors`]) draws. Entry 0 is the
+    /// full mesh.
     pub levels: Vec<ClusterLevel>,
-    /// See [`Clusters::influences`].
+    /// The bones and weights of each cluster's vertices, packed; see [`Clusters::influences`].
     pub influences: Buffer<u32>,
-    /// See [`Clusters::masks`].
+    /// The set of bones that each cluster follows, as bits; see [`Clusters::masks`].
     pub masks: Buffer<u32>,
-    /// First delta of each vertex; one more entry than there are vertices.
+    /// Index in `deltas` of each vertex's first delta. The buffer has one more entry than vertices: the total number of
+    /// deltas.
     pub delta_offsets: Buffer<u32>,
-    /// Three vectors per delta: position and, as bits, the target; normal; tangent.
+    /// Morph deltas, three vectors each: position delta with the target's index as bits in w; normal delta; tangent
+    /// delta.
     pub deltas: Buffer<[[f32; 4]; 3]>,
-    /// Indices of the skin's bones.
+    /// Index in the skeleton of each of the skin's bones.
     pub bones: Buffer<u32>,
-    /// Three rows per bone of the skin.
+    /// The inverse bind matrix of each of the skin's bones, as three rows.
     pub inverse_binds: Buffer<[[f32; 4]; 3]>,
-    /// Words per set of the skeleton's bones.
+    /// Number of 32-bit words in a set of the skeleton's bones, one bit per bone.
     pub mask_words: usize,
     /// Number of morph targets.
     pub targets: usize,
-    /// Number of bones of the skeleton.
+    /// Number of bones in the skeleton.
     pub all_bones: usize,
-    /// Whether both sides of triangles are visible; see [`Mesh::double_sided`].
+    /// Whether both sides of the triangles are visible; see [`Mesh::double_sided`].
     pub double_sided: bool,
 }
 
 impl MeshBuffers {
-    /// Uploads one of a model's meshes. At each level of the model's character ([`level_errors`]), the clusters use the
-    /// mesh's own level from [`own_levels`].
+    /// Uploads one mesh of a model. The levels of detail are those of the whole model ([`level_errors`]). At each of
+    /// them, the clusters use the mesh's own level from [`own_levels`].
     ///
     /// # Errors
-    /// [`InputError`] for a mesh that does not match its skin; [`GpuError`].
+    /// [`InputError`] for a mesh that does not match its skin; [`GpuError`] if a buffer cannot be allocated.
     pub fn new(gpu: &Gpu, model: &Model, mesh: &Mesh) -> Result<(Self, Clusters), Error> {
         let all_bones = model.skeleton.len();
         let own = own_levels(mesh, &level_errors(&model.meshes));
@@ -84,24 +88,26 @@ impl MeshBuffers {
         Ok((buffers, clusters))
     }
 
-    /// Number of clusters, of [`CLUSTER`](super::clusters::CLUSTER) vertices each.
+    /// Number of clusters in the mesh. A cluster has [`CLUSTER`](super::clusters::CLUSTER) vertices.
     pub fn clusters(&self) -> usize {
         self.vertices.len().div_ceil(super::clusters::CLUSTER)
     }
 
-    /// A level of detail of the character; the last one for a number beyond it.
+    /// The part of the mesh that a level of detail of the character draws. Numbers beyond the last level give the last
+    /// level.
     pub fn level(&self, level: u32) -> ClusterLevel {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// Number of clusters at each level of the character, as kernels look it up. Missing levels repeat the last one's.
+    /// Number of clusters at each level of detail, in the layout of kernels. Entries beyond the last level repeat the
+    /// last level.
     pub(crate) fn clusters_of_levels(&self) -> [UVec4; MAX_LEVELS / 4] {
         let of = |level: usize| self.level(level as u32).clusters;
         std::array::from_fn(|at| UVec4::from_array(std::array::from_fn(|lane| of(4 * at + lane))))
     }
 }
 
-/// The deltas of each vertex, sorted by target.
+/// The offset of each vertex's first delta, and all deltas. The deltas of a vertex are sorted by target.
 fn deltas(targets: &[MorphTarget], clusters: &Clusters) -> (Vec<u32>, Vec<[[f32; 4]; 3]>) {
     let mut by_vertex = vec![Vec::new(); clusters.order.len()];
     for (index, target) in (0..).zip(targets) {
@@ -120,23 +126,24 @@ fn deltas(targets: &[MorphTarget], clusters: &Clusters) -> (Vec<u32>, Vec<[[f32;
     (offsets, all)
 }
 
-/// Instances of one mesh on the device. The caller may read, write and bind all buffers.
+/// GPU buffers of all instances of one mesh. The caller may read, write and bind all of them.
 #[derive(Debug, Clone)]
 pub struct SkinnedCrowd {
-    /// The palette that [`super::palette::PalettePass`] writes, at `instance · bones of the skin + bone`: three
-    /// vectors per bone, or four for dual quaternions.
+    /// The bone transforms that [`super::palette::PalettePass`] writes, at index `instance · bones of the skin + bone`.
+    /// A bone takes three vectors, or four for dual quaternions.
     pub palette: Buffer<[f32; 4]>,
-    /// Level of detail of each instance, full quality at first; [`InstanceLod::UNSEEN`] for instances that are not skinned.
+    /// Level of detail of each instance, full quality at first. [`InstanceLod::UNSEEN`] marks an instance that is not
+    /// skinned.
     pub instance_lods: Buffer<InstanceLod>,
-    /// Weights of morph targets, instance by instance; 0 at first.
+    /// Weights of the morph targets, all weights of instance 0 first; 0 at first.
     pub weights: Buffer<f32>,
-    /// The vertices that [`super::morph::MorphPass`] writes if the mesh has targets, at `instance · vertices +
-    /// slot`. Clusters beyond an instance's level keep their previous contents. Empty if vertices lie in pages
-    /// ([`PageBuffers::morphed`](super::pages::PageBuffers::morphed)).
+    /// Morphed vertices at index `instance · vertices + slot`, written by [`super::morph::MorphPass`] if the mesh has
+    /// targets. Clusters beyond an instance's level of detail keep their previous contents. The buffer is empty if
+    /// vertices lie in pages ([`PageBuffers::morphed`](super::pages::PageBuffers::morphed)).
     pub morphed: Buffer<Vertex>,
     /// Number of instances.
     pub instances: usize,
-    /// The kind of blending that the palette is for.
+    /// The kind of blending: it determines the layout of the palette.
     pub blend: Blend,
 }
 
@@ -144,17 +151,17 @@ impl SkinnedCrowd {
     /// Allocates the buffers for `instances` instances of a mesh.
     ///
     /// # Errors
-    /// [`InputError`] for no instances; [`GpuError`].
+    /// [`InputError`] for 0 instances or too many; [`GpuError`] if a buffer cannot be allocated.
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, instances: usize, blend: Blend) -> Result<Self, Error> {
         let crowd = Self::paged(gpu, mesh, instances, blend)?;
         let morphed = if mesh.targets == 0 { 0 } else { instances * mesh.vertices.len() };
         Ok(Self { morphed: Buffer::new(gpu, "morphed vertices", morphed)?, ..crowd })
     }
 
-    /// As [`SkinnedCrowd::new`], for vertices in pages.
+    /// Allocates the buffers of [`SkinnedCrowd::new`] for vertices in pages: [`SkinnedCrowd::morphed`] stays empty.
     ///
     /// # Errors
-    /// As [`SkinnedCrowd::new`].
+    /// The same errors as [`SkinnedCrowd::new`].
     pub fn paged(gpu: &Gpu, mesh: &MeshBuffers, instances: usize, blend: Blend) -> Result<Self, Error> {
         if instances == 0 || u32::try_from(instances * mesh.clusters().max(1)).is_err() {
             let bound = format!("must be in 1..={}", u32::MAX as usize / mesh.clusters().max(1));
@@ -172,17 +179,17 @@ impl SkinnedCrowd {
     }
 }
 
-/// The list of clusters to skin, in a buffer that kernels may fill.
+/// The list of clusters to skin, in a buffer that kernels can fill.
 #[derive(Debug, Clone)]
 pub struct ActiveClusters {
-    /// `cluster · instances + instance` for each listed cluster; all other clusters are skipped. If last positions are
-    /// kept, one word per pair follows: the last selection's effect on it
-    /// ([`ClusterState`](super::select::ClusterState)).
+    /// The listed clusters, each as `cluster · instances + instance`; all other clusters are skipped. If
+    /// [`ActiveClusters::keeps_last`] is set, the list is followed by one word per cluster and instance: a
+    /// [`ClusterState`](super::select::ClusterState), set by the last selection.
     pub pairs: Buffer<u32>,
-    /// Whether last positions are kept.
+    /// Whether vertex positions of the previous frame are kept, for motion vectors.
     pub keeps_last: bool,
-    /// Workgroup counts along x, y and z as indirect dispatch arguments; the number of pairs; and a counter that is 0
-    /// between dispatches.
+    /// Five words: workgroup counts along x, y and z (indirect dispatch arguments), the number of listed clusters, and
+    /// a counter that is 0 between dispatches.
     pub dispatched: Buffer<u32>,
 }
 
@@ -190,10 +197,10 @@ pub struct ActiveClusters {
 pub const DISPATCHED_WORDS: usize = size_of::<Dispatched>() / size_of::<u32>();
 
 impl ActiveClusters {
-    /// Allocates a list with room for all clusters of all instances. It is empty at first.
+    /// Allocates an empty list with a capacity for all clusters of all instances.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] if a buffer cannot be allocated.
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         Ok(Self {
             pairs: Buffer::new(gpu, "clusters", mesh.clusters() * crowd.instances)?,
@@ -202,24 +209,25 @@ impl ActiveClusters {
         })
     }
 
-    /// As [`ActiveClusters::new`], with last positions kept.
+    /// Allocates an empty list as [`ActiveClusters::new`], plus a state for each cluster, because previous positions
+    /// are kept.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] if a buffer cannot be allocated.
     pub fn keeping(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         let pairs = Buffer::new(gpu, "clusters", 2 * mesh.clusters() * crowd.instances)?;
         Ok(Self { pairs, keeps_last: true, ..Self::new(gpu, mesh, crowd)? })
     }
 
-    /// The number of words that `pairs` pairs take.
+    /// Number of words in [`ActiveClusters::pairs`] for this number of pairs of a cluster and an instance.
     pub(crate) fn words(&self, pairs: usize) -> usize {
         if self.keeps_last { 2 * pairs } else { pairs }
     }
 
-    /// Sets the list from the host.
+    /// Writes the list from the CPU. Each entry is `cluster · instances + instance`.
     ///
     /// # Errors
-    /// [`GpuError`], also for more pairs than the list has room for.
+    /// [`GpuError`], also for a list that exceeds the capacity.
     pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
         self.pairs.write(gpu, pairs)?;
         let count = pairs.len() as u32;

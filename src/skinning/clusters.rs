@@ -1,4 +1,4 @@
-//! Clusters: the vertices of a mesh in groups of [`CLUSTER`] that follow few bones, arranged for the kernels.
+//! Clusters: the vertices of a mesh in groups of [`CLUSTER`] that follow few bones, in the layout of the kernels.
 
 use std::cmp::Reverse;
 
@@ -13,58 +13,59 @@ use crate::skinning::vertex::vertices_of;
 /// Number of vertices in a cluster.
 pub const CLUSTER: usize = cluster::CLUSTER as usize;
 
-/// The largest number of bones of a skin.
+/// The largest number of bones that a skin may have.
 pub const MAX_SKIN_BONES: usize = 1 << 16;
 
-/// The part of a clustered mesh that a level of detail uses.
+/// The part of a clustered mesh that one level of detail draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClusterLevel {
-    /// Number of vertices, in the slots from 0 on.
+    /// Number of vertices. They have the slots from 0 on.
     pub vertices: u32,
-    /// Number of clusters that hold its vertices, from the first on. The last one may also hold vertices of a finer
-    /// level.
+    /// Number of clusters that hold the level's vertices, starting with cluster 0. The last of them may also hold
+    /// vertices of a finer level.
     pub clusters: u32,
-    /// Index of its first triangle corner in [`Clusters::indices`].
+    /// Index of the level's first triangle corner in [`Clusters::indices`].
     pub first_index: u32,
-    /// Number of indices, three per triangle.
+    /// Number of entries in [`Clusters::indices`], three per triangle.
     pub indices: u32,
 }
 
-/// A mesh's vertices arranged in clusters. Vertices of coarse levels come first. The last cluster may be partly filled.
+/// A mesh's vertices in clusters of 64. Vertices of coarse levels come first. The last cluster may be partly filled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
-    /// The mesh's vertex in each slot.
+    /// For each slot, the index of its vertex in the mesh. A slot is a vertex's index in the order of clusters.
     pub order: Vec<u32>,
-    /// Vertices before morphing, by slot.
+    /// Vertices before morphing, in the order of slots.
     pub vertices: Vec<Vertex>,
-    /// Texture coordinates, by slot.
+    /// Texture coordinates, in the order of slots.
     pub uv: Vec<[f32; 2]>,
-    /// The triangles of all levels, one level after the other, in the mesh's order; indices are slots.
+    /// The triangles of all levels, one level after the other, three slots per triangle. Triangles keep the mesh's order.
     pub indices: Vec<u32>,
-    /// The levels of detail; the first is the mesh itself with all of its vertices. The others are the mesh's own
-    /// levels ([`Mesh::levels`]), or those that it uses at the levels of a character ([`Clusters::with_levels`]).
+    /// The levels of detail; level 0 is the full mesh with all vertices. The others are the mesh's own levels
+    /// ([`Mesh::levels`]), or, after [`Clusters::with_levels`], the levels of a character.
     pub levels: Vec<ClusterLevel>,
-    /// Influences of each cluster, as two header words per cluster and columns of [`CLUSTER`] words.
+    /// The influences of all vertices, packed cluster by cluster: two header words, and columns of [`CLUSTER`] words.
     ///
-    /// The header has the index of the first column, and the largest number of influences per vertex. The first columns
-    /// are the bones, two per word, with the strongest in the lower half of the first. Then follow the weights of all
-    /// but the strongest, as bits. The strongest weight is 1 minus the sum of the others.
+    /// The header has the index of the cluster's first column, and the largest number of influences per vertex. The
+    /// first columns hold bones, two per word; the strongest bone is in the lower half of the first word. The next
+    /// columns hold the weights of all bones but the strongest, as bits. The strongest weight is 1 minus the sum of the
+    /// others.
     pub influences: Vec<u32>,
-    /// The set of bones of each cluster, in [`Clusters::mask_words`] words: one bit per slot of the skeleton's
-    /// [`Order`], as in gates and [`Active::updated_bones`](crate::animation::compact).
+    /// The set of bones that each cluster follows, in [`Clusters::mask_words`] words per cluster. There is one bit per
+    /// bone, in the skeleton's [`Order`], as in gates and [`Active::updated_bones`](crate::animation::compact).
     pub masks: Vec<u32>,
-    /// Words per set of bones: [`Order::words`].
+    /// Number of 32-bit words in a set of bones: [`Order::words`].
     pub mask_words: usize,
     /// For each cluster, whether morph targets move any of its vertices.
     pub morphs: Vec<bool>,
 }
 
 impl Clusters {
-    /// Arranges a mesh in clusters. Its skin must match the skeleton.
+    /// Groups the vertices of a mesh into clusters. The mesh's skin must match the skeleton.
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`], for a skin of another skeleton, and for skins of more than
-    /// [`MAX_SKIN_BONES`].
+    /// [`InputError`] if [`Mesh::validate`] refuses the mesh, if its skin does not match the skeleton, or if the skin
+    /// has more than [`MAX_SKIN_BONES`] bones.
     pub fn new(mesh: &Mesh, skins: &[Skin], skeleton: &Skeleton) -> Result<Self, InputError> {
         mesh.validate(skins)?;
         let skin = &skins[mesh.skin];
@@ -91,15 +92,15 @@ impl Clusters {
         })
     }
 
-    /// The same clusters with the levels of a character. At each of them, the mesh uses its own level from
-    /// [`own_levels`](super::own_levels).
+    /// Replaces the levels by those of a character. `own` gives the mesh's own level at each level of the character,
+    /// from [`own_levels`](super::own_levels).
     #[must_use]
     pub fn with_levels(mut self, own: &[u32]) -> Self {
         self.levels = own.iter().map(|level| self.level(*level)).collect();
         self
     }
 
-    /// The slot of each of the mesh's vertices.
+    /// For each vertex of the mesh, its slot.
     pub fn slots(&self) -> Vec<u32> {
         slots(&self.order)
     }
@@ -114,12 +115,12 @@ impl Clusters {
         self.order.is_empty()
     }
 
-    /// A level of detail; the last one for a number beyond it.
+    /// The part of the mesh that a level of detail draws. Numbers beyond the last level give the last level.
     pub fn level(&self, level: u32) -> ClusterLevel {
         self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// Converts one value per slot to the mesh's own order.
+    /// Reorders `placed`, one value per slot, into the order of the mesh's vertices.
     pub fn in_mesh_order<T: Copy>(&self, placed: &[T]) -> Vec<T> {
         let mut all: Vec<_> = self.order.iter().zip(placed).collect();
         all.sort_by_key(|(vertex, _)| **vertex);
@@ -137,7 +138,7 @@ fn all_triangles(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {
     (0..=mesh.levels.len() as u32).map(|level| mesh.triangles(level))
 }
 
-/// The coarsest level that uses each vertex; at least level 0, the mesh itself.
+/// For each vertex, the number of the coarsest level that uses it; at least 0, the full mesh.
 fn bands(mesh: &Mesh) -> Vec<u32> {
     let mut bands = vec![0; mesh.vertices()];
     for (level, triangles) in (0..).zip(all_triangles(mesh)) {
@@ -158,8 +159,8 @@ fn levels(mesh: &Mesh, bands: &[u32]) -> Vec<ClusterLevel> {
     (0..).zip(all_triangles(mesh)).map(level).collect()
 }
 
-/// The order of vertices: first those of coarse levels, then by strongest bone, number of influences and the other
-/// bones.
+/// The mesh's vertices in the order of slots. Vertices of coarse levels come first. Within a level, they are sorted by
+/// strongest bone, then by number of influences, then by the other bones.
 fn order(mesh: &Mesh, bands: &[u32]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
     order.sort_by_cached_key(|vertex| {
@@ -249,7 +250,7 @@ mod tests {
             }
             bones += if lane == 0 { mask.iter().map(|word| word.count_ones()).sum::<u32>() } else { 0 };
         }
-        // Each cluster follows few of the 153 bones.
+        // On average, each cluster follows fewer than 8 of the 153 bones.
         assert!(bones < 8 * clusters.len() as u32, "{bones} in {}", clusters.len());
     }
 
@@ -274,7 +275,7 @@ mod tests {
             let placed = &clusters.indices[first_index as usize..][..indices as usize];
             let named: Vec<u32> = placed.iter().map(|slot| clusters.order[*slot as usize]).collect();
             assert_eq!(named, mesh.triangles(level));
-            // A level uses the first slots. Level 0 also has vertices without a triangle.
+            // A level uses the first slots. Level 0 also includes vertices that no triangle uses.
             let used: std::collections::BTreeSet<_> = placed.iter().copied().collect();
             assert!(used.iter().copied().eq(0..vertices) || level == 0 && used.last() < Some(&vertices));
             assert_eq!(held, vertices.div_ceil(64));

@@ -1,19 +1,19 @@
-//! Fewer bones for distant characters (A sections 8.8 and 9.6). Bones collapse one by one into the nearest kept bone
-//! above them; the bone whose collapse moves skinned vertices least goes first. The result is a complete [`Model`],
-//! which every pass accepts like the original.
+//! Reduction of bones for distant characters (A sections 8.8 and 9.6). Bones collapse one by one into the nearest kept
+//! bone above them. The next bone to collapse is always the one that displaces skinned vertices least. The result is a
+//! complete [`Model`], which every pass accepts like the original.
 //!
-//! # What becomes of a collapsed bone
+//! # What happens to a collapsed bone
 //!
-//! - **Its motion** is folded into the tracks of the kept bones below it. These keep their model-space transforms:
-//!   within rounding at all key times, and between keys within about a thousandth of the model's size (half the
-//!   diagonal of its bounding box). Keys are added where linear interpolation would be further off. If the collapsed
-//!   bone does not move in a clip, the tracks keep their keys, their interpolation and their tangents.
+//! - **Its motion** is folded into the tracks of the kept bones below it. At all key times, these bones keep their
+//!   model-space transforms up to rounding. Between keys, they stay within about a thousandth of the model's size (half
+//!   the diagonal of its bounding box). Keys are added where linear interpolation would deviate more. If the collapsed
+//!   bone does not move in a clip, the tracks keep their keys, interpolation and tangents.
 //! - **Its vertices** follow the kept bone, rigidly as at rest. If two bones take a vertex to the same position, their
 //!   influences are added up, so skins get fewer joints. If a skin was not bound at rest, its joints remain separate.
 //!
 //! A bone with non-uniform scale is kept as long as bones below it are kept: their translation, rotation and scale
-//! could not represent the shear. Materials, images, morph targets and their weights, and levels of detail do not
-//! change. Bones that provide root motion, roots, and the uppermost bones that a clip moves never collapse.
+//! could not represent the shear. Materials, images, morph targets, morph weights and levels of detail do not change.
+//! Roots, bones that provide root motion, and the uppermost bones that a clip moves never collapse.
 
 mod bind;
 mod choice;
@@ -28,12 +28,12 @@ use crate::skinning::pose::{Moment, moments_in, poses_of};
 use choice::{Choice, Remap};
 use rest::Rest;
 
-/// The number of bones that [`collapse_bones`] leaves.
+/// The number of bones that [`collapse_bones`] keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KeptBones {
-    /// This number of bones, from 1 to the model's.
+    /// This number of bones, from 1 to the number of bones in the model.
     Count(usize),
-    /// This fraction of the model's bones, above 0 and up to 1; rounded up.
+    /// This fraction of the model's bones, above 0 and at most 1. The resulting number is rounded up.
     Fraction(f32),
 }
 
@@ -49,33 +49,33 @@ impl KeptBones {
     }
 }
 
-/// Options of [`collapse_bones`]: how many bones it leaves, and which of them never collapse.
+/// Options of [`collapse_bones`]: the number of bones to keep, and the bones that never collapse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollapseOptions {
-    /// The number of bones left. It is exceeded if bones with non-uniform scale must be kept.
+    /// The number of bones to keep. The result has more bones if bones with non-uniform scale cannot collapse.
     pub bones: KeptBones,
-    /// Names of bones to keep, such as those that objects are attached to. A name keeps every bone with that name.
+    /// Names of bones that never collapse, such as bones with attached objects. A name keeps every bone with that name.
     pub keep: Vec<String>,
-    /// Whether bones without children, such as the ends of fingers and feet, are kept (A section 9.6.1).
+    /// Whether bones without children never collapse, such as the ends of fingers and feet (A section 9.6.1).
     pub keep_end_effectors: bool,
 }
 
 impl CollapseOptions {
-    /// Leaves this number of bones, and keeps end effectors.
+    /// Options that keep this number of bones, including all end effectors (bones without children).
     pub fn new(bones: KeptBones) -> Self {
         Self { bones, keep: Vec::new(), keep_end_effectors: true }
     }
 }
 
-/// The error of a collapsed model against the original, in the model's units.
+/// The error of a model with collapsed bones, compared with the original, in the model's units.
 ///
-/// Both are sampled 60 times a second in every clip, start and end included, or at rest if there are no clips. Vertices
-/// are blended linearly, with the clips' weights of morph targets.
+/// Both models are sampled 60 times a second in every clip, start and end included, or at rest if there are no clips.
+/// Vertices are blended linearly, with the clips' weights of morph targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollapseError {
     /// The largest distance of a vertex from its position in the original.
     pub largest: f32,
-    /// The root mean square of these distances, over all vertices in all poses.
+    /// The root mean square of the distances of all vertices in all poses from their positions in the original.
     pub rms: f32,
     /// The largest distance of a kept bone's origin from its position in the original.
     pub kept_bones: f32,
@@ -84,24 +84,26 @@ pub struct CollapseError {
 /// A model with fewer bones, and its error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collapsed {
-    /// The model. Clips, skins, meshes, materials and images have the same number and order as the original's.
+    /// The model with fewer bones. Its clips, skins, meshes, materials and images have the same number and order as the
+    /// original's.
     pub model: Model,
-    /// For each bone of the original, the index in [`Collapsed::model`] of the bone that it became or collapsed into.
+    /// For each bone of the original, an index in [`Collapsed::model`]: the same bone if kept, else the bone it
+    /// collapsed into.
     pub remap: Vec<u32>,
-    /// The error of the model against the original.
+    /// The error compared with the original model.
     pub error: CollapseError,
 }
 
-/// Collapses bones of a model.
+/// Collapses bones of a model until the requested number is left.
 ///
-/// Costs are measured in up to 64 poses of each clip, evenly spaced. A bone's cost is the largest displacement of its
-/// vertices, or of the vertices of bones that collapsed into it. The bone with the least cost collapses next. If
-/// several collapses displace no vertex, as in models without clips, the bone whose vertices lie nearest to its origin
-/// goes first. The same model gives the same result.
+/// Costs are measured in up to 64 evenly spaced poses of each clip. A bone's cost is the largest displacement of the
+/// vertices that follow it, or follow bones that collapsed into it. The bone with the least cost collapses next. If
+/// several collapses displace no vertex, as in models without clips, the bone whose vertices are nearest to its origin
+/// goes first. The same model always gives the same result.
 ///
 /// # Errors
-/// [`InputError`] for a number of bones out of range or below the number of bones that are kept, names that no bone
-/// has, clips longer than an hour, and a model whose parts do not fit together.
+/// [`InputError`] in these cases: the number of bones is out of range, or below the number of bones that never
+/// collapse; a name belongs to no bone; a clip is longer than an hour; the parts of the model do not fit together.
 pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collapsed, InputError> {
     validate(model)?;
     let count = options.bones.count(model.skeleton.len())?;
@@ -124,7 +126,7 @@ pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collap
     Ok(Collapsed { model: collapsed, remap: remap.indices(), error })
 }
 
-/// Moments of every clip, 60 a second, but at most `most` per clip.
+/// Moments of every clip: 60 per second, but at most `most` per clip.
 fn looked_at(model: &Model, most: usize) -> Result<Vec<Moment>, InputError> {
     let mut moments = Vec::new();
     for (at, clip) in model.clips.iter().enumerate() {
@@ -143,8 +145,8 @@ fn validate(model: &Model) -> Result<(), InputError> {
     (0..model.meshes.len()).try_for_each(|mesh| model.check_mesh(mesh))
 }
 
-/// The skeleton of the kept bones, each below the nearest kept bone above it. If a joint collapsed, the bone that
-/// received it becomes a joint.
+/// The skeleton of the kept bones. The parent of a bone is the nearest kept bone above it. If a joint collapsed, the
+/// bone into which it collapsed becomes a joint.
 fn reduced(skeleton: &Skeleton, remap: &Remap) -> Result<Skeleton, InputError> {
     let indices = remap.indices();
     let bone = |bone: usize| {

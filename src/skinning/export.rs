@@ -6,23 +6,23 @@ use crate::asset::mesh::Mesh;
 use crate::asset::obj::{ObjWriter, Object};
 use crate::skinning::vertex::Vertex;
 
-/// A mesh with its skinned vertices, for [`write_obj`].
+/// A mesh and its skinned vertices, as input of [`write_obj`].
 #[derive(Debug, Clone, Copy)]
 pub struct ObjMesh<'a> {
-    /// The mesh: its name, texture coordinates and triangles are written.
+    /// The mesh. Its name, texture coordinates and triangles are written.
     pub mesh: &'a Mesh,
-    /// Its skinned vertices, one per vertex of the mesh, in the mesh's order.
+    /// Skinned vertices, one per vertex of the mesh, in the mesh's order.
     pub vertices: &'a [Vertex],
 }
 
-/// Writes one OBJ object per mesh, in order. Each has vertices in the mesh's order with all digits that `f32` needs,
-/// texture coordinates (v up, as in OBJ), normals and triangles.
+/// Writes one OBJ object per mesh, in order: its vertices in the mesh's order, texture coordinates (v up, as in OBJ),
+/// normals and triangles. Numbers have all digits that `f32` needs.
 ///
 /// # Errors
-/// The errors of `out`.
+/// An I/O error of `out`.
 ///
 /// # Panics
-/// If the number of vertices differs from the mesh's.
+/// If a mesh's number of skinned vertices differs from the mesh's number of vertices.
 pub fn write_obj(out: &mut impl Write, meshes: &[ObjMesh<'_>]) -> io::Result<()> {
     let mut writer = ObjWriter::new(out);
     for ObjMesh { mesh, vertices } in meshes {

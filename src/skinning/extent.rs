@@ -1,5 +1,5 @@
-//! The extent of a mesh in clips: a bounding sphere, and the displacement of vertices by the fade of influences. They
-//! determine at which distances a crowd may fade within an error in pixels.
+//! The extent of a mesh in clips: a bounding sphere, and the largest displacement of a vertex by the fade of
+//! influences. Both determine the distances at which a crowd may fade within an error in pixels.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -13,33 +13,33 @@ use crate::asset::Mesh;
 use crate::asset::Model;
 use crate::asset::influences::Influence;
 
-/// Safety factor of [`Extent::stray`] over the sampled maximum. If a vertex's displacement were linear between two
-/// poses, its maximum would be at one of them. The factor covers curvature in between.
+/// Safety factor of [`Extent::stray`] over the sampled maximum. If a vertex's displacement changed linearly between two
+/// poses, its maximum would be at one of the two. The factor covers curvature.
 const STRAY_MARGIN: f32 = 1.01;
 
-/// The extent of a mesh in its clips, in the model's units, with linear blending and the clips' weights of morph
-/// targets.
+/// The extent of a mesh in its clips, in the model's units. It assumes linear blending, with the clips' weights of
+/// morph targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// The center of a sphere around all vertices in all poses.
+    /// Center of a sphere around all vertices in all poses.
     pub center: Vec3,
-    /// The radius of the sphere.
+    /// Radius of the sphere.
     pub radius: f32,
-    /// Displacement per λ, the value of [`InstanceLod::fade`](crate::skinning::instance_lod::InstanceLod::fade): at any
-    /// λ, no vertex is further than λ times this from its position at full quality. It is the maximum over samples of
-    /// displacement divided by λ.
+    /// Largest displacement of a vertex per unit of influence fade
+    /// ([`InstanceLod::fade`](crate::skinning::instance_lod::InstanceLod::fade)). At a fade of λ, no vertex is further
+    /// than λ times this value from its position at full quality. Sampled as the maximum of displacement divided by λ.
     pub stray: f32,
 }
 
 impl Extent {
-    /// Samples `poses` of each of these clips, evenly spaced from start to end; the rest pose if there are no clips.
+    /// Samples `poses` poses of each given clip, evenly spaced from start to end. Without clips, samples the rest pose.
     ///
-    /// Between samples the values may be exceeded by 1 %. [`poses_of`](super::poses_of) gives a sufficient number for a
-    /// clip. Other clips, and layers above these, are not covered.
+    /// Between samples, the extent may be exceeded by 1 %. [`poses_of`](super::poses_of) gives a sufficient number of
+    /// poses for a clip. Other clips, and layers on top of the given clips, are not covered.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh or clips that the model does not have, for 0 poses, and for a mesh that does not match
-    /// its skin.
+    /// [`InputError`] if the model does not have the mesh or a clip, if `poses` is 0, or if the mesh does not match its
+    /// skin.
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         let moments = moments(model, mesh, clips, poses)?;
         let mesh = &model.meshes[mesh];
@@ -48,13 +48,13 @@ impl Extent {
         Ok(Self { center, radius: radius(model, mesh, &moments, center), stray: STRAY_MARGIN * all.stray })
     }
 
-    /// The common extent of all meshes of a model, which share levels and fade.
+    /// The common extent of all meshes of a model, for objects whose meshes share levels of detail and fade.
     ///
-    /// The sphere contains the vertices of all meshes; its center is that of [`BoundingSphere::in_clips`]. `stray` is
-    /// the largest of all meshes. Otherwise as [`Extent::new`].
+    /// The sphere contains the vertices of all meshes. Its center is the center of [`BoundingSphere::in_clips`].
+    /// [`Extent::stray`] is the largest value of any mesh. Everything else is as in [`Extent::new`].
     ///
     /// # Errors
-    /// As [`Extent::new`], and [`InputError`] for a model without meshes.
+    /// The same errors as [`Extent::new`]; also [`InputError`] for a model without meshes.
     pub fn of_model(model: &Model, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         if model.meshes.is_empty() {
             return Err(InputError::new("model.meshes.len", 0, "must be at least 1"));
@@ -69,23 +69,23 @@ impl Extent {
         Ok(all)
     }
 
-    /// The projected distances from which a crowd may begin to fade, and from which it may be rigid.
+    /// The projected distances at which a crowd may begin to fade, and at which it may be rigid.
     ///
-    /// Within this range, no vertex is drawn more than `pixels` from its position, anywhere in the picture. Placements
-    /// must not scale. 0 pixels allow no fade. `docs/pixel-bounds.md` has the derivation. Errors add up: a gate's error
-    /// of ε′ pixels and a fade of ε together show at most ε + ε′.
+    /// If influences fade over this range, no vertex is drawn more than `pixels` from its correct position, anywhere in
+    /// the picture. Instances must not be scaled. With 0 pixels, nothing fades. Errors add up: a gate's error of ε′
+    /// pixels and a fade of ε pixels together show at most ε + ε′. `docs/pixel-bounds.md` has the derivation.
     pub fn fade_range(&self, projection: &Projection, pixels: f32) -> FadeRange {
         let start = self.beyond(projection, pixels, 0.0);
         FadeRange { start, end: self.beyond(projection, pixels, self.stray).max(start.next_up()) }
     }
 
-    /// The projected distances from which levels with these `errors`
-    /// ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)) may be used.
+    /// For each error in `errors` ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)), the projected distance
+    /// from which a level with this error may be drawn.
     ///
-    /// From there on, the level and the mesh's surface are at most `pixels` apart on the screen: every point of one is that
-    /// near to the other, wherever the errors hold. Placements must not scale. With 0
-    /// pixels, levels with an error begin at the largest number. `docs/pixel-bounds.md` has the derivation. Errors add
-    /// up: split the allowed pixels between a fade and levels.
+    /// From that distance on, the level and the mesh's surface are at most `pixels` apart on the screen: every point of
+    /// either surface has a point of the other within `pixels`, wherever the error holds. Instances must not be scaled.
+    /// With 0 pixels, a level with an error gets the largest finite distance. Errors add up, so split the allowed
+    /// pixels between fade and levels. `docs/pixel-bounds.md` has the derivation.
     pub fn level_ranges(
         &self,
         projection: &Projection,
@@ -95,17 +95,17 @@ impl Extent {
         errors.into_iter().map(|error| self.beyond(projection, pixels, error)).collect()
     }
 
-    /// The projected distance beyond which an error of `off` takes at most `pixels`; finite.
+    /// The projected distance beyond which a displacement of `off` covers at most `pixels` on the screen; finite.
     fn beyond(&self, projection: &Projection, pixels: f32, off: f32) -> f32 {
         let [focal, pixels, radius, off] =
             [projection.focal_pixels, pixels.max(0.0), self.radius, off].map(f64::from);
         let projected_distance = 3.0 * radius + off * (focal + pixels) / pixels;
-        // Without an error any distance is enough; with no pixels allowed, none is.
+        // An error of 0 is allowed at any distance. With 0 pixels, any other error needs an infinite distance.
         projected_distance.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
     }
 }
 
-/// The state of a mesh at the sampled moments.
+/// Bounds of a mesh at the sampled moments: the corners of its box, and its largest displacement by fade.
 #[derive(Clone, Copy)]
 struct Look {
     low: Vec3,
@@ -141,7 +141,7 @@ fn look(pose: &Pose, mesh: &Mesh) -> Look {
     all
 }
 
-/// The radius of a sphere around `center` that contains all vertices.
+/// The radius of a sphere around `center` that contains all vertices at all moments, with a margin.
 fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     let farthest = |moment: &Moment| {
         let points = Pose::new(model, mesh, *moment).positions(mesh);
@@ -150,10 +150,10 @@ fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     MARGIN * moments.par_iter().map(farthest).reduce(|| 0.0, f32::max)
 }
 
-/// The maximum of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ over i > 1 and all λ.
+/// The largest displacement of a vertex per unit of fade λ: the maximum of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ over λ, i > 1.
 ///
-/// As a function of 1/λ, the sum is linear between the values λ = wᵢ/w₂, at which one of the minima switches. It is
-/// therefore longest at one of these values.
+/// As a function of 1/λ, the sum is piecewise linear, with kinks at λ = wᵢ/w₂, where one of the minima switches. Its
+/// length is therefore largest at a kink.
 fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
     let Some(second) = influences.get(1) else { return 0.0 };
     let off = |fade: f32| {
@@ -176,7 +176,7 @@ mod tests {
         let weights = [0.4_f32, 0.3, 0.2, 0.1];
         let influences: Vec<_> =
             (0..).zip(weights).map(|(bone, weight)| Influence { bone, weight }).collect();
-        // At small λ every minimum is 0.3 λ: (0.3 − 0.6, 0.3). At λ = 1: (0.3 − 0.2, 0.2).
+        // At small λ, every minimum is 0.3 λ, which gives (0.3 − 0.6, 0.3). At λ = 1, the sum is (0.3 − 0.2, 0.2).
         assert!((stray(&influences, &points) - 0.3 * 2.0_f32.sqrt()).abs() < 1e-6);
         assert!((stray(&influences[..2], &points[..2]) - 0.3).abs() < 1e-6);
         assert_eq!(stray(&influences[..1], &points[..1]), 0.0);
@@ -192,7 +192,7 @@ mod tests {
         assert_eq!(field(0, &[0], 0), "poses");
     }
 
-    /// The sphere contains every mesh and has the center of the sphere that scenes use.
+    /// The sphere contains every mesh. Its center is the center of the sphere that scenes use.
     #[test]
     fn models_have_one_extent() {
         let mut model = crate::samples::creature().expect("valid");
@@ -223,7 +223,7 @@ mod tests {
         let range = |extent: &Extent, pixels| extent.fade_range(&projection, pixels);
         let FadeRange { start, end } = range(&extent, 0.5);
         assert_eq!(start, 4.5);
-        // Twice the pixels halve the distance.
+        // An error of twice the pixels is reached at half the distance.
         let nearer = range(&extent, 1.0).end;
         assert!(((nearer - start) / (end - start) - 0.5).abs() < 1e-3, "{nearer} {end}");
         let endless = FadeRange { start: 4.5, end: f32::MAX };
@@ -247,7 +247,7 @@ mod tests {
         assert_eq!(ranges(0.0, &errors), [1.5, f32::MAX, f32::MAX, f32::MAX]);
         assert!(ranges(1.0, &[]).is_empty());
 
-        // Errors in every direction, at the nearest points of the sphere, straight ahead and far to the side.
+        // Tests errors in every direction, at the nearest points of the sphere, straight ahead and far to the side.
         let focal = projection.focal_pixels;
         let screen = |point: Vec3| point.truncate() * (focal / point.z);
         let unit = |at: i32| {
@@ -259,7 +259,7 @@ mod tests {
             for pixels in [0.25, 1.0, 8.0] {
                 let mut largest = 0.0_f32;
                 for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
-                    // A center at the same projected distance.
+                    // The sphere's center, placed at the same projected distance in this direction.
                     let middle = towards * (begin / (towards.z * towards.z));
                     let bounding_sphere = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
                     for (point, off) in bounding_sphere

@@ -1,4 +1,4 @@
-//! The skinning of a crowd: all steps from the bones' matrices to drawable vertices.
+//! The skinning of a crowd: all GPU passes from the bones' matrices to drawable vertices.
 
 use std::sync::Arc;
 
@@ -16,50 +16,50 @@ use crate::gpu::{Buffer, Gpu, Job, compute_pass};
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
-/// What a [`SkinFrame`] skins, and how.
+/// Options of a [`SkinFrame`]: the mesh, the number of instances, and the blending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SkinOptions {
     /// Index of the mesh in the model.
     pub mesh: usize,
     /// Number of instances, at least 1.
     pub instances: usize,
-    /// Blending of bones.
+    /// The kind of blending of bones.
     pub blend: Blend,
 }
 
-/// The prepared skinning of all instances of one mesh.
+/// All GPU passes that skin the instances of one mesh, prepared for recording.
 #[derive(Debug, Clone)]
 pub struct SkinFrame {
-    /// The mesh on the device.
+    /// The mesh in GPU buffers.
     pub mesh: MeshBuffers,
-    /// The arrangement of the mesh's vertices.
+    /// The order of the mesh's vertices in clusters.
     pub clusters: Clusters,
-    /// LODs and morph weights of instances, which the caller may write.
+    /// Levels of detail and morph weights of the instances. The caller may write them.
     pub crowd: SkinnedCrowd,
-    /// The updated bones: those that the model matrices record, or, if they record none, those that the caller writes.
-    /// [`SkinFrame::record_updated_bones`] clears the caller's.
+    /// The updated bones. If the model matrices record updated bones, this is their buffer. Otherwise the caller writes
+    /// it, and [`SkinFrame::record_updated_bones`] clears it.
     pub select: ClusterSelectBuffers,
     /// The clusters selected by the last [`SkinFrame::record_updated_bones`].
     pub active: ActiveClusters,
-    /// Skinned vertices, at `instance · vertices + slot`. Clusters beyond an instance's level of detail are out of
-    /// date.
+    /// Skinned vertices, at index `instance · vertices + slot`. Vertices of clusters beyond an instance's level of
+    /// detail are outdated.
     pub skinned: Buffer<Vertex>,
     palette: Job,
-    /// Two selections: one keeps the updated bones, the other clears them.
+    /// Two jobs that select clusters: the first keeps the record of updated bones, the second clears it.
     selections: [Job; 2],
-    /// The jobs of morph targets, if there are any, and of skinning.
+    /// The morphing job, if the mesh has morph targets, and the skinning job.
     jobs: Vec<Job>,
     reader: Arc<UpdatedBonesReader>,
 }
 
 impl SkinFrame {
-    /// Prepares the instances of a model's mesh, with bones posed by `matrices`.
+    /// Prepares the skinning of all instances of a model's mesh. `matrices` holds the bones' poses.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh that the model does not have or that does not match it, for no instances, for fewer
-    /// matrices or bits of updated bones than needed, and for dual quaternions over matrices of a crowd under
-    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending only;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] in these cases: the model does not have the mesh; the mesh does not match the model; there are 0
+    /// instances; `matrices` holds fewer matrices or updated bones than needed; dual quaternions are requested for
+    /// matrices under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose error bound holds for linear blending
+    /// only. [`crate::gpu::GpuError`] from the device.
     pub fn new(
         gpu: &Gpu,
         model: &Model,
@@ -86,24 +86,25 @@ impl SkinFrame {
         let skin = SkinPass::new(gpu, blend)?.prepare_active(gpu, &mesh, &crowd, &skinned, &active)?;
         let morph = MorphPass::new(gpu)?.prepare_active(gpu, &mesh, &crowd, &active)?;
         let jobs = morph.into_iter().chain([skin]).collect();
-        // This step is last: it claims the matrices for its kind of blending, which a refused frame must not do.
+        // The palette is prepared last, because it claims the matrices for its kind of blending. A refused frame must
+        // not claim them.
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
         Ok(Self { mesh, clusters, crowd, select, active, skinned, palette, selections, jobs, reader })
     }
 
-    /// Records the skinning of visible instances at their level of detail. It skins only these clusters:
-    /// - clusters with a bone that was updated since the last such recording, or with a changed morph weight;
-    /// - clusters beyond the level of the frame before;
-    /// - all clusters of instances whose influences changed, or that were not visible in the frame before.
+    /// Records the skinning of visible instances at their level of detail. Only these clusters are skinned:
+    /// - clusters with a bone that was updated since the last recording, or with a changed morph weight;
+    /// - clusters that the instance's level of detail in the previous frame did not include;
+    /// - all clusters of instances whose influences changed, or that were invisible in the previous frame.
     ///
-    /// The first recording therefore skins everything visible. It counts frames ([`ClusterSelectBuffers::skinned`]): record it
-    /// at most once per frame; frames may skip it. If several skinning frames share model matrices, the last of them
-    /// clears the updated bones ([`UpdatedBones`]).
+    /// The first recording therefore skins everything visible. Each recording counts as one frame
+    /// ([`ClusterSelectBuffers::skinned`]): record at most once per frame; frames may be skipped. If several skinning
+    /// frames share model matrices, the last of them clears the updated bones ([`UpdatedBones`]).
     pub fn record_updated_bones(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch_updated_bones(&mut compute_pass(encoder, "skinning"));
     }
 
-    /// As [`SkinFrame::record_updated_bones`], into a compute pass that is being recorded.
+    /// Does the same as [`SkinFrame::record_updated_bones`], within a compute pass of the caller.
     pub fn dispatch_updated_bones(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.palette.dispatch(pass);
         let [keeping, clearing] = &self.selections;
@@ -111,8 +112,8 @@ impl SkinFrame {
         self.jobs.iter().for_each(|job| job.dispatch(pass));
     }
 
-    /// Reads an instance's vertices, in the mesh's own order. Vertices beyond its level of detail are out of date.
-    /// Waits for the device.
+    /// Reads the vertices of an instance, in the mesh's own order. Vertices beyond its level of detail are outdated.
+    /// Blocks until the device has finished.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].

@@ -1,27 +1,28 @@
-//! Level of detail of an instance: which influences count, and which vertices are skinned (A section 8.4).
+//! Level of detail of a skinned instance: how many bones each vertex follows, and which vertices are skinned (A section
+//! 8.4).
 
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
 pub use crate::shared::skinning::instance_lod::InstanceLod;
 
-/// The projected distances between which an instance's influences fade, in world units.
+/// Two projected distances in world units. Between them, the influences of all but the strongest bone fade out.
 ///
-/// The projected distance of a point at depth z and distance d from the eye is z²/d, and d in a parallel view. A small
-/// displacement there moves the point on the screen by at most focal · displacement · d/z² pixels.
+/// The projected distance of a point is z²/d, where z is its depth and d its distance from the eye; in a parallel view
+/// it is d. A small displacement there moves the point on the screen by at most focal · displacement · d/z² pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FadeRange {
-    /// Up to this distance all influences count.
+    /// Up to this distance, all influences have their full weight.
     pub start: f32,
-    /// From this distance on, each vertex follows one bone. Above `start`.
+    /// From this distance on, each vertex follows one bone only. Must be above `start`.
     pub end: f32,
 }
 
 impl FadeRange {
-    /// Checks the distances.
+    /// Checks that both distances are finite and that `start` is below `end`.
     ///
     /// # Errors
-    /// [`InputError`] for distances that are not finite, and for a start that is not below the end.
+    /// [`InputError`] for a distance that is not finite, and for a start that is not below the end.
     pub fn validate(&self) -> Result<(), InputError> {
         let Self { start, end } = *self;
         InputError::check_finite("fade_range.start", start)?;
@@ -35,13 +36,13 @@ impl FadeRange {
 }
 
 impl InstanceLod {
-    /// All influences of all vertices.
+    /// Full quality: all influences of all vertices.
     pub const FULL: Self = Self { influence_fade: 0.0, max_influences: MAX_INFLUENCES as u32, mesh_lod: 0 };
 
     /// No skinning, for an instance that is not visible.
     pub const UNSEEN: Self = Self { influence_fade: 0.0, max_influences: 0, mesh_lod: 0 };
 
-    /// At most `most` influences per vertex: the strongest ones.
+    /// Full quality, except that each vertex follows at most `most` bones: those with the largest weights.
     ///
     /// # Errors
     /// [`InputError`] unless `most` is in 1 to [`MAX_INFLUENCES`].
@@ -50,7 +51,7 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// A fade from full quality at 0 to rigid at 1.
+    /// Weaker influences faded by `fade`: 0 is full quality, 1 is rigid (one bone per vertex).
     ///
     /// # Errors
     /// [`InputError`] unless `fade` is in 0 to 1.
@@ -59,7 +60,7 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// All influences of the vertices of a level.
+    /// All influences, for the vertices of this level of detail of the mesh.
     ///
     /// # Errors
     /// [`InputError`] unless `level` is below [`MAX_LEVELS`].
@@ -68,10 +69,10 @@ impl InstanceLod {
         instance_lod.validate().map(|()| instance_lod)
     }
 
-    /// Full quality up to the range's start, rigid from its end on, and a fade in between.
+    /// Influences faded by distance: full quality up to the range's start, rigid from its end on, and linear in between.
     ///
     /// # Errors
-    /// [`InputError`] for a distance that is not finite, and as [`FadeRange::validate`].
+    /// [`InputError`] for a distance that is not finite, and for a range that [`FadeRange::validate`] refuses.
     pub fn at_distance(distance: f32, fade_range: FadeRange) -> Result<Self, InputError> {
         InputError::check_finite("distance", distance)?;
         fade_range.validate()?;
@@ -79,10 +80,10 @@ impl InstanceLod {
         Self::fade(((distance - start) / (end - start)).clamp(0.0, 1.0))
     }
 
-    /// Checks the ranges of a visible instance.
+    /// Checks the fields of a visible instance against their ranges.
     ///
     /// # Errors
-    /// [`InputError`] that names the field.
+    /// [`InputError`] that names the first field out of range.
     pub fn validate(&self) -> Result<(), InputError> {
         InputError::check_within("influence_fade", self.influence_fade, 0.0..=1.0)?;
         InputError::check_within("max_influences", self.max_influences, 1..=MAX_INFLUENCES as u32)?;

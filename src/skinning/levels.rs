@@ -1,6 +1,6 @@
-//! Levels of detail of skinned meshes. A mesh is simplified for all poses of its clips, and each level's error is
-//! measured (A sections 9.3 and 9.4: all poses of the animation count). Meshes of a model that share borders are
-//! simplified as one, so that no gap opens between them (B section 5.2).
+//! Levels of detail of skinned meshes. A mesh is simplified for all poses of its clips, and the error of each level is
+//! measured in all of them (A sections 9.3 and 9.4). Meshes of a model that share borders are simplified as one
+//! surface, so that no gap opens between them (B section 5.2).
 
 use std::iter::successors;
 use std::ops::ControlFlow;
@@ -29,59 +29,62 @@ mod near;
 mod welded;
 mod whole;
 
-/// The error of the finest level, as a fraction of the mesh's size ([`Keys::size`]).
+/// The error of the first level, as a fraction of the mesh's size ([`Keys::size`]).
 const FIRST: f32 = 1e-3;
 
-/// The ratio of the errors of successive levels. The number of triangles falls by about its inverse.
+/// The ratio between the errors of successive levels. From level to level, the number of triangles falls by about this
+/// factor.
 const STEP: f32 = std::f32::consts::SQRT_2;
 
-/// A level is kept only if it has at most this fraction of the triangles of the level before.
+/// A level is kept only if its triangle count is at most this fraction of the previous level's count.
 const WORTHWHILE: f64 = 0.9;
 
-/// Safety factor of [`MeshLevel::error`] over the sampled maximum, for poses in between.
+/// Safety factor of [`MeshLevel::error`] over the sampled maximum, for poses between the samples.
 const ERROR_MARGIN: f32 = 1.03;
 
-/// Coarser levels of one of a model's meshes.
+/// The coarser levels of detail of one mesh of a model.
 #[derive(Debug, Clone)]
 pub struct MeshLevels {
-    /// The levels for [`Mesh::levels`](crate::asset::Mesh::levels); empty if nothing can be removed.
+    /// The levels for [`Mesh::levels`](crate::asset::Mesh::levels). Empty if nothing can be removed.
     ///
-    /// The first has an error of a thousandth of the mesh's size. Each later one has 1.4 times the error of the one
-    /// before, and at most 0.9 times its triangles. The size is the diagonal of the box around the triangles at rest.
-    /// If clips make the mesh more than twice as large or small, the pose in which it is largest counts instead. The
-    /// units in which a mesh was bound do not matter. If meshes share borders, sizes and triangle counts are those of
-    /// all of them together, and all have equally many levels with the same errors.
+    /// The first level has an error of a thousandth of the mesh's size. Each later level has 1.4 times the error of the
+    /// previous level, and at most 0.9 times its triangles. The size is the diagonal of the box around the triangles at
+    /// rest. If clips make the mesh more than twice as large or small, the largest pose counts instead. The units of
+    /// the bind pose do not matter. If meshes share borders, sizes and triangle counts are taken over all of these
+    /// meshes together. They then have the same number of levels with the same errors.
     pub levels: Vec<MeshLevel>,
-    /// The partner of each vertex, for [`Mesh::partners`](crate::asset::Mesh::partners).
+    /// For each vertex, the vertex that replaces it at coarser levels; see
+    /// [`Mesh::partners`](crate::asset::Mesh::partners).
     pub partners: Vec<u32>,
     near: Vec<Near>,
 }
 
 impl MeshLevels {
-    /// Simplifies a mesh for its rest pose and these clips. The error of each level is measured in `poses`
-    /// poses of each clip, evenly spaced from start to end.
+    /// Simplifies a mesh for its rest pose and the given clips. The error of each level is measured in `poses` poses of
+    /// each clip, evenly spaced from start to end.
     ///
-    /// [`poses_of`](super::poses_of) gives a sufficient number of poses for a clip. Without clips, only the
-    /// rest pose counts. Blending is linear, with the clips' weights of morph targets. Vertices that differ
-    /// only in normals are simplified as one. Each remaining corner then gets the vertex with the normal
-    /// closest to its own. In a flat-shaded triangle, it gets the vertex with the normal closest to the
-    /// triangle's. Texture coordinates count if the mesh's material shows a texture, or if the mesh has no
-    /// material. The model's other meshes do not matter; [`add_levels`] keeps borders to them closed.
+    /// [`poses_of`](super::poses_of) gives a sufficient number of poses for a clip. Without clips, only the rest pose
+    /// counts. Blending is linear, with the clips' weights of morph targets.
     ///
-    /// The error of a level is the largest of these distances in all of these poses, plus 3 % for poses in
+    /// Vertices that differ only in normals are merged first. Afterwards each remaining triangle corner gets the vertex
+    /// with the closest normal: closest to the corner's own normal, or, in a flat-shaded triangle, to the triangle's.
+    /// Texture coordinates count if the mesh's material shows a texture, or if the mesh has no material. The model's
+    /// other meshes are ignored; [`add_levels`] keeps borders between meshes closed.
+    ///
+    /// The error of a level is the largest of the following distances in all sampled poses, plus 3 % for poses in
     /// between:
     ///
-    /// - from each vertex of the mesh to the level's triangles close to it;
-    /// - from the midpoint of each triangle and edge of the level to the mesh's triangles in its place.
+    /// - from each vertex of the mesh to the nearby triangles of the level;
+    /// - from the midpoint of each triangle and edge of the level to the nearby triangles of the mesh.
     ///
-    /// Other points of the surfaces may be further apart: up to 1.4 times as far for a creature and a cow,
-    /// and up to 10 times for a mesh that is as coarse as its bumps.
+    /// Other points of the two surfaces may be further apart: up to 1.4 times as far for a creature and a cow, and up
+    /// to 10 times for a mesh whose triangles are as large as its bumps.
     ///
-    /// A scaled model has the same levels, with errors scaled alike: exactly for powers of two. For other factors,
-    /// rounding may decide between collapses of equal cost.
+    /// A scaled model has the same levels, and their errors scale with it. This is exact for powers of two. For other
+    /// factors, rounding may change the order of collapses with equal cost.
     ///
     /// # Errors
-    /// [`InputError`] as [`Extent::new`](super::Extent::new).
+    /// [`InputError`] in the cases of [`Extent::new`](super::Extent::new).
     pub fn new(model: &Model, mesh: usize, clips: &[usize], poses: usize) -> Result<Self, InputError> {
         let moments = moments(model, mesh, clips, poses)?;
         let task =
@@ -90,21 +93,21 @@ impl MeshLevels {
         Ok(all.unwrap_or_default().remove(0).1)
     }
 
-    /// The point on level `level + 1` of the mesh that is nearest to `wanted`, among the triangles that were nearest in
-    /// some pose. `wanted` is the correct position of a vertex of the mesh. `point` gives the positions of the level's
-    /// vertices. A vertex that the level has is at its own position.
+    /// The point on level `level + 1` of the mesh that is nearest to `wanted`, the correct position of the mesh's
+    /// vertex `vertex`. Only triangles that were nearest to the vertex in some pose are searched. `point` gives the
+    /// positions of the level's vertices. If the level has the vertex, the result is the vertex's own position.
     ///
     /// # Panics
-    /// For levels and vertices that do not exist.
+    /// If the level or the vertex does not exist.
     pub fn nearest(&self, level: usize, vertex: usize, wanted: Vec3, point: impl Fn(u32) -> Vec3) -> Vec3 {
         self.near[level].nearest(vertex, wanted, &point).unwrap_or_else(|| point(vertex as u32))
     }
 }
 
-/// The share of simplification in the progress; measuring moments takes the rest.
+/// Fraction of the progress that simplification takes. Measuring errors takes the rest.
 const SIMPLIFICATION: f64 = 0.7;
 
-/// The inputs of a computation of levels.
+/// The inputs for computing levels.
 struct Task<'a> {
     model: &'a Model,
     moments: &'a [Moment],
@@ -112,9 +115,9 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The levels of all meshes of these groups, each with its mesh. Meshes of a group are simplified as one, and have
-    /// equally many levels with the same errors. `watch` gets fractions from 0 to 1 that never decrease; if it breaks,
-    /// the result is `None`.
+    /// The levels of all meshes of `groups`, each with the mesh's index. The meshes of a group are simplified as one,
+    /// and have the same number of levels with the same errors. `watch` gets the progress, from 0 to 1 and never
+    /// decreasing. If `watch` breaks, the result is `None`.
     fn run(
         &self,
         groups: &[Vec<usize>],
@@ -147,7 +150,7 @@ impl Task<'_> {
     }
 }
 
-/// Meshes that are simplified as one.
+/// Meshes that are simplified as one surface, and the levels found so far.
 struct Group<'a> {
     whole: &'a Whole<'a>,
     unit: f32,
@@ -178,7 +181,8 @@ impl<'a> Group<'a> {
         Ok(Some(Self { whole, unit, simplified, levels, sides, suspects }))
     }
 
-    /// The levels of each mesh. `errors` is the largest distance of each level, in units of `unit`.
+    /// The finished levels of each mesh, with the mesh's index. `errors` has the largest distance per level, in units
+    /// of `unit`.
     fn levels(&self, errors: &[f32]) -> Vec<(usize, MeshLevels)> {
         let whole = self.whole;
         let mut most = 0.0_f32;
@@ -208,37 +212,37 @@ impl<'a> Group<'a> {
     }
 }
 
-/// All moments that count: the given ones and the rest pose.
+/// All moments to sample: the rest pose and the given moments.
 fn looked_at(moments: &[Moment]) -> Vec<Moment> {
     std::iter::once(Moment::Rest).chain(moments.iter().copied()).collect()
 }
 
-/// Computes the levels of all meshes of a model ([`MeshLevels::new`]), sets them, and returns them.
+/// Computes the levels of all meshes of a model as [`MeshLevels::new`] does, sets them in the model, and returns them.
 ///
-/// Meshes whose borders have the same positions in every pose are simplified as one: their borders stay closed at every
-/// level, and they have equally many levels with the same errors. If nothing is left of a mesh at a level, it has one
-/// triangle without area there.
+/// Meshes whose borders coincide in every pose are simplified as one. Their borders stay closed at every level, and
+/// they have the same number of levels with the same errors. If a mesh has vanished at a level, it has a single
+/// triangle of zero area there.
 ///
-/// `clips` are the indices of the clips that will be played, none for a static mesh. `poses` is the number of poses
-/// examined per clip, at most 216,001. The largest of [`poses_of`](super::poses_of) misses no motion; fewer are
-/// quicker. Without clips only the rest pose counts, and `poses` may be 1.
+/// `clips` are the indices of the clips that will be played; none for a static mesh. `poses` is the number of poses
+/// sampled per clip, at most 216,001. To miss no motion, use the largest result of [`poses_of`]; fewer poses are
+/// quicker. Without clips, only the rest pose counts, and `poses` may be 1.
 ///
-/// The time grows with vertices × clips × poses for vertices that follow several bones. For a vertex that follows one
+/// The computing time grows with vertices × clips × poses for vertices that follow several bones. For vertices with one
 /// bone, it does not depend on the number of poses. A character or a rock of tens of thousands of triangles takes
-/// seconds. To avoid this at every start, keep the result: serde stores a [`Model`] with its levels in any format.
-/// [`add_levels_with_progress`] is for loading screens.
+/// seconds. To avoid this at every start, keep the result: serde can store a [`Model`] with its levels in any format.
+/// For loading screens, use [`add_levels_with_progress`].
 ///
 /// # Errors
-/// [`InputError`] as [`MeshLevels::new`].
+/// [`InputError`] in the cases of [`MeshLevels::new`].
 pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Vec<MeshLevels>, InputError> {
     let looks = Looks { clips, poses, is_at_rest: false };
     Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
 }
 
-/// As [`add_levels`], but levels keep their errors at rest too.
+/// As [`add_levels`], but the rest pose counts in addition to the clips, so errors hold at rest too.
 ///
 /// # Errors
-/// As [`add_levels`].
+/// The same errors as [`add_levels`].
 #[cfg(feature = "gpu")]
 pub(crate) fn add_levels_and_at_rest(
     model: &mut Model,
@@ -249,10 +253,10 @@ pub(crate) fn add_levels_and_at_rest(
     Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
 }
 
-/// As [`add_levels`], and reports the completed fraction of the work to `watch`: 0 first, 1 last, never decreasing.
+/// As [`add_levels`], but reports progress to `watch`: the completed fraction of the work, from 0 to 1, never decreasing.
 ///
-/// The calling thread calls it, so it needs no lock; for a model that takes long, many times a second. If it breaks,
-/// the model is unchanged and the result is `None`.
+/// `watch` is called on the calling thread, so it needs no lock. For a model that takes long, it is called many times a
+/// second. If `watch` breaks, the model stays unchanged and the result is `None`.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -268,7 +272,7 @@ pub(crate) fn add_levels_and_at_rest(
 /// ```
 ///
 /// # Errors
-/// As [`add_levels`].
+/// The same errors as [`add_levels`].
 pub fn add_levels_with_progress(
     model: &mut Model,
     clips: &[usize],
@@ -278,12 +282,12 @@ pub fn add_levels_with_progress(
     watched(model, Looks { clips, poses, is_at_rest: false }, watch)
 }
 
-/// A `watch` that never breaks.
+/// A progress callback that ignores the progress and never breaks.
 fn unwatched<T>(_: T) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// The moments at which a model is sampled.
+/// The clips and poses at which a model is sampled.
 struct Looks<'a> {
     clips: &'a [usize],
     /// Number of poses per clip.
@@ -322,7 +326,8 @@ fn watched(
     Ok(Some(all))
 }
 
-/// Simplifies the meshes. `bodies` has the rigid body of each vertex; `watch` gets the fraction of removed triangles.
+/// Simplifies the meshes. `bodies` has the rigid body of each vertex. `watch` gets the fraction of triangles removed so
+/// far.
 fn simplified(
     whole: &Whole<'_>,
     welded: &Welded,
@@ -344,16 +349,16 @@ fn simplified(
     Ok(simplify_watched(&surface, &SimplifyOptions::default(), &distances, bodies, watch)?.continue_value())
 }
 
-/// A level under construction.
+/// A level of detail under construction.
 struct Found {
-    /// The vertex into which each vertex has collapsed.
+    /// For each vertex, the vertex into which it has collapsed at this level.
     remap: Vec<u32>,
-    /// For each vertex of the level before, the vertex that replaces it.
+    /// For each vertex that the previous level uses, the vertex that replaces it at this level.
     into: Vec<u32>,
     indices: Vec<u32>,
 }
 
-/// The levels. Each uses a subset of the vertices of the one before.
+/// The levels of detail, finest first. Each level uses a subset of the previous level's vertices.
 fn found(whole: &Whole<'_>, welded: &Welded, keys: &Keys, simplified: &Simplified) -> Vec<Found> {
     let mut distances: Vec<f32> = simplified.collapses().iter().map(|collapse| collapse.distance).collect();
     distances.dedup();
@@ -377,7 +382,7 @@ mod tests {
     use crate::asset::{Influence, Influences, Mesh};
     use crate::skinning::pose::Pose;
 
-    /// If the simplifier saw all moments, the measured errors equal its own distances: no near triangle is overlooked.
+    /// If the simplifier saw all moments, the measured errors equal its own distances. No nearby triangle is overlooked.
     #[test]
     fn errors_are_the_distances_that_were_kept() {
         let plain = crate::samples::creature().expect("valid");
@@ -409,7 +414,7 @@ mod tests {
         }
     }
 
-    /// A ninth of the triangles remain within an error of a hundredth of the height. Every level keeps its error at
+    /// With an error of a hundredth of the height, a ninth of the triangles remain. Every level keeps its error at
     /// moments that were not sampled too.
     #[test]
     fn creatures_lose_triangles_by_distance() {
@@ -440,8 +445,8 @@ mod tests {
         }
     }
 
-    /// A mesh in which every triangle has its own vertices, with its face normal. The remaining triangles keep such
-    /// normals.
+    /// In this mesh, every triangle has its own vertices with the face normal. The triangles of the levels have face
+    /// normals too.
     #[test]
     fn hard_edges_do_not_matter() {
         let mut model = crate::samples::creature().expect("valid");
@@ -463,7 +468,7 @@ mod tests {
         model.meshes[0] = hard;
         let found = add_levels(&mut model, &[0], 9).expect("valid").remove(0);
         assert_eq!(model.meshes[0].validate(&model.skins), Ok(()));
-        // Averaged normals change the order of collapses, so there may be one level more.
+        // Averaged normals change the order of collapses, so one level more or less is accepted.
         assert!(found.levels.len().abs_diff(smooth.levels.len()) <= 1);
         let mut compared = 0;
         for hard in &found.levels {

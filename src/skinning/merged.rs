@@ -1,5 +1,5 @@
-//! Merging of a model's meshes, so that an object takes few draws however many primitives its file has. The result is
-//! one mesh with all vertices, one skin, and for each level of detail triangles sorted by draw state.
+//! Merging of a model's meshes, so that an object needs few draws even if its file has many primitives. The result is
+//! one mesh with all vertices, one skin, and triangles sorted by draw state for each level of detail.
 
 mod joined;
 mod parts;
@@ -13,56 +13,59 @@ use joined::{Union, joined};
 
 pub use parts::{MAX_PARTS, PartKey};
 
-/// The largest number of draws of an object: parts × levels × 2, because mirrored instances have their own draws.
+/// The largest number of draws per object: parts × levels × 2. The factor 2 is for mirrored instances, which are drawn
+/// separately.
 pub const MAX_DRAWS: usize = 64;
 
-/// A model with merged meshes.
+/// A model whose meshes are merged, and the parts in which it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Merged {
-    /// The model: the original skeleton, clips, materials and images, one skin, and the merged meshes.
+    /// The merged model: the original skeleton, clips, materials and images, one skin, and the merged meshes.
     ///
-    /// It has one mesh, and one more for each set of morph weights. They are drawn part by part. The `material` of a
-    /// mesh is set only if all of it has the same one. A mesh is double-sided if any of it is.
+    /// There is one merged mesh for all meshes without morph targets, and one for each set of morph weights. Each is
+    /// drawn in parts. The `material` of a merged mesh is set only if all of its triangles have the same material. A
+    /// merged mesh is double-sided if any of its meshes is.
     pub model: Model,
-    /// The errors of its levels 1, 2 … in the model's units, ascending: the [`level_errors`](super::level_errors) of
-    /// the merged meshes. [`own_levels`] gives the level that each mesh uses there.
+    /// The errors of levels 1, 2 … in the model's units, ascending: the [`level_errors`](super::level_errors) of the
+    /// merged meshes. [`own_levels`] gives the level of each mesh at these errors.
     pub errors: Vec<f32>,
-    /// For each mesh, the material of each of its vertices, as an index in the model.
+    /// For each merged mesh, the material of each of its vertices, as an index in the model.
     pub materials: Vec<Vec<Option<usize>>>,
-    /// For each mesh, the original mesh of each of its vertices, as an index.
+    /// For each merged mesh, the index of the original mesh of each of its vertices.
     pub sources: Vec<Vec<u32>>,
-    /// The parts: one draw per part and level. Every triangle belongs to one part.
+    /// The parts of the merged meshes; one draw per part and level. Every triangle belongs to one part.
     pub parts: Vec<Part>,
 }
 
-/// Triangles of a merged mesh that one pipeline draws.
+/// Triangles of a merged mesh that are drawn with one pipeline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// Index of the mesh in the merged model.
+    /// Index of the part's mesh in the merged model.
     pub mesh: usize,
-    /// The draw state that its triangles share.
+    /// The draw state of all of the part's triangles.
     pub key: PartKey,
-    /// For each level of the object, level 0 included, the part's range among the indices of the mesh's own level
-    /// ([`Mesh::triangles`](crate::asset::Mesh::triangles) of [`own_levels`]).
+    /// The part's range of indices at each level of the object, level 0 included. The range counts in the indices of
+    /// the mesh's own level ([`Mesh::triangles`](crate::asset::Mesh::triangles) of [`own_levels`]).
     pub indices: Vec<Range<u32>>,
 }
 
-/// Merges the meshes of a model, with at most `levels` levels of detail, level 0 included.
+/// Merges the meshes of a model. The result has at most `levels` levels of detail, level 0 included.
 ///
-/// Drawing the merged model is equivalent to drawing the model's meshes. At full detail they have the same triangles,
-/// with the same positions, normals and tangents to the bit, in every pose. At a level, each mesh contributes its own
-/// level from [`own_levels`]. A vertex keeps the order and weights of its influences. They refer to one skin, which has
-/// all pairs of a bone and an inverse bind matrix that any vertex follows. Meshes without triangles are left out.
+/// Drawing the merged model is equivalent to drawing the model's meshes. At full detail, it has the same triangles with
+/// the same positions, normals and tangents to the bit, in every pose. At coarser levels, each mesh contributes its own
+/// level from [`own_levels`]. Vertices keep the order and weights of their influences. The one skin has every pair of a
+/// bone and an inverse bind matrix that a vertex follows. Meshes without triangles are left out.
 ///
-/// Meshes that morph targets move are merged only with meshes of the same weights in every clip. Parts differ in their
-/// [`PartKey`]. There are at most [`MAX_PARTS`] of them, or, if these are more, one or two for each merged mesh and use
-/// of alpha. To reach this number, samplings are given up, those with the fewest triangles first. They are replaced by
-/// the one with the most triangles of the same mesh, alpha and sides. A mesh that lacks textures or normal maps joins
-/// any sampling of these. If many morphed meshes make draws exceed [`MAX_DRAWS`], there are fewer levels, at least one.
+/// Meshes with morph targets are merged only with meshes that have the same morph weights in every clip. Parts differ
+/// in their [`PartKey`]. There are at most [`MAX_PARTS`] parts, unless merged meshes and uses of alpha need more: one
+/// or two parts for each of them. To stay within this limit, parts with few triangles lose their texture sampling
+/// first. They get the sampling of the largest part with the same mesh, alpha and sides. A mesh without textures or
+/// normal maps joins a part with any sampling. If many morphed meshes would exceed [`MAX_DRAWS`], there are fewer
+/// levels, at least one.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or a skin that does not match the model, for a material or an image that the model lacks,
-/// and for more vertices in all than a mesh may have.
+/// [`InputError`] if a mesh or skin does not match the model, if the model lacks a material or image that it names, or
+/// if all meshes together have more vertices than a mesh may have.
 pub fn merged(model: &Model, levels: usize) -> Result<Merged, InputError> {
     let keys = (0..model.meshes.len()).map(|mesh| checked(model, mesh)).collect::<Result<Vec<_>, _>>()?;
     let groups = groups(model);
@@ -83,14 +86,14 @@ pub fn merged(model: &Model, levels: usize) -> Result<Merged, InputError> {
     Ok(merged)
 }
 
-/// Checks a mesh against its model, and returns its key.
+/// Checks a mesh against its model, and returns the mesh's draw state.
 fn checked(model: &Model, mesh: usize) -> Result<PartKey, InputError> {
     model.check_mesh(mesh)?;
     model.check_material(mesh)?;
     PartKey::of(model, &model.meshes[mesh])
 }
 
-/// A model without its meshes and skins.
+/// A copy of a model without meshes and skins.
 fn bare(model: &Model) -> Model {
     Model {
         skeleton: model.skeleton.clone(),
@@ -103,8 +106,8 @@ fn bare(model: &Model) -> Model {
     }
 }
 
-/// Groups of meshes that may be merged: all that no morph target moves, and for each set of morph weights the meshes
-/// with these weights. Meshes without triangles are left out.
+/// Groups of meshes that may be merged. Meshes without morph targets form one group. Meshes with morph targets form one
+/// group per set of morph weights. Meshes without triangles are left out.
 fn groups(model: &Model) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (at, mesh) in model.meshes.iter().enumerate().filter(|(_, mesh)| !mesh.indices.is_empty()) {
@@ -125,7 +128,7 @@ fn groups(model: &Model) -> Vec<Vec<usize>> {
 }
 
 impl Merged {
-    /// Adds the merged mesh of a group. `parts` are all parts of the group.
+    /// Adds the merged mesh of a group of meshes. `parts` are all parts of this group.
     fn add<'a>(
         &mut self,
         model: &Model,

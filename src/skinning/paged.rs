@@ -1,4 +1,5 @@
-//! Skinning of a crowd into pages of vertices. Memory follows the number of visible instances, not of all instances.
+//! Skinning of a crowd into pages of vertices. The memory depends on the number of visible instances, not of all
+//! instances.
 
 use std::sync::Arc;
 
@@ -18,25 +19,25 @@ use crate::skinning::vertex::Blend;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::skinning::vertex::Vertex;
 
-/// How much a [`PagedSkin`] holds.
+/// Sizes of a [`PagedSkin`]: the number of instances and of vertex pages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PagedSkinOptions {
     /// Number of instances, at least 1.
     pub instances: usize,
-    /// Number of pages; a page holds one cluster of one instance.
+    /// Number of pages. A page has a capacity of 64 vertices: one cluster of one instance.
     pub pages: u32,
-    /// Whether each vertex's position of the frame before is kept ([`PageBuffers::last`]).
+    /// Whether vertex positions of the previous frame are kept, for motion vectors ([`PageBuffers::last`]).
     pub keeps_last: bool,
 }
 
-/// The prepared skinning of all instances of one mesh into pages, by linear blending.
+/// GPU passes that skin all instances of one mesh into pages, by linear blending, prepared for recording.
 #[derive(Debug, Clone)]
 pub struct PagedSkin {
-    /// The mesh on the device.
+    /// The mesh in GPU buffers.
     pub mesh: MeshBuffers,
-    /// The arrangement of the mesh's vertices.
+    /// The order of the mesh's vertices in clusters.
     pub clusters: Arc<Clusters>,
-    /// LODs and morph weights of instances, which the caller may write.
+    /// Levels of detail and morph weights of the instances. The caller may write them.
     pub crowd: SkinnedCrowd,
     active: ActiveClusters,
     palette: Job,
@@ -44,15 +45,15 @@ pub struct PagedSkin {
     reader: Arc<UpdatedBonesReader>,
 }
 
-/// The pages, and the jobs that depend on them.
+/// The pages, and the GPU jobs that must be prepared again when the pages are replaced.
 #[derive(Debug, Clone)]
 struct Paging {
     pages: PageBuffers,
     select: ClusterSelectBuffers,
     deal: Job,
-    /// Two selections: one keeps the updated bones, the other clears them.
+    /// Two jobs that select clusters: the first keeps the record of updated bones, the second clears it.
     selections: [Job; 2],
-    /// Morphing, if there are targets, and skinning.
+    /// The morphing job, if the mesh has morph targets, and the skinning job.
     after: Vec<Job>,
 }
 
@@ -75,16 +76,16 @@ impl Paging {
 }
 
 impl PagedSkin {
-    /// Prepares a mesh. `clusters` is the arrangement of its vertices. `matrices` poses the bones and must record the updated
-    /// bones.
+    /// Prepares the skinning of a mesh. `clusters` is the order of its vertices. `matrices` holds the bones' poses and
+    /// must record the updated bones.
     ///
-    /// With last positions, the pages are followed by each vertex's position before the last [`PagedSkin::dispatch`]
-    /// ([`PageBuffers::last`]). A page then takes 3584 bytes instead of 2560. A moving vertex is skinned once more
-    /// after it stops. A vertex that was not visible in the frame before counts as static.
+    /// With [`PagedSkinOptions::keeps_last`], the position of each vertex before the latest [`PagedSkin::dispatch`] is
+    /// kept behind the pages ([`PageBuffers::last`]). A page then takes 3584 bytes instead of 2560. A moving vertex is
+    /// skinned once more after it stops. A vertex that was invisible in the previous frame counts as static.
     ///
     /// # Errors
-    /// [`InputError`] for no instances, for matrices without updated bones and for fewer of them than needed;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] for 0 instances, and for matrices that record no updated bones or too few of them;
+    /// [`crate::gpu::GpuError`] from the device.
     pub fn of_mesh(
         gpu: &Gpu,
         mesh: MeshBuffers,
@@ -106,27 +107,27 @@ impl PagedSkin {
         Ok(Self { mesh, clusters, crowd, active, palette, paging, reader: Arc::new(updated.reader()) })
     }
 
-    /// The pages with their vertices.
+    /// The pages and the vertices in them.
     pub fn pages(&self) -> &PageBuffers {
         &self.paging.pages
     }
 
-    /// Replaces the pages by `pages` new ones. The next frame assigns pages to all visible instances and skins them
-    /// anew. After an error the old pages stay.
+    /// Replaces all pages by `pages` new, empty pages. The next frame assigns pages to all visible instances and skins
+    /// them again. After an error the old pages stay.
     ///
     /// # Errors
-    /// [`crate::gpu::GpuError`].
+    /// [`crate::gpu::GpuError`] if the pages cannot be allocated.
     pub fn set_pages(&mut self, gpu: &Gpu, pages: u32) -> Result<(), Error> {
-        // A new record of skinned instances, because frames that are already recorded keep using the old one.
+        // Starts a new record of skinned instances. Frames that are already recorded keep using the old record.
         let skinned = ClusterSelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
         let select = ClusterSelectBuffers { skinned, ..self.paging.select.clone() };
         self.paging = Paging::new(gpu, (&self.mesh, &self.crowd), (select, &self.active), pages)?;
         Ok(())
     }
 
-    /// Adds to a compute pass: page assignment, palettes, and skinning of clusters with an updated bone, a changed
-    /// morph weight or a new page. If several skins share model matrices, the last of them clears the updated bones
-    /// ([`UpdatedBones`](crate::animation::UpdatedBones)).
+    /// Adds three steps to a compute pass: page assignment, palettes, and the skinning of clusters with an updated
+    /// bone, a changed morph weight or a new page. If several skins share model matrices, the last of them clears the
+    /// updated bones ([`UpdatedBones`](crate::animation::UpdatedBones)).
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.paging.deal.dispatch(pass);
         self.palette.dispatch(pass);
@@ -135,8 +136,8 @@ impl PagedSkin {
         self.paging.after.iter().for_each(|job| job.dispatch(pass));
     }
 
-    /// Reads the vertices of each instance that has pages, in the mesh's own order; `None` for the others. Waits for
-    /// the device.
+    /// Reads the vertices of the given instances, in the mesh's own order; `None` for a vertex whose cluster has no
+    /// page. Blocks until the device has finished.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist; [`crate::gpu::GpuError`].
@@ -163,8 +164,8 @@ impl PagedSkin {
         Ok(instances.iter().map(of_instance).collect())
     }
 
-    /// Indirect arguments of the skinning dispatch: workgroup counts along x, y and z, the number of skinned clusters,
-    /// and a counter.
+    /// Buffer of five words: workgroup counts along x, y and z (indirect arguments of the skinning dispatch), the
+    /// number of skinned clusters, and a counter.
     pub fn dispatched(&self) -> &Buffer<u32> {
         &self.active.dispatched
     }

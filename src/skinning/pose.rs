@@ -1,4 +1,4 @@
-//! A mesh at rest and at moments of clips, with linear blending, for computations at load time.
+//! Poses of a mesh, at rest and at moments of clips, on the CPU with linear blending. Used for computations at load time.
 
 use glam::Vec3;
 
@@ -16,17 +16,18 @@ use crate::skinning::palette::reference::palette;
 use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::Vertex;
 
-/// A sufficient number of poses per second for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent).
+/// Poses per second at which [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) sample a clip; enough for
+/// motion.
 const POSES_A_SECOND: f32 = 60.0;
 
-/// The longest clip that [`poses_of`] accepts, in seconds: an hour, or 216,001 poses at 60 a second.
+/// The longest clip that [`poses_of`] accepts, in seconds: one hour, which is 216,001 poses at 60 per second.
 pub const LONGEST_LOOK: f32 = 3600.0;
 
-/// The largest number of sampled poses per clip: that of a clip of [`LONGEST_LOOK`].
+/// The largest number of sampled poses per clip: 60 per second for a clip of [`LONGEST_LOOK`].
 const MOST_POSES: usize = 216_001;
 
-/// The number of poses for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) to sample a clip 60 times a
-/// second, start and end included; at least 2.
+/// The number of poses at which to sample a clip for [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent).
+/// It gives 60 poses per second, start and end included; at least 2.
 ///
 /// # Errors
 /// [`InputError`] for a clip of more than an hour.
@@ -39,7 +40,7 @@ pub fn poses_of(clip: &Clip) -> Result<usize, InputError> {
     Ok((POSES_A_SECOND * seconds).max(1.0).ceil() as usize + 1)
 }
 
-/// A mesh at a moment.
+/// A mesh posed at one moment: its bone transforms, and its vertices after morphing.
 pub(super) struct Pose {
     palette: Vec<Affine>,
     vertices: Vec<Vertex>,
@@ -48,17 +49,17 @@ pub(super) struct Pose {
 /// A moment at which a mesh is sampled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Moment {
-    /// At rest, without a clip.
+    /// The rest pose, without a clip.
     Rest,
-    /// In a clip, after this fraction of its duration.
+    /// Index of a clip, and the moment in it as a fraction of its duration, from 0 to 1.
     In(usize, f32),
 }
 
 /// `poses` moments of each clip, evenly spaced from start to end; the rest pose if there are no clips.
 ///
 /// # Errors
-/// [`InputError`] for a mesh or clips that the model does not have, for 0 poses or more than the longest clip has, and
-/// for a mesh that does not match its skin.
+/// [`InputError`] in these cases: the model does not have the mesh or a clip; `poses` is 0 or exceeds the limit of the
+/// longest clip; the mesh does not match its skin.
 pub(super) fn moments(
     model: &Model,
     mesh: usize,
@@ -93,7 +94,7 @@ pub(super) fn moments_in(clip: usize, poses: usize) -> impl Iterator<Item = Mome
     (0..poses).map(move |at| Moment::In(clip, at as f32 / (poses - 1).max(1) as f32))
 }
 
-/// The model matrices of all bones at a moment.
+/// The model-space matrices of all bones at a moment.
 pub(super) fn bones_at(model: &Model, moment: Moment) -> Vec<Affine> {
     let locals: Vec<Transform> = match moment {
         Moment::Rest => model.skeleton.rest(),
@@ -113,8 +114,8 @@ pub(super) fn weights_at(model: &Model, mesh: &Mesh, moment: Moment) -> Vec<f32>
     }
 }
 
-/// The positions of some of a mesh's vertices at a moment with these model matrices of bones. They equal those of
-/// [`Pose::positions`].
+/// The positions of the vertices `vertices` of a mesh at a moment. `bones` are the bones' model-space matrices then.
+/// The positions equal those from [`Pose::positions`].
 pub(super) fn positions_of(
     model: &Model,
     mesh: &Mesh,
@@ -134,12 +135,12 @@ pub(super) fn positions_of(
     vertices.iter().map(|vertex| pose.position(mesh, *vertex as usize)).collect()
 }
 
-/// A position that follows several bones.
+/// A position under the weighted mean of several bones.
 fn blended(palette: &[Affine], position: [f32; 3], influences: &[Influence]) -> Vec3 {
     influences.iter().map(|influence| influence.weight * moved(palette, position, influence)).sum()
 }
 
-/// A position that follows one bone.
+/// A position under one bone.
 fn moved(palette: &[Affine], [x, y, z]: [f32; 3], influence: &Influence) -> Vec3 {
     let along = |row: &[f32; 4]| row[0] * x + row[1] * y + row[2] * z + row[3];
     Vec3::from(palette[influence.bone as usize].each_ref().map(along))
@@ -150,12 +151,12 @@ impl Pose {
         Self::at(model, mesh, &bones_at(model, moment), &weights_at(model, mesh, moment))
     }
 
-    /// The pose with these model matrices of bones and morph weights.
+    /// The pose with the model-space matrices `models` of the bones and these morph weights.
     pub(super) fn at(model: &Model, mesh: &Mesh, models: &[Affine], weights: &[f32]) -> Self {
         Self { palette: palette(&model.skins[mesh.skin], models), vertices: morph(mesh, weights) }
     }
 
-    /// The position of a vertex under each of its bones alone.
+    /// The positions that a vertex would have if it followed each of its bones alone.
     pub(super) fn points(&self, vertex: usize, influences: &[Influence]) -> Vec<Vec3> {
         let position = self.vertices[vertex].position;
         influences.iter().map(|influence| moved(&self.palette, position, influence)).collect()
@@ -170,12 +171,12 @@ impl Pose {
         (0..self.vertices.len()).map(|vertex| self.position(mesh, vertex)).collect()
     }
 
-    /// All vertices, in the model's space.
+    /// All skinned vertices, in the model's space.
     pub(super) fn vertices(self, mesh: &Mesh) -> Vec<Vertex> {
         skin(&self.vertices, &mesh.influences, &Palette::Linear(self.palette), InstanceLod::FULL)
     }
 
-    /// The normals of all vertices: unit vectors, or 0.
+    /// The normals of all skinned vertices: unit vectors, or 0.
     pub(super) fn normals(self, mesh: &Mesh) -> Vec<[f32; 3]> {
         self.vertices(mesh).into_iter().map(|vertex| vertex.normal).collect()
     }
@@ -201,7 +202,7 @@ mod tests {
             poses_of(&clip)
         };
         assert_eq!([0.0, 0.01, 1.0, 1.01].map(poses), [2, 2, 61, 62].map(Ok));
-        // Every clip up to the limit gives a number of poses; only longer ones are refused.
+        // Every clip up to the limit gives a number of poses. Only longer clips are refused.
         assert_eq!([16.75, 60.0, 3600.0].map(poses), [1006, 3601, 216_001].map(Ok));
         assert_eq!(poses(3601.0).expect_err("refused").path, "clip.duration");
     }
@@ -211,7 +212,7 @@ mod tests {
         let model = crate::samples::creature().expect("valid");
         assert_eq!(moments(&model, 0, &[], 9), Ok(vec![Moment::Rest]));
         let mesh = &model.meshes[0];
-        // The mesh was bound in its rest pose.
+        // The bind pose of the mesh is its rest pose.
         let points = Pose::new(&model, mesh, Moment::Rest).positions(mesh);
         let off = points.iter().zip(&mesh.positions).map(|(a, b)| a.distance(Vec3::from(*b)));
         assert!(off.fold(0.0, f32::max) < 1e-5);

@@ -4,7 +4,7 @@ use crate::InputError;
 use crate::asset::Mesh;
 use crate::asset::mesh::COORDINATE_LIMIT;
 
-/// A vertex as skinning reads and writes it: 40 bytes, in the layout of vertex buffers.
+/// A vertex before or after skinning: 40 bytes, in the layout of vertex buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
@@ -13,28 +13,28 @@ pub struct Vertex {
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Unit tangent, and handedness ±1; see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
+    /// Unit tangent (x, y, z), and handedness ±1 (w); see [`Mesh::tangents`](crate::asset::mesh::Mesh::tangents).
     pub tangent: [f32; 4],
 }
 
-/// Blending of a vertex's influences.
+/// How skinning blends the bones that a vertex follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Blend {
-    /// The mean of matrices, as glTF requires.
+    /// The weighted mean of the bones' matrices, as glTF requires.
     #[default]
     Linear,
-    /// The mean of rigid motions.
+    /// The weighted mean of the bones' rigid motions, as dual quaternions.
     ///
-    /// The guarantees of linear blending do not hold for it: the bound of
-    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), which refuses it; the fades and levels of
-    /// [`Extent`](super::Extent); and boxes and spheres around everything that bones move.
+    /// Some guarantees hold for linear blending only: the error bound of
+    /// [`Gate::Bounded`](crate::animation::Gate::Bounded), which refuses dual quaternions; the fades and levels of
+    /// [`Extent`](super::Extent); and bounding boxes and spheres of animated models.
     DualQuaternion,
 }
 
-/// A mesh's vertices in bind space, without its morph targets.
+/// The vertices of a mesh in bind space, without morph targets.
 ///
 /// # Panics
-/// For a mesh that [`Mesh::validate`] refuses.
+/// If [`Mesh::validate`] refuses the mesh.
 pub fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
     let vertex = |vertex: usize| Vertex {
         position: mesh.positions[vertex],
@@ -44,10 +44,10 @@ pub fn vertices_of(mesh: &Mesh) -> Vec<Vertex> {
     (0..mesh.vertices()).map(vertex).collect()
 }
 
-/// Refuses vertices outside the range of coordinates, as large scales produce.
+/// Refuses vertices whose positions exceed the range of coordinates, which large scales can cause.
 ///
 /// # Errors
-/// [`InputError`] that names the mesh by its number, and the first such vertex.
+/// [`InputError`] that names the mesh by its number, and the first vertex out of range.
 pub fn check_range(mesh: usize, vertices: &[Vertex]) -> Result<(), InputError> {
     let is_good = |value: &f32| value.abs() <= COORDINATE_LIMIT;
     match vertices.iter().position(|vertex| !vertex.position.iter().all(is_good)) {

@@ -1,9 +1,10 @@
-//! Hash of a level's bits.
+//! Hash of a level of a progressive mesh.
 
 use crate::asset::Mesh;
 use crate::hash::sha256;
 
-/// SHA-256 of the attributes of the first `vertices` vertices and of a level's triangles.
+/// SHA-256 of a level: of the attributes of its vertices, which are the first `vertices` of the mesh, and of its
+/// triangles.
 pub(super) fn hash(mesh: &Mesh, level: u32, vertices: u32) -> String {
     let count = vertices as usize;
     let mut words = vec![vertices, mesh.triangles(level).len() as u32];

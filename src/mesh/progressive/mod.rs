@@ -1,15 +1,15 @@
-//! Progressive meshes: a mesh and its coarser levels with vertices in one common order (B section 3.2, after Hoppe,
-//! "Progressive Meshes", SIGGRAPH 1996). A level is a prefix of the vertices and a list of triangles. The difference between
-//! two levels is a run of vertices and an [`IndexPatch`] of the list.
+//! Progressive meshes: a mesh and its coarser levels, with all vertices in one common order (B section 3.2, after
+//! Hoppe, "Progressive Meshes", SIGGRAPH 1996). A level is a prefix of the vertices, and a list of triangles. Two
+//! successive levels differ by a range of vertices and an [`IndexPatch`] for the list of triangles.
 //!
-//! Vertices are sorted by the coarsest level that has them. Within a level they are sorted by the bones that they follow, so
-//! that clusters of vertices follow few bones, and then by the time at which they collapsed, the last one first. Triangles keep
-//! the mesh's order at every level.
+//! Vertices are sorted by the coarsest level that has them. Within a level, they are sorted by the bones that they
+//! follow, so that clusters of vertices follow few bones. Next comes the time of their collapse, latest first.
+//! Triangles keep the mesh's order at every level.
 //!
-//! Every vertex has a *partner*, which takes its place in the first level that lacks it. [`ProgressiveMesh::morphed`] moves the
-//! vertices of a level towards their partners (A section 7.5; Hoppe's geomorph). At the end of the motion, the level looks like
-//! the next coarser one. Its triangles with partners in their corners are then the triangles of that level, mixed with
-//! degenerate triangles.
+//! Every vertex has a *partner*, which replaces the vertex in the first level that lacks it.
+//! [`ProgressiveMesh::morphed`] moves the vertices of a level towards their partners (A section 7.5; Hoppe's geomorph).
+//! At the end of this motion, the level looks like the next coarser level: every corner is at its partner, and the
+//! additional triangles are degenerate.
 
 mod level_hash;
 mod order;
@@ -32,8 +32,8 @@ use stored::Stored;
 
 /// A mesh with its levels of detail; level 0 is the finest.
 ///
-/// serde stores it with floats as their bits, so that every format keeps them. Deserialization checks everything, including the
-/// hashes of all levels.
+/// serde stores floats as their bits, so that every format keeps them exactly. Deserialization checks everything,
+/// including the hashes of all levels.
 ///
 /// ```
 /// use relievo::ops::mesh::progressive::ChosenLevel;
@@ -59,36 +59,36 @@ use stored::Stored;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Stored", into = "Stored")]
 pub struct ProgressiveMesh {
-    /// The mesh in this module's vertex order, with levels and partners.
+    /// The mesh in this module's vertex order, with its levels and partners.
     mesh: Mesh,
     sources: Vec<u32>,
     /// Number of vertices of each level.
     vertices: Vec<u32>,
-    /// For each level but the coarsest, its difference to the next coarser one.
+    /// For each level except the coarsest, the difference from the next coarser level.
     patches: Vec<IndexPatch>,
-    /// Hash of each level.
+    /// For each level, its SHA-256 in hexadecimal digits.
     hashes: Vec<String>,
 }
 
 impl ProgressiveMesh {
-    /// Builds levels from a recorded sequence of collapses, which must have been made from the mesh's own triangles. `chosen`
-    /// has the levels 1, 2 …; the mesh's own levels and partners are ignored.
+    /// Builds levels from a recorded sequence of collapses, which must come from the mesh's own triangles. `chosen`
+    /// describes the levels 1, 2 …. The mesh's own levels and partners are ignored.
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`], for a sequence of another mesh, for more than 15 levels or levels that do not
-    /// ascend in collapses and errors, and for a level without triangles.
+    /// [`InputError`] in these cases: [`Mesh::validate`] refuses the mesh; the sequence belongs to another mesh; there
+    /// are more than 15 levels; collapses or errors do not ascend; a level has no triangles.
     pub fn new(mesh: &Mesh, simplified: &Simplified, chosen: &[ChosenLevel]) -> Result<Self, InputError> {
         let (mesh, times) = record::levelled(mesh, simplified, chosen)?;
         Self::ordered(&mesh, &times)
     }
 
-    /// Builds it from the levels and partners of a mesh ([`Mesh::levels`], [`Mesh::partners`]), such as those of
-    /// [`add_levels`](crate::skinning::levels::add_levels). Vertices that follow the same bones keep the mesh's order within a
-    /// level.
+    /// Builds a progressive mesh from the levels and partners of a mesh ([`Mesh::levels`], [`Mesh::partners`]), for
+    /// example from [`add_levels`](crate::skinning::levels::add_levels). Within a level, vertices that follow the same
+    /// bones keep the mesh's order.
     ///
     /// # Errors
-    /// [`InputError`] as [`Mesh::validate`], for a mesh with levels and without partners, and for a level whose triangles are
-    /// not those of the level before with partners in their corners.
+    /// [`InputError`] in these cases: [`Mesh::validate`] refuses the mesh; the mesh has levels but no partners; a level
+    /// does not result from the previous level by replacing corners by their partners.
     pub fn of_levels(mesh: &Mesh) -> Result<Self, InputError> {
         mesh.validate_alone()?;
         if mesh.partners.is_empty() && !mesh.levels.is_empty() {
@@ -97,13 +97,14 @@ impl ProgressiveMesh {
         Self::ordered(mesh, &[])
     }
 
-    /// Sorts the vertices of a mesh. `times` has the number of each vertex's collapse; empty if unknown.
+    /// Sorts the vertices of a mesh. `times` has, for each vertex, the number of the collapse that removed it; empty if
+    /// unknown.
     fn ordered(mesh: &Mesh, times: &[u32]) -> Result<Self, InputError> {
         let sources = order::order(mesh, times);
         Self::assembled(order::permuted(mesh, &sources)?, sources)
     }
 
-    /// Builds it from a mesh whose vertices are sorted already.
+    /// Builds a progressive mesh from a mesh whose vertices are already sorted.
     fn assembled(mesh: Mesh, sources: Vec<u32>) -> Result<Self, InputError> {
         let coarsest = mesh.coarsest_levels();
         if let Some(at) = coarsest.windows(2).position(|pair| pair[0] < pair[1]) {
@@ -138,15 +139,15 @@ impl ProgressiveMesh {
         &self.mesh
     }
 
-    /// For each vertex, its index in the source mesh.
+    /// For each vertex, its index in the mesh from which this one was built.
     pub fn sources(&self) -> &[u32] {
         &self.sources
     }
 
-    /// Number of vertices of a level; they are the first ones of the mesh.
+    /// Number of vertices of a level. They are the first vertices of the mesh.
     ///
     /// # Panics
-    /// If there is no such level. So do all functions that take a level and do not return a `Result`.
+    /// If there is no such level. The same holds for all functions that take a level and do not return a `Result`.
     pub fn vertices(&self, level: usize) -> usize {
         self.vertices[level] as usize
     }
@@ -157,35 +158,36 @@ impl ProgressiveMesh {
         self.mesh.triangles(level as u32)
     }
 
-    /// Error of a level, in the unit of its source; 0 for level 0.
+    /// Error of a level, in the units in which it was given; 0 for level 0.
     pub fn error(&self, level: usize) -> f32 {
         level.checked_sub(1).map_or(0.0, |before| self.mesh.levels[before].error)
     }
 
-    /// SHA-256 of a level, as 64 hexadecimal digits. It covers all attributes of the level's vertices, and its triangles. Two
-    /// levels with the same hash are equal to the bit.
+    /// SHA-256 of a level, as 64 hexadecimal digits. It covers all attributes of the level's vertices, and the level's
+    /// triangles. Two levels with the same hash are equal to the bit.
     pub fn hash(&self, level: usize) -> &str {
         &self.hashes[level]
     }
 
-    /// Difference between a level and the next coarser one.
+    /// Difference between a level and the next coarser level.
     pub fn patch(&self, level: usize) -> &IndexPatch {
         &self.patches[level]
     }
 
-    /// Turns the triangles of level `level` + 1 into those of `level`.
+    /// Replaces the triangles of level `level` + 1 by the triangles of `level`.
     ///
     /// # Errors
-    /// [`InputError`] for the coarsest level and for other triangles, which are left as they are.
+    /// [`InputError`] if `level` is the coarsest level, or if `triangles` are not those of the expected level. They
+    /// then stay unchanged.
     pub fn refine(&self, level: usize, triangles: &mut Vec<u32>) -> Result<(), InputError> {
         *triangles = self.checked_patch(level)?.applied(triangles, &self.mesh.partners)?;
         Ok(())
     }
 
-    /// Turns the triangles of `level` into those of level `level` + 1.
+    /// Replaces the triangles of `level` by the triangles of level `level` + 1.
     ///
     /// # Errors
-    /// As [`ProgressiveMesh::refine`].
+    /// The same errors as [`ProgressiveMesh::refine`].
     pub fn coarsen(&self, level: usize, triangles: &mut Vec<u32>) -> Result<(), InputError> {
         *triangles = self.checked_patch(level)?.undone(triangles, &self.mesh.partners)?;
         Ok(())
@@ -196,21 +198,21 @@ impl ProgressiveMesh {
         self.patches.get(level).ok_or_else(|| InputError::new("level", level, bound()))
     }
 
-    /// Partner of each vertex of a level in the next coarser level. Vertices that the coarser level has too, and all vertices
-    /// of the coarsest level, are their own partners.
+    /// For each vertex of a level, its partner in the next coarser level. A vertex that the coarser level has too is
+    /// its own partner. So are all vertices of the coarsest level.
     pub fn partners(&self, level: usize) -> Vec<u32> {
         let kept = self.vertices.get(level + 1).copied().unwrap_or(u32::MAX);
         let partner = |vertex: u32| if vertex < kept { vertex } else { self.mesh.partners[vertex as usize] };
         (0..self.vertices[level]).map(partner).collect()
     }
 
-    /// Interpolates values of a level's vertices towards the next coarser level: `a · (1 − t) + b · t` for a vertex with value
-    /// a and a partner with value b. `values` are positions in any pose, normals or texture coordinates, at least one per
-    /// vertex of the level. At t = 0 the result equals the level's values, and at t = 1 those of partners, to the bit (except
-    /// for the sign of 0). Influences are not blended: positions move after skinning.
+    /// Interpolates values of a level's vertices towards the next coarser level: `a · (1 − t) + b · t`, where a is the
+    /// vertex's value and b its partner's. `values` are positions in any pose, normals or texture coordinates, at least
+    /// one per vertex of the level. At t = 0 the result equals the level's values to the bit, and at t = 1 the
+    /// partners' values (except for the sign of 0). Influences are not blended: move positions after skinning.
     ///
     /// # Errors
-    /// [`InputError`] for a factor t outside of 0..=1, and for too few values.
+    /// [`InputError`] if `t` is outside 0..=1, or if there are too few values.
     pub fn morphed<const N: usize>(
         &self,
         level: usize,
@@ -229,10 +231,11 @@ impl ProgressiveMesh {
         Ok(values.iter().zip(&self.partners(level)).map(between).collect())
     }
 
-    /// Reads JSON written by serde_json.
+    /// Reads a progressive mesh from JSON written by serde_json.
     ///
     /// # Errors
-    /// [`InputError`] for invalid JSON, with the place; for another [`VERSION`]; and for values that contradict each other.
+    /// [`InputError`] for invalid JSON, with the location; for another [`VERSION`]; and for values that contradict each
+    /// other.
     pub fn from_json(json: &[u8]) -> Result<Self, InputError> {
         let mut reader = serde_json::Deserializer::from_slice(json);
         let stored: Stored = serde_path_to_error::deserialize(&mut reader).map_err(|error| {

@@ -1,12 +1,12 @@
-//! The vertex order that makes levels prefixes, and meshes permuted into it.
+//! The vertex order that makes every level a prefix, and the permutation of meshes into this order.
 
 use std::cmp::Reverse;
 
 use crate::InputError;
 use crate::asset::{Influences, Mesh, MeshLevel, MorphTarget};
 
-/// Sorts the vertices: those of coarse levels first, then by strongest bone, by number of influences, by the other bones, by
-/// the time of their collapse (last one first), and by index. `times` may be empty.
+/// The sorted vertices of a mesh. The keys are: coarsest level (coarse first), strongest bone, number of influences,
+/// other bones, time of collapse (latest first), and index. `times` may be empty.
 pub(super) fn order(mesh: &Mesh, times: &[u32]) -> Vec<u32> {
     let coarsest = mesh.coarsest_levels();
     let mut order: Vec<u32> = (0..mesh.vertices() as u32).collect();
@@ -19,7 +19,7 @@ pub(super) fn order(mesh: &Mesh, times: &[u32]) -> Vec<u32> {
     order
 }
 
-/// Permutes the vertices of a mesh; `order` has the old index for each new place.
+/// Permutes the vertices of a mesh. `order` has the old index of each new vertex.
 pub(super) fn permuted(mesh: &Mesh, order: &[u32]) -> Result<Mesh, InputError> {
     let mut place = vec![0; order.len()];
     (0..).zip(order).for_each(|(at, vertex)| place[*vertex as usize] = at);

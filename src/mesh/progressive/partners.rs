@@ -1,8 +1,8 @@
-//! Partners of vertices: the vertex that takes a vertex's place in the first level that lacks it.
+//! Partners of vertices. The partner of a vertex replaces it in the first level that lacks the vertex.
 
 use std::collections::HashMap;
 
-/// A level, with the replacements of the previous level's vertices.
+/// A level, and the replacements of the previous level's vertices.
 pub(crate) struct Became<'a> {
     /// Triangles of the level, three indices each.
     pub indices: &'a [u32],
@@ -10,12 +10,14 @@ pub(crate) struct Became<'a> {
     pub remap: &'a [u32],
 }
 
-/// Partner of each vertex ([`Mesh::partners`](crate::asset::Mesh::partners)), from the levels 1, 2 …; `finest` are the
-/// triangles of level 0. `place` gives the mesh of a vertex, and its place: the same number for all vertices at one position.
+/// The partner of each vertex ([`Mesh::partners`](crate::asset::Mesh::partners)). `finest` are the triangles of level
+/// 0, and `levels` the levels 1, 2 …. `place` gives the mesh of a vertex, and a number that is the same for all
+/// vertices at its position.
 ///
-/// If a vertex's triangles vanish, it may have collapsed into a vertex without triangles at that level, or into a vertex of
-/// another mesh. Its partner is then another vertex of its own mesh at that place. This is valid because degenerate triangles
-/// depend on positions only. If there is none, one vertex becomes the partner of all that go to that place.
+/// A vertex may have collapsed into a vertex that no triangle of the level uses, or that belongs to another mesh. This
+/// happens if its triangles vanish. Its partner is then another vertex of its own mesh at that position, which is valid
+/// because degenerate triangles depend on positions only. If no such vertex exists, one of the collapsed vertices
+/// becomes the partner of all others with this target position.
 pub(crate) fn partners(
     finest: &[u32],
     levels: &[Became<'_>],
@@ -36,7 +38,7 @@ pub(crate) fn partners(
             *first = (*first).min(*vertex);
         }
         let gone = || finer.iter().copied().filter(|vertex| !here[*vertex as usize]);
-        // Prefer a stand-in that already lies at the place.
+        // A stand-in that already lies at the target position is preferred.
         for is_there in [true, false] {
             for vertex in gone().filter(|vertex| !is_kept(target(*vertex), *vertex)) {
                 if !is_there || key(vertex) == place(vertex) {

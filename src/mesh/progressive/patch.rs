@@ -1,4 +1,4 @@
-//! Difference between the triangles of a level and those of the next coarser one.
+//! Difference between the triangles of a level and the triangles of the next coarser level.
 
 use std::ops::Range;
 
@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::InputError;
 
-/// Difference from the next coarser level: vertices and triangles to add, and corners that move from a vertex's partner to the
-/// vertex itself.
+/// Difference from the next coarser level to a level: vertices and triangles to add, and corners to change from a
+/// vertex's partner to the vertex itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IndexPatch {
@@ -18,24 +18,26 @@ pub struct IndexPatch {
 }
 
 impl IndexPatch {
-    /// Range of vertices that the level adds.
+    /// Range of vertices that the level has in addition to the coarser level.
     pub fn vertices(&self) -> Range<u32> {
         self.first..self.end
     }
 
-    /// Triangles that the level adds, in ascending order: each triangle's index in the level's list, and its corners.
+    /// Triangles that the level adds, ascending. Each entry has the triangle's index in the level's list, and its three
+    /// corners.
     pub fn added(&self) -> &[[u32; 4]] {
         &self.added
     }
 
-    /// Changed corners of other triangles, in ascending order: the position in the level's index list, and the vertex there.
-    /// The coarser level has that vertex's partner in the corner.
+    /// Changed corners of the other triangles, ascending. Each entry has a position in the level's index list, and the
+    /// vertex there. In the coarser level, this corner is the vertex's partner.
     pub fn corners(&self) -> &[[u32; 2]] {
         &self.corners
     }
 
-    /// Builds the patch between the lists of a level and of the next coarser one, which lacks the vertices of `run`. `None`
-    /// unless replacing corners by partners and dropping some triangles turns the finer list into the coarser one.
+    /// Makes the patch between two lists of triangles, of a level and of the next coarser level. The coarser level
+    /// lacks the vertices of `run`. Returns `None` if the finer list does not become the coarser one by replacing
+    /// corners by partners and dropping triangles.
     pub(super) fn between([fine, coarse]: [&[u32]; 2], run: Range<u32>, partners: &[u32]) -> Option<Self> {
         let mut patch = Self { first: run.start, end: run.end, added: Vec::new(), corners: Vec::new() };
         let mut left = coarse.as_chunks::<3>().0.iter().peekable();
@@ -53,7 +55,7 @@ impl IndexPatch {
         left.next().is_none().then_some(patch)
     }
 
-    /// Triangles of the level, from those of the coarser one.
+    /// The triangles of the level, computed from the triangles of the coarser level.
     pub(super) fn applied(&self, coarse: &[u32], partners: &[u32]) -> Result<Vec<u32>, InputError> {
         if !coarse.len().is_multiple_of(3) {
             return Err(InputError::new("triangles.len", coarse.len(), "must be a multiple of 3"));
@@ -84,7 +86,7 @@ impl IndexPatch {
         Ok(fine)
     }
 
-    /// Triangles of the coarser level, from those of the level.
+    /// The triangles of the coarser level, computed from the triangles of the level.
     pub(super) fn undone(&self, fine: &[u32], partners: &[u32]) -> Result<Vec<u32>, InputError> {
         let mut moved = fine.to_vec();
         for (at, [place, vertex]) in self.corners.iter().enumerate() {

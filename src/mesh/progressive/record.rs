@@ -1,4 +1,4 @@
-//! Levels from a recorded sequence of collapses.
+//! Levels of detail made from a recorded sequence of collapses.
 
 use super::partners::{Became, partners};
 use crate::InputError;
@@ -6,17 +6,17 @@ use crate::asset::mesh::MAX_LEVELS;
 use crate::asset::{Mesh, MeshLevel};
 use crate::mesh::simplify::Simplified;
 
-/// A level to take from a sequence of collapses.
+/// A level of detail to take from a sequence of collapses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChosenLevel {
-    /// Number of leading collapses that make the level; at least one more than for the level before.
+    /// Number of leading collapses that make the level. It must exceed the number of the previous level.
     pub collapses: usize,
-    /// Error of the level, finite and at least that of the level before.
+    /// Error of the level: finite, and at least the error of the previous level.
     pub error: f32,
 }
 
-/// Returns the mesh with these levels and their partners, and the number of each vertex's collapse; `u32::MAX` for a vertex
-/// that stays.
+/// The mesh with the chosen levels and partners. Also, for each vertex, the number of the collapse that removed it, or
+/// `u32::MAX` for a vertex that stays.
 pub(super) fn levelled(
     mesh: &Mesh,
     simplified: &Simplified,
@@ -39,12 +39,12 @@ pub(super) fn levelled(
     let place = |vertex: u32| (0, simplified.point(vertex));
     let partners = partners(&mesh.indices, &became, place, mesh.vertices());
     let mesh = Mesh { levels, partners, ..mesh.clone() };
-    // Errors and numbers of triangles are checked here, as those of any other mesh.
+    // This also checks the errors and triangle counts of the levels.
     mesh.validate_alone()?;
     Ok((mesh, times(simplified)))
 }
 
-/// For each level, the replacement of each vertex.
+/// For each chosen level, the replacement of each vertex.
 fn remaps(mesh: &Mesh, simplified: &Simplified, chosen: &[ChosenLevel]) -> Result<Vec<Vec<u32>>, InputError> {
     mesh.validate_alone()?;
     let vertices = simplified.remap(0).len();

@@ -1,4 +1,4 @@
-//! Stored form of progressive meshes.
+//! Serialized form of progressive meshes.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,10 +7,11 @@ use crate::InputError;
 use crate::asset::morph::MorphDelta;
 use crate::asset::{Influence, Influences, Interpolation, Mesh, MeshLevel, MorphTarget, WeightKeys};
 
-/// Version of the stored form.
+/// Version of the serialized form.
 pub const VERSION: u32 = 1;
 
-/// The stored form. Floats are stored as their bits. The triangles are those of the coarsest level.
+/// The serialized form of a progressive mesh. Floats are stored as their bits. `triangles` are the triangles of the
+/// coarsest level.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Stored {
@@ -24,7 +25,7 @@ pub(super) struct Stored {
     normals: Vec<[u32; 3]>,
     tangents: Vec<[u32; 4]>,
     uv: Vec<[u32; 2]>,
-    /// Bones and weights of each vertex.
+    /// For each vertex, pairs of a bone and a weight (as bits).
     influences: Vec<Vec<[u32; 2]>>,
     targets: Vec<StoredTarget>,
     weights: Vec<u32>,
@@ -32,7 +33,7 @@ pub(super) struct Stored {
     partners: Vec<u32>,
     triangles: Vec<u32>,
     levels: Vec<StoredLevel>,
-    /// Patches from level 0 on.
+    /// The patch of each level, from level 0 to the second coarsest.
     patches: Vec<IndexPatch>,
 }
 
@@ -40,7 +41,7 @@ pub(super) struct Stored {
 #[serde(deny_unknown_fields)]
 struct StoredTarget {
     vertices: Vec<u32>,
-    /// Deltas of position, normal and tangent.
+    /// For each vertex, the deltas of position, normal and tangent, as bits.
     deltas: Vec<[[u32; 3]; 3]>,
 }
 
@@ -141,7 +142,7 @@ impl TryFrom<Stored> for ProgressiveMesh {
 }
 
 impl Stored {
-    /// Triangles of all levels, from level 0 on.
+    /// The triangles of all levels, level 0 first, rebuilt from the patches.
     fn lists(&self) -> Result<Vec<Vec<u32>>, InputError> {
         if self.levels.is_empty() || self.patches.len() != self.levels.len() - 1 {
             let bound = format!("must be {}, one less than levels", self.levels.len().saturating_sub(1));
@@ -163,7 +164,7 @@ impl Stored {
         Ok(lists)
     }
 
-    /// The mesh, and the source of each vertex.
+    /// The mesh, and for each vertex its index in the source mesh.
     fn mesh(self, lists: Vec<Vec<u32>>) -> Result<(Mesh, Vec<u32>), InputError> {
         let of_vertex = |all: Vec<[u32; 2]>| {
             all.into_iter().map(|[bone, weight]| Influence { bone, weight: f32::from_bits(weight) }).collect()
@@ -244,7 +245,7 @@ impl StoredKeys {
     }
 }
 
-/// Checks that `sources` is a permutation of the numbers below `vertices`.
+/// Checks that `sources` is a permutation of the numbers from 0 to `vertices` − 1.
 fn check_sources(sources: &[u32], vertices: usize) -> Result<(), InputError> {
     InputError::check_len("sources", sources.len(), vertices, "a vertex")?;
     let mut seen = vec![false; vertices];

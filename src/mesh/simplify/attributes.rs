@@ -1,11 +1,12 @@
-//! Cost of changes in attributes (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance Attributes", Visualization
-//! 1999): on each triangle an attribute is a linear function of position.
+//! Cost of attribute changes (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance Attributes",
+//! Visualization 1999). On each triangle, an attribute is a linear function of position.
 //!
-//! Weights are areas. Unlike the sums of positions, these sums are not divided by their weights: a wrong normal disturbs by the
-//! area that it shades (meshoptimizer does the same). A mean would count it in the smallest triangle as much as in the largest.
+//! Weights are areas. Unlike the sums of positions, the sums of attributes are not divided by their weights: the larger
+//! the area that a wrong normal shades, the more it disturbs (as in meshoptimizer). A mean would count an error on the
+//! smallest triangle as much as one on the largest.
 //!
-//! Sums are in f32, which halves the memory traffic. If attributes are linear over a flat surface, the cost is then not quite
-//! 0: its root is up to 3 · 10⁻⁴ of the cost of the attribute change itself.
+//! Sums are in f32, which halves the memory traffic. For attributes that are linear over a flat surface, the cost is
+//! therefore not exactly 0: its square root is up to 3 · 10⁻⁴ of the cost of the attribute change itself.
 
 use glam::{DVec3, Vec3, Vec4};
 
@@ -14,28 +15,29 @@ use super::points::Points;
 use super::quadric::Quadric;
 use super::turned::normal;
 
-/// Number of vectors in a record besides one per attribute.
+/// Number of vectors at the start of a record. One vector per attribute follows.
 const HEAD: usize = 3;
 
-/// Attribute error of each vertex: the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the gradient of
-/// the attribute, k its accumulated constant difference, and d and s are the differences in position and attribute from the
-/// vertex.
+/// Attribute error of each vertex: the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the
+/// gradient of the attribute, and k its accumulated constant difference. The differences of a replacement from the
+/// vertex are d (position) and s (attribute).
 pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
-    /// One record per vertex. It has the quadric dᵀ A d + 2 b·d + c of the part without s, as (A's xx, xy, xz, yy), (yz, zz, c,
-    /// sum of weights), (b, 0). Then, for each attribute, it has the weighted sums of g and of k.
+    /// One record per vertex. Its first three vectors hold the quadric dᵀ A d + 2 b·d + c of all terms without s: (A's
+    /// xx, xy, xz, yy), (yz, zz, c, sum of weights) and (b, 0). One vector per attribute follows, with the weighted
+    /// sums of g (x, y, z) and k (w).
     records: Vec<Vec4>,
 }
 
-/// Data that determines the cost of replacing a vertex.
+/// The attribute error of one vertex, from which the cost of replacing the vertex is computed.
 pub(crate) struct Own<'a> {
     head: [Vec4; HEAD],
     sums: &'a [Vec4],
     values: &'a [f32],
 }
 
-/// Sum of several vertices at one place.
+/// Summed attribute errors of several vertices at one position.
 #[derive(Default)]
 pub(crate) struct Joint<'a> {
     record: Vec<Vec4>,
@@ -49,8 +51,8 @@ impl<'a> Own<'a> {
         Self { head: [head[0], head[1], head[2]], sums, values }
     }
 
-    /// Sum of two quadrics: the mean of a point's quadric, and the part of this one that does not depend on the replacement's
-    /// attributes.
+    /// Sum of two quadrics: the mean of a point's quadric `shape`, and the part of the attribute error that does not
+    /// depend on the replacement's attributes.
     #[inline]
     pub(crate) fn with(&self, shape: &Quadric) -> Quadric {
         let [first, second, b] = self.head.map(|four| four.as_dvec4());
@@ -58,12 +60,12 @@ impl<'a> Own<'a> {
         shape.mean_plus(a, b.truncate(), second.z)
     }
 
-    /// Part of the cost that depends on the replacement's attributes; the replacement is at the offset `d`.
+    /// The part of the cost that depends on the replacement's attributes `values`. The replacement is at the offset `d`.
     #[inline]
     pub(crate) fn change(&self, values: &[f32], d: Vec3) -> f32 {
         let (mut sum, mut squares) = (Vec4::ZERO, 0.0);
         if let ([to_x, to_y, to_z], [x, y, z], [a, b, c]) = (values, self.values, self.sums) {
-            // Normals.
+            // Special case of three attributes, such as a normal.
             let [x, y, z] = [to_x - x, to_y - y, to_z - z];
             sum = *a * x + *b * y + *c * z;
             squares = x * x + y * y + z * z;
@@ -77,7 +79,8 @@ impl<'a> Own<'a> {
         squares * self.head[1].w - 2.0 * at(sum, d)
     }
 
-    /// Half the gradient of the part that does not depend on the replacement's attributes.
+    /// Half the gradient, at the offset `d`, of the part of the cost that does not depend on the replacement's
+    /// attributes.
     #[inline]
     fn slope(&self, d: Vec3) -> Vec3 {
         let [first, second, b] = self.head;
@@ -89,7 +92,7 @@ impl<'a> Own<'a> {
         Vec3::new(x + b.x, y + b.y, z + b.z)
     }
 
-    /// Cost of a replacement at the offset `d`.
+    /// Cost of a replacement with the attributes `values` at the offset `d`.
     #[inline]
     fn cost(&self, values: &[f32], d: Vec3) -> f32 {
         let [_, second, b] = self.head;
@@ -99,10 +102,10 @@ impl<'a> Own<'a> {
     }
 }
 
-/// Evaluates g·d + k.
+/// The linear function g·d + k of one attribute.
 #[inline]
 fn at(sum: Vec4, d: Vec3) -> f32 {
-    // This order of operations is the same on every machine.
+    // The order of operations is fixed, so that the result is the same on every machine.
     let [x, y, z, k] = (sum * d.extend(1.0)).to_array();
     x + y + z + k
 }
@@ -128,11 +131,12 @@ impl<'a> Attributes<'a> {
         &mut self.records[vertex as usize * len..][..len]
     }
 
-    /// Adds a triangle; the length of `normal` is twice the triangle's area.
+    /// Adds a triangle to the records of its vertices. The length of `normal` is twice the triangle's area.
     fn add_triangle(&mut self, vertices: [u32; 3], positions: [DVec3; 3], normal: DVec3) {
         let [first, second] = [positions[1] - positions[0], positions[2] - positions[0]];
         let (square, weight) = (normal.length_squared(), normal.length() * 0.5);
-        // The gradient lies in the triangle's plane and gives the differences of b − a and c − a along its edges.
+        // The gradient lies in the triangle's plane. Along the two edges, it gives the attribute differences b − a and
+        // c − a.
         let [along_first, along_second] = [second.cross(normal) / square, normal.cross(first) / square];
         let [a, b, c] = vertices;
         let [own_a, own_b, own_c] = [self.values_of(a), self.values_of(b), self.values_of(c)];
@@ -156,32 +160,33 @@ impl<'a> Attributes<'a> {
         }
     }
 
-    /// Cost of replacing `vertex` by `target`, at the offset `d`.
+    /// Cost of replacing `vertex` by `target`, which is at the offset `d`.
     pub(crate) fn cost(&self, vertex: u32, target: u32, d: DVec3) -> f64 {
         f64::from(self.of(vertex).cost(self.values_of(target), d.as_vec3()))
     }
 
-    /// Attributes of a vertex, unscaled.
+    /// Attributes of a vertex, as given in [`Surface::attributes`].
     #[inline]
     pub(crate) fn values_of(&self, vertex: u32) -> &'a [f32] {
         &self.values[vertex as usize * self.stride..][..self.stride]
     }
 
-    /// Reads the first and last sum of a vertex, to prefetch them; the returned number only keeps the reads alive.
+    /// Reads the first and last sum of a vertex to prefetch them. The returned number only prevents the compiler from
+    /// dropping the reads.
     #[inline]
     pub(crate) fn touch(&self, vertex: u32) -> u32 {
         let own = self.of(vertex);
         own.head[0].x.to_bits() ^ own.sums.last().map_or(0, |last| last.w.to_bits())
     }
 
-    /// Data that determines the cost of replacing a vertex.
+    /// The attribute error of one vertex, from which the cost of replacing the vertex is computed.
     #[inline]
     pub(crate) fn of(&self, vertex: u32) -> Own<'_> {
         let len = HEAD + self.stride;
         Own::new(&self.records[vertex as usize * len..][..len], self.values_of(vertex))
     }
 
-    /// Cost of removing the triangles of these vertices: their area times the variance of their attributes.
+    /// Cost of removing the triangles of the given vertices: their area times the variance of their attributes.
     pub(crate) fn lost<I: Iterator<Item = u32>>(&self, vertices: impl Fn() -> I) -> f64 {
         let weight = |vertex: u32| f64::from(self.of(vertex).head[1].w);
         let weights: f64 = vertices().map(weight).sum();
@@ -191,11 +196,11 @@ impl<'a> Attributes<'a> {
             let mean = vertices().map(|vertex| weight(vertex) * value(vertex)).sum::<f64>() / weights;
             variance += vertices().map(|vertex| weight(vertex) * (value(vertex) - mean).powi(2)).sum::<f64>();
         }
-        // Each triangle is counted at three vertices.
+        // Each triangle is counted three times, once per vertex.
         if weights > 0.0 { variance / 3.0 } else { 0.0 }
     }
 
-    /// Replaces `vertex` by `target`, at the offset `d`.
+    /// Merges the record of `vertex` into the record of `target`, which is at the offset `d`.
     pub(crate) fn merge(&mut self, vertex: u32, target: u32, d: DVec3) {
         let len = HEAD + self.stride;
         let (own, values) = (self.values_of(vertex), self.values_of(target));
@@ -204,7 +209,7 @@ impl<'a> Attributes<'a> {
         add_moved(to, &Own::new(from, own), values, d.as_vec3());
     }
 
-    /// Sums several vertices at one place, as if they were one vertex with the attributes of the first.
+    /// Sums several vertices at one position into `joint`, as if they were one vertex with the attributes of the first.
     pub(crate) fn join(&self, vertices: impl IntoIterator<Item = u32>, joint: &mut Joint<'a>) {
         joint.record.clear();
         joint.record.resize(HEAD + self.stride, Vec4::ZERO);
@@ -216,13 +221,13 @@ impl<'a> Attributes<'a> {
         }
     }
 
-    /// As [`Self::cost`], for several vertices at once.
+    /// As [`Self::cost`], but for several vertices at one position.
     pub(crate) fn joint_cost(&self, joint: &Joint<'a>, target: u32, d: DVec3) -> f64 {
         f64::from(Own::new(&joint.record, joint.values).cost(self.values_of(target), d.as_vec3()))
     }
 }
 
-/// Adds a vertex to the record of its replacement, which has these attributes and is at the offset `d`.
+/// Adds a vertex to the record of its replacement. The replacement has the attributes `values` and is at the offset `d`.
 fn add_moved(record: &mut [Vec4], own: &Own<'_>, values: &[f32], d: Vec3) {
     let ([first, mut second, _], mut slope) = (own.head, own.slope(d).extend(0.0));
     let sums = own.sums.iter().zip(&mut record[HEAD..]);
@@ -242,7 +247,7 @@ fn add_moved(record: &mut [Vec4], own: &Own<'_>, values: &[f32], d: Vec3) {
 mod tests {
     use super::*;
 
-    /// The result equals the sum written out, for a vertex that is replaced twice.
+    /// For a vertex that is replaced twice, the cost equals the sum written out.
     #[test]
     fn it_sums_squared_differences_from_linear_functions() {
         let positions =
@@ -255,8 +260,8 @@ mod tests {
             Surface { poses: &[positions.to_vec()], indices: &indices, attributes: &values, stride: 2 };
         let mut attributes = Attributes::new(&surface, &points);
         let value = |vertex: u32, attribute: usize| f64::from(values[vertex as usize * 2 + attribute]);
-        // Difference between the attribute at a vertex and the attribute's linear function on a triangle, for vertices on and
-        // off the plane.
+        // Squared difference between the attributes at a vertex and their linear functions on a triangle, times the
+        // triangle's area. Vertices may be on or off the triangle's plane.
         let off = |triangle: usize, to: u32| -> f64 {
             let corners = [0, 1, 2].map(|at| indices[triangle * 3 + at]);
             let [a, b, c] = corners.map(position);
@@ -274,7 +279,7 @@ mod tests {
         let direct = attributes.cost(0, 3, position(3) - position(0));
         assert!(close(direct, off(0, 3)), "{direct}");
         attributes.merge(0, 3, position(3) - position(0));
-        // Only vertex 3 belonged to the last two triangles.
+        // Before the merges, only vertex 3 belonged to the last two triangles.
         let cost = attributes.cost(3, 4, position(4) - position(3));
         let expected = off(0, 4) + 2.0 * off(1, 4);
         assert!(close(cost, expected), "{cost} {expected}");
@@ -283,7 +288,7 @@ mod tests {
         assert!(close(cost, 2.0 * off(2, 2)), "{cost}");
     }
 
-    /// Vertices at one place cost together the sum of their single costs.
+    /// The joint cost of vertices at one position is the sum of their single costs.
     #[test]
     fn several_vertices_are_replaced_at_once() {
         let turn = |at: f32| [at.cos(), at.sin(), 0.1 * at];

@@ -1,4 +1,4 @@
-//! Distance of new edges from the surface before a collapse.
+//! Distance of the new edges of a collapse from the surface before the collapse.
 
 use glam::DVec3;
 
@@ -7,12 +7,13 @@ use crate::mesh::nearest::precise_nearest_on_triangle;
 use super::points::Points;
 use super::topology::Topology;
 
-/// Largest number of triangles around a point whose new edges are measured: the time grows with the square of it.
+/// Largest number of triangles around a point for which new edges are measured. The time grows with the square of this
+/// number.
 const MOST: usize = 16;
 
-/// Largest squared distance, in any pose, between the middle of a new edge and the point's triangles before the collapse; at
-/// least `least`. An edge can bridge a recess while its point stays near the planes of its triangles. New edges on borders, and
-/// points with more than [`MOST`] triangles, are skipped.
+/// Largest squared distance, in any pose, between the middle of a new edge and the point's triangles before the
+/// collapse; at least `least`. It finds edges that bridge a recess although their point stays near the planes of its
+/// triangles. Points with more than [`MOST`] triangles and new edges on borders are skipped.
 pub(crate) fn bridged(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], least: f64) -> f64 {
     let mut worst = least;
     let ring = topology.ring(point);
@@ -51,7 +52,8 @@ mod tests {
     use super::super::turned::deviation;
     use super::*;
 
-    /// Four triangles around a point at the bottom of a valley. The valley's two ends lie `depth` lower.
+    /// The test mesh has four triangles around a point at the bottom of a valley. The valley's two ends lie `depth`
+    /// lower.
     #[test]
     fn edges_across_a_valley_are_off_by_their_middle() {
         let valley = |depth: f32| {
@@ -67,14 +69,14 @@ mod tests {
             (square.sqrt() / scale, planes)
         };
         let is = |found: f64, wanted: f64| assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");
-        // The walls rise by 45°, and the middle is 1 above the bottom.
+        // The walls rise by 45°, and the middle of the new edge is 1 above the bottom.
         let (across, planes) = off(&[valley(1.0)], 1, 0.0);
         is(across, 0.5_f64.sqrt());
         assert!(planes.is_some_and(|off| off < 0.45), "{planes:?}");
-        // Along the bottom, the new edges bridge nothing.
+        // Along the bottom, the new edges bridge no recess.
         is(off(&[valley(0.0)], 2, 0.0).0, 0.0);
         is(off(&[valley(0.0)], 2, 0.25).0, 0.25);
-        // The worst of several poses.
+        // With several poses, the largest distance counts.
         let flat = valley(0.0).into_iter().map(|[x, y, _]| [x, y, 0.0]).collect();
         is(off(&[flat, valley(0.0)], 1, 0.0).0, 0.5_f64.sqrt());
     }

@@ -1,4 +1,4 @@
-//! Marks on points or vertices.
+//! Marks on points or vertices: numbers that can be cleared quickly.
 
 /// A sparse map from indices to numbers that can be cleared in constant time.
 pub(crate) struct Marks {
@@ -12,7 +12,7 @@ impl Marks {
         Self { current: 0, stamps: vec![0; count], values: vec![0; count] }
     }
 
-    /// Removes all entries.
+    /// Removes all marks.
     pub(crate) fn clear(&mut self) {
         if self.current == u32::MAX {
             self.stamps.fill(0);
@@ -30,7 +30,7 @@ impl Marks {
         self.values[at as usize] = value;
     }
 
-    /// Marks an index. Returns whether it had no mark.
+    /// Marks an index with 0. Returns whether it had no mark before.
     pub(crate) fn insert(&mut self, at: u32) -> bool {
         let is_new = self.get(at).is_none();
         self.set(at, 0);

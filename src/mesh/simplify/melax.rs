@@ -1,4 +1,4 @@
-//! Cost function of Melax (B equation 3.1).
+//! The cost function of Melax (B equation 3.1).
 
 use glam::DVec3;
 
@@ -6,8 +6,8 @@ use super::points::Points;
 use super::topology::Topology;
 use super::turned::normal;
 
-/// Square of the cost, largest over the poses. It is squared because quadric costs are, so that both are ordered and rooted
-/// alike.
+/// Square of the cost of a collapse, the largest over all poses. It is squared because quadric costs are squares too:
+/// both kinds can then be sorted and converted alike.
 pub(crate) fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
@@ -27,8 +27,8 @@ pub(crate) fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32
     worst
 }
 
-/// Whether the normals of two points are more than 90° apart in the first pose. A point's normal is the sum of its triangles'
-/// normals.
+/// Whether the normals of two points are more than 90° apart in the first pose. A point's normal is the sum of the unit
+/// normals of its triangles.
 pub(crate) fn differ(topology: &Topology, points: &Points, both: [u32; 2]) -> bool {
     let sum = |point| -> DVec3 {
         let ring = topology.ring(point).iter();
@@ -54,8 +54,8 @@ mod tests {
         (points, topology)
     }
 
-    /// A floor of four squares meets a wall of four. A point on the edge between them moves along the edge at no cost. Away
-    /// from the edge it costs half the length, because the other side's triangles are turned by 90°.
+    /// A floor of four squares meets a wall of four. Moving a point along the edge between them costs nothing. Moving
+    /// it away from the edge costs half the length, because the triangles on the other side are turned by 90°.
     #[test]
     fn edges_are_kept() {
         let mut positions = Vec::new();

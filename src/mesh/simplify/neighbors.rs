@@ -1,10 +1,10 @@
-//! Neighbours into which a point may collapse, and the vertex that each of its wedges would become.
+//! The neighbours into which a point may collapse, and the vertex that replaces each of the point's wedges.
 
 use super::marks::Marks;
 use super::points::Points;
 use super::topology::{Kind, Topology};
 
-/// Vertices that may replace a wedge: none, one or two.
+/// The vertices that may replace a wedge: none, one or two.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Remap {
     vertices: [u32; 2],
@@ -26,17 +26,17 @@ impl IntoIterator for Remap {
     type Item = u32;
     type IntoIter = std::iter::Take<std::array::IntoIter<u32, 2>>;
 
-    /// The vertices in ascending order.
+    /// Iterates over the vertices in ascending order.
     fn into_iter(self) -> Self::IntoIter {
         self.vertices.into_iter().take(self.count)
     }
 }
 
-/// A neighbour of a point, with the triangles at the edge between them.
+/// A neighbour of a point, with the triangles at the edge between both.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Neighbor {
     pub point: u32,
-    /// Number of triangles at the edge, and the wedges of the first two.
+    /// Number of triangles at the edge between point and neighbour.
     triangles: u32,
     meets: [Meet; 2],
 }
@@ -46,40 +46,40 @@ impl Neighbor {
         &self.meets[..self.triangles.min(2) as usize]
     }
 
-    /// The neighbour's vertex, if all triangles at the edge use the same one.
+    /// The neighbour's vertex at the edge; `None` if the triangles at the edge use different vertices.
     pub(crate) fn only_target(&self) -> Option<u32> {
         let first = self.meets[0].other;
         self.meets().iter().all(|meet| meet.other == first).then_some(first)
     }
 }
 
-/// The point's vertex and the neighbour's vertex in one triangle.
+/// The vertices of one triangle at a point and at its neighbour.
 #[derive(Debug, Clone, Copy, Default)]
 struct Meet {
     own: Wedge,
     other: u32,
 }
 
-/// A vertex of a point that belongs to a triangle.
+/// A vertex of a point, if at least one triangle uses the vertex.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Wedge {
     pub vertex: u32,
-    /// Index of the wedge's sheet. Adjacent wedges that are split at this point only are in one sheet.
+    /// Index of the wedge's sheet. A sheet is a set of adjacent wedges that are split at this point only.
     sheet: u32,
 }
 
-/// The neighbours and wedges of a point.
+/// The neighbours and wedges of one point.
 #[derive(Default)]
 pub(crate) struct Neighbors {
     all: Vec<Neighbor>,
     wedges: Vec<Wedge>,
     sheets: usize,
-    /// Vertices of each neighbour that triangles use, with the neighbour; only if seams may be crossed.
+    /// Pairs of a neighbour and one of its vertices that triangles use. Empty unless seams may be crossed.
     beyond: Vec<[u32; 2]>,
 }
 
 impl Neighbors {
-    /// Collects the neighbours and wedges of a point that is not locked.
+    /// Collects the neighbours and wedges of a point. The point must not be locked.
     pub(crate) fn look(
         &mut self,
         topology: &Topology,
@@ -126,7 +126,8 @@ impl Neighbors {
         }
     }
 
-    /// Lists each wedge once. Two wedges are in one sheet if their triangles share an edge with a single vertex at its far end.
+    /// Lists each wedge once, with its sheet. Two wedges are in one sheet if their triangles share an edge whose far
+    /// end has one vertex.
     fn find_sheets(&mut self, topology: &Topology, points: &Points, point: u32, vertices: &mut Marks) {
         self.wedges.clear();
         vertices.clear();
@@ -163,8 +164,8 @@ impl Neighbors {
         }
     }
 
-    /// Keeps the neighbours into which the point may collapse: a border point only along the border, and only neighbours that
-    /// every sheet meets.
+    /// Removes neighbours into which the point may not collapse. A border point may move only along the border. Every
+    /// sheet must meet the neighbour.
     fn keep_allowed(&mut self, topology: &Topology, point: u32) {
         let sheets = self.sheets;
         self.all.retain(|neighbor| {
@@ -192,8 +193,8 @@ impl Neighbors {
         &self.wedges
     }
 
-    /// Vertices of a neighbour on the same chart as `target`, one of its vertices, in ascending order; only if seams may be
-    /// crossed.
+    /// The vertices of a neighbour that are on the same chart as its vertex `target`, in ascending order. Empty unless
+    /// seams may be crossed.
     pub(crate) fn beyond<'a>(
         &'a self,
         points: &'a Points,
@@ -206,8 +207,8 @@ impl Neighbors {
         all.filter(move |vertex| points.chart(*vertex) == points.chart(target))
     }
 
-    /// Vertices that may replace a wedge: those with which it shares an edge, or else those with which the other wedges of its
-    /// sheet share one.
+    /// The vertices that may replace a wedge: the neighbour's vertices with which the wedge shares an edge. If there
+    /// are none, the vertices that share an edge with another wedge of the same sheet.
     pub(crate) fn remap(&self, neighbor: &Neighbor, wedge: &Wedge) -> Remap {
         let mut remap = Remap::default();
         let own = neighbor.meets().iter().filter(|meet| meet.own.vertex == wedge.vertex);

@@ -1,5 +1,5 @@
-//! Parts: points connected by triangles. A part vanishes as a whole if its distance to the other parts costs less than the next
-//! collapse.
+//! Parts: sets of points that are connected by triangles. A part vanishes as a whole if its distance to the other parts
+//! costs less than the next collapse.
 
 mod tree;
 
@@ -13,39 +13,40 @@ use super::topology::Topology;
 use crate::mesh::nearest::precise_nearest_on_triangle;
 use tree::Tree;
 
-/// Weight of the squared distance between a part and the others. A part thus costs half of the distance, so that it vanishes a
-/// little before collapses that move the surface as far.
+/// Weight of the squared distance between a part and the other parts. The cost of a part is thus half of the distance,
+/// so that it vanishes slightly before collapses that move the surface by the same distance.
 const FACTOR: f64 = 0.25;
 
-/// Fraction of a part's radius that a collapse must cost before the part is measured. Its own collapses mostly cost less, and a
-/// part of few triangles is measured fast.
+/// A part is measured once a collapse costs this fraction of the part's radius. The part's own collapses mostly cost
+/// less, and a part of few triangles is measured quickly.
 const FIRST: f64 = 0.25;
 
-/// Points connected by triangles.
+/// A set of points that are connected by triangles.
 struct Part {
-    /// Points that had not collapsed at the last update.
+    /// The part's points. Points that have collapsed are dropped at each update.
     points: Vec<u32>,
-    /// Points of vanished parts that are nearest to this part.
+    /// Points of vanished parts for which this part was the nearest.
     heritage: Vec<u32>,
-    /// Bounding box of all points, in each pose.
+    /// Bounding box of all points of the part, for each pose.
     boxes: Vec<[DVec3; 2]>,
-    /// Round of the last update of `points`.
+    /// Value of [`Parts::round`] at the last update of `points`.
     updated: u64,
 }
 
-/// The parts of a mesh.
+/// All parts of a mesh, and the search for the next part to vanish.
 #[derive(Default)]
 pub(crate) struct Parts {
     all: Vec<Part>,
-    /// One tree per pose.
+    /// One bounding volume tree per pose.
     trees: Vec<Tree>,
-    /// Queue of a cost's bits and its part. The cost is a lower bound on what vanishing of the part would cost.
+    /// Queue of parts, as pairs of a cost (as bits) and a part. The cost is a lower bound on the cost of the part's
+    /// vanishing.
     waiting: BinaryHeap<Reverse<(u32, u32)>>,
-    /// Number of measured parts.
+    /// Number of parts measured so far.
     round: u64,
-    /// Points of the part being measured, each with the part that is nearest, or near enough.
+    /// Pairs of a point of the measured part and another part: the nearest part, or one that is near enough.
     heirs: Vec<[u32; 2]>,
-    /// Stack of nodes that a search has still to visit.
+    /// Stack of tree nodes that a search has not visited yet, each with its squared distance.
     open: Vec<(f64, u32)>,
 }
 
@@ -68,8 +69,8 @@ impl Parts {
         Self { trees, all, waiting, round: 0, heirs: Vec::new(), open: Vec::new() }
     }
 
-    /// Takes the part whose vanishing costs least, if the cost is at most `most`. Returns its points that have not collapsed,
-    /// and the cost. `more` computes the cost of a part's loss besides its distance from the others.
+    /// Takes the part that vanishes at the smallest cost, if this cost is at most `most`. Returns the part's remaining
+    /// points and the cost. `more` gives the cost of losing a part apart from its distance to the others.
     pub(crate) fn take(
         &mut self,
         points: &Points,
@@ -89,7 +90,7 @@ impl Parts {
             let own = std::mem::take(&mut self.all[part as usize].points);
             let heritage = std::mem::take(&mut self.all[part as usize].heritage);
             let more = more(&own);
-            // Twice the sufficient distance: a part beyond it need not be measured again soon.
+            // Twice the distance that would suffice. A part beyond this distance need not be measured again soon.
             let enough = (f64::from(most) - more).max(0.0) * 4.0 / FACTOR;
             let cost = (self.distance(points, topology, [&own, &heritage], enough) * FACTOR + more) as f32;
             let cost = queued.max(cost);
@@ -111,8 +112,8 @@ impl Parts {
         }
     }
 
-    /// Squared largest distance from these points to all parts that still have points, in any pose; infinite if no part has. If
-    /// it is more than `enough`, the result may be any value between the two.
+    /// Squared largest distance from the points `own` to all remaining parts, in any pose; infinite if no part remains.
+    /// If the distance exceeds `enough`, the result may be any value between both.
     fn distance(&mut self, points: &Points, topology: &mut Topology, own: [&[u32]; 2], enough: f64) -> f64 {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
@@ -123,7 +124,7 @@ impl Parts {
                 let known = hint.map_or(f64::INFINITY, |part| {
                     self.nearest_in(points, topology, part, (pose, from), f64::INFINITY)
                 });
-                // This point is nearer to the parts than an earlier one, so it does not change the maximum.
+                // If this point is nearer to the other parts than an earlier point, it does not change the maximum.
                 if known > worst {
                     let (nearest, part) = self.nearest(points, topology, (pose, from), (known, hint));
                     (worst, hint) = (worst.max(nearest), part);
@@ -137,7 +138,8 @@ impl Parts {
         worst
     }
 
-    /// Squared distance to the nearest triangle of the parts that have points, and its part. `known` is one of these parts.
+    /// Squared distance to the nearest triangle of all remaining parts, and its part. `known` is the distance to one of
+    /// these parts.
     fn nearest(
         &mut self,
         points: &Points,
@@ -157,7 +159,7 @@ impl Parts {
         (best, of)
     }
 
-    /// Squared distance to a part, if it is below `best`.
+    /// Squared distance from `from` to a part, or `best` if the part is not nearer than that.
     fn nearest_in(
         &mut self,
         points: &Points,
@@ -176,7 +178,7 @@ impl Parts {
             for &[next, last] in topology.ring(point) {
                 if point < next && point < last {
                     let corners = [point, next, last].map(|point| points.position(point, pose));
-                    // Most triangles have a box that is further away than the nearest so far.
+                    // Most triangles have a bounding box that is farther away than the nearest triangle so far.
                     if around(corners, from) < nearest {
                         let on = precise_nearest_on_triangle(from, corners);
                         nearest = nearest.min(on.distance_squared(from));
@@ -187,7 +189,7 @@ impl Parts {
         nearest
     }
 
-    /// Drops collapsed points of a part, and refreshes the others, once per round.
+    /// Drops the collapsed points of a part, and refreshes the remaining points. Done once per round.
     fn update(&mut self, topology: &mut Topology, part: u32) {
         let Part { points, updated, .. } = &mut self.all[part as usize];
         if std::mem::replace(updated, self.round) != self.round {
@@ -197,7 +199,7 @@ impl Parts {
     }
 }
 
-/// Points of each part that has triangles.
+/// The points of each part, for all parts that have triangles.
 fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
     let mut is_known = vec![false; count];
     let mut parts = Vec::new();
@@ -208,7 +210,7 @@ fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
         is_known[first as usize] = true;
         let (mut part, mut at) = (vec![first], 0);
         while let Some(point) = part.get(at) {
-            // Each triangle lists its points in a cycle, so following `next` alone reaches all of them.
+            // Each triangle lists its points in a cycle, so following `next` alone reaches all of its points.
             for &[next, _] in topology.ring(*point) {
                 if !std::mem::replace(&mut is_known[next as usize], true) {
                     part.push(next);
@@ -221,13 +223,13 @@ fn connected(count: usize, topology: &Topology) -> Vec<Vec<u32>> {
     parts
 }
 
-/// Squared distance from a place to the bounding box of a triangle.
+/// Squared distance from `from` to the bounding box of a triangle.
 #[inline]
 fn around([a, b, c]: [DVec3; 3], from: DVec3) -> f64 {
     from.clamp(a.min(b).min(c), a.max(b).max(c)).distance_squared(from)
 }
 
-/// Bounding box of a part's points, in each pose.
+/// Bounding box of a part's points, for each pose.
 fn boxes(points: &Points, part: &[u32]) -> Vec<[DVec3; 2]> {
     let in_pose = |pose: usize| {
         let positions = || part.iter().map(|point| points.position(*point, pose));

@@ -1,30 +1,31 @@
-//! Points: groups of vertices that share one position.
+//! Points: groups of vertices that share one position in every pose.
 
 use glam::DVec3;
 
 use crate::asset::tangents::Adjacency;
 
-/// Vertices grouped by their positions in all poses. Points are numbered in the order of their first vertices.
+/// Vertices grouped into points by their positions in all poses. Points are numbered in the order of their first
+/// vertices.
 pub(crate) struct Points {
     of: Vec<u32>,
-    /// Range of each point's vertices in `wedges`.
+    /// For each point, the range of its vertices in `wedges`.
     ranges: Vec<[u32; 2]>,
     wedges: Vec<u32>,
     poses: usize,
-    /// Positions times `scale`, point by point, each point in all poses.
+    /// Positions of the points, multiplied by `scale`. All poses of point 0 come first.
     positions: Vec<[f32; 3]>,
     scale: f64,
-    /// Largest edge of the bounding box of any pose, times `scale`.
+    /// Largest edge of the bounding box of any pose, multiplied by `scale`.
     extent: f64,
     are_vertices: bool,
-    /// Rigid body of each point, or [`NO_BODY`]; empty if there are none.
+    /// Rigid body of each point, or [`NO_BODY`]. Empty if the mesh has no rigid bodies.
     bodies: Vec<u32>,
-    /// Chart of each vertex: the first vertex at its point from which no seam separates it. Empty if that is always the vertex
-    /// itself.
+    /// Chart of each vertex: the first vertex of the same point that no seam separates from it. Empty if every vertex
+    /// is its own chart.
     charts: Vec<u32>,
 }
 
-/// Body of a vertex or point that belongs to no rigid body.
+/// Marks a vertex or point that belongs to no rigid body.
 pub(crate) const NO_BODY: u32 = u32::MAX;
 
 impl Points {
@@ -54,7 +55,8 @@ impl Points {
         }
     }
 
-    /// Returns the points with charts: only the attributes from index `first` of each vertex on hold seams.
+    /// Adds charts to the points. Only attributes from index `first` on form seams; the vertices of a chart may differ
+    /// in the others.
     pub(crate) fn on_charts(mut self, attributes: &[f32], stride: usize, first: usize) -> Self {
         // Adding 0 turns −0 into +0.
         let held = |vertex: u32| {
@@ -75,14 +77,14 @@ impl Points {
         self.charts.get(vertex as usize).copied().unwrap_or(vertex)
     }
 
-    /// Whether several vertices of a point may be on one chart.
+    /// Whether charts are known, so that several vertices of a point may be on one chart.
     #[inline]
     pub(crate) fn has_charts(&self) -> bool {
         !self.charts.is_empty()
     }
 
-    /// Returns the points with rigid bodies. `bodies` has the body of each vertex, or [`NO_BODY`]. Vertices of one body have
-    /// the same distances from each other in every pose.
+    /// Adds rigid bodies to the points. `bodies` has the body of each vertex, or [`NO_BODY`]. Vertices of one body keep
+    /// their distances from each other in every pose.
     pub(crate) fn on_bodies(mut self, bodies: &[u32]) -> Self {
         let of_point = |point: u32| {
             let mut wedges = self.wedges(point).iter().map(|vertex| bodies[*vertex as usize]);
@@ -99,7 +101,7 @@ impl Points {
         self.bodies.get(point as usize).copied().unwrap_or(NO_BODY)
     }
 
-    /// Rigid body that all of the points share, or [`NO_BODY`].
+    /// Rigid body that all of the points belong to, or [`NO_BODY`] if there is none.
     #[inline]
     pub(crate) fn common_body(&self, points: &[u32]) -> u32 {
         match points {
@@ -111,7 +113,7 @@ impl Points {
         }
     }
 
-    /// Number of leading poses that show all distances between two bodies: one if they are the same body.
+    /// Number of leading poses to examine for distances between two bodies. One pose is enough if both are the same body.
     #[inline]
     pub(crate) fn poses_between(&self, body: u32, other: u32) -> usize {
         if body == other && body != NO_BODY { 1 } else { self.poses }
@@ -126,7 +128,7 @@ impl Points {
         self.poses
     }
 
-    /// Point of a vertex.
+    /// The point that a vertex belongs to.
     pub(crate) fn of(&self, vertex: u32) -> u32 {
         self.of[vertex as usize]
     }
@@ -137,28 +139,29 @@ impl Points {
         &self.wedges[start as usize..end as usize]
     }
 
-    /// Factor of positions. It brings the mesh to a size between 1 and 2 units.
+    /// Power-of-two factor from the mesh's units to scaled units, in which the mesh has a size between 1 and 2.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// Largest edge of the bounding box of any pose, in units of 1 / `scale`: between 1 and 2, or 0.
+    /// Largest edge of the bounding box of any pose, in scaled units: between 1 and 2, or 0.
     pub(crate) fn extent(&self) -> f64 {
         self.extent
     }
 
-    /// Reads the position of a point, to prefetch it; the returned number only keeps the read alive.
+    /// Reads the position of a point to prefetch it. The returned number only prevents the compiler from dropping the
+    /// read.
     #[inline]
     pub(crate) fn touch(&self, point: u32) -> u32 {
         self.positions[point as usize * self.poses][0].to_bits()
     }
 
-    /// Whether every vertex has its own position. The mesh then has no seams.
+    /// Whether every vertex has its own position. If so, the mesh has no seams.
     pub(crate) fn are_vertices(&self) -> bool {
         self.are_vertices
     }
 
-    /// Vertex of a point that has only one.
+    /// The vertex of a point that has exactly one vertex; otherwise `None`.
     #[inline]
     pub(crate) fn only_wedge(&self, point: u32) -> Option<u32> {
         if self.are_vertices {
@@ -168,26 +171,27 @@ impl Points {
         (end == start + 1).then(|| self.wedges[start as usize])
     }
 
-    /// Position of a point in units of 1 / `scale`.
+    /// Position of a point in a pose, in scaled units.
     #[inline]
     pub(crate) fn position(&self, point: u32, pose: usize) -> DVec3 {
         let [x, y, z] = self.positions[point as usize * self.poses + pose];
         DVec3::new(f64::from(x), f64::from(y), f64::from(z))
     }
 
-    /// Point of each vertex.
+    /// For each vertex, the number of its point.
     pub(crate) fn into_of(self) -> Vec<u32> {
         self.of
     }
 }
 
-/// Point of each vertex.
+/// For each vertex, the number of its point.
 fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     // Adding 0 turns −0 into +0.
     let bits = |pose: &[[f32; 3]], vertex: usize| pose[vertex].map(|x| (x + 0.0).to_bits());
     let same = |a: usize, b: usize| poses.iter().all(|pose| bits(pose, a) == bits(pose, b));
     let vertices = poses[0].len();
-    // Open addressing: each slot has the first vertex at a position. At most half of the slots are taken.
+    // Hash table with open addressing: each slot has the first vertex at a position. At most half of the slots are
+    // occupied.
     let slots = (2 * vertices).next_power_of_two();
     let mut firsts = vec![u32::MAX; slots];
     let mut of = Vec::with_capacity(vertices);
@@ -208,7 +212,7 @@ fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     of
 }
 
-/// Hashes a position for the table (multipliers and shifts of MurmurHash2, Austin Appleby, public domain).
+/// Hashes a position for the hash table (multipliers and shifts of MurmurHash2, Austin Appleby, public domain).
 fn hash(words: [u32; 3]) -> u32 {
     const MIX: u32 = 0x5bd1_e995;
     let mixed = words.iter().fold(0_u32, |hash, word| {
@@ -219,7 +223,7 @@ fn hash(words: [u32; 3]) -> u32 {
     mixed ^ (mixed >> 15)
 }
 
-/// Largest edge of the bounding box of any pose.
+/// Largest edge of the bounding box of any pose, in the mesh's units.
 fn extent(poses: &[Vec<[f32; 3]>]) -> f64 {
     let mut largest = 0.0_f64;
     for pose in poses {
@@ -236,12 +240,13 @@ fn extent(poses: &[Vec<[f32; 3]>]) -> f64 {
     largest
 }
 
-/// Power of two that scales a length to between 1 and 2. Multiplying by it rounds nothing.
+/// Power of two that scales a length to between 1 and 2. Multiplying by it causes no rounding.
 fn scale(largest: f64) -> f64 {
     if largest <= 0.0 {
         return 1.0;
     }
-    // 2^(1023 − e) for a number between 2^(e − 1023) and twice that; f32 never reaches the ends of f64's range.
+    // The result is 2^(1023 − e) for a number between 2^(e − 1023) and twice that. f32 never reaches the ends of f64's
+    // range.
     f64::from_bits((2046 - ((largest.to_bits() >> 52) & 0x7ff)) << 52)
 }
 

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-/// A weighted sum of squares of linear functions, at the offset d from an origin: `dᵀ A d + 2 b·d + c`.
+/// A weighted sum of squares of linear functions of the offset d from an origin: `dᵀ A d + 2 b·d + c`.
 ///
-/// The origin is the position of the point that owns the quadric. The planes of that point's triangles pass through it, so that
-/// the numbers stay small wherever the mesh lies. The quadric is in f64 because costs are squares: a rounding error of 2⁻⁵² is
-/// 10⁻⁸ of an edge. f32 would leave 2 · 10⁻⁴ and would find a cost on flat ground.
+/// The origin is the position of the point that owns the quadric. The planes of the point's triangles pass through this
+/// origin, so the numbers stay small wherever the mesh lies. The quadric is in f64 because costs are squares: a
+/// rounding error of 2⁻⁵² then amounts to 10⁻⁸ of an edge. f32 would give 2 · 10⁻⁴, and so a positive cost on flat
+/// ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Quadric {
     /// Upper triangle of A: xx, xy, xz, yy, yz, zz.
@@ -17,8 +18,8 @@ pub(crate) struct Quadric {
 }
 
 impl Quadric {
-    /// The quadric `weight × (gradient · d)²`. If `gradient` is a unit vector, this is the squared distance from a plane
-    /// through the origin.
+    /// The quadric `weight × (gradient · d)²`. For a unit vector `gradient`, it is the weighted squared distance from a
+    /// plane through the origin.
     pub(crate) fn linear(gradient: DVec3, weight: f64) -> Self {
         let DVec3 { x, y, z } = gradient;
         let a = [x * x, x * y, x * z, y * y, y * z, z * z].map(|product| product * weight);
@@ -34,7 +35,7 @@ impl Quadric {
         self.weight += other.weight;
     }
 
-    /// As [`Self::add`], for a plane through the origin.
+    /// As [`Self::add`], but for a plane through the origin.
     pub(crate) fn add_plane(&mut self, plane: &Self) {
         for (sum, value) in self.a.iter_mut().zip(plane.a) {
             *sum += value;
@@ -42,7 +43,7 @@ impl Quadric {
         self.weight += plane.weight;
     }
 
-    /// As [`Self::add`], but leaves the weight as it is.
+    /// As [`Self::add`], but does not change the weight.
     pub(crate) fn add_unweighted(&mut self, other: &Self) {
         let weight = self.weight;
         self.add(other);
@@ -61,7 +62,7 @@ impl Quadric {
         ad + self.b
     }
 
-    /// Value at the offset d, clamped to 0 from below.
+    /// Value of the quadric at the offset d. Negative values, which rounding may cause, become 0.
     #[inline]
     pub(crate) fn at(&self, d: DVec3) -> f64 {
         let [xx, xy, xz, yy, yz, zz] = self.a;
@@ -71,7 +72,8 @@ impl Quadric {
         (x * d.x + y * d.y + z * d.z + self.c).max(0.0)
     }
 
-    /// Sum of this quadric divided by its weight and another one about the same origin, which has no weight.
+    /// Sum of two quadrics with the same origin: this quadric divided by its weight, and a quadric (a, b, c) without
+    /// weight.
     #[inline]
     pub(crate) fn mean_plus(&self, mut a: [f64; 6], b: DVec3, c: f64) -> Self {
         let factor = self.inverse_weight();
@@ -81,19 +83,20 @@ impl Quadric {
         Self { a, b: self.b * factor + b, c: self.c * factor + c, weight: 0.0 }
     }
 
-    /// Reads the quadric's first and last words, to prefetch them; the returned number only keeps the reads alive.
+    /// Reads the quadric's first and last words to prefetch them. The returned number only prevents the compiler from
+    /// dropping the reads.
     #[inline]
     pub(crate) fn touch(&self) -> u64 {
         self.a[0].to_bits() ^ self.weight.to_bits()
     }
 
-    /// Reciprocal of the weight; 0 for no weight.
+    /// Reciprocal of the weight; 0 if the weight is 0.
     #[inline]
     pub(crate) fn inverse_weight(&self) -> f64 {
         if self.weight > 0.0 { 1.0 / self.weight } else { 0.0 }
     }
 
-    /// The quadric about another origin, at the offset d.
+    /// The same quadric, relative to another origin at the offset d.
     pub(crate) fn moved(&self, d: DVec3) -> Self {
         Self { a: self.a, b: self.slope(d), c: self.at(d), weight: self.weight }
     }
@@ -109,7 +112,7 @@ mod tests {
         let mut quadric = Quadric::default();
         let (first, second) = (DVec3::new(0.5, -2.0, 1.0), DVec3::new(3.0, 0.25, -1.0));
         let weights = [2.0, 0.5, 3.0];
-        // The first two planes pass through 0, the third through `first`.
+        // The first two planes pass through the origin, the third passes through `first`.
         quadric.add(&Quadric::linear(normals[0], weights[0]));
         quadric.add(&Quadric::linear(normals[1], weights[1]));
         let mut moved = quadric.moved(first);

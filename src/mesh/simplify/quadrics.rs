@@ -1,4 +1,4 @@
-//! The quadric cost: quadrics of every point in each pose, and of every vertex's attributes.
+//! The quadric cost: quadrics of every point's position in each pose, and of every vertex's attributes.
 
 use super::Surface;
 use super::attributes::{Attributes, Joint};
@@ -8,27 +8,28 @@ use super::quadric::Quadric;
 use super::topology::{Kind, Topology};
 use super::turned::normal;
 
-/// Weight of planes across border edges, relative to those of triangles: a border edge has one triangle instead of two. A
-/// single spot off the border is detected by its distance from the border (`deviation`). With a factor five times as large,
-/// models with many borders keep points there that they need elsewhere.
+/// Weight of the planes across border edges, relative to the planes of triangles. It is 2 because a border edge has one
+/// triangle instead of two. A single spot off the border is detected by `deviation`. With a weight five times as large,
+/// models with many borders keep points on borders that they need elsewhere.
 const BORDER: f64 = 2.0;
 
-/// As [`BORDER`], for each of the two triangles at a seam edge. The surface continues there, so a seam only has to hold its
-/// course. With a larger factor, models of many hard-edged parts have larger errors.
+/// Weight of the planes across seam edges, for each of the two triangles at an edge; see [`BORDER`] for borders. The
+/// surface continues across a seam, so only the seam's course must be kept. With a larger weight, models of many
+/// hard-edged parts have larger errors.
 const SEAM: f64 = 0.25;
 
-/// Number of a point's wedges from which on their attributes are summed once, not for each neighbour. The pole of a sphere has
-/// a wedge for each neighbour.
+/// If a point has at least this number of wedges, their attributes are summed once instead of once per neighbour. An
+/// example is the pole of a sphere, which has one wedge per neighbour.
 const JOINED: usize = 8;
 
-/// The quadrics of a mesh.
+/// All quadrics of a mesh.
 pub(crate) struct Quadrics<'a> {
-    /// Quadrics of positions, point by point, each in all poses.
+    /// Quadrics of positions. All poses of point 0 come first.
     shape: Vec<Quadric>,
-    /// Rigid body on which all planes of a point lie, or [`NO_BODY`].
+    /// For each point, the rigid body that all of its planes lie on, or [`NO_BODY`].
     bodies: Vec<u32>,
     attributes: Option<Attributes<'a>>,
-    /// Sum of the wedges of the point that was joined last.
+    /// Summed attribute errors of the point that was last passed to [`Quadrics::join`].
     joint: Joint<'a>,
 }
 
@@ -47,13 +48,13 @@ impl<'a> Quadrics<'a> {
         Self { shape, bodies, attributes, joint: Joint::default() }
     }
 
-    /// Whether attributes count.
+    /// Whether attributes are part of the cost.
     #[inline]
     pub(crate) fn has_attributes(&self) -> bool {
         self.attributes.is_some()
     }
 
-    /// Mean squared distance of a point's planes from its neighbour, in the worst pose.
+    /// Mean squared distance between the planes of a point and the position of its neighbour, in the worst pose.
     #[inline]
     pub(crate) fn shape_cost(&self, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
         let mut worst = 0.0_f64;
@@ -67,8 +68,8 @@ impl<'a> Quadrics<'a> {
         worst
     }
 
-    /// Cheapest collapse of a point with one vertex, and its target; the lower target if costs are equal. `None` if the point
-    /// has no neighbour, or if attributes count and a neighbour has several vertices.
+    /// Cheapest collapse of a point with one vertex: the cost and the neighbour. Among equal costs, the lower neighbour
+    /// is taken. `None` if the point has no neighbour, or if attributes count and a neighbour has several vertices.
     #[inline]
     pub(crate) fn cheapest(
         &self,
@@ -102,7 +103,7 @@ impl<'a> Quadrics<'a> {
         best.found()
     }
 
-    /// As [`Self::cheapest`], for several poses.
+    /// As [`Self::cheapest`], but for several poses.
     fn cheapest_in_all(
         &self,
         points: &Points,
@@ -124,7 +125,8 @@ impl<'a> Quadrics<'a> {
         best.found()
     }
 
-    /// Reads the data of a point and of its first vertex, to prefetch it; the returned number only keeps the reads alive.
+    /// Reads the data of a point and of its first vertex to prefetch it. The returned number only prevents the compiler
+    /// from dropping the reads.
     #[inline]
     pub(crate) fn touch(&self, points: &Points, point: u32) -> u32 {
         let quadric = self.shape[point as usize * points.poses()].touch() as u32;
@@ -134,15 +136,16 @@ impl<'a> Quadrics<'a> {
         }
     }
 
-    /// Prepares [`Self::attribute_cost`] for a point with these neighbours.
+    /// Prepares [`Self::attribute_cost`] for the point that `neighbors` describes.
     pub(crate) fn join(&mut self, points: &Points, neighbors: &Neighbors) {
         if let Some(attributes) = self.attributes.as_ref().filter(|_| is_joined(points, neighbors)) {
             attributes.join(neighbors.wedges().iter().map(|wedge| wedge.vertex), &mut self.joint);
         }
     }
 
-    /// Sum of squared differences in attributes, weighted by area, if a point collapses and each of its wedges is replaced by
-    /// the cheapest allowed vertex. If the sum exceeds `most`, any part of it that does may be returned.
+    /// Attribute cost of a collapse, if each wedge of the point is replaced by its cheapest allowed vertex. The cost is
+    /// a sum of squared differences, weighted by area. If the sum exceeds `most`, a partial sum above `most` may be
+    /// returned.
     pub(crate) fn attribute_cost(
         &self,
         points: &Points,
@@ -159,7 +162,7 @@ impl<'a> Quadrics<'a> {
             }
             for wedge in neighbors.wedges() {
                 sum += self.target(points, neighbors, point, neighbor, wedge).1;
-                // Comparing before rounding is safe: rounding to f32 is monotonic.
+                // It is safe to compare before rounding, because rounding to f32 is monotonic.
                 if sum > most {
                     break;
                 }
@@ -181,18 +184,19 @@ impl<'a> Quadrics<'a> {
         let cost = |target| self.attributes.as_ref().map_or(0.0, |all| all.cost(wedge.vertex, target, d));
         let near = neighbors.remap(neighbor, wedge).into_iter().map(|target| (target, cost(target)));
         let near = near.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((wedge.vertex, 0.0));
-        // Vertices of one chart in ascending order, so that the first of equally cheap ones is taken.
+        // Vertices of one chart are in ascending order. Among equally cheap vertices, the first is taken.
         let beyond = neighbors.beyond(points, neighbor, near.0).map(|target| (target, cost(target)));
         beyond.fold(near, |best, other| if other.1 < best.1 { other } else { best })
     }
 
-    /// Attribute cost of removing the triangles of these points.
+    /// Attribute cost of removing the triangles of the points in `part`.
     pub(crate) fn lost(&self, points: &Points, part: &[u32]) -> f64 {
         let vertices = || part.iter().flat_map(|point| points.wedges(*point)).copied();
         self.attributes.as_ref().map_or(0.0, |attributes| attributes.lost(vertices))
     }
 
-    /// Merges a point into its neighbour, and its wedges into their replacements in `moved`.
+    /// Merges the quadrics of a point into its neighbour's quadrics. `moved` gives the replacement of each wedge of the
+    /// point.
     pub(crate) fn merge(&mut self, points: &Points, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         for pose in 0..points.poses() {
             let d = points.position(neighbor, pose) - points.position(point, pose);
@@ -210,13 +214,13 @@ impl<'a> Quadrics<'a> {
     }
 }
 
-/// Whether all wedges of a point become the same vertex wherever a neighbour has one, and are so many that summing them once
-/// pays off.
+/// Whether summing the wedges of a point once pays off: the point has many wedges, and at every neighbour with one
+/// vertex, all of them become this vertex.
 fn is_joined(points: &Points, neighbors: &Neighbors) -> bool {
     neighbors.wedges().len() >= JOINED && !neighbors.is_split() && !points.has_charts()
 }
 
-/// The cheapest collapse so far.
+/// The cheapest collapse found so far.
 struct Cheapest {
     cost: f32,
     neighbor: u32,
@@ -242,12 +246,13 @@ impl Cheapest {
     }
 }
 
-/// Adds a triangle's plane to each corner, weighted by the square root of the area. For each held edge, adds the plane across
-/// it to both ends, weighted by the edge's length. The planes of held edges do not count in the weight by which sums are
-/// divided; otherwise the ends of borders would seem closer to their triangles than they are.
+/// Adds a triangle's plane to the quadric of each corner, weighted by the square root of the area. For each border or
+/// seam edge, also adds the plane across the edge to both ends, weighted by the edge's length. These planes do not
+/// count in the weight by which sums are divided. Otherwise the ends of borders would seem closer to their triangles
+/// than they are.
 fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, vertices: [u32; 3]) {
     let of = [points.of(vertices[0]), points.of(vertices[1]), points.of(vertices[2])];
-    // The triangle has no area in any pose.
+    // This triangle has no area in any pose.
     if of[0] == of[1] || of[1] == of[2] || of[2] == of[0] {
         return;
     }
@@ -276,8 +281,9 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, ver
     }
 }
 
-/// Weight of the plane across the edge between a triangle's first two points, if the edge is on a border or on a seam. On a
-/// seam, the triangle on the other side has different wedges at both ends. `ends` are this triangle's vertices there.
+/// Weight of the plane across the edge between a triangle's first two points; `None` unless the edge is on a border or
+/// a seam. At a seam, the triangle on the other side has different wedges at both ends. `ends` are this triangle's
+/// vertices at the two ends.
 fn hold(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -> Option<f64> {
     let [from, to, across] = of;
     let is_inside = |point: u32| topology.kind(point) == Kind::Interior && points.only_wedge(point).is_some();

@@ -1,21 +1,22 @@
-//! A bucket queue of points, by the cost of each point's best collapse. There are four buckets per octave of squared costs;
-//! putting and taking are one step each. Costs in the same bucket count as equal, and are taken in insertion order.
+//! A bucket queue of points, sorted by the cost of each point's best collapse. There are four buckets per octave of
+//! squared costs. Inserting and removing take one step each. Costs in the same bucket count as equal, and are taken in
+//! the order of insertion.
 
-/// The best collapse of a point: the neighbour, and the cost.
+/// The best collapse of a point: the neighbour to merge into, and the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Best {
     pub neighbor: u32,
     /// The squared cost; at least 0.
     pub cost: f32,
-    /// Known part of the cost before it is measured.
+    /// The part of the squared cost that is known before the expensive part is measured.
     pub base: f32,
-    /// Whether a cheaper collapse exists that is not legal at the moment.
+    /// Whether the point has a cheaper collapse that is currently illegal.
     pub is_second: bool,
-    /// Whether the cost includes the measured part, which is valid as long as the point's triangles do not change.
+    /// Whether `cost` includes the measured part. It stays valid until the point's triangles change.
     pub is_measured: bool,
 }
 
-/// Bits of a cost that choose its bucket: eight of the exponent, two of the mantissa.
+/// Number of a cost's bits that choose its bucket: eight bits of the exponent and two of the mantissa.
 const BITS: u32 = 10;
 const BUCKETS: usize = 1 << BITS;
 /// Number of points that [`Queue::ahead`] returns at once.
@@ -23,19 +24,19 @@ const AHEAD: usize = 16;
 /// Marks a point that is in no bucket.
 const NONE: u16 = u16::MAX;
 
-/// State of one point in the queue.
+/// The queued collapse of one point.
 #[derive(Debug, Clone, Copy)]
 struct State {
     neighbor: u32,
     cost: f32,
     base: f32,
-    /// Bucket with the point's valid entry. Entries elsewhere are stale, and are dropped when they are reached.
+    /// Bucket with the point's valid entry. Entries in other buckets are outdated, and are dropped when they are reached.
     bucket: u16,
     is_second: bool,
     is_measured: bool,
 }
 
-/// The best collapse of each point.
+/// Queue of points, and the best collapse of each point.
 pub(crate) struct Queue {
     states: Vec<State>,
     buckets: Vec<Vec<u32>>,
@@ -43,14 +44,14 @@ pub(crate) struct Queue {
     taken: Vec<u32>,
     /// One bit per bucket, set if the bucket may have entries.
     filled: [u64; BUCKETS / 64],
-    /// Index of the first word of `filled` whose buckets may have entries.
+    /// Index in `filled` of the first word whose buckets may have entries.
     first: usize,
-    /// Factor of costs. It gives meshes of any size the same buckets.
+    /// Factor for squared costs. It gives similar meshes the same buckets, whatever their size.
     unit: f32,
 }
 
 impl Queue {
-    /// A queue for `points` points without collapses. `extent` is the size of the mesh.
+    /// An empty queue for `points` points. `extent` is the size of the mesh, in the units of costs.
     pub(crate) fn new(points: usize, extent: f64) -> Self {
         let unit = if extent > 0.0 { (1.0 / (extent * extent)) as f32 } else { 1.0 };
         let state =
@@ -59,13 +60,13 @@ impl Queue {
         Self { states: vec![state; points], buckets, taken, filled: [0; BUCKETS / 64], first: 0, unit }
     }
 
-    /// The neighbour into which a point would collapse, as last set.
+    /// The neighbour of a point's best collapse, as last set.
     #[inline]
     pub(crate) fn neighbor(&self, point: u32) -> u32 {
         self.states[point as usize].neighbor
     }
 
-    /// Replaces the best collapse of a point.
+    /// Replaces the best collapse of a point. `None` removes the point from the queue.
     #[inline]
     pub(crate) fn set(&mut self, point: u32, best: Option<Best>) {
         let Some(Best { neighbor, cost, base, is_second, is_measured }) = best else {
@@ -88,7 +89,7 @@ impl Queue {
         self.first = self.first.min(word);
     }
 
-    /// Points that are likely to be next, returned once every few points; empty in between.
+    /// The next few points of the current bucket, for prefetching. Returned once every few points; empty in between.
     #[inline]
     pub(crate) fn ahead(&self) -> &[u32] {
         let Some(word) = self.filled.get(self.first).filter(|word| **word != 0) else { return &[] };
@@ -101,13 +102,13 @@ impl Queue {
         &entries[taken..entries.len().min(taken + AHEAD)]
     }
 
-    /// Whether a collapse is in a later bucket than another one.
+    /// Whether the collapse `best` belongs in a later bucket than the collapse `than`.
     #[inline]
     pub(crate) fn is_later(&self, best: &Best, than: &Best) -> bool {
         self.bucket_of(best.cost) > self.bucket_of(than.cost)
     }
 
-    /// Takes the next point.
+    /// Removes the next point from the queue, and returns it with its best collapse.
     pub(crate) fn pop(&mut self) -> Option<(u32, Best)> {
         loop {
             while *self.filled.get(self.first)? == 0 {
@@ -133,7 +134,8 @@ impl Queue {
         }
     }
 
-    /// Bucket of a cost. It uses the bits directly, because the bits of non-negative floats are ordered as the floats are.
+    /// Bucket of a squared cost. It is taken from the float's bits, because non-negative floats and their bits have the
+    /// same order.
     #[inline]
     fn bucket_of(&self, cost: f32) -> u16 {
         ((cost * self.unit).to_bits() >> (31 - BITS)) as u16

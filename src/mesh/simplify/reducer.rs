@@ -1,4 +1,4 @@
-//! Main loop of simplification: one collapse after the other.
+//! Main loop of simplification: collapses points one after the other.
 
 mod search;
 #[cfg(test)]
@@ -21,31 +21,32 @@ struct Reducer<'a> {
     points: Points,
     topology: Topology,
     cost: Cost,
-    /// Quadrics, for [`Cost::Quadric`] only.
+    /// Quadrics; only for [`Cost::Quadric`].
     quadrics: Option<Quadrics<'a>>,
-    /// Samples, only if distances are limited.
+    /// Samples that measure distances; only if distances are limited.
     tracked_samples: Option<TrackedSamples>,
     neighbors: Neighbors,
-    /// Parts that may vanish.
+    /// Parts that may vanish as a whole.
     parts: Parts,
-    /// Points with a collapse cheaper than the queued one that may become legal when triangles around them change.
+    /// Points with an illegal collapse that is cheaper than the queued one. It may become legal when triangles around
+    /// the point change.
     watched: Vec<bool>,
-    /// Marks for points, and for vertices.
+    /// Two sets of marks: for points, and for vertices.
     marks: [Marks; 2],
-    /// Points whose triangles the last collapse changed.
+    /// Points whose triangles were changed by the last collapse.
     changed: Vec<u32>,
-    /// Point whose collapses were listed last, if nothing has collapsed since.
+    /// Point whose collapses are listed in `costs`; `None` after a collapse.
     listed: Option<u32>,
-    /// Costs of the listed point's collapses in ascending order, as bits, each with the neighbour.
+    /// Costs of the listed point's collapses in ascending order, as bits, each with its neighbour.
     costs: Vec<(u32, u32)>,
 }
 
-/// Number of collapses between two reports of progress.
+/// Number of collapses between two progress reports.
 const REPORT: usize = 256;
 
-/// Collapses until a limit of `options` is reached, within one distance after the other. `bodies` has the rigid body of each
-/// vertex ([`Points::on_bodies`]); it is empty if there are none. `watch` gets the removed fraction of the triangles, and may
-/// break.
+/// Simplifies until a limit of `options` is reached, within one of `distances` after the other. `bodies` has the rigid
+/// body of each vertex ([`Points::on_bodies`]); empty if there are none. `watch` gets the fraction of triangles removed
+/// so far, and may break.
 pub(crate) fn reduce<B>(
     surface: &Surface<'_>,
     options: &SimplifyOptions,
@@ -81,7 +82,7 @@ pub(crate) fn reduce<B>(
     })
 }
 
-/// The collapses so far.
+/// The collapses made so far.
 #[derive(Default)]
 struct Done {
     collapses: Vec<Collapse>,
@@ -125,8 +126,8 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Collapses until no legal collapse keeps every sample within `distance`, or until a limit of `options` is
-    /// reached. `watch` gets the number of triangles that are left.
+    /// Makes collapses that keep every sample within `distance`, until no legal one is left or a limit of `options` is
+    /// reached. `watch` gets the number of remaining triangles.
     fn run<B>(
         &mut self,
         options: &SimplifyOptions,
@@ -170,14 +171,14 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Takes a part that may vanish at a cost of at most `most`.
+    /// Takes a part that may vanish, if its cost is at most `most`. Returns the part's points and the cost.
     fn take_part(&mut self, most: f32) -> Option<(Vec<u32>, f32)> {
         let Self { parts, points, topology, quadrics, .. } = self;
         let lost = |part: &[u32]| quadrics.as_ref().map_or(0.0, |quadrics| quadrics.lost(points, part));
         parts.take(points, topology, lost, most)
     }
 
-    /// Merges a whole part into one of its points.
+    /// Merges all points of a part into the first of them.
     fn vanish(&mut self, queue: &mut Queue, part: &[u32], moved: &mut Vec<[u32; 2]>) {
         let Some(target) = part.first().and_then(|first| self.points.wedges(*first).first()) else { return };
         for &point in part {
@@ -194,7 +195,7 @@ impl<'a> Reducer<'a> {
         queue
     }
 
-    /// Recomputes the best collapse of a point, and queues it.
+    /// Recomputes the best collapse of a point, and puts it in the queue.
     fn set(&mut self, queue: &mut Queue, point: u32) {
         self.topology.refresh(point);
         self.topology.take_change(point);
@@ -209,13 +210,13 @@ impl<'a> Reducer<'a> {
         queue.set(point, best);
     }
 
-    /// Whether costs are measured before a point's turn. With attributes, measuring raises nearly every cost, so that each
-    /// point would be queued twice.
+    /// Whether the whole cost is measured when a point is queued, before its turn. This is done with attributes:
+    /// measuring then raises nearly every cost, so each point would be queued twice.
     fn is_measured_early(&self) -> bool {
         self.quadrics.as_ref().is_some_and(Quadrics::has_attributes)
     }
 
-    /// Cheapest legal collapse, up to the width of the queue's buckets.
+    /// The cheapest legal collapse, up to the width of the queue's buckets.
     fn next(&mut self, queue: &mut Queue) -> Option<(u32, Best)> {
         loop {
             self.fetch(queue);
@@ -238,7 +239,8 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Best collapse of a point whose triangles are all up to date: the queued one, or a new one.
+    /// Best collapse of a point: the queued one if it is still valid, otherwise a new one. The point's triangles must
+    /// be up to date.
     fn latest(&mut self, point: u32, queued: Best) -> Option<Best> {
         let change = self.topology.take_change(point);
         if self.is_outdated(point, &queued, change) {
@@ -256,8 +258,9 @@ impl<'a> Reducer<'a> {
         self.find_legal(point)
     }
 
-    /// Whether the best collapse of a point must be recomputed; all of its triangles are up to date. Unless another point was
-    /// merged into it, its other costs have not changed. A new neighbour is hardly ever cheaper than the best old one.
+    /// Whether the best collapse of a point must be recomputed. The point's triangles must be up to date. If no other
+    /// point was merged into this point, the costs of its other collapses have not changed. A new neighbour is hardly
+    /// ever cheaper than the best old one.
     fn is_outdated(&self, point: u32, best: &Best, change: Change) -> bool {
         match change {
             Change::None => false,
@@ -268,8 +271,8 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Prefetches the data of the next few points, so that the processor waits for all of it at once: points with consecutive
-    /// costs are scattered in memory. Each round of reads yields the addresses for the next round.
+    /// Prefetches the data of the next few points. Points with consecutive costs are scattered in memory; this way, the
+    /// processor waits for all of them at once. Each round of reads yields the addresses for the next round.
     fn fetch(&self, queue: &Queue) {
         let (mut read, ahead) = (0, queue.ahead());
         let quadric = |point: u32| match &self.quadrics {
@@ -292,13 +295,13 @@ impl<'a> Reducer<'a> {
         std::hint::black_box(read);
     }
 
-    /// Performs a collapse, and updates the best collapses of the points around it.
+    /// Performs a collapse, and updates the best collapses of the surrounding points.
     fn step(&mut self, queue: &mut Queue, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         let mut changed = std::mem::take(&mut self.changed);
         self.collect(point, &mut changed);
         self.collapse(point, neighbor, moved);
         for &other in &changed {
-            // Melax's costs fall as well as rise when triangles around a point change.
+            // Melax's costs may fall or rise when triangles around a point change.
             if self.watched[other as usize] || self.quadrics.is_none() {
                 self.set(queue, other);
             }
@@ -309,10 +312,10 @@ impl<'a> Reducer<'a> {
         self.changed = changed;
     }
 
-    /// Reconsiders the neighbours of changed points. Their normals have changed, and so have the triangles to which samples may
-    /// be assigned. A refused collapse of a neighbour may now be legal. For points whose own triangles are unchanged, nothing
-    /// else can become legal: their triangles turn as before, and the set of points that neighbour both ends of an edge can
-    /// only grow.
+    /// Reconsiders the neighbours of changed points. The normals of changed points are new, and so are the triangles to
+    /// which samples may be assigned. A refused collapse of a neighbour may therefore be legal now. For points whose
+    /// own triangles are unchanged, no other collapse can become legal: their triangles turn as before, and the set of
+    /// common neighbours of an edge can only grow.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
         changed.iter().for_each(|point| self.topology.refresh(*point));
@@ -327,7 +330,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Collects the neighbours of a point, each once.
+    /// Collects the neighbours of a point, without duplicates.
     fn collect(&self, point: u32, around: &mut Vec<u32>) {
         around.clear();
         let ring = self.topology.ring(point);
@@ -338,7 +341,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Lists the vertices of a point that belong to triangles, each with its replacement.
+    /// Lists the vertices of a point that triangles use, each with its replacement at the neighbour.
     fn replace(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         if let [Some(vertex), Some(target)] = [point, neighbor].map(|point| self.points.only_wedge(point)) {
             moved.push([vertex, target]);
@@ -355,7 +358,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Merges a point into its neighbour with all its vertices, including those that no longer belong to a triangle.
+    /// Merges a point into its neighbour with all of its vertices, including vertices that no triangle uses any more.
     fn collapse(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         self.listed = None;
         let start = moved.len();

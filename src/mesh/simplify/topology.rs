@@ -5,14 +5,15 @@ mod link;
 
 use super::points::Points;
 
-/// A corner of a triangle.
+/// A corner of a triangle: its vertex, and the vertex's point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Corner {
     pub vertex: u32,
     pub point: u32,
 }
 
-/// A triangle seen from one of its points: the vertex there, and the other two corners in the triangle's order.
+/// A triangle as seen from one of its points: the vertex at this point, and the other two corners in the triangle's
+/// order.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RingTriangle {
     pub triangle: u32,
@@ -21,36 +22,36 @@ pub(crate) struct RingTriangle {
     pub last: Corner,
 }
 
-/// Largest number of triangles around a point that may be removed.
+/// Largest number of triangles around a point that may collapse.
 const MAX_RING: usize = 1024;
 
-/// The kind of a point's neighbourhood.
+/// The kind of surface around a point. It decides whether and where the point may collapse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Triangles surround the point.
+    /// Triangles surround the point completely.
     Interior,
     /// Triangles form a fan from one border edge to another.
     Border,
-    /// The point has no triangle, or any other neighbourhood. It is never removed.
+    /// The point has no triangles, or its neighbourhood is of another kind. The point is never removed.
     Locked,
 }
 
-/// Change of a point's triangles.
+/// How a point's triangles have changed, from the smallest to the largest change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Change {
     None,
-    /// Points around this one have collapsed.
+    /// A neighbour of the point has collapsed.
     Around,
-    /// A point was merged into this one.
+    /// Another point was merged into the point.
     Merged,
 }
 
-/// Location of a point's triangles.
+/// Location of a point's list of triangles in [`Topology::rings`].
 #[derive(Debug, Clone, Copy, Default)]
 struct Span {
     start: usize,
     len: u32,
-    /// Capacity in triangles.
+    /// Capacity of the list, in triangles.
     room: u32,
 }
 
@@ -60,8 +61,8 @@ impl Span {
     }
 }
 
-/// Whether following triangles from one to the next visits all of them and returns to the start. If so, no two steps lead to
-/// the same neighbour, and nothing else can be around the point.
+/// Whether the triangles form a closed ring: following them from one to the next visits all of them and returns to the
+/// start. If so, no two steps lead to the same neighbour, and no other triangle is around the point.
 fn is_round(ring: &[[u32; 2]]) -> bool {
     let Some([first, _]) = ring.first().filter(|_| ring.len() <= MAX_RING) else { return false };
     let mut at = *first;
@@ -75,32 +76,33 @@ fn is_round(ring: &[[u32; 2]]) -> bool {
     false
 }
 
-/// Triangles with three different points. All others count as removed.
+/// The triangles of the mesh that have three different points, listed by point. All others count as removed.
 ///
-/// A collapse changes only the lists of its two points. The lists of surrounding points keep naming the removed point until
-/// [`Self::refresh`] updates them: most lists change several times before they are read.
+/// A collapse updates only the lists of its two points. The lists of surrounding points still name the removed point
+/// until [`Self::refresh`] updates them. This pays off because most lists change several times before they are read.
 pub(crate) struct Topology {
-    /// Triangles as seen from their points: the other two points, in the triangle's order.
+    /// For each point, its triangles: the other two points of each, in the triangle's order.
     rings: Vec<[u32; 2]>,
-    /// Triangle number of each entry of `rings`; empty if numbers are not needed.
+    /// Triangle number of each entry of `rings`. Empty if triangles are not numbered.
     numbers: Vec<u32>,
     spans: Vec<Span>,
-    /// Replacement of each point; the point itself if it has not collapsed.
+    /// For each point, the point into which it has collapsed, or itself.
     remap: Vec<u32>,
-    /// Whether a neighbour of the point has collapsed since its triangles were last refreshed.
+    /// For each point, whether a neighbour has collapsed since the point's last refresh.
     touched: Vec<bool>,
-    /// Changes of each point since [`Self::take_change`].
+    /// For each point, the largest change since the last [`Self::take_change`].
     changes: Vec<Change>,
-    /// Corners of each triangle; empty if numbers are not needed.
+    /// Corners of each triangle. Empty if triangles are not numbered.
     corners: Vec<[Corner; 3]>,
     kinds: Vec<Kind>,
     triangles: usize,
-    /// Triangles of the collapsing point.
+    /// Temporary list with the triangles of a collapsing point.
     scratch: Vec<([u32; 2], u32)>,
 }
 
 impl Topology {
-    /// Builds the connectivity. Triangles are numbered if `is_numbered`, or if several vertices share a position.
+    /// Builds the connectivity of a mesh. Triangles are numbered if `is_numbered` is set, or if several vertices share
+    /// a position.
     pub(crate) fn new(points: &Points, indices: &[u32], is_numbered: bool) -> Self {
         let is_numbered = is_numbered || !points.are_vertices();
         let triangle =
@@ -147,14 +149,14 @@ impl Topology {
         topology
     }
 
-    /// Kind of a point. A point is manifold if two conditions hold: each neighbour begins at most one of its triangles and ends
-    /// at most one, and following the triangles from one to the next visits all of them.
+    /// The kind of a point. A point is manifold if two conditions hold. Each neighbour begins at most one of its
+    /// triangles and ends at most one. Following the triangles from one to the next visits all of them.
     fn kind_of(&self, point: u32) -> Kind {
         let ring = self.ring(point);
         if is_round(ring) {
             return Kind::Interior;
         }
-        // Very long rings are locked, because other code searches rings linearly.
+        // Points with very many triangles are locked, because other code searches their lists linearly.
         let Some(some) = ring.first().filter(|_| ring.len() <= MAX_RING) else { return Kind::Locked };
         let is_unique = |at: usize| {
             let [next, last] = ring[at];
@@ -190,13 +192,13 @@ impl Topology {
         self.kinds[point as usize]
     }
 
-    /// Returns the changes of a point since the last call, and resets them.
+    /// Returns the change of a point since the last call, and resets it.
     #[inline]
     pub(crate) fn take_change(&mut self, point: u32) -> Change {
         std::mem::replace(&mut self.changes[point as usize], Change::None)
     }
 
-    /// Whether a point has collapsed.
+    /// Whether a point has collapsed into another point.
     #[inline]
     pub(crate) fn is_gone(&self, point: u32) -> bool {
         self.remap[point as usize] != point
@@ -208,8 +210,8 @@ impl Topology {
         &self.rings[self.spans[point as usize].range()]
     }
 
-    /// Number of leading poses that show all distances between the first point's triangles before and after it collapses into
-    /// the second.
+    /// Number of leading poses to examine for a collapse of the first point into the second: one if all triangles
+    /// around the first point belong to one rigid body, otherwise all poses.
     #[inline]
     pub(crate) fn poses_around(&self, points: &Points, both: [u32; 2]) -> usize {
         let body = points.common_body(&both);
@@ -217,7 +219,7 @@ impl Topology {
         if is_rigid { points.poses_between(body, body) } else { points.poses() }
     }
 
-    /// The two neighbours of a border point on that border.
+    /// The two neighbours of a border point along the border; `None` for other points.
     pub(crate) fn along_border(&self, point: u32) -> Option<[u32; 2]> {
         if self.kind(point) != Kind::Border {
             return None;
@@ -228,18 +230,20 @@ impl Topology {
         Some([*first, *last])
     }
 
-    /// Numbers of a point's triangles, if triangles are numbered.
+    /// Numbers of a point's triangles; empty if triangles are not numbered.
     pub(crate) fn around(&self, point: u32) -> &[u32] {
         self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()
     }
 
-    /// Reads the location of a point's triangles, to prefetch it; the returned number only keeps the read alive.
+    /// Reads the location of a point's triangles to prefetch it. The returned number only prevents the compiler from
+    /// dropping the read.
     #[inline]
     pub(crate) fn touch_span(&self, point: u32) -> u32 {
         self.spans[point as usize].len
     }
 
-    /// Reads the triangles of a point, to prefetch them; the returned number only keeps the read alive.
+    /// Reads the triangles of a point to prefetch them. The returned number only prevents the compiler from dropping
+    /// the reads.
     #[inline]
     pub(crate) fn touch(&self, point: u32) -> u32 {
         let span = self.spans[point as usize];
@@ -248,7 +252,7 @@ impl Topology {
         first ^ last
     }
 
-    /// Triangles of a point with their corners. If triangles are not numbered, vertices are points.
+    /// Triangles of a point with their corners. If triangles are not numbered, each corner's vertex is its point.
     pub(crate) fn one_ring(&self, point: u32) -> impl Iterator<Item = RingTriangle> + '_ {
         let numbers = self.around(point);
         self.ring(point).iter().enumerate().map(move |(at, others)| {

@@ -1,5 +1,5 @@
-//! Measured distances between the mesh and its simplification, in both directions. Samples are the mesh's points and the
-//! midpoints of edges and triangles.
+//! Measures the distance between the mesh and its simplification, in both directions. Samples are the points of the
+//! mesh, and the midpoints of its edges and triangles.
 
 use glam::Vec3;
 
@@ -7,51 +7,54 @@ use super::points::Points;
 use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
-/// Number of a point's samples that are tested first.
+/// For each point, the number of samples that are tested first.
 const WITNESSES: usize = 4;
 
 /// Marks a missing sample or triangle.
 const NONE: u32 = u32::MAX;
 
-/// Samples of the mesh. Each is assigned to a remaining triangle that is within the limit of it in every pose.
+/// Samples of the mesh. Each sample is assigned to a remaining triangle, which is within the allowed distance in every
+/// pose.
 pub(crate) struct TrackedSamples {
-    /// Samples assigned to each triangle: numbers of removed points, followed by numbers of midpoints.
+    /// For each triangle, the samples assigned to it. A number below the number of points is a removed point, a larger
+    /// number is a midpoint.
     samples: Vec<Vec<u32>>,
-    /// Triangle to which each sample is assigned.
+    /// For each sample, the triangle to which it is assigned.
     homes: Vec<u32>,
-    /// For each point, the samples that last forbade its collapses. Most collapses are tested repeatedly, and one sample is
-    /// mostly enough to refuse.
+    /// For each point, the samples that last forbade one of its collapses. Most collapses are tested repeatedly, and
+    /// one sample is usually enough to refuse.
     witnesses: Vec<[u32; WITNESSES]>,
     middles: Middles,
-    /// Square of the largest allowed distance, in the unit of points' positions.
+    /// Square of the largest allowed distance, in scaled units.
     most: f32,
     verdicts: Verdicts,
-    /// Last tested collapse, if it keeps within the limit.
+    /// The last tested collapse, if it stays within the allowed distance.
     looked_at: Option<[u32; 2]>,
-    /// Triangles after that collapse, the changed ones first.
+    /// Triangles after the last tested collapse, the changed triangles first.
     faces: Vec<Face>,
-    /// Number of triangles that the collapse changes.
+    /// Number of triangles that the last tested collapse changes.
     changed: usize,
-    /// Midpoints on those triangles of the mesh that may lie below the changed triangles.
+    /// Midpoints of the mesh's triangles that may lie below the changed triangles.
     below: Vec<u32>,
 }
 
-/// Cached results of tests. A result holds until a triangle around one of the two points changes, or gains or loses a sample.
+/// Cached results of tested collapses. A result is valid until a triangle around one of the two points changes, or
+/// gains or loses a sample.
 struct Verdicts {
-    /// Results of each point's tests.
+    /// For each point, the results of its tested collapses.
     of: Vec<Vec<Verdict>>,
-    /// For each point, the number of collapses at the last change of a triangle around it.
+    /// For each point, the value of `collapses` when a triangle around it last changed.
     changed: Vec<u32>,
-    /// Number of collapses so far.
+    /// Number of collapses made so far.
     collapses: u32,
 }
 
 #[derive(Clone, Copy)]
 struct Verdict {
     neighbor: u32,
-    /// Number of collapses before the test.
+    /// Number of collapses made before the test.
     collapses: u32,
-    /// Lower bound on the square of the required limit; 0 if the collapse has passed the test.
+    /// Lower bound on the square of the distance limit with which the collapse would pass; 0 if it has passed.
     needed: f32,
 }
 
@@ -60,7 +63,7 @@ impl Verdicts {
         Self { of: vec![Vec::new(); points], changed: vec![0; points], collapses: 0 }
     }
 
-    /// Whether a collapse passes within the limit whose square is `most`. `None` if it must be tested.
+    /// Whether a collapse is known to pass or fail at the squared distance limit `most`. `None` if it must be tested.
     fn get(&self, [point, neighbor]: [u32; 2], most: f32) -> Option<bool> {
         let changed = self.changed[point as usize].max(self.changed[neighbor as usize]);
         let mut of = self.of[point as usize].iter();
@@ -75,7 +78,7 @@ impl Verdicts {
         of.push(Verdict { neighbor, collapses: self.collapses, needed });
     }
 
-    /// Records a collapse before it happens.
+    /// Records a collapse before it is made.
     fn collapse(&mut self, topology: &Topology, both: [u32; 2]) {
         self.collapses += 1;
         for other in both.iter().flat_map(|point| topology.ring(*point)).flatten() {
@@ -84,21 +87,21 @@ impl Verdicts {
     }
 }
 
-/// Midpoints of the mesh's edges and triangles.
+/// Midpoints of the mesh's edges and triangles, which serve as samples.
 struct Middles {
-    /// Positions, one midpoint after the other, each in all poses.
+    /// Positions of the midpoints. All poses of midpoint 0 come first.
     positions: Vec<Vec3>,
-    /// For each midpoint, a triangle of the mesh that contains it.
+    /// For each midpoint, a triangle of the original mesh that contains it.
     triangles: Vec<Face>,
 }
 
-/// A triangle of three points.
+/// A triangle given by three points.
 #[derive(Clone, Copy)]
 struct Corners {
     points: [u32; 3],
-    /// Rigid body of all three corners, or [`NO_BODY`](super::points::NO_BODY).
+    /// Rigid body that all three corners belong to, or [`NO_BODY`](super::points::NO_BODY).
     body: u32,
-    /// Positions of the corners in the first pose.
+    /// Positions of the three corners in the first pose.
     first: [Vec3; 3],
 }
 
@@ -110,8 +113,8 @@ impl Corners {
     }
 }
 
-/// Squared largest distance between a triangle and a sample over all poses. If it exceeds `most`, the result is any value above
-/// `most`.
+/// Largest squared distance between a triangle and a sample over all poses. If it exceeds `most`, the result may be any
+/// value above `most`.
 #[inline]
 fn off(points: &Points, corners: &Corners, sample: &Place<impl Fn(usize) -> Vec3>, most: f32) -> f32 {
     let mut largest = nearest_on_triangle(sample.first, corners.first).distance_squared(sample.first);
@@ -126,7 +129,7 @@ fn off(points: &Points, corners: &Corners, sample: &Place<impl Fn(usize) -> Vec3
     largest
 }
 
-/// Squared distance from a sample to the nearest of some triangles. The distance to a triangle is the largest over all poses.
+/// Squared distance from a sample to the nearest of `faces`. The distance to a face is the largest over all poses.
 fn nearest_off<'a>(
     points: &Points,
     sample: &Place<impl Fn(usize) -> Vec3>,
@@ -135,23 +138,23 @@ fn nearest_off<'a>(
     faces.fold(f32::INFINITY, |least, face| least.min(off(points, &face.corners, sample, least)))
 }
 
-/// A triangle, with bounds that quickly show that it is far from a position.
+/// A triangle with bounds that quickly show whether it is far from a position.
 #[derive(Clone, Copy)]
 struct Face {
     number: u32,
     corners: Corners,
-    /// Centre and radius of a bounding sphere in the first pose.
+    /// Center and radius of a bounding sphere in the first pose.
     middle: Vec3,
     radius: f32,
-    /// Unit normal in the first pose; 0 if the triangle is nearly a line.
+    /// Unit normal in the first pose; 0 if the triangle is so thin that the normal would be inexact.
     normal: Vec3,
-    /// Bound on rounding errors of the distances to plane and sphere.
+    /// Bound on the rounding errors of distances to the plane and the sphere.
     rounding: f32,
 }
 
 impl Face {
     fn new(points: &Points, number: u32, corners: [u32; 3]) -> Self {
-        /// Squared sine of the angle below which a triangle's normal is too inexact.
+        /// Squared sine of a triangle's angle. If it is smaller, the normal is too inexact.
         const LEAST: f32 = 1e-4;
         let corners = Corners::new(points, corners);
         let [a, b, c] = corners.first;
@@ -168,12 +171,12 @@ impl Face {
             middle,
             radius,
             normal: if is_exact { normal.normalize_or_zero() } else { Vec3::ZERO },
-            // Positions are mostly within ±2. The normal is off by 2⁻²⁴ over the sine, per unit of length.
+            // Positions are mostly within ±2. Per unit of length, the normal's error is 2⁻²⁴ divided by the sine.
             rounding: 1e-6 * (middle.abs().max_element() + 2.0) + 4e-5 * radius,
         }
     }
 
-    /// Whether the whole triangle is certainly further than `limit` from a position in the first pose.
+    /// Whether the whole triangle is certainly farther than `limit` from a position in the first pose.
     #[inline]
     fn is_far(&self, position: Vec3, limit: f32) -> bool {
         let (from, limit) = (position - self.middle, limit + self.rounding);
@@ -181,7 +184,7 @@ impl Face {
         from.dot(self.normal).abs() > limit || from.length_squared() > reach * reach
     }
 
-    /// Whether the triangle is within a limit of a sample in all poses; `most` is the square of the limit.
+    /// Whether the triangle is within `limit` of a sample in all poses. `most` is the square of `limit`.
     #[inline]
     fn is_near(
         &self,
@@ -193,13 +196,13 @@ impl Face {
     }
 }
 
-/// Location of a sample.
+/// Position of a sample in all poses.
 struct Place<F> {
-    /// Rigid body, or [`NO_BODY`](super::points::NO_BODY).
+    /// Rigid body of the sample, or [`NO_BODY`](super::points::NO_BODY).
     body: u32,
     /// Position in the first pose.
     first: Vec3,
-    /// Returns the position in a pose.
+    /// Function that returns the position in a pose.
     at: F,
 }
 
@@ -217,7 +220,7 @@ impl TrackedSamples {
         for point in 0..points.len() as u32 {
             for ring in topology.one_ring(point) {
                 let corners = [point, ring.next.point, ring.last.point];
-                // Unless it is on a border, the edge's other triangle lists it in the opposite direction.
+                // The edge's other triangle lists the edge in the opposite direction, unless the edge is on a border.
                 let is_border = || !topology.one_ring(point).any(|other| other.last.point == corners[1]);
                 let is_first = corners.iter().all(|other| point <= *other);
                 let edge = (point < corners[1] || is_border()).then_some(&corners[..2]);
@@ -246,14 +249,14 @@ impl TrackedSamples {
         }
     }
 
-    /// Sets the largest allowed distance from now on, in the unit of points' positions.
+    /// Sets the largest allowed distance from now on, in scaled units.
     pub(crate) fn set_most(&mut self, distance: f32) {
         self.most = distance * distance;
     }
 
-    /// Tests the collapse of a point into its neighbour. It passes if two conditions hold. The point, and all samples on the
-    /// changed triangles, must be within the limit of one of the triangles that the two points have afterwards. The midpoints
-    /// of the changed triangles and of their edges must be within the limit of the mesh.
+    /// Tests the collapse of a point into its neighbour. It passes under two conditions. The point, and each sample on
+    /// the changed triangles, must be within the limit of a triangle that one of the two points has afterwards. The
+    /// midpoints of the changed triangles and of their edges must be within the limit of the original mesh.
     pub(crate) fn keeps_near(
         &mut self,
         topology: &Topology,
@@ -273,8 +276,8 @@ impl TrackedSamples {
         needed == 0.0
     }
 
-    /// As [`Self::keeps_near`], for a collapse whose point itself passes. Returns a lower bound on the square of the required
-    /// limit, or 0 if the collapse passes.
+    /// As [`Self::keeps_near`], for a collapse whose point itself has passed. Returns a lower bound on the square of
+    /// the distance limit with which the collapse would pass, or 0 if it passes now.
     fn needed_by_all(&mut self, topology: &Topology, points: &Points, both: [u32; 2]) -> f32 {
         let [point, neighbor] = both;
         self.looked_at = None;
@@ -315,8 +318,8 @@ impl TrackedSamples {
         0.0
     }
 
-    /// Squared distance from the collapsing point to the triangles after the collapse: the smallest, or any that is within the
-    /// limit. Most refused collapses fail here, so that triangles are listed only afterwards.
+    /// Squared distance from the collapsing point to the nearest triangle after the collapse, or to any triangle within
+    /// the limit. Most refused collapses fail here, so triangles are listed only afterwards.
     fn needed_by_point(&self, topology: &Topology, points: &Points, [point, neighbor]: [u32; 2]) -> f32 {
         let place = self.place(points, point);
         let mut least = f32::INFINITY;
@@ -332,12 +335,12 @@ impl TrackedSamples {
         least
     }
 
-    /// Squared distance from a sample to the triangles after a collapse.
+    /// Squared distance from a sample to the nearest triangle after a collapse.
     fn needed(&self, points: &Points, sample: u32) -> f32 {
         nearest_off(points, &self.place(points, sample), self.faces.iter())
     }
 
-    /// Lists the triangles after a collapse.
+    /// Lists the triangles that the two points have after a collapse in `faces`, the changed ones first.
     fn list_faces(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
         self.faces.clear();
         for (around, other) in [(point, neighbor), (neighbor, point)] {
@@ -351,14 +354,14 @@ impl TrackedSamples {
         }
     }
 
-    /// Lists the midpoints of the mesh that are assigned to triangles around two points.
+    /// Lists in `below` the midpoints of the mesh that are assigned to triangles around two points.
     fn list_below(&mut self, topology: &Topology, points: &Points, both: [u32; 2]) {
         self.below.clear();
         let mut last = NONE;
         for triangle in both.iter().flat_map(|point| topology.around(*point)) {
             for sample in &self.samples[*triangle as usize] {
                 let Some(middle) = (*sample as usize).checked_sub(points.len()) else { continue };
-                // Midpoints of a triangle and of its edges are mostly consecutive.
+                // The midpoints of a triangle and of its edges are mostly consecutive.
                 let of = self.middles.triangles[middle].number;
                 if of != last {
                     self.below.push(middle as u32);
@@ -368,8 +371,9 @@ impl TrackedSamples {
         }
     }
 
-    /// Triangle of the mesh that is within the limit of the midpoint of some points in all poses, as an index into the list of
-    /// triangles below: `likely`, or else the first one. If there is none, the error is the square of the smallest distance.
+    /// A triangle of the original mesh that is within the limit of the midpoint of `ends` in all poses, as an index in
+    /// `below`: `likely` if it qualifies, otherwise the first. If there is none, the error is the square of the
+    /// smallest distance.
     fn behind(&self, points: &Points, ends: &[u32], likely: usize) -> Result<usize, f32> {
         let place = Place::new(points.common_body(ends), |pose| middle(points, ends, pose));
         let limits = [self.most.sqrt(), self.most];
@@ -382,7 +386,7 @@ impl TrackedSamples {
         near.ok_or_else(|| nearest_off(points, &place, self.below.iter().map(face)))
     }
 
-    /// Location of a sample.
+    /// Position of a sample in all poses.
     fn place(&self, points: &Points, sample: u32) -> Place<impl Fn(usize) -> Vec3> {
         let middle = (sample as usize).checked_sub(points.len());
         let body = middle.map_or_else(|| points.body(sample), |at| self.middles.triangles[at].corners.body);
@@ -392,8 +396,8 @@ impl TrackedSamples {
         })
     }
 
-    /// Triangle that is within the limit of a sample in all poses, as an index into the list of triangles after a collapse:
-    /// `likely`, or else the first one.
+    /// A triangle after the collapse that is within the limit of a sample in all poses, as an index in `faces`:
+    /// `likely` if it qualifies, otherwise the first. `None` if there is none.
     fn near(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
         let (place, limits) = (self.place(points, sample), [self.most.sqrt(), self.most]);
         let is_near = |face: &Face| face.is_near(points, &place, limits);
@@ -403,8 +407,9 @@ impl TrackedSamples {
         self.faces.iter().position(is_near)
     }
 
-    /// Triangle whose largest distance from the sample over all poses is smallest, if that is within the limit, as an index
-    /// into the list of triangles after a collapse. `likely` is tested first, so that most others can be rejected quickly.
+    /// The triangle after the collapse that is nearest to a sample, as an index in `faces`; `None` if it is beyond the
+    /// limit. The distance is the largest over all poses. `likely` is tested first, so that most other triangles can be
+    /// rejected quickly.
     fn nearest(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
         let place = self.place(points, sample);
         let off = |face: &Face, most| off(points, &face.corners, &place, most);
@@ -423,9 +428,9 @@ impl TrackedSamples {
         best
     }
 
-    /// Records a collapse that keeps within the limit. Call it before the collapse happens.
+    /// Records a collapse that stays within the allowed distance. Call this before the collapse is made.
     pub(crate) fn collapse(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
-        // Other collapses may have been tested in between, so the lists may be stale.
+        // Other collapses may have been tested in between, so the lists may be outdated.
         if self.looked_at.take() != Some([point, neighbor]) {
             self.list_faces(topology, points, point, neighbor);
         }
@@ -458,7 +463,7 @@ mod tests {
 
     const SIDE: u32 = 18;
 
-    /// A bumpy sheet in two poses: flat, and bent.
+    /// A bumpy sheet in two poses: flat and bent.
     fn sheet() -> (Vec<Vec<[f32; 3]>>, Vec<u32>) {
         let bump =
             |x: u32, y: u32| 0.02 * libm::sinf(0.9 * x as f32) + 0.03 * libm::cosf(0.55 * (x + 2 * y) as f32);
@@ -477,7 +482,7 @@ mod tests {
         (poses, all().filter(|(x, y)| x.max(y) < &(SIDE - 1)).flat_map(quad).collect())
     }
 
-    /// Corners, and midpoints of edges and triangles.
+    /// Samples of triangles: their corners, and the midpoints of edges and triangles.
     fn positions(pose: &[[f32; 3]], indices: &[u32]) -> Vec<Vec3> {
         let of = |triangle: &[u32]| {
             let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from(pose[triangle[corner] as usize]));
@@ -486,7 +491,7 @@ mod tests {
         indices.chunks_exact(3).flat_map(of).collect()
     }
 
-    /// Largest distance between samples of one surface and the other, in both directions and in all poses.
+    /// Largest distance between samples of one surface and the other surface, in both directions and in all poses.
     fn off(poses: &[Vec<[f32; 3]>], mesh: &[u32], level: &[u32]) -> f32 {
         let one_way = |pose: &Vec<[f32; 3]>, from: &[u32], to: &[u32]| {
             let distance = |position: Vec3| {
@@ -522,7 +527,7 @@ mod tests {
             last = triangles.len();
         }
         assert!(6 * last < indices.len(), "{last} indices left");
-        // Quadrics alone leave more triangles at this distance.
+        // Without a distance limit, more triangles remain at this distance.
         let plain = simplify(&surface, &SimplifyOptions::default()).expect("valid");
         assert!(plain.collapses().iter().all(|collapse| collapse.distance == f32::INFINITY));
         let within = |count| off(&poses, &indices, &level(&plain, count)) <= 0.02;
@@ -532,7 +537,7 @@ mod tests {
         assert!(5 * level(&plain, far).len() > 6 * near, "{} and {near}", level(&plain, far).len());
     }
 
-    /// Triangles reported as far are further than the limit, also slivers and distant ones.
+    /// Every triangle that is reported as far is farther than the limit, even if it is a sliver or distant.
     #[test]
     fn far_triangles_are_far() {
         let (mut far, mut all) = (0, 0);
@@ -559,7 +564,7 @@ mod tests {
                 all += 1;
             }
         }
-        // Three limits of five are below the distance, and one of these by less than rounding.
+        // Of five limits, three are below the distance, one of them by less than the rounding error.
         assert!(6 * far > all, "{far} of {all}");
     }
 

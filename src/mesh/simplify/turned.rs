@@ -1,20 +1,20 @@
-//! Normals of triangles, and the test for collapses that flip a triangle (A section 4.1).
+//! Normals of triangles, and the test whether a collapse flips a triangle (A section 4.1).
 
 use glam::DVec3;
 
 use super::points::Points;
 use super::topology::Topology;
 
-/// Squared sine of the angle between two edges up to which a triangle counts as having no area. Coordinates are rounded to 2⁻²⁴
-/// of their size, so that smaller angles are noise.
+/// Squared sine of the angle between two edges. At or below this value, a triangle counts as having no area.
+/// Coordinates are rounded to 2⁻²⁴ of their size, so smaller angles are noise.
 const NO_AREA: f64 = 1e-12;
 
-/// A triangle without area.
+/// Error for a triangle without area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Flat;
 
-/// Normal of a triangle. Its length is twice the area, and the corners are counter-clockwise seen from the side to which it
-/// points.
+/// Normal of a triangle, with a length of twice the area. Seen from the side to which the normal points, the corners
+/// are counter-clockwise.
 #[inline]
 pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> Result<DVec3, Flat> {
     let edges = [b - a, c - a];
@@ -28,14 +28,14 @@ fn is_flat(square: f64, [first, second]: [DVec3; 2]) -> bool {
     square <= NO_AREA * first.length_squared() * second.length_squared()
 }
 
-/// Squared cosine of the largest angle by which a triangle's normal may turn: 75.5°, as in meshoptimizer. A limit of 90° would
-/// prevent flips by one collapse, but several collapses in a row could flip a triangle.
+/// Squared cosine of the largest angle by which a triangle's normal may turn: 75.5°, as in meshoptimizer. A limit of
+/// 90° would prevent a flip by one collapse, but several collapses in a row could still flip a triangle.
 const LEAST: f64 = 0.0625;
 
-/// Squared largest distance, over all poses, between a point and the planes of its triangles after a collapse; for a border
-/// point, also between the point and the border. `None` if the collapse turns a triangle by more than 75°, or takes its area
-/// away, in any pose. Triangles without area before may turn. The search begins with the point's triangle number `first`, and
-/// sets `first` to the triangle that turns, because it mostly turns for the next neighbour as well.
+/// Largest squared distance, over all poses, between a point and the planes of its triangles after a collapse. For a
+/// border point, the distance from the new border counts too. `None` if the collapse turns a triangle by more than 75°
+/// or removes its area, in any pose. Triangles that had no area before may turn. `first` is the number of the triangle
+/// to test first. It is set to the triangle that turns, which mostly turns for the next neighbour as well.
 pub(crate) fn deviation(
     topology: &Topology,
     points: &Points,
@@ -81,7 +81,7 @@ pub(crate) fn deviation(
     Some(worst)
 }
 
-/// Squared distance from a place to a segment.
+/// Squared distance from a position to a line segment.
 fn square_from_segment(from: DVec3, [start, end]: [DVec3; 2]) -> f64 {
     let (edge, to) = (end - start, from - start);
     let square = edge.length_squared();
@@ -93,7 +93,7 @@ fn square_from_segment(from: DVec3, [start, end]: [DVec3; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A flat fan around a border point: the planes do not detect that the border moves.
+    /// A flat fan around a border point. The planes of its triangles do not detect that the border moves.
     #[test]
     fn points_on_borders_are_off_by_their_distance_from_the_border() {
         let at = |x: f32, y: f32| [x, y, 0.0];
@@ -112,7 +112,7 @@ mod tests {
             let found = off(&[corners(notch)], neighbor);
             assert!(found.is_some_and(|off| (off - f64::from(notch.abs())).abs() < 1e-9), "{found:?}");
         }
-        // The worst of several poses.
+        // With several poses, the largest distance counts.
         let found = off(&[corners(0.0), corners(-0.125)], 1);
         assert!(found.is_some_and(|off| (off - 0.125).abs() < 1e-9), "{found:?}");
     }

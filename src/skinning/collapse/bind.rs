@@ -8,11 +8,11 @@ use crate::InputError;
 use crate::asset::skeleton::inverse_bind;
 use crate::asset::{Influence, Influences, Mesh, Model, Skin};
 
-/// Tolerance for merging two joints of one bone, as a fraction of the model's size at rest. They become one if they
-/// take each vertex of a skin to positions closer than this.
+/// Tolerance for merging two joints of one bone, as a fraction of the model's size at rest. The joints are merged if
+/// both take each vertex of the skin to positions closer than this.
 const SAME: f64 = 1e-4;
 
-/// Rebinds the model's skins and meshes to the kept bones.
+/// Rebinds the skins and meshes of a model to the kept bones.
 pub(super) fn rebound(
     model: &Model,
     remap: &Remap,
@@ -41,15 +41,15 @@ pub(super) fn rebound(
     Ok((skins, meshes))
 }
 
-/// A joint of a skin: its kept bone, and the transform of vertices into that bone's space.
+/// A joint of a skin: its kept bone, and the transform of vertices from bind space into the bone's space.
 struct Joint {
     bone: usize,
     bind: DAffine3,
     stored: [f32; 16],
 }
 
-/// Makes a skin of kept bones; bones that were joints already come first. Returns it with the new index of each joint
-/// of the old skin.
+/// Makes a skin from the kept bones. Bones that were joints of the old skin come first. Also returns the new index of
+/// each joint of the old skin.
 fn rebound_skin(model: &Model, index: usize, remap: &Remap, rest: &Rest) -> (Skin, Vec<u32>) {
     let skin = &model.skins[index];
     let corners = corners(model, index);
@@ -89,7 +89,7 @@ fn rebound_skin(model: &Model, index: usize, remap: &Remap, rest: &Rest) -> (Ski
     (Skin { name: skin.name.clone(), bones, inverse_binds }, became)
 }
 
-/// The corners of a box around all vertices that follow a skin.
+/// The corners of a box around all vertices that use a skin.
 fn corners(model: &Model, skin: usize) -> Vec<DVec3> {
     let meshes = model.meshes.iter().filter(|mesh| mesh.skin == skin);
     let positions =

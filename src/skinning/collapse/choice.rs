@@ -1,4 +1,4 @@
-//! Choice of the bones that collapse: repeatedly the bone whose collapse displaces vertices least.
+//! Choice of the bones to collapse: repeatedly the bone whose collapse displaces vertices least.
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -12,15 +12,15 @@ use crate::asset::transform::column_major;
 use crate::asset::{Model, Skeleton};
 use crate::skinning::pose::{Moment, bones_at};
 
-/// The largest number of poses of each clip in which costs are measured.
+/// The largest number of poses per clip in which costs are measured.
 const POSES: usize = 64;
 
-/// Displacements below this fraction of the model's size count as rounding.
+/// Displacements below this fraction of the model's size are treated as rounding errors.
 const UNSEEN: f64 = 1e-6;
 
-/// The kept bones, and the kept bone that each other bone follows.
+/// The kept bones, and for each collapsed bone the kept bone that its vertices follow.
 pub(super) struct Remap {
-    /// For each bone, itself if it is kept, else the kept bone that it follows.
+    /// For each bone: the bone itself if it is kept, otherwise the kept bone that its vertices follow.
     follows: Vec<usize>,
     parents: Vec<Option<usize>>,
 }
@@ -35,17 +35,17 @@ impl Remap {
         self.follows[bone] == bone
     }
 
-    /// The bone itself if it is kept, else the kept bone that it follows.
+    /// The bone itself if it is kept, otherwise the kept bone that its vertices follow.
     pub(super) fn follows(&self, bone: usize) -> usize {
         self.follows[bone]
     }
 
-    /// The kept bones.
+    /// The indices of the kept bones, ascending.
     pub(super) fn kept(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.follows.len()).filter(|bone| self.is_kept(*bone))
     }
 
-    /// The bones from the one below the nearest kept bone above `bone` down to `bone` itself.
+    /// The chain of bones from below the nearest kept bone above `bone` down to `bone` itself, topmost first.
     pub(super) fn chain(&self, bone: usize) -> Vec<usize> {
         let above = |bone: &usize| self.parents[*bone].filter(|parent| !self.is_kept(*parent));
         let mut chain: Vec<usize> = std::iter::successors(Some(bone), above).collect();
@@ -53,14 +53,15 @@ impl Remap {
         chain
     }
 
-    /// For each bone, the index among the kept bones of itself or of the bone that it follows.
+    /// For each bone, a number among the kept bones: its own if it is kept, otherwise the number of the bone that it
+    /// follows.
     pub(super) fn indices(&self) -> Vec<u32> {
         let mut indices = vec![0; self.follows.len()];
         self.kept().zip(0..).for_each(|(bone, index)| indices[bone] = index);
         self.follows.iter().map(|bone| indices[*bone]).collect()
     }
 
-    /// The nearest kept bone above a bone.
+    /// The nearest kept bone above a bone; `None` for a root.
     fn kept_above(&self, bone: usize) -> Option<usize> {
         self.parents[bone].map(|parent| self.follows[parent])
     }
@@ -70,18 +71,18 @@ impl Remap {
     }
 }
 
-/// The cost of a collapse, compared in this order: the largest displacement of a vertex, then the largest
-/// weighted distance of a vertex from the bone.
+/// The cost of a collapse: the largest displacement of a vertex, then the largest weighted distance of a vertex from
+/// the bone. The second is compared only if the first is equal.
 type Cost = [f64; 2];
 
-/// The poses and bones to choose from.
+/// The state of the choice: poses, kept bones and the cost of each collapse.
 pub(super) struct Choice<'a> {
     rest: &'a Rest,
-    /// For each pose, the matrices of all bones.
+    /// For each pose, the model-space matrices of all bones.
     poses: Vec<Vec<DAffine3>>,
-    /// Bones that never collapse.
+    /// For each bone, whether it never collapses.
     stays: Vec<bool>,
-    /// For each bone, whether its scale is uniform except for signs, at rest and in every clip.
+    /// For each bone, whether its scale is uniform except for signs, both at rest and in every clip.
     is_even: Vec<bool>,
     remap: Remap,
     costs: Vec<Option<Cost>>,
@@ -89,7 +90,7 @@ pub(super) struct Choice<'a> {
 
 impl<'a> Choice<'a> {
     /// # Errors
-    /// [`InputError`] for names that no bone has, and clips that are too long.
+    /// [`InputError`] for a name that no bone has, and for a clip that is too long.
     pub(super) fn new(model: &Model, options: &CollapseOptions, rest: &'a Rest) -> Result<Self, InputError> {
         let skeleton = &model.skeleton;
         let is_even = |bone: usize| {
@@ -109,10 +110,10 @@ impl<'a> Choice<'a> {
         })
     }
 
-    /// Collapses bones until `count` are left or none may collapse.
+    /// Collapses bones until `count` are left or no other bone can collapse.
     ///
     /// # Errors
-    /// [`InputError`] for a `count` below the number of bones that must be kept.
+    /// [`InputError`] if `count` is below the number of bones that never collapse.
     pub(super) fn collapsed_to(mut self, count: usize) -> Result<Remap, InputError> {
         let least = self.stays.iter().filter(|stays| **stays).count();
         if count < least {
@@ -127,8 +128,8 @@ impl<'a> Choice<'a> {
         Ok(self.remap)
     }
 
-    /// Collapses the bone with the least cost, and returns whether there was one. Of equal costs, the last bone is
-    /// taken, which is the deepest of its chain.
+    /// Collapses the bone with the least cost. Returns whether there was a candidate. Among equal costs, the last bone
+    /// is taken, which is the deepest of its chain.
     fn collapse(&mut self) -> bool {
         let holds = self.holds();
         let is_candidate = |bone: &usize| !self.stays[*bone] && (self.is_even[*bone] || !holds[*bone]);
@@ -145,7 +146,7 @@ impl<'a> Choice<'a> {
         };
         let Some(best) = candidates.into_iter().rev().min_by(order) else { return false };
         let Some(into) = self.remap.kept_above(best) else { return false };
-        // The costs of these bones change: bones below follow another bone now, and that bone receives the vertices.
+        // These bones get new costs: the bones below follow another bone now, and that bone receives the vertices.
         let below: Vec<usize> =
             self.remap.kept().filter(|bone| self.remap.kept_above(*bone) == Some(best)).collect();
         below.into_iter().chain([into]).for_each(|bone| self.costs[bone] = None);
@@ -153,7 +154,7 @@ impl<'a> Choice<'a> {
         true
     }
 
-    /// For each bone, whether there are kept bones below it.
+    /// For each bone, whether at least one kept bone is below it.
     fn holds(&self) -> Vec<bool> {
         let mut holds = vec![false; self.stays.len()];
         for bone in self.remap.kept() {
@@ -164,7 +165,7 @@ impl<'a> Choice<'a> {
         holds
     }
 
-    /// The cost of letting a bone, and the bones collapsed into it, follow the next kept bone above.
+    /// The cost of collapsing a bone: it and the bones collapsed into it then follow the next kept bone above.
     fn cost(&self, bone: usize) -> Cost {
         let Some(above) = self.remap.kept_above(bone) else { return [f64::INFINITY; 2] };
         let group: Vec<usize> =
@@ -197,7 +198,7 @@ impl<'a> Choice<'a> {
         [if stray > UNSEEN * self.rest.size { stray } else { 0.0 }, bone_radius]
     }
 
-    /// The rest transform of a bone in the space of a bone above it.
+    /// The rest transform of a bone, relative to a bone above it in the hierarchy.
     fn offset(&self, above: usize, bone: usize) -> DAffine3 {
         let parent = |bone: &usize| self.remap.parents[*bone].filter(|parent| *parent != above);
         let mut chain: Vec<usize> = std::iter::successors(Some(bone), parent).collect();
@@ -210,8 +211,8 @@ fn difference(a: DAffine3, b: DAffine3) -> (DMat3, DVec3) {
     (a.matrix3 - b.matrix3, a.translation - b.translation)
 }
 
-/// For each bone, whether it never collapses: roots, the uppermost bones that a clip moves, end effectors,
-/// and named bones.
+/// For each bone, whether it never collapses. These are roots, the uppermost bones that a clip moves, end effectors,
+/// and bones kept by name.
 fn stays(model: &Model, options: &CollapseOptions) -> Result<Vec<bool>, InputError> {
     let bones = model.skeleton.bones();
     let mut stays: Vec<bool> = bones.iter().map(|bone| bone.parent.is_none()).collect();

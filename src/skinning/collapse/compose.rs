@@ -5,11 +5,12 @@ use glam::{DQuat, DVec3};
 use crate::asset::clip::{Clip, Interpolation, TransformPart};
 use crate::asset::{Skeleton, Transform};
 
-/// Tolerance for uniform scale: the largest difference between the scales along the axes, as a fraction of the largest.
+/// Tolerance for uniform scale: the largest difference between the scales along the axes, as a fraction of the largest
+/// scale.
 const UNEVEN: f32 = 1e-4;
 
-/// The transform of a bone in the space of a bone above it. All bones of the chain but the last have uniform scale: the
-/// same along all axes except for `signs`.
+/// The transform of a bone relative to a bone above it. All bones of the chain except the last have uniform scale: the
+/// same along all axes, except for the signs in `signs`.
 #[derive(Clone, Copy)]
 pub(super) struct Composed {
     pub translation: DVec3,
@@ -30,13 +31,13 @@ impl Composed {
         self.rotation * (self.scale * vector)
     }
 
-    /// The rotation of a bone below. Uniform scale leaves its axis unchanged, and the signs mirror it.
+    /// Appends the rotation of a bone below. Uniform scale leaves the rotation axis unchanged; the signs mirror it.
     pub(super) fn turned(&self, below: DQuat) -> DQuat {
         let axis = self.signs.element_product() * self.signs * DVec3::new(below.x, below.y, below.z);
         self.rotation * DQuat::from_xyzw(axis.x, axis.y, axis.z, below.w)
     }
 
-    /// Appends a bone below whose scale has these signs.
+    /// Appends a bone below, whose scale has the given signs.
     pub(super) fn with(&self, below: &Transform, signs: DVec3) -> Self {
         let [translation, scale] =
             [below.translation, below.scale].map(|vector| DVec3::from(vector.map(f64::from)));
@@ -57,7 +58,7 @@ impl Composed {
     }
 }
 
-/// The signs of scales that are uniform except for signs; `None` if they are not.
+/// The signs of the scales along each axis, if the scales are uniform except for signs; otherwise `None`.
 pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3> {
     let scales: Vec<[f32; 3]> = scales.into_iter().collect();
     let largest = scales.iter().max_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))?;
@@ -69,7 +70,7 @@ pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3>
     scales.iter().all(is_even).then(|| DVec3::from(signs.map(f64::from)))
 }
 
-/// The signs of a bone's scales in a clip, also between its keys; `None` if the scales are not uniform.
+/// The signs of a bone's scale in a clip, valid between keys too; `None` if the scale is not uniform.
 pub(super) fn signs_in(clip: &Clip, bone: usize) -> Option<DVec3> {
     signs(
         clip.stored_keys(clip.track(bone, TransformPart::Scale))
@@ -79,7 +80,7 @@ pub(super) fn signs_in(clip: &Clip, bone: usize) -> Option<DVec3> {
     )
 }
 
-/// Whether a bone's translation, rotation or scale is constant in a clip.
+/// Whether one part of a bone's transform (translation, rotation or scale) is constant in a clip.
 pub(super) fn is_constant(clip: &Clip, bone: usize, part: TransformPart) -> bool {
     let keys = clip.stored_keys(clip.track(bone, part));
     let is_spline = keys.interpolation == Interpolation::CubicSpline && !keys.times.is_empty();
@@ -90,7 +91,7 @@ pub(super) fn is_constant(clip: &Clip, bone: usize, part: TransformPart) -> bool
     })
 }
 
-/// The rest transform of the last bone of a chain, in the space of the bone above the first.
+/// The rest transform of the last bone of a chain, relative to the bone above the chain.
 pub(super) fn rest(skeleton: &Skeleton, chain: &[usize]) -> Transform {
     let rest = |bone: usize| skeleton.bones()[bone].rest;
     let [bone] = chain else {

@@ -1,4 +1,4 @@
-//! Error of a collapsed model against the original.
+//! The error of a model with collapsed bones, compared with the original.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -9,7 +9,7 @@ use crate::InputError;
 use crate::asset::{Affine, Mesh, Model};
 use crate::skinning::pose::{Moment, Pose, bones_at, weights_at};
 
-/// Distances in one pose: the largest of bones, the largest of vertices, and the sum of squares over vertices.
+/// Distances in one pose: the largest of any bone, the largest of any vertex, and the sum of squares over all vertices.
 #[derive(Default)]
 struct Off {
     bones: f64,
@@ -17,7 +17,7 @@ struct Off {
     squares: f64,
 }
 
-/// Compares the models 60 times a second in every clip, or at rest if there are none.
+/// Compares both models 60 times a second in every clip, or at rest if there are no clips.
 pub(super) fn error(model: &Model, collapsed: &Model, remap: &Remap) -> Result<CollapseError, InputError> {
     let mut moments = looked_at(model, usize::MAX)?;
     if moments.is_empty() {

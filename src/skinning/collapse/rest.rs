@@ -1,34 +1,34 @@
-//! A model at rest: bone transforms, vertex positions, and distances of vertices from their bones.
+//! A model at rest: bone transforms, vertex positions, and the distances of vertices from their bones.
 
 use glam::{DAffine3, DVec3};
 
 use crate::asset::Model;
 
-/// A vertex that follows a bone.
+/// A vertex, as seen from a bone that it follows.
 pub(super) struct Follower {
-    /// Index of the vertex, counted over all meshes.
+    /// Index of the vertex, counted over the vertices of all meshes.
     pub vertex: usize,
     /// Position of the vertex in the bone's space.
     pub local: DVec3,
     pub weight: f64,
 }
 
-/// A model at rest.
+/// A model in its rest pose.
 pub(super) struct Rest {
-    /// The transform of each bone in its parent's space.
+    /// For each bone, its transform in its parent's space.
     pub locals: Vec<DAffine3>,
-    /// The transform of each bone in the model's space.
+    /// For each bone, its transform in the model's space.
     pub models: Vec<DAffine3>,
-    /// The vertices that follow each bone.
+    /// For each bone, the vertices that follow it.
     pub followers: Vec<Vec<Follower>>,
-    /// The radius of each bone in the model's units: the largest distance from its origin of the vertices that follow
-    /// it or a bone below it, and of the origins of bones below it.
+    /// For each bone, a radius in the model's units: the largest distance from the bone's origin to a vertex that
+    /// follows the bone or a bone below it, or to the origin of a bone below it.
     pub radii: Vec<f64>,
-    /// Half the diagonal of a box around all vertices, or around the origins of all bones if there are none.
+    /// Half the diagonal of a box around all vertices. Without vertices, the box is around the origins of all bones.
     pub size: f64,
 }
 
-/// Converts a skin's inverse bind matrix to f64.
+/// Converts an inverse bind matrix to an f64 transform.
 pub(super) fn bind(matrix: &[f32; 16]) -> DAffine3 {
     DAffine3::from_mat4(glam::DMat4::from_cols_array(&matrix.map(f64::from)))
 }
@@ -61,12 +61,12 @@ impl Rest {
         Self { locals, models, followers, radii, size: low.distance(high) / 2.0 }
     }
 
-    /// The transform from the last bone's space to the space of the bone above the first.
+    /// The rest transform from the space of the chain's last bone to the space of the bone above the chain.
     pub(super) fn offset(&self, chain: &[usize]) -> DAffine3 {
         chain.iter().fold(DAffine3::IDENTITY, |offset, bone| offset * self.locals[*bone])
     }
 
-    /// The largest factor by which a bone's space is scaled at rest.
+    /// The largest factor by which a bone's space is scaled at rest, along any axis.
     pub(super) fn scale(&self, bone: usize) -> f64 {
         let matrix = self.models[bone].matrix3;
         [matrix.x_axis, matrix.y_axis, matrix.z_axis].iter().map(|axis| axis.length()).fold(0.0, f64::max)

@@ -1,5 +1,5 @@
-//! Tracks of bones whose parents have collapsed: the composed motion of the chain in the space of the kept bone above
-//! it.
+//! Tracks of bones whose parents have collapsed. A track combines the motion of the collapsed bones and of the bone
+//! itself, relative to the kept bone above.
 
 use glam::{DQuat, DVec3};
 
@@ -13,20 +13,20 @@ use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::finite;
 use crate::asset::{Model, Skeleton, Transform};
 
-/// Allowed displacement of points by interpolation between two composed keys, as a fraction of the model's size at rest
-/// (half the diagonal of its bounding box). The points follow the bone or bones below it.
+/// Allowed displacement caused by interpolating between two combined keys, as a fraction of the model's size at rest
+/// (half the diagonal of its bounding box). It applies to points that follow the bone or bones below it.
 ///
-/// Translation, rotation and scale are each tested at a quarter, half and three quarters of the way. If the
-/// displacement is larger, up to 63 keys are added between the two.
+/// Translation, rotation and scale are each tested at a quarter, half and three quarters of the interval. If the
+/// displacement is larger, up to 63 keys are added within the interval.
 const BETWEEN_KEYS: f64 = 1e-3;
 
 /// The largest number of times that an interval between two keys is halved.
 const HALVINGS: u32 = 6;
 
-/// Two values count as equal if they differ by less than this fraction of the larger.
+/// Two values count as equal if they differ by less than this fraction of the larger value.
 const ROUNDING: f32 = 1e-6;
 
-/// Makes a clip of the kept bones; `skeleton` is theirs.
+/// Converts a clip to the kept bones. `skeleton` is the skeleton of these bones.
 pub(super) fn clip(
     model: &Model,
     clip: &Clip,
@@ -52,8 +52,8 @@ pub(super) fn clip(
     Clip::of_stored(clip.name(), clip.duration(), tracks)
 }
 
-/// Adds a key to a track without keys if its constant value differs from the rest transform, because a track without
-/// keys means the rest transform.
+/// If a track has no keys but its constant value differs from the rest transform, adds a key. A track without keys
+/// would mean the rest transform.
 fn settled(mut keys: Keys, part: TransformPart, rest: &Transform) -> Keys {
     if keys.times.is_empty() {
         let rest = value(rest, part);
@@ -67,7 +67,7 @@ fn settled(mut keys: Keys, part: TransformPart, rest: &Transform) -> Keys {
     keys
 }
 
-/// The side of a jump on which a track is sampled.
+/// The side from which a time is approached, which matters at a key where the track jumps.
 #[derive(Clone, Copy, PartialEq)]
 enum Side {
     Before,
@@ -80,7 +80,7 @@ struct Chain<'a> {
     /// The collapsed bones, each with the signs of its scale.
     collapsed: Vec<(usize, DVec3)>,
     bone: usize,
-    /// Displacement of the model's points per unit of error in translation, rotation (radians) and scale.
+    /// The largest displacement of the model's points per unit of error in translation, rotation (radians) and scale.
     levers: [f64; 3],
     tolerance: f64,
 }
@@ -114,14 +114,14 @@ impl<'a> Chain<'a> {
         Ok(all)
     }
 
-    /// The keys of those tracks of these bones that are not constant.
+    /// The keys of all tracks of these bones, except constant tracks.
     fn moving(&self, bones: impl Iterator<Item = usize>) -> Vec<Keys> {
         let tracks = bones.flat_map(|bone| TransformPart::ALL.map(|part| (bone, part)));
         let moving = tracks.filter(|(bone, part)| !is_constant(self.clip, *bone, *part));
         moving.map(|(bone, part)| self.clip.stored_keys(self.clip.track(bone, part))).collect()
     }
 
-    /// The composed transform of the collapsed bones at a time.
+    /// The combined transform of the collapsed bones at a time.
     fn above(&self, time: f32, side: Side) -> Composed {
         let add = |above: Composed, (bone, signs): &(usize, DVec3)| {
             above.with(&local(self.clip, *bone, time, side), *signs)
@@ -133,8 +133,8 @@ impl<'a> Chain<'a> {
         self.above(time, side).with(&local(self.clip, self.bone, time, side), DVec3::ONE).transform()
     }
 
-    /// The bone's own keys, mapped through collapsed bones that do not move. This is exact, because the map is linear
-    /// in the values.
+    /// The bone's own keys, transformed by the collapsed bones, which do not move. The result is exact, because the
+    /// transform is linear in the keys' values.
     fn mapped(&self, part: TransformPart) -> Keys {
         let above = self.above(0.0, Side::After);
         let mut keys = self.clip.stored_keys(self.clip.track(self.bone, part));
@@ -155,7 +155,8 @@ impl<'a> Chain<'a> {
         keys
     }
 
-    /// Keys at the key times of all tracks of the chain, and between them where linear interpolation is not sufficient.
+    /// Keys at the key times of all tracks of the chain. More keys are added where linear interpolation is too
+    /// inaccurate.
     fn sampled(&self) -> [Keys; 3] {
         let tracks = self.moving(self.collapsed.iter().map(|(bone, _)| *bone).chain([self.bone]));
         let mut times: Vec<f32> = tracks.iter().flat_map(|keys| keys.times.iter().copied()).collect();
@@ -177,7 +178,7 @@ impl<'a> Chain<'a> {
         TransformPart::ALL.map(|part| keys(&poses, part, interpolation))
     }
 
-    /// Adds keys between two keys if linear interpolation is too far off.
+    /// Adds keys between two keys, by repeated halving, if linear interpolation is too inaccurate.
     fn halve(&self, ends: [(f32, Transform); 2], halvings: u32, poses: &mut Vec<(f32, Transform)>) {
         let [(from, start), (to, end)] = ends;
         let at = |fraction: f32| from + (to - from) * fraction;
@@ -199,7 +200,8 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// The keys of one part of poses; none if the part is the same in all poses.
+/// The keys of one part of the poses (translation, rotation or scale). There are none if the part is the same in all
+/// poses.
 fn keys(poses: &[(f32, Transform)], part: TransformPart, interpolation: Interpolation) -> Keys {
     let (times, values): (Vec<f32>, Vec<[f32; 4]>) =
         poses.iter().map(|(time, pose)| (*time, value(pose, part))).unzip();
@@ -209,7 +211,7 @@ fn keys(poses: &[(f32, Transform)], part: TransformPart, interpolation: Interpol
     Keys { times, values, interpolation }
 }
 
-/// The value of a part as tracks store it.
+/// One part of a transform (translation, rotation or scale), in the form that tracks store.
 fn value(transform: &Transform, part: TransformPart) -> [f32; 4] {
     let vector = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
     match part {
@@ -233,7 +235,8 @@ fn local(clip: &Clip, bone: usize, time: f32, side: Side) -> Transform {
     sample_parts(of, RotationPath::Slerp)
 }
 
-/// The keyframe cursor at a time, approached from before: at a key, a jump to it has not happened yet.
+/// The keyframe cursor at a time that is approached from before. If the track jumps at a key at this time, the jump has
+/// not happened yet.
 fn cursor_before(times: &[f32], interpolation: Interpolation, time: f32) -> KeyframeCursor {
     let first = times.partition_point(|other| *other < time);
     if times.get(first) != Some(&time) {
@@ -251,13 +254,13 @@ fn between(part: TransformPart, start: [f32; 4], end: [f32; 4], fraction: f32) -
     slerp(start, if dot < 0.0 { end.map(|x| -x) } else { end }, fraction)
 }
 
-/// The distance between two values of a part: Euclidean for translation, in radians for rotation, the largest component
-/// difference for scale.
+/// The distance between two values of a transform part. It is Euclidean for translation, an angle in radians for
+/// rotation, and the largest difference of a component for scale.
 fn distance(part: TransformPart, a: [f32; 4], b: [f32; 4]) -> f64 {
     let [a, b] = [a, b].map(|value| glam::DVec4::from_array(value.map(f64::from)));
     match part {
         TransformPart::Translation => a.distance(b),
-        // The angle follows from the chord between a and the nearer of ±b.
+        // The angle follows from the chord between a and the nearer of b and −b.
         TransformPart::Rotation => {
             let (near, far) = (a.distance(b).min((a + b).length()), a.distance(b).max((a + b).length()));
             4.0 * near.atan2(far)

@@ -1,5 +1,5 @@
-//! Rigid bodies: sets of vertices that follow the same single bone. Their mutual distances are the same in every pose,
-//! unless the bone is stretched. A distance found in one pose holds in all.
+//! Rigid bodies: sets of vertices that follow the same single bone. If the bone is not stretched, the distances between
+//! these vertices are the same in every pose. A distance measured in one pose then holds in all poses.
 
 use std::collections::BTreeSet;
 
@@ -12,23 +12,23 @@ use crate::mesh::simplify::NO_BODY;
 use crate::skinning::palette::reference::palette;
 use crate::skinning::pose::{Moment, bones_at};
 
-/// The largest relative difference of distances on a body between two moments.
+/// The largest relative change of a distance within a rigid body between two moments.
 pub(super) const STRETCH: f32 = 1e-4;
 
-/// Bound on the rounding of a position, as a fraction of the largest summand: 64 times half an ulp of f32.
+/// Bound on the rounding error of a position, as a fraction of the largest summand: 64 times half an ulp of f32.
 const ROUNDING: f32 = 4e-6;
 
-/// The bodies of a model's meshes.
+/// The rigid bodies of a model's meshes.
 pub(super) struct Bodies {
-    /// For each mesh of the model, the body of each vertex, or [`NO_BODY`].
+    /// For each mesh of the model, the rigid body of each vertex, or [`NO_BODY`].
     of: Vec<Vec<u32>>,
-    /// Bound on the rounding of a position at any of the moments, in the model's units.
+    /// Bound on the rounding error of a position at any of the moments, in the model's units.
     pub rounding: f32,
 }
 
 impl Bodies {
-    /// The bodies of some meshes, from bones that are not stretched between any two of these moments. There is at least
-    /// one moment.
+    /// Finds the rigid bodies of some meshes: the bones that are not stretched between any two of the moments. Expects
+    /// at least one moment.
     pub fn new(model: &Model, meshes: &[usize], moments: &[Moment]) -> Self {
         let skins: BTreeSet<usize> = meshes.iter().map(|mesh| model.meshes[*mesh].skin).collect();
         let skins: Vec<(usize, f32)> =
@@ -43,7 +43,7 @@ impl Bodies {
         let (is_rigid, largest) = moments.par_iter().map(look).reduce(none, |(a, largest), (b, other)| {
             (a.iter().zip(&b).map(|(a, b)| *a && *b).collect(), largest.max(other))
         });
-        // A bone that is stretched in one skin is not a body in any skin.
+        // A bone that is stretched in one skin does not form a body in any skin.
         let mut is_body = vec![true; model.skeleton.len()];
         let bones = skins.iter().flat_map(|(skin, _)| &model.skins[*skin].bones);
         bones.zip(is_rigid).for_each(|(bone, is_rigid)| is_body[*bone as usize] &= is_rigid);
@@ -54,23 +54,23 @@ impl Bodies {
         Self { of, rounding: ROUNDING * largest }
     }
 
-    /// The body of each vertex of a mesh, or [`NO_BODY`].
+    /// The rigid body of each vertex of a mesh, or [`NO_BODY`].
     pub fn of(&self, mesh: usize) -> &[u32] {
         &self.of[mesh]
     }
 }
 
-/// The body that all three vertices share, or [`NO_BODY`].
+/// The rigid body that all three vertices belong to, or [`NO_BODY`] if there is none.
 pub(super) fn common(bodies: &[u32], vertices: &[u32; 3]) -> u32 {
     let [a, b, c] = vertices.map(|vertex| bodies[vertex as usize]);
     if a == b && b == c { a } else { NO_BODY }
 }
 
-/// The bones of some skins at a moment.
+/// Measurements of the bones of some skins at one moment.
 struct Look {
-    /// For each bone of each skin, the products of its matrix's columns.
+    /// For each bone of each skin, the dot products of its matrix's columns with each other.
     squares: Vec<Mat3>,
-    /// The largest summand of a position.
+    /// The largest summand in the computation of a position.
     largest: f32,
 }
 
@@ -92,19 +92,20 @@ impl Look {
     }
 }
 
-/// Whether two bones, given the products of their columns, stretch equally in every direction, up to [`STRETCH`].
+/// Whether two bones stretch equally in every direction, up to [`STRETCH`]. They are given by the products of their
+/// columns.
 fn is_alike(first: &Mat3, other: &Mat3) -> bool {
     let trace = first.x_axis.x + first.y_axis.y + first.z_axis.z;
-    // A lower bound of the smallest eigenvalue: the product of all three, divided by the squared mean of the two
-    // others.
+    // A lower bound of the smallest eigenvalue: the product of all three eigenvalues, divided by the squared mean of
+    // the other two.
     let least = 4.0 * first.determinant() / (trace * trace);
     let off = (*first - *other).to_cols_array().into_iter().fold(0.0, |most: f32, x| most.max(x.abs()));
-    // Three times the largest entry bounds the norm. Squares differ by twice the relative difference of lengths. False
-    // for NaN.
+    // Three times the largest entry bounds the norm. Squared lengths differ by twice the relative difference of
+    // lengths. The result is false for NaN.
     3.0 * off <= 2.0 * STRETCH * least
 }
 
-/// The largest distance from the origin of a skin's vertices before skinning.
+/// The largest distance of a skin's vertices from the origin, in bind space, with morph targets.
 fn reach(model: &Model, meshes: &[usize], skin: usize) -> f32 {
     let length = |vector: &[f32; 3]| Vec3::from(*vector).length();
     let own = meshes.iter().map(|mesh| &model.meshes[*mesh]).filter(|mesh| mesh.skin == skin);

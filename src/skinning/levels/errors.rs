@@ -1,5 +1,5 @@
-//! The errors of levels: the largest distance of any sample in any pose. Most samples are ruled out in advance, because
-//! another one is known to be farther. This makes it feasible to examine all poses.
+//! The errors of levels: the largest distance of any sample in any pose. Most samples are skipped, because another
+//! sample is known to be farther away. This makes it feasible to examine all poses.
 
 use std::ops::{ControlFlow, Range};
 
@@ -14,35 +14,35 @@ use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::NO_BODY;
 use crate::skinning::pose::{Moment, bones_at};
 
-/// Number of moments between two reports of progress.
+/// Number of moments between two progress reports.
 const BATCH: usize = 64;
 
-/// The samples of several levels that may be the farthest of their level at some moment.
+/// The samples of several levels that may have the largest distance of their level at some moment.
 pub(super) struct Suspects {
-    /// Positions are divided by this.
+    /// The unit of positions, in the model's units: positions are divided by it.
     unit: f32,
-    /// Bound on the rounding of a position, in units.
+    /// Bound on the rounding error of a position, in units of `unit`.
     rounding: f32,
-    /// The vertices whose positions are needed, for each mesh of a group that is simplified as one.
+    /// For each mesh of a group that is simplified as one, the vertices whose positions are needed.
     vertices: Vec<Vec<u32>>,
     all: Vec<Suspect>,
     triangles: Vec<[u32; 3]>,
-    /// A lower bound of each level's error.
+    /// For each level, a lower bound of its error.
     least: Vec<f32>,
 }
 
 struct Suspect {
     level: u32,
     sample: Sample,
-    /// The nearest point in the first pose.
+    /// The point of the triangles `near` that is nearest to the sample in the first pose.
     foot: Sample,
-    /// The triangles close to it, in [`Suspects::triangles`].
+    /// The triangles close to the sample, as a range in [`Suspects::triangles`].
     near: Range<u32>,
 }
 
 impl Suspects {
-    /// `first` is the first key pose and `rounding` the rounding bound, both in multiples of `unit`. `bodies` has the
-    /// rigid body of each vertex.
+    /// Finds the samples to examine. `first` is the first key pose and `rounding` the rounding bound, both in multiples
+    /// of `unit`. `bodies` has the rigid body of each vertex.
     pub(super) fn new(
         whole: &Whole<'_>,
         sides: &[Sides],
@@ -69,7 +69,7 @@ impl Suspects {
         suspects
     }
 
-    /// Lists the vertices that are needed, and replaces vertex indices by their positions in this list.
+    /// Lists the vertices whose positions are needed, and replaces vertex indices by indices in this list.
     fn number_anew(&mut self, whole: &Whole<'_>) {
         let mut places = vec![0; whole.vertices()];
         let used = self.all.iter().flat_map(|one| [&one.sample.0, &one.foot.0]).chain(&self.triangles);
@@ -87,7 +87,7 @@ impl Suspects {
         samples.chain(&mut self.triangles).flatten().for_each(|vertex| *vertex = places[*vertex as usize]);
     }
 
-    /// Raises the errors of levels to their values at these vertex positions.
+    /// Raises the errors of levels to the distances that samples have at the vertex positions `points`.
     fn look(&self, points: &[Vec3], errors: &mut [f32]) {
         let point = |vertex: u32| points[vertex as usize];
         for suspect in &self.all {
@@ -106,7 +106,8 @@ impl Suspects {
     }
 }
 
-/// The samples of a level that may be farthest, their triangles, and a lower bound of the level's error.
+/// The samples of a level that may have its largest distance, their nearby triangles, and a lower bound of the level's
+/// error.
 fn suspects_of(
     level: u32,
     sides: &Sides,
@@ -132,7 +133,7 @@ fn suspects_of(
         .collect();
     let (mut all, mut triangles) = (Vec::new(), Vec::new());
     for (sample, foot, near, most) in found {
-        // False for NaN.
+        // The comparison is false for NaN, so the sample stays.
         if most <= least {
             continue;
         }
@@ -143,7 +144,7 @@ fn suspects_of(
     (all, triangles, least)
 }
 
-/// The nearest point on some triangles, and its distance.
+/// The point of the triangles `near` that is nearest to `wanted`, and its distance.
 fn foot_of(wanted: Vec3, near: &[[u32; 3]], point: &impl Fn(u32) -> Vec3) -> (Sample, f32) {
     let on = |triangle: &[u32; 3]| {
         let found = nearest_on_triangle(wanted, triangle.map(point));
@@ -155,7 +156,7 @@ fn foot_of(wanted: Vec3, near: &[[u32; 3]], point: &impl Fn(u32) -> Vec3) -> (Sa
     })
 }
 
-/// Barycentric coordinates of a point of a triangle; those of a corner if the triangle has no area.
+/// Barycentric coordinates of a point in a triangle. If the triangle has no area, the coordinates of its first corner.
 fn parts_of(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
     let normal = (b - a).cross(c - a);
     let area = normal.length_squared();
@@ -168,7 +169,7 @@ fn parts_of(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
     [first, second, 1.0 - first - second]
 }
 
-/// The largest distance of each level of several groups of meshes at any of these moments, in each group's unit.
+/// For several groups of meshes: the largest distance of each level at any of these moments, in the group's unit.
 /// `watch` gets the number of moments examined so far, and may break.
 pub(super) fn errors(
     model: &Model,
@@ -177,7 +178,7 @@ pub(super) fn errors(
     watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> ControlFlow<(), Vec<Vec<f32>>> {
     let mut errors: Vec<Vec<f32>> = groups.iter().map(|(_, suspects)| suspects.least.clone()).collect();
-    // Widely spaced moments come first: they soon give large distances, which rule out most other samples.
+    // Widely spaced moments come first. They soon give large distances, so that most other samples can be skipped.
     let stride = moments.len().div_ceil(BATCH).max(1);
     let order: Vec<Moment> =
         (0..stride).flat_map(|first| moments.iter().skip(first).step_by(stride)).copied().collect();
@@ -212,7 +213,7 @@ mod tests {
     use super::*;
     use crate::asset::{Influence, Influences};
 
-    /// The errors equal those of all samples at all moments, to the bit.
+    /// The errors equal, to the bit, the errors computed from all samples at all moments.
     #[test]
     fn no_sample_that_is_farthest_is_left_out() {
         let soft = crate::samples::creature().expect("valid");
@@ -246,7 +247,7 @@ mod tests {
             assert!(all.len() > 5 && found[0] == all, "{:?} {all:?}", found[0]);
             shares.push(90.0 * group.suspects.all.len() as f64 / f64::from(samples));
         }
-        // Samples near a joint have triangles of two bodies.
+        // Samples near a joint have triangles of two rigid bodies.
         assert!(shares[0] < 0.9 && shares[1] < shares[0], "{shares:?}");
     }
 }

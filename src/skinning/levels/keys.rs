@@ -1,7 +1,7 @@
-//! The key poses that decide the levels of meshes, and the meshes' size in them.
+//! The key poses for which meshes are simplified, and the size of the meshes in these poses.
 //!
-//! The error of a level is a fraction of that size. It does not depend on the bind positions, whose units the inverse
-//! bind matrices may change.
+//! The error of a level is a fraction of this size. The size does not depend on the bind pose, because inverse bind
+//! matrices may change its units.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -10,22 +10,22 @@ use super::whole::Whole;
 use crate::skinning::attribute_weights::TextureArea;
 use crate::skinning::pose::Moment;
 
-/// Number of the clips' moments that serve as key poses.
+/// Number of moments of the clips that serve as key poses.
 const MOMENTS: usize = 24;
 
-/// The rest pose is ignored if its size differs from the mesh's in clips by more than this factor, because it is not
-/// seen then.
+/// If the size at rest differs from the size in the clips by more than this factor, the rest pose is ignored, because
+/// clips never show it.
 const UNLIKE: f32 = 2.0;
 
-/// The key poses, in multiples of a common unit, so that numbers have the same magnitude in every model. The first is
-/// the rest pose. If its size differs too much from the others', it is the largest of these.
+/// The key poses, in multiples of a common unit, so that numbers have the same magnitude in every model. The first pose
+/// is the rest pose. If its size differs too much from the other poses, the largest of them comes first instead.
 pub(super) struct Keys {
     pub poses: Vec<Vec<[f32; 3]>>,
-    /// The normals of the first pose, vertex by vertex.
+    /// The normals of all vertices in the first pose.
     pub normals: Vec<[f32; 3]>,
-    /// The diagonal of the box around the triangles in the first pose: 1 to 2, or 0.
+    /// Diagonal of the box around the triangles in the first pose, in units of `unit`: 1 to 2, or 0 without extent.
     pub size: f32,
-    /// The unit, a power of two in the model's units.
+    /// The unit of positions: a power of two, in the model's units.
     pub unit: f32,
 }
 
@@ -33,7 +33,7 @@ impl Keys {
     pub fn new(whole: &Whole<'_>, moments: &[Moment]) -> Self {
         let mut all: Vec<Key> =
             key_moments(moments).into_par_iter().map(|moment| Key::new(whole, moment)).collect();
-        // Takes the first of several equally large poses.
+        // If several poses are equally large, the first of them is taken.
         let largest = (1..all.len()).rev().max_by(|a, b| all[*a].size.total_cmp(&all[*b].size));
         if let Some(largest) = largest.filter(|largest| all[0].is_unlike(all[*largest].size)) {
             all.swap(0, largest);
@@ -46,7 +46,7 @@ impl Keys {
         Self { poses: all.into_iter().map(|key| key.points).collect(), normals, size: size / unit, unit }
     }
 
-    /// The weight of texture coordinates for each mesh, from the first pose.
+    /// For each mesh, the weight of texture coordinates in simplification, computed from the first pose.
     pub fn texture_factors(&self, whole: &Whole<'_>) -> Vec<f32> {
         let mut areas = vec![TextureArea::default(); whole.meshes.len()];
         for triangle in whole.indices.chunks_exact(3) {
@@ -59,14 +59,14 @@ impl Keys {
     }
 }
 
-/// The rest pose and some of these moments.
+/// The rest pose, followed by at most [`MOMENTS`] evenly spaced moments of the given ones.
 pub(super) fn key_moments(moments: &[Moment]) -> Vec<Moment> {
     let every = moments.len().div_ceil(MOMENTS).max(1);
     let played = moments.iter().step_by(every).copied().filter(|moment| *moment != Moment::Rest);
     std::iter::once(Moment::Rest).chain(played).collect()
 }
 
-/// The meshes at a moment.
+/// The meshes at one moment: vertex positions, and the diagonal of the box around the triangles.
 struct Key {
     moment: Moment,
     points: Vec<[f32; 3]>,
@@ -85,7 +85,7 @@ impl Key {
     }
 }
 
-/// The diagonal of a box around the corners of triangles.
+/// The diagonal of the box around the corners of triangles.
 fn diagonal(pose: &[[f32; 3]], indices: &[u32]) -> f32 {
     let corners = indices.iter().map(|vertex| Vec3::from(pose[*vertex as usize]));
     let (low, high) =
@@ -93,7 +93,7 @@ fn diagonal(pose: &[[f32; 3]], indices: &[u32]) -> f32 {
     if indices.is_empty() {
         return 0.0;
     }
-    // In f64, which can represent the squares of all sizes.
+    // Computed in f64, because squares of large or small sizes exceed the range of f32.
     low.as_dvec3().distance(high.as_dvec3()) as f32
 }
 

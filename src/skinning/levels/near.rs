@@ -1,5 +1,5 @@
-//! Pairs of nearby parts of a level and its mesh. Collapses are local: the vertex into which a vertex has collapsed,
-//! and the triangles around it, are close to it in every pose.
+//! Pairs of nearby parts of a level and the original mesh. Collapses are local: the vertex into which a vertex
+//! collapses, and the triangles around that vertex, are close to it in every pose.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,13 +13,14 @@ use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::{NO_BODY, Simplified};
 use crate::surface::tangent::Adjacency;
 
-/// The largest number of triangles kept as nearest in some pose; those of the first poses are kept.
+/// The largest number of triangles that are kept as nearest in some pose. Triangles found in earlier poses take
+/// precedence.
 const MAX: usize = 32;
 
 /// For each item of a sequence, the triangles close to it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Near {
-    /// First triangle of each item; one more entry than there are items.
+    /// Index in `triangles` of each item's first triangle. There is one more entry than items.
     starts: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
@@ -42,14 +43,14 @@ impl Near {
         &self.triangles[self.starts[thing] as usize..self.starts[thing + 1] as usize]
     }
 
-    /// The triangles of the items in a range, with renumbered corners.
+    /// The lists of the items in `range`, with the triangles' corners renumbered by `local`.
     pub(super) fn part(&self, range: Range<usize>, local: impl Fn(u32) -> u32) -> Self {
         let is_own = |corners: &&[u32; 3]| range.contains(&(corners[0] as usize));
         let own = |thing: usize| self.triangles_of(thing).iter().filter(is_own);
         Self::of(range.clone().map(|thing| own(thing).map(|corners| corners.map(&local)).collect()))
     }
 
-    /// The point nearest to `wanted` on the triangles of an item, if it has any.
+    /// The point nearest to `wanted` on the triangles of an item; `None` if the item has no triangles.
     pub(super) fn nearest(&self, thing: usize, wanted: Vec3, point: &impl Fn(u32) -> Vec3) -> Option<Vec3> {
         let on = |triangle: &[u32; 3]| nearest_on_triangle(wanted, triangle.map(point));
         let points = self.triangles_of(thing).iter().map(on);
@@ -57,22 +58,22 @@ impl Near {
     }
 }
 
-/// Both directions of a level's error: from the mesh to the level, and from the level to the mesh.
+/// Samples for both directions of a level's error: from the mesh to the level, and from the level to the mesh.
 pub(super) struct Sides {
-    /// Nearby triangles of the level, for each vertex of the mesh that the level lacks.
+    /// For each vertex of the mesh that the level lacks, the nearby triangles of the level.
     pub(super) near: Near,
-    /// Samples on the level, as barycentric coordinates in its triangles.
+    /// Sample points on the level, as barycentric coordinates in the level's triangles.
     samples: Vec<Sample>,
-    /// Nearby triangles of the mesh, for each sample.
+    /// For each sample point, the nearby triangles of the mesh.
     behind: Near,
 }
 
-/// A point of a triangle: its corners, and its barycentric coordinates.
+/// A point in a triangle: the triangle's corners, and the point's barycentric coordinates.
 pub(super) type Sample = ([u32; 3], [f32; 3]);
 
 impl Sides {
-    /// Finds nearby parts in the poses `keys`; they belong to the same mesh. `bodies` has the rigid body of each
-    /// vertex.
+    /// Finds the nearby parts of a level and its mesh in the poses `keys`. Nearby parts belong to the same mesh.
+    /// `bodies` has the rigid body of each vertex.
     pub(super) fn new(
         whole: &Whole<'_>,
         simplified: &Simplified,
@@ -89,7 +90,7 @@ impl Sides {
         let ring = around(level, &|vertex| vertex);
         let near = Near::of(before(whole, &ring, found, &point, keys, bodies).into_iter());
 
-        // The meshes' triangles with an area, by the points into which their corners have collapsed.
+        // The triangles of the meshes that have an area, listed by the points into which their corners have collapsed.
         let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
         let area: Vec<u32> = whole.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
         let became = around(&area, &|vertex| found.remap[vertex as usize]);
@@ -122,8 +123,8 @@ impl Sides {
         Self { near, samples, behind }
     }
 
-    /// All samples of both sides, each with the nearby triangles of the other side; samples at vertices come first. A
-    /// sample has at least one triangle.
+    /// All samples of both directions, each with the nearby triangles of the other surface. Samples at vertices come
+    /// first. A sample has at least one triangle.
     pub(super) fn all(&self) -> impl Iterator<Item = (Sample, &[[u32; 3]])> {
         let vertices = (0..self.near.len()).map(|vertex| ([vertex as u32; 3], [1.0, 0.0, 0.0]));
         let forth = vertices.enumerate().map(|(at, sample)| (sample, self.near.triangles_of(at)));
@@ -133,7 +134,7 @@ impl Sides {
     }
 }
 
-/// Nearby triangles of the level, for each vertex that the level lacks.
+/// For each vertex of the mesh that the level lacks, the nearby triangles of the level.
 fn before(
     whole: &Whole<'_>,
     ring: &Around,
@@ -146,7 +147,7 @@ fn before(
     whole.indices.iter().for_each(|vertex| is_used[*vertex as usize] = true);
     level.iter().for_each(|vertex| is_left[*vertex as usize] = true);
     let mut search = Search::new(level, keys, bodies);
-    // Many vertices have collapsed into the same one.
+    // A cache, because many vertices have collapsed into the same vertex.
     let mut rings: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
     // The triangles of each mesh, computed on demand.
     let mut owned: HashMap<u32, Vec<u32>> = HashMap::new();
@@ -155,16 +156,16 @@ fn before(
             return Vec::new();
         }
         let is_own = |at: &u32| whole.member_of(&corners_of(level, *at)) == whole.member[vertex as usize];
-        // There may be none for a vertex without triangles. The replacement itself may be a wedge that no triangle of
-        // the level uses.
+        // There are no candidates for a vertex that no triangle uses. The replacement itself may be a wedge (a vertex
+        // at the same position with other attributes) that no triangle of the level uses.
         let target = remap[vertex as usize];
         let own = || ring.two_rings(target, level, point).into_iter().filter(is_own).collect();
         let candidates = rings.entry((target, whole.member[vertex as usize])).or_insert_with(own);
         if !candidates.is_empty() || !is_used[vertex as usize] {
             return search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], candidates);
         }
-        // A piece of the mesh became a point between triangles of other meshes, or the whole mesh became one. Its own
-        // nearest triangle represents it there.
+        // Part of the mesh, or the whole mesh, has become a point, so no triangle of the mesh is around the vertex. The
+        // mesh's nearest triangle represents the vertex instead.
         let member = whole.member[vertex as usize];
         let all = owned.entry(member).or_insert_with(|| (0..level.len() as u32 / 3).filter(is_own).collect());
         search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], all)
@@ -172,7 +173,7 @@ fn before(
     (0..whole.vertices() as u32).map(near).collect()
 }
 
-/// The midpoints of a triangle and of its edges.
+/// Four sample points of a triangle: its midpoint, and the midpoints of its edges.
 fn samples_of(triangle: &[u32]) -> [Sample; 4] {
     const THIRD: f32 = 1.0 / 3.0;
     let corners = [triangle[0], triangle[1], triangle[2]];
@@ -187,16 +188,16 @@ fn corners_of(indices: &[u32], triangle: u32) -> [u32; 3] {
     [0, 1, 2].map(|corner| indices[3 * triangle as usize + corner])
 }
 
-/// A search for the nearest of some triangles in each of several poses.
+/// Searches, in each of several poses, for the nearest of some triangles.
 struct Search<'a> {
-    /// Three indices per triangle.
+    /// The triangles, three vertex indices each.
     indices: &'a [u32],
     keys: &'a [Vec<Vec3>],
     /// The rigid body of each vertex.
     bodies: &'a [u32],
-    /// A sphere around each triangle in the first pose: center and radius.
+    /// A sphere around each triangle in the first pose, as center and radius.
     spheres: Vec<(Vec3, f32)>,
-    /// Candidates with their squared distances in the first pose.
+    /// Candidate triangles, each with its squared distance in the first pose.
     found: Vec<(f32, u32)>,
 }
 
@@ -207,7 +208,7 @@ impl<'a> Search<'a> {
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             let radius =
                 corners.map(|corner| corner.distance_squared(middle)).into_iter().fold(0.0, f32::max);
-            // Enlarged to cover rounding.
+            // The radius is enlarged slightly, to cover rounding.
             (middle, 1.000_01 * radius.sqrt())
         };
         let spheres = indices.as_chunks::<3>().0.iter().map(sphere).collect();
@@ -219,8 +220,8 @@ impl<'a> Search<'a> {
         nearest_on_triangle(wanted, corners).distance_squared(wanted)
     }
 
-    /// Corners of the candidates that are nearest to a point in at least one pose. `body` is the rigid body
-    /// of the point.
+    /// The candidate triangles that are nearest to a point in at least one pose, as corners. `wanted` gives the point
+    /// in a pose, and `body` is the point's rigid body.
     fn nearest_in_each(
         &mut self,
         wanted: impl Fn(&Vec<Vec3>) -> Vec3,
@@ -229,7 +230,7 @@ impl<'a> Search<'a> {
     ) -> Vec<[u32; 3]> {
         let corners = |triangle: u32| corners_of(self.indices, triangle);
         let is_rigid = |triangle: u32| body != NO_BODY && common(self.bodies, &corners(triangle)) == body;
-        // If the point and all candidates are on one rigid body, one triangle is the nearest in all poses.
+        // If the point and all candidates belong to one rigid body, the same triangle is nearest in all poses.
         if self.keys.len() == 1 || candidates.iter().all(|triangle| is_rigid(*triangle)) {
             return self.nearest(wanted(&self.keys[0]), candidates).map(corners).into_iter().collect();
         }
@@ -258,7 +259,7 @@ impl<'a> Search<'a> {
         nearest
     }
 
-    /// The nearest candidate in the first pose; the first of several.
+    /// The candidate nearest to `wanted` in the first pose. If several are equally near, the first of them.
     fn nearest(&self, wanted: Vec3, candidates: &[u32]) -> Option<u32> {
         let mut best = Nearest::default();
         best.start(self, wanted, candidates.iter().copied());
@@ -267,11 +268,11 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The nearest triangle found so far, in the first pose; the first of several.
+/// The triangle found so far that is nearest in the first pose. If several are equally near, the first of them.
 struct Nearest {
     triangle: u32,
     squared: f32,
-    /// Triangles further away than this are not nearest.
+    /// Distance beyond which a triangle cannot be the nearest.
     within: f32,
 }
 
@@ -282,7 +283,7 @@ impl Default for Nearest {
 }
 
 impl Nearest {
-    /// Begins with the triangle whose center is nearest, so that most others are ruled out quickly.
+    /// Starts with the triangle whose center is nearest. Its distance rules out most other triangles quickly.
     fn start(&mut self, search: &Search<'_>, wanted: Vec3, triangles: impl Iterator<Item = u32>) {
         let to_middle = |triangle: &u32| search.spheres[*triangle as usize].0.distance_squared(wanted);
         if let Some(likely) = triangles.min_by(|a, b| to_middle(a).total_cmp(&to_middle(b))) {
@@ -300,7 +301,7 @@ impl Nearest {
         }
     }
 
-    /// Whether a whole sphere is further away.
+    /// Whether a whole sphere is farther from `wanted` than the nearest triangle found so far.
     fn is_beyond(&self, wanted: Vec3, (middle, radius): (Vec3, f32)) -> bool {
         middle.distance_squared(wanted) > (self.within + radius) * (self.within + radius)
     }
@@ -310,14 +311,14 @@ impl Nearest {
     }
 }
 
-/// The triangles of the mesh by the points of a level into which their corners have collapsed.
+/// Groups of the mesh's triangles: one group per point of the level into which corners have collapsed.
 struct Clusters<'a> {
     around: &'a Around,
     /// For each point, a sphere around its triangles in the first pose.
     spheres: Vec<(Vec3, f32)>,
-    /// For each point, the rigid body of all of its triangles.
+    /// For each point, the rigid body that all of its triangles belong to, or [`NO_BODY`].
     bodies: Vec<u32>,
-    /// Whether there is only one pose, so that it decides alone.
+    /// Whether there is only one pose.
     is_still: bool,
 }
 
@@ -327,7 +328,7 @@ impl<'a> Clusters<'a> {
             let all = || around.of(point).map(|triangle| search.spheres[triangle as usize]);
             let count = all().count().max(1) as f32;
             let middle = all().map(|(middle, _)| middle).sum::<Vec3>() / count;
-            // Enlarged to cover rounding.
+            // The radius is enlarged slightly, to cover rounding.
             let reach = |(other, radius): (Vec3, f32)| 1.000_01 * (other.distance(middle) + radius);
             (middle, all().map(reach).fold(0.0, f32::max))
         };
@@ -343,15 +344,15 @@ impl<'a> Clusters<'a> {
         Self { around, spheres: points().map(sphere).collect(), bodies, is_still }
     }
 
-    /// Whether the triangles of all of these points keep their distances from a body in every pose.
+    /// Whether the triangles of all these points keep their distances from `body` in every pose.
     fn are_rigid(&self, points: &[u32], body: u32) -> bool {
         let is_on =
             |point: &u32| self.bodies[*point as usize] == body || self.around.of(*point).next().is_none();
         self.is_still || body != NO_BODY && points.iter().all(is_on)
     }
 
-    /// The nearest triangle around some points in the first pose, among those that pass `is_own`. `likely` is one of
-    /// the points and examined first.
+    /// The triangle around `points` that is nearest to `wanted` in the first pose. Only triangles that pass `is_own`
+    /// count. `likely` is one of the points, which is examined first.
     fn nearest(
         &self,
         search: &Search<'_>,
@@ -379,11 +380,11 @@ impl<'a> Clusters<'a> {
     }
 }
 
-/// The triangles around each point.
+/// For each point, the triangles that have a corner there.
 struct Around(Adjacency);
 
 impl Around {
-    /// `corners` has three points per triangle.
+    /// Lists the triangles around each of `points` points. `corners` has three points per triangle.
     fn new(corners: &[u32], points: usize) -> Self {
         Self(Adjacency::new(points, corners))
     }
@@ -397,20 +398,20 @@ impl Around {
         self.0.at(point as usize).iter().map(|corner| corner / 3)
     }
 
-    /// The points of the triangles around these vertices' points, without duplicates.
+    /// The points of all triangles around the points of `vertices`, without duplicates.
     fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<u32> {
         let around = vertices.iter().flat_map(|vertex| self.of(of(*vertex)));
         sorted(around.flat_map(|triangle| corners_of(level, triangle)).map(of))
     }
 
-    /// The triangles around a vertex's point, and those around their corners.
+    /// The triangles around a vertex's point, and the triangles around the corners of these triangles.
     fn two_rings(&self, vertex: u32, level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<u32> {
         let points = self.beside(&[vertex], level, of);
         sorted(points.iter().flat_map(|point| self.of(*point)))
     }
 }
 
-/// Sorts ascending and removes duplicates.
+/// Sorts a list ascending and removes duplicates.
 fn sorted(all: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut all: Vec<u32> = all.collect();
     all.sort_unstable();

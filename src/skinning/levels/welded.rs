@@ -1,5 +1,6 @@
-//! A mesh without hard edges. Vertices that differ only in their normals are merged, so that a mesh whose triangles
-//! have their own vertices can be simplified. The triangles then get back vertices with normals close to their own.
+//! A mesh without hard edges. Vertices that differ only in their normals are merged, so that a mesh can be simplified
+//! even if each triangle has its own vertices. Afterwards each triangle gets back vertices with normals close to its
+//! original normals.
 
 use std::collections::HashMap;
 
@@ -9,16 +10,16 @@ use super::keys::Keys;
 use super::whole::Whole;
 use crate::mesh::simplify::{Simplified, weld};
 
-/// The groups of merged vertices.
+/// Groups of vertices that are merged because they differ only in their normals.
 pub(super) struct Welded {
-    /// For each vertex, the first vertex of its group.
+    /// For each vertex, the first vertex of its group, which represents the group.
     first: Vec<u32>,
-    /// For each first vertex, all vertices of its group.
+    /// For the first vertex of each group, all vertices of the group.
     all: HashMap<u32, Vec<u32>>,
 }
 
 impl Welded {
-    /// Merges vertices of one mesh that have the same position in every pose and the same texture coordinates.
+    /// Merges vertices of the same mesh that have the same position in every pose and the same texture coordinates.
     pub(super) fn new(whole: &Whole<'_>, poses: &[Vec<[f32; 3]>]) -> Self {
         let points = weld(poses);
         let mut known: HashMap<(u32, u32, [u32; 2]), u32> = HashMap::with_capacity(whole.vertices());
@@ -37,12 +38,12 @@ impl Welded {
         Self { first, all }
     }
 
-    /// The triangles, with each vertex replaced by the first one of its group.
+    /// The triangles, with each vertex replaced by the first vertex of its group.
     pub(super) fn indices(&self, whole: &Whole<'_>) -> Vec<u32> {
         whole.indices.iter().map(|vertex| self.first[*vertex as usize]).collect()
     }
 
-    /// The normal of each first vertex: the mean of its group.
+    /// For the first vertex of each group, the mean normal of the group. Other vertices keep their normals.
     pub(super) fn normals(&self, normals: &[[f32; 3]]) -> Vec<[f32; 3]> {
         let mut means = normals.to_vec();
         for (first, all) in &self.all {
@@ -52,20 +53,22 @@ impl Welded {
         means
     }
 
-    /// For each vertex, the first vertex into which it has collapsed after `collapses` collapses.
+    /// For each vertex, the first vertex of the group into which it has collapsed after `collapses` collapses.
     pub(super) fn remap(&self, simplified: &Simplified, collapses: usize) -> Vec<u32> {
         let remap = simplified.remap(collapses);
         self.first.iter().map(|first| remap[*first as usize]).collect()
     }
 
-    /// The next level: its triangles, the replacement of each vertex that the level before uses, and a triangle count.
+    /// Computes the next level. Returns its triangles, the replacement of each vertex that the previous level uses, and
+    /// the number of triangles.
     ///
-    /// The input is the level before and `remap`, the collapses. Each triangle has three different points. A collapsed
-    /// vertex is replaced by a used vertex at its new point, the one whose normal is closest to its own. If triangles
-    /// are flat-shaded, the normal of the new triangle counts instead.
+    /// `triangles` is the previous level, and `remap` gives the collapses. Each triangle of the result has three
+    /// different points. A collapsed vertex is replaced by a used vertex at its new point. Among several, the vertex
+    /// with the normal closest to the old normal is taken, or, in flat-shaded triangles, closest to the normal of the
+    /// new triangle.
     ///
-    /// A mesh without remaining triangles becomes a point: all of its vertices go to one, and one triangle has it in
-    /// all corners. The count excludes these triangles.
+    /// A mesh without remaining triangles becomes a point: one of its vertices replaces all others, and one triangle
+    /// has this vertex in all three corners. Such triangles are not counted.
     pub(super) fn next(
         &self,
         whole: &Whole<'_>,
@@ -111,7 +114,8 @@ impl Welded {
         (left, into, count)
     }
 
-    /// The replacement of a vertex: the used vertex at its new point whose normal is closest to `wanted`.
+    /// The replacement of a vertex: among the used vertices at its new point, the one whose normal is closest to
+    /// `wanted`.
     fn corner(&self, normals: &[[f32; 3]], wanted: Vec3, remap: &[u32], used: &[bool], vertex: u32) -> u32 {
         let target = remap[vertex as usize];
         if target == self.first[vertex as usize] {
@@ -119,16 +123,16 @@ impl Welded {
         }
         let facing = |other: &&u32| wanted.dot(normals[**other as usize].into());
         let others = self.all[&target].iter().filter(|other| used[**other as usize]);
-        // Takes the first of several equally close ones.
+        // If several vertices are equally close, the first of them is taken.
         others.rev().max_by(|a, b| facing(a).total_cmp(&facing(b))).copied().unwrap_or(target)
     }
 }
 
-/// Cosine of the angle (2.5°) within which the corners' normals of a flat-shaded triangle agree.
+/// Cosine of 2.5°. A triangle is flat-shaded if the normals of its corners agree within this angle.
 const FLAT: f32 = 0.999;
 
-/// For each vertex, the sum of the new normals of its flat-shaded triangles, in the first key pose; 0 if one of its
-/// triangles is not flat-shaded.
+/// For each vertex, the sum of the new normals of its flat-shaded triangles in the first key pose. The sum is 0 if one
+/// of the vertex's triangles is not flat-shaded.
 fn flat_faces(keys: &Keys, remap: &[u32], triangles: &[u32]) -> Vec<Vec3> {
     let mut faces = vec![Vec3::ZERO; remap.len()];
     let mut is_smooth = vec![false; remap.len()];

@@ -1,4 +1,4 @@
-//! The meshes of a model that share borders, as one surface. Closed borders stay closed at every level.
+//! Meshes of a model that share borders, treated as one surface. Borders that are closed stay closed at every level.
 
 mod shared;
 
@@ -13,22 +13,23 @@ use crate::skinning::attribute_weights::shown_uv;
 use crate::skinning::pose::{Moment, Pose, positions_of};
 pub(super) use shared::{Shared, shared};
 
-/// Meshes of a model, concatenated.
+/// Several meshes of a model, with their vertices and triangles concatenated.
 pub(super) struct Whole<'a> {
     model: &'a Model,
-    /// Indices of the meshes in the model.
+    /// Index of each mesh in the model.
     pub meshes: Vec<usize>,
-    /// First vertex of each mesh, then the number of all vertices.
+    /// For each mesh, the index of its first vertex. One last entry has the number of all vertices.
     starts: Vec<u32>,
     /// For each vertex, its mesh as an index in [`Whole::meshes`].
     pub member: Vec<u32>,
-    /// For each vertex, the vertex whose position it takes: one of another mesh at the border, or itself.
+    /// For each vertex, the vertex whose position it takes: a vertex of another mesh if both meet at a border,
+    /// otherwise itself.
     pub shared: Vec<u32>,
-    /// The triangles of all meshes, in their order.
+    /// The triangles of all meshes, in the order of the meshes.
     pub indices: Vec<u32>,
     /// Texture coordinates for simplification ([`shown_uv`]).
     pub uv: Vec<[f32; 2]>,
-    /// Normals before skinning.
+    /// Normals of all vertices before skinning.
     pub normals: Vec<[f32; 3]>,
 }
 
@@ -62,22 +63,22 @@ impl<'a> Whole<'a> {
         }
     }
 
-    /// Number of vertices.
+    /// Number of vertices of all meshes.
     pub fn vertices(&self) -> usize {
         self.member.len()
     }
 
-    /// The vertices of one of the meshes.
+    /// The range of vertices of one mesh.
     pub fn range(&self, member: usize) -> Range<usize> {
         self.starts[member] as usize..self.starts[member + 1] as usize
     }
 
-    /// The mesh to which a triangle belongs.
+    /// The mesh that a triangle belongs to, as an index in [`Whole::meshes`].
     pub fn member_of(&self, triangle: &[u32]) -> u32 {
         self.member[triangle[0] as usize]
     }
 
-    /// The triangles of one mesh from a list, in the mesh's own indices.
+    /// The triangles in `indices` that belong to one mesh. The result uses the mesh's own vertex indices.
     pub fn own(&self, indices: &[u32], member: usize) -> Vec<u32> {
         let of_member = |triangle: &&[u32]| self.member_of(triangle) as usize == member;
         let own = indices.chunks_exact(3).filter(of_member).flatten();
@@ -93,14 +94,14 @@ impl<'a> Whole<'a> {
         self.meshes.iter().flat_map(|mesh| of_mesh(&self.model.meshes[*mesh])).collect()
     }
 
-    /// The positions of all vertices, in multiples of `unit`.
+    /// The positions of all vertices at a moment, in multiples of `unit`.
     pub fn points(&self, moment: Moment, unit: f32) -> Vec<Vec3> {
         let points = |mesh: &Mesh| Pose::new(self.model, mesh, moment).positions(mesh);
         self.all(points).into_iter().map(|point| point / unit).collect()
     }
 
-    /// The positions of some vertices at a moment with these model matrices of bones, in multiples of `unit`. Vertices
-    /// are listed per mesh, in the mesh's own indices.
+    /// The positions of some vertices at a moment, in multiples of `unit`. `bones` are the bones' model-space matrices
+    /// then. `vertices` has one list per mesh, in the mesh's own vertex indices.
     pub fn some_points(
         &self,
         moment: Moment,
@@ -116,13 +117,13 @@ impl<'a> Whole<'a> {
         points
     }
 
-    /// The positions of all vertices. Meshes that share a border have the same positions there, to the bit.
+    /// The positions of all vertices at a moment. Where meshes share a border, their positions are equal to the bit.
     pub fn joined_points(&self, moment: Moment) -> Vec<[f32; 3]> {
         let points = self.points(moment, 1.0);
         self.shared.iter().map(|vertex| points[*vertex as usize].to_array()).collect()
     }
 
-    /// The normals of all vertices, in the model's space.
+    /// The normals of all vertices at a moment, in the model's space.
     pub fn posed_normals(&self, moment: Moment) -> Vec<[f32; 3]> {
         self.all(|mesh| Pose::new(self.model, mesh, moment).normals(mesh))
     }

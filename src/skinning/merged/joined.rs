@@ -1,4 +1,4 @@
-//! Joining of several meshes and skins into one.
+//! Joining of several meshes and skins into one mesh and one skin.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,8 @@ use crate::InputError;
 use crate::asset::mesh::MAX_VERTICES;
 use crate::asset::{Influences, Mesh, MeshLevel, Model, MorphTarget, Skin};
 
-/// The pairs of a bone and an inverse bind matrix that vertices follow, without duplicates, in the order of first use.
+/// The pairs of a bone and an inverse bind matrix that vertices follow. They have no duplicates and are in the order of
+/// first use.
 #[derive(Default)]
 pub(super) struct Union {
     pub bones: Vec<u32>,
@@ -15,7 +16,7 @@ pub(super) struct Union {
 }
 
 impl Union {
-    /// The index of one of a skin's pairs, which is added if it is new.
+    /// The index of the pair at `at` in a skin. The pair is added if it is new.
     fn index(&mut self, skin: &Skin, at: u32) -> u32 {
         let (bone, bind) = (skin.bones[at as usize], skin.inverse_binds[at as usize]);
         *self.of_pairs.entry((bone, bind.map(f32::to_bits))).or_insert_with(|| {
@@ -25,21 +26,21 @@ impl Union {
         })
     }
 
-    /// The skin of all pairs, named as the model's first skin.
+    /// The skin with all pairs. It has the name of the model's first skin.
     pub fn skin(self, model: &Model) -> Skin {
         let name = model.skins.first().map_or_else(String::new, |skin| skin.name.clone());
         Skin { name, bones: self.bones, inverse_binds: self.binds }
     }
 }
 
-/// Whether morph targets move any vertex of a mesh.
+/// Whether morph targets move at least one vertex of a mesh.
 pub(super) fn morphs(mesh: &Mesh) -> bool {
     mesh.targets.iter().any(|target| !target.vertices.is_empty())
 }
 
-/// Joins meshes, with vertices and triangles in their order. There is at least one mesh; if they morph, they have the
-/// same weights. `own` has the own level of each mesh at every level of the object; `errors` are those of levels 1, 2
-/// ….
+/// Joins meshes, keeping the order of vertices and triangles. Expects at least one mesh. If the meshes morph, they must
+/// have the same weights. `own` has the own level of each mesh at every level of the object. `errors` are the errors of
+/// levels 1, 2 ….
 pub(super) fn joined(
     model: &Model,
     meshes: &[&Mesh],
@@ -78,7 +79,7 @@ pub(super) fn joined(
     })
 }
 
-/// The index of the first vertex of each mesh.
+/// For each mesh, the index of its first vertex in the joined mesh.
 fn starts(meshes: &[&Mesh]) -> Result<Vec<u32>, InputError> {
     let vertices: usize = meshes.iter().map(|mesh| mesh.vertices()).sum();
     if vertices > MAX_VERTICES {
@@ -93,8 +94,8 @@ fn starts(meshes: &[&Mesh]) -> Result<Vec<u32>, InputError> {
     Ok(meshes.iter().map(start).collect())
 }
 
-/// The partners of all vertices. They skip own levels that no level of the object uses. Empty if a mesh has levels but
-/// no partners.
+/// The partners of all vertices: the vertices that replace them at coarser levels. Own levels of a mesh that no level
+/// of the object uses are skipped. Empty if a mesh has levels but no partners.
 fn partners(meshes: &[&Mesh], own: &[Vec<u32>], starts: &[u32]) -> Vec<u32> {
     let is_lacking = |mesh: &&Mesh| mesh.partners.is_empty() && !mesh.levels.is_empty();
     if meshes.iter().any(is_lacking) || meshes.iter().all(|mesh| mesh.partners.is_empty()) {
@@ -107,7 +108,8 @@ fn partners(meshes: &[&Mesh], own: &[Vec<u32>], starts: &[u32]) -> Vec<u32> {
                 return vertex;
             };
             let mut partner = vertex;
-            // A chain of partners leads to coarser levels until a vertex is its own partner (`Mesh::validate`).
+            // A chain of partners leads to coarser levels. It ends at a vertex that is its own partner
+            // (`Mesh::validate`).
             while coarsest[partner as usize] < *next && mesh.partners[partner as usize] != partner {
                 partner = mesh.partners[partner as usize];
             }
@@ -133,7 +135,7 @@ fn influences(model: &Model, meshes: &[&Mesh], union: &mut Union) -> Influences 
     all
 }
 
-/// For each target, the displaced vertices of all meshes.
+/// For each morph target, the displaced vertices of all meshes.
 fn targets(meshes: &[&Mesh], starts: &[u32]) -> Vec<MorphTarget> {
     let target = |target: usize| {
         let mut all = MorphTarget::default();

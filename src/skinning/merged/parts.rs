@@ -1,32 +1,32 @@
-//! Parts: sets of meshes that one pipeline draws.
+//! Parts of a merged model: sets of meshes that are drawn with one pipeline.
 
 use crate::InputError;
 use crate::asset::material::{Alpha, Sampling};
 use crate::asset::{Material, Mesh, Model};
 
-/// The largest number of parts of an object, unless morphed or blended meshes need more.
+/// The largest number of parts per object, unless morphed or blended meshes need more.
 pub const MAX_PARTS: usize = 4;
 
-/// The draw state that the meshes of a part share.
+/// The draw state that all meshes of a part share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PartKey {
-    /// Whether alpha cuts out pixels: [`Alpha::Mask`] or [`Alpha::Dithered`].
+    /// Whether pixels are cut out by their alpha: [`Alpha::Mask`] or [`Alpha::Dithered`].
     pub cut_out: bool,
-    /// Whether it is blended with the background: [`Alpha::Blended`].
+    /// Whether the part is blended with the background: [`Alpha::Blended`].
     pub blended: bool,
-    /// Whether triangles are also visible from inside.
+    /// Whether triangles are visible from both sides.
     pub double_sided: bool,
-    /// Sampling of base colour textures; `None` if there are none.
+    /// Sampling of the base colour textures; `None` without base colour textures.
     pub sampling: Option<Sampling>,
-    /// Sampling of normal maps; `None` if there are none.
+    /// Sampling of the normal maps; `None` without normal maps.
     pub normal_sampling: Option<Sampling>,
 }
 
 impl PartKey {
-    /// The key of one of a model's meshes.
+    /// The draw state of one mesh of a model.
     ///
     /// # Errors
-    /// As [`Model::material`].
+    /// The same errors as [`Model::material`].
     pub fn of(model: &Model, mesh: &Mesh) -> Result<Self, InputError> {
         let material = model.material(mesh)?;
         let alpha = material.map_or(Alpha::Opaque, |Material { alpha, .. }| *alpha);
@@ -39,19 +39,19 @@ impl PartKey {
         })
     }
 
-    /// Whether meshes with the other key may join without losing a sampling.
+    /// Whether meshes with the key `other` can join without losing a texture sampling.
     fn covers(&self, other: &Self) -> bool {
         let covers = |own: Option<Sampling>, other: Option<Sampling>| other.is_none() || own == other;
         covers(self.sampling, other.sampling) && covers(self.normal_sampling, other.normal_sampling)
     }
 }
 
-/// The meshes of a part.
+/// A part under construction: meshes with the same draw state.
 pub(super) struct Sorted {
-    /// Index of the group of meshes that are merged into one.
+    /// Index of the group of meshes that are merged into one mesh.
     pub group: usize,
     pub key: PartKey,
-    /// Indices of the meshes in the model, ascending; at least one.
+    /// Indices of the part's meshes in the model, ascending; at least one.
     pub meshes: Vec<usize>,
 }
 
@@ -69,7 +69,8 @@ impl Sorted {
     }
 }
 
-/// The parts of all groups, those of a group together. `keys` has the key of every mesh of the model.
+/// Sorts the meshes of all groups into parts. Parts of one group are adjacent. `keys` has the draw state of every mesh
+/// of the model.
 pub(super) fn parts(model: &Model, groups: &[Vec<usize>], keys: &[PartKey]) -> Vec<Sorted> {
     let mut parts: Vec<Sorted> = Vec::new();
     for (group, meshes) in groups.iter().enumerate() {
@@ -93,13 +94,13 @@ pub(super) fn parts(model: &Model, groups: &[Vec<usize>], keys: &[PartKey]) -> V
     parts
 }
 
-/// Whether any other part can take in the part at `at`.
+/// Whether the part at `at` can be merged into at least one other part.
 fn has_other(parts: &[Sorted], at: usize, fits: impl Fn(&Sorted, &Sorted) -> bool) -> bool {
     parts.iter().enumerate().any(|(other, part)| other != at && fits(part, &parts[at]))
 }
 
-/// Merges a part into the fitting part with the most triangles, the first of several. That part also gets a sampling
-/// that it lacks.
+/// Merges the part at `at` into the fitting part with the most triangles, or the first of several. If that part lacks a
+/// sampling, it gets the sampling of the merged part.
 fn give_up(model: &Model, parts: &mut Vec<Sorted>, at: usize, fits: impl Fn(&Sorted, &Sorted) -> bool) {
     let given = parts.remove(at);
     let mut most: Option<&mut Sorted> = None;

@@ -9,7 +9,7 @@ use crate::skinning::buffers::{ActiveClusters, MeshBuffers, SkinnedCrowd};
 use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::Vertex;
 
-/// Applies morph targets.
+/// GPU pass that applies morph targets to vertices.
 #[derive(Debug, Clone)]
 pub struct MorphPass {
     kernel: Kernel,
@@ -17,20 +17,20 @@ pub struct MorphPass {
 }
 
 impl MorphPass {
-    /// Compiles the pipelines.
+    /// Compiles the kernels.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`GpuError`] if the driver cannot compile a kernel.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |paged| bindings::kernel(gpu, &bindings::Constants { paged });
         Ok(Self { kernel: kernel(false)?, paged: kernel(true)? })
     }
 
-    /// Prepares the active clusters of visible instances, within their level of detail. All other vertices stay
-    /// unchanged. `None` for a mesh without targets.
+    /// Prepares the morphing of the active clusters of visible instances, within their level of detail. All other
+    /// vertices stay unchanged. Returns `None` for a mesh without morph targets.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a crowd of another mesh; [`GpuError`].
+    /// [`crate::InputError`] if the crowd belongs to another mesh; [`GpuError`] from the device.
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -47,11 +47,11 @@ impl MorphPass {
         job(gpu, &self.kernel, (mesh, crowd), active, (seen, &crowd.morphed)).map(Some)
     }
 
-    /// As [`MorphPass::prepare_active`], into pages assigned by [`PagesPass`](crate::skinning::pages::PagesPass).
-    /// Clusters without a page are skipped.
+    /// As [`MorphPass::prepare_active`], but writes to pages that [`PagesPass`](crate::skinning::pages::PagesPass) has
+    /// assigned. Clusters without a page are skipped.
     ///
     /// # Errors
-    /// As [`MorphPass::prepare_active`].
+    /// The same errors as [`MorphPass::prepare_active`].
     pub fn prepare_paged(
         &self,
         gpu: &Gpu,
@@ -68,7 +68,8 @@ impl MorphPass {
     }
 }
 
-/// `seen` is the LOD words of instances, or the page table.
+/// Binds the kernel's buffers. `seen` is the page table if vertices are paged, otherwise the levels of detail of
+/// instances.
 fn job(
     gpu: &Gpu,
     kernel: &Kernel,

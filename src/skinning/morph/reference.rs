@@ -3,11 +3,11 @@
 use crate::asset::Mesh;
 use crate::skinning::vertex::{Vertex, vertices_of};
 
-/// The vertices of a mesh before skinning, with these weights of its targets. Normals and tangents are sums, not
-/// normalized.
+/// The vertices of a mesh after morphing and before skinning. `weights` has one weight per morph target. Normals and
+/// tangents are sums and not normalized.
 ///
 /// # Panics
-/// For a mesh that [`Mesh::validate`] refuses.
+/// If [`Mesh::validate`] refuses the mesh.
 pub fn morph(mesh: &Mesh, weights: &[f32]) -> Vec<Vertex> {
     let mut vertices = vertices_of(mesh);
     for (target, weight) in mesh.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {

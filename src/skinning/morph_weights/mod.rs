@@ -1,4 +1,5 @@
-//! Morph weights of a mesh in a set of clips, arranged for the kernel that evaluates them per instance and frame.
+//! Keyframes of a mesh's morph weights in a set of clips, in the layout of the kernel that evaluates them for each
+//! instance.
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
@@ -14,31 +15,31 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{MorphWeightsJob, MorphWeightsPass};
 
-/// Parity bound for a weight on any device: 1.3e-4, for values and tangents (per second) of at most 1, keys 1/8 to 1 s
-/// apart, and times up to 16 s.
+/// Bound on the difference between CPU and GPU for one morph weight, on any device: 1.3e-4. It holds for values and
+/// tangents (per second) of at most 1, keys 1/8 to 1 s apart, and times up to 16 s.
 ///
-/// Let ε = 2⁻²⁴. A time carries 3ε of 16 s, which in segments of 1/8 s is 2.3e-5 of a segment. The slope of a spline
-/// there is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline carries some 40ε.
+/// Derivation, with ε = 2⁻²⁴: a time has an error of 3ε of 16 s, which is 2.3e-5 of a segment of 1/8 s. The slope of a
+/// spline in a segment is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline adds about 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
 
-/// The keys of a clip in a [`WeightSet`].
+/// The location of one clip's keyframes in a [`WeightSet`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightEntry {
     /// The clip's duration in seconds.
     pub duration: f32,
-    /// Index of its first key time.
+    /// Index of the clip's first key time in [`WeightSet::times`].
     pub first_time: u32,
     /// Number of keys, at least 1.
     pub keys: u32,
-    /// Index of its first value.
+    /// Index of the clip's first value in [`WeightSet::values`].
     pub first_value: u32,
-    /// Interpolation of weights between keys.
+    /// Interpolation of the weights between keyframes.
     pub interpolation: Interpolation,
 }
 
 #[cfg(feature = "gpu")]
 impl WeightEntry {
-    /// The entry as kernels read it.
+    /// The entry in the layout of kernels.
     fn packed(&self) -> packed::WeightEntry {
         let Self { duration, first_time, keys, first_value, interpolation } = *self;
         let interpolation = interpolation as u32;
@@ -46,25 +47,25 @@ impl WeightEntry {
     }
 }
 
-/// The keys of a mesh's morph weights in several clips.
+/// The keyframes of a mesh's morph weights in several clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightSet {
-    /// Keys of each clip of the set.
+    /// The keyframes of each clip of the set.
     pub entries: Vec<WeightEntry>,
-    /// Key times in seconds.
+    /// Key times of all clips, in seconds.
     pub times: Vec<f32>,
-    /// Values, key by key: one per target; for splines, three.
+    /// Values of all keyframes, one keyframe after the other: one value per morph target, or three for cubic splines.
     pub values: Vec<f32>,
     /// Number of morph targets.
     pub targets: usize,
 }
 
 impl WeightSet {
-    /// The weights of a mesh in a set of clips. `clips` has the model's index of each clip of the set. A clip that does
-    /// not animate the weights gets one key, [`Mesh::weights`].
+    /// Collects the morph weights of a mesh in a set of clips. `clips` gives the model's clip index for each clip of
+    /// the set. A clip that does not animate the weights gets one keyframe with [`Mesh::weights`].
     ///
     /// # Errors
-    /// [`InputError`] if there is not one clip of the model for each clip of the set.
+    /// [`InputError`] if `clips` and the set differ in length.
     pub fn new(mesh: &Mesh, set: &ClipSet, clips: &[usize]) -> Result<Self, InputError> {
         InputError::check_len("clips", clips.len(), set.clips().len(), "a clip of the set")?;
         let targets = mesh.targets.len();

@@ -8,27 +8,27 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Step, Uniform, U
 use crate::shared::skinning::morph_weights::MorphWeightsParams;
 use crate::skinning::buffers::SkinnedCrowd;
 
-/// Evaluates the weights of morph targets.
+/// GPU pass that evaluates the weights of morph targets.
 #[derive(Debug, Clone)]
 pub struct MorphWeightsPass {
     kernel: Kernel,
 }
 
 impl MorphWeightsPass {
-    /// Compiles the pipeline.
+    /// Compiles the kernel.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`GpuError`] if the driver cannot compile the kernel.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the weights of a crowd that plays `instances` of the set's clips. Layers above them are
-    /// ignored. For a mesh without targets the job is empty.
+    /// Prepares the evaluation of a crowd's morph weights. `instances` gives the clip of the set that each instance
+    /// plays. Layers on top of these clips are ignored. For a mesh without morph targets the job is empty.
     ///
     /// # Errors
-    /// [`crate::InputError`] for fewer instances than the crowd has, and for a crowd of another mesh;
-    /// [`GpuError`].
+    /// [`crate::InputError`] if there are fewer instances than the crowd has, or if the crowd belongs to another mesh;
+    /// [`GpuError`] from the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -64,11 +64,11 @@ impl MorphWeightsPass {
     }
 }
 
-/// Prepared weights: set the time, then record.
+/// A prepared evaluation of morph weights. Set the time with [`MorphWeightsJob::set`], then record the job.
 pub type MorphWeightsJob = ParamsJob<MorphWeightsParams>;
 
 impl MorphWeightsJob {
-    /// Sets the time for the next submission: seconds since the instances' starts.
+    /// Sets the time for the next submission, in seconds on the clock of the instances' start times.
     ///
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS);
@@ -77,10 +77,10 @@ impl MorphWeightsJob {
         self.set_through(&mut &*gpu, elapsed)
     }
 
-    /// As [`MorphWeightsJob::set`], written by `upload`.
+    /// As [`MorphWeightsJob::set`], but writes the time through `upload`.
     ///
     /// # Errors
-    /// As [`MorphWeightsJob::set`].
+    /// The same errors as [`MorphWeightsJob::set`].
     pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(upload.uniform(&self.uniform, &MorphWeightsParams { elapsed, ..self.params })?)

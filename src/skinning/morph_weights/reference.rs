@@ -6,28 +6,28 @@ use crate::animation::keyframe_cursor::reference::inside_clip;
 use crate::asset::Mesh;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// Input of [`morph_weights`]: a crowd of one mesh at one time.
+/// Input of [`morph_weights`]: all instances of one mesh at one time.
 #[derive(Debug, Clone, Copy)]
 pub struct MorphedCrowd<'a> {
-    /// The mesh with its targets and their keys.
+    /// The mesh with its morph targets and the keyframes of their weights.
     pub mesh: &'a Mesh,
     /// The clips that the instances play.
     pub set: &'a ClipSet,
-    /// Index in the model of each clip of the set.
+    /// For each clip of the set, its index in the model.
     pub clips: &'a [usize],
-    /// The instances.
+    /// The clip, start time and rate of each instance.
     pub instances: &'a [Instance],
-    /// Level of detail of each instance; invisible ones have no influences.
+    /// Level of detail of each instance. Invisible instances have 0 influences.
     pub instance_lods: &'a [InstanceLod],
-    /// Seconds since the instances' starts.
+    /// Time in seconds, on the clock of the instances' start times.
     pub elapsed: f32,
 }
 
-/// Evaluates the weights of a mesh's targets at each instance's time in its clip. `weights` has one weight per instance and
-/// target, instance by instance. Weights of invisible instances stay unchanged.
+/// Evaluates the weights of a mesh's morph targets at each instance's time in its clip. `weights` has one weight per
+/// instance and target, all weights of instance 0 first. Weights of invisible instances stay unchanged.
 ///
 /// # Panics
-/// If the lengths of the lists differ, and for instances of a clip that the set does not have.
+/// If the lengths of the lists differ, or if an instance plays a clip that is not in the set.
 pub fn morph_weights(crowd: &MorphedCrowd<'_>, weights: &mut [f32]) {
     let MorphedCrowd { mesh, set, clips, instances, instance_lods, elapsed } = *crowd;
     let targets = mesh.targets.len().max(1);

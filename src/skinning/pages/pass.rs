@@ -12,37 +12,37 @@ use crate::skinning::vertex::Vertex;
 
 impl SeenAs<PageState> for u32 {}
 
-/// The pages of all instances of a mesh on the device.
+/// GPU buffers of the vertex pages that all instances of a mesh share.
 #[derive(Debug, Clone)]
 pub struct PageBuffers {
-    /// The skinned vertices, 64 per page. If last positions are kept, they follow: four floats per vertex, the last one
-    /// unused.
+    /// The skinned vertices, 64 per page. If positions of the previous frame are kept, they follow: four floats per
+    /// vertex, of which the fourth is unused.
     pub skinned: Buffer<Vertex>,
-    /// The vertices before skinning, if the mesh has morph targets; else empty.
+    /// The vertices of each page after morphing and before skinning. Empty if the mesh has no morph targets.
     pub morphed: Buffer<Vertex>,
-    /// Index of the first last position in pairs of floats; 0 if none are kept.
+    /// Offset of the positions of the previous frame in `skinned`, in units of two floats; 0 if they are not kept.
     pub last: u32,
-    /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
+    /// The page of each cluster of each instance, at index `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Buffer<u32>,
-    /// For each instance, the number of its clusters that have a page, counted from the first.
+    /// Number of pages that each instance holds. They belong to its first clusters.
     pub held: Buffer<u32>,
-    /// Free pages, as a stack: the last one is assigned first.
+    /// Free pages, as a stack: the last entry is assigned first.
     pub stack: Buffer<u32>,
-    /// The number of free pages, and of instances that went without a page.
+    /// Two words: the number of free pages, and the number of instances that lacked a page in the last frame.
     pub state: Buffer<u32>,
 }
 
 impl PageBuffers {
-    /// Allocates `pages` free pages.
+    /// Allocates `pages` pages, all of them free.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] if a buffer cannot be allocated.
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd, pages: u32) -> Result<Self, GpuError> {
         let vertices = CLUSTER * pages as usize;
         Self::with_room(gpu, mesh, crowd, pages, vertices)
     }
 
-    /// Allocates `pages` free pages. `room` is the number of vertices in them and in the area of last positions.
+    /// Allocates `pages` free pages. `room` is the length of `skinned` in vertices, including the previous positions.
     fn with_room(
         gpu: &Gpu,
         mesh: &MeshBuffers,
@@ -64,10 +64,10 @@ impl PageBuffers {
         })
     }
 
-    /// As [`PageBuffers::new`], plus the area of last positions.
+    /// As [`PageBuffers::new`], plus memory for the vertex positions of the previous frame.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] if a buffer cannot be allocated.
     pub fn keeping(
         gpu: &Gpu,
         mesh: &MeshBuffers,
@@ -75,37 +75,37 @@ impl PageBuffers {
         pages: u32,
     ) -> Result<Self, GpuError> {
         let vertices = CLUSTER * pages as usize;
-        // Four floats per vertex, counted in vertices of ten floats.
+        // A previous position takes four floats; the buffer is counted in vertices of ten floats.
         let room = vertices + (4 * vertices).div_ceil(10);
         Ok(Self { last: 5 * vertices as u32, ..Self::with_room(gpu, mesh, crowd, pages, room)? })
     }
 
-    /// Number of pages.
+    /// Number of pages, free or assigned.
     pub fn pages(&self) -> usize {
         self.stack.len()
     }
 }
 
-/// Assigns pages to visible instances.
+/// GPU pass that assigns pages to visible instances.
 #[derive(Debug, Clone)]
 pub struct PagesPass {
     kernel: Kernel,
 }
 
 impl PagesPass {
-    /// Compiles the pipeline.
+    /// Compiles the kernel.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`GpuError`] if the driver cannot compile the kernel.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the page assignment of a crowd. Its levels of detail decide how many pages it needs. Record it before
-    /// [`select`](crate::skinning::select) and [`skin`](crate::skinning::skin).
+    /// Prepares the page assignment of a crowd. The levels of detail of the instances decide how many pages are needed.
+    /// Record the job before [`select`](crate::skinning::select) and [`skin`](crate::skinning::skin).
     ///
     /// # Errors
-    /// [`crate::InputError`] for buffers of another crowd; [`GpuError`].
+    /// [`crate::InputError`] if the buffers belong to another crowd; [`GpuError`] from the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -3,32 +3,32 @@
 use super::NO_PAGE;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The pages of all instances of a mesh.
+/// The vertex pages that all instances of a mesh share.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pages {
-    /// The page of each cluster of each instance, at `instance · clusters + cluster`, or [`NO_PAGE`].
+    /// The page of each cluster of each instance, at index `instance · clusters + cluster`, or [`NO_PAGE`].
     pub table: Vec<u32>,
-    /// For each instance, the number of its clusters that have a page, counted from the first.
+    /// Number of pages that each instance holds. They belong to its first clusters.
     pub held: Vec<u32>,
-    /// Free pages; the last one is assigned first.
+    /// Free pages, as a stack: the last entry is assigned first.
     pub free: Vec<u32>,
-    /// Number of instances that went without a page in the last frame.
+    /// Number of instances that lacked a page in the last frame.
     pub short: u32,
     clusters: usize,
 }
 
 impl Pages {
-    /// `pages` free pages, for `instances` instances of a mesh with `clusters` clusters.
+    /// Makes `pages` free pages, for `instances` instances of a mesh with `clusters` clusters.
     pub fn new(instances: usize, clusters: usize, pages: u32) -> Self {
         let table = vec![NO_PAGE; instances * clusters];
         Self { table, held: vec![0; instances], free: (0..pages).rev().collect(), short: 0, clusters }
     }
 
-    /// Frees the pages that instances no longer need, then assigns pages to those that need more, both in the order of
-    /// instances. `levels` has the number of clusters at each level of detail.
+    /// Frees the pages that instances no longer need, then assigns pages to instances that need more. Both steps go
+    /// through instances in order. `levels` has the number of clusters at each level of detail.
     ///
     /// # Panics
-    /// For fewer levels of detail or instances than there are.
+    /// If `levels` is empty, or if `lods` has fewer entries than there are instances.
     pub fn deal(&mut self, lods: &[InstanceLod], levels: &[u32]) {
         let last = levels.len() - 1;
         let needed: Vec<u32> = (lods.iter())

@@ -1,8 +1,9 @@
 //! Palettes: for each bone of a skin, the transform from bind space to the model's space.
 //!
-//! Linear blending uses affine matrices. Dual-quaternion blending (Kavan et al. 2008) decomposes each matrix into an
-//! upper triangular stretch and a rigid motion after it (Gram–Schmidt on its columns). Stretches are blended linearly,
-//! motions as dual quaternions. A single bone thus gives the same result in both, sheared and mirrored or not.
+//! Linear blending uses affine matrices. Dual-quaternion blending (Kavan et al. 2008) splits each matrix into an upper
+//! triangular stretch, followed by a rigid motion (Gram–Schmidt on the columns). It blends stretches linearly and
+//! motions as dual quaternions. For a vertex with one bone, both kinds give the same result, even for sheared or
+//! mirrored bones.
 
 use crate::asset::transform::Affine;
 
@@ -13,34 +14,36 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::PalettePass;
 
-/// Parity bound for a component on any device: 3.2e-5, relative to the palette's largest component (at least 1). It
-/// holds for matrices whose columns have a length of at least ½ and angles of at least 45° between them.
+/// Bound on the difference between CPU and GPU for one component of a palette, on any device: 3.2e-5, relative to the
+/// palette's largest component (at least 1). It holds for matrices whose columns have a length of at least ½ and angles
+/// of at least 45° between them.
 ///
-/// A product of rows carries 16ε (ε = 2⁻²⁴). The axes of Gram–Schmidt carry twice that over the length (64ε), again
-/// over the sine (128ε), and their cross product 256ε. The quaternion's components, differences of these over at least
-/// 1, carry 512ε, and the dual part as much times the translation: 3.1e-5.
+/// Derivation, with ε = 2⁻²⁴: a product of rows has an error of 16ε. The axes of Gram–Schmidt have twice this error
+/// divided by the length (64ε), again divided by the sine (128ε), and their cross product 256ε. The quaternion's
+/// components are differences of axes divided by at least 1 and have 512ε. The dual part has the same error times the
+/// translation: 3.1e-5.
 pub const PALETTE_BOUND: f32 = 3.2e-5;
 
-/// A bone's stretch and the rigid motion after it, in the layout of the kernels.
+/// The transform of a bone as a stretch followed by a rigid motion, in the layout of the kernels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct DualBone {
-    /// The rotation, a unit quaternion (x, y, z, w).
+    /// The rotation as a unit quaternion (x, y, z, w).
     pub real: [f32; 4],
-    /// Half of the translation times the rotation.
+    /// Half of the product of the translation and the rotation, as quaternions: the dual part.
     pub dual: [f32; 4],
-    /// The diagonal of the stretch, and an unused word.
+    /// The diagonal of the stretch matrix (x, y, z); w is unused.
     pub diagonal: [f32; 4],
-    /// The elements above the diagonal, row by row, and an unused word.
+    /// The elements of the stretch matrix above the diagonal, row by row (x, y, z); w is unused.
     pub above: [f32; 4],
 }
 
-/// The transforms of bones, for one kind of blending.
+/// The transforms of a skin's bones, in the form that a kind of blending needs.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Palette {
-    /// Matrices for linear blending.
+    /// One matrix per bone, for linear blending.
     Linear(Vec<Affine>),
-    /// Stretches and motions for dual-quaternion blending.
+    /// One stretch and rigid motion per bone, for dual-quaternion blending.
     Dual(Vec<DualBone>),
 }

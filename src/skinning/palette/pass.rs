@@ -9,7 +9,7 @@ use crate::shared::skinning::palette::PaletteParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::vertex::Blend;
 
-/// Computes palettes.
+/// GPU pass that computes the palettes of a crowd.
 #[derive(Debug, Clone)]
 pub struct PalettePass {
     linear: Kernel,
@@ -17,21 +17,21 @@ pub struct PalettePass {
 }
 
 impl PalettePass {
-    /// Compiles the pipelines.
+    /// Compiles the kernels.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`GpuError`] if the driver cannot compile a kernel.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |dual| bindings::kernel(gpu, &bindings::Constants { dual });
         Ok(Self { linear: kernel(false)?, dual: kernel(true)? })
     }
 
-    /// Prepares the palettes of all visible instances.
+    /// Prepares the computation of the palettes of all visible instances.
     ///
     /// # Errors
-    /// [`crate::InputError`] for fewer matrices than the crowd needs, and for dual quaternions over matrices of a crowd
-    /// under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose bound holds for linear blending only;
-    /// [`GpuError`].
+    /// [`crate::InputError`] if there are fewer matrices than the crowd needs. Also if dual quaternions are requested
+    /// for matrices under [`Gate::Bounded`](crate::animation::Gate::Bounded), whose error bound holds for linear
+    /// blending only. [`GpuError`] from the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -13,13 +13,13 @@ use crate::skinning::vertex::Blend;
 /// The palette of a skin, one matrix per bone: model matrix × inverse bind matrix.
 ///
 /// # Panics
-/// For a skin that does not match the skeleton of `model_matrices`.
+/// If the skin does not match the skeleton of `model_matrices`.
 pub fn palette(skin: &Skin, model_matrices: &[Affine]) -> Vec<Affine> {
     let bones = skin.bones.iter().zip(&skin.inverse_binds);
     bones.map(|(bone, bind)| product(&model_matrices[*bone as usize], &rows(bind))).collect()
 }
 
-/// The palette for a kind of blending.
+/// The palette of a skin in the form that a kind of blending needs.
 pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Palette {
     let linear = palette(skin, model_matrices);
     match blend {
@@ -28,11 +28,11 @@ pub fn palette_for(skin: &Skin, model_matrices: &[Affine], blend: Blend) -> Pale
     }
 }
 
-/// Decomposes a matrix into a stretch and a rigid motion after it.
+/// Splits a matrix into a stretch followed by a rigid motion.
 pub fn dual(matrix: &Affine) -> DualBone {
     let column = |at: usize| Vec3::new(matrix[0][at], matrix[1][at], matrix[2][at]);
     let [a, b, c] = [0, 1, 2].map(column);
-    // A column without a direction is replaced by one that leaves the others unchanged.
+    // A column without a direction is replaced by a unit vector that leaves the other columns unchanged.
     let x = unit_or(a, Vec3::X);
     let along = x.dot(b);
     let y = unit_or(b - along * x, upright(x));
@@ -46,7 +46,7 @@ pub fn dual(matrix: &Affine) -> DualBone {
     }
 }
 
-/// The vector scaled to length 1, or `other` if it has no direction.
+/// `vector` scaled to length 1, or `other` if `vector` is too short to have a direction.
 pub(crate) fn unit_or(vector: Vec3, other: Vec3) -> Vec3 {
     let size = vector.abs().max_element();
     if size < LEAST_LENGTH {
@@ -56,7 +56,7 @@ pub(crate) fn unit_or(vector: Vec3, other: Vec3) -> Vec3 {
     (1.0 / scaled.length_squared().sqrt()) * scaled
 }
 
-/// A unit vector at a right angle to a unit vector (Duff et al. 2017).
+/// A unit vector perpendicular to `unit` (Duff et al. 2017).
 fn upright(unit: Vec3) -> Vec3 {
     let [x, y, z] = unit.to_array();
     let side = if z < 0.0 { -1.0 } else { 1.0 };
@@ -64,8 +64,8 @@ fn upright(unit: Vec3) -> Vec3 {
     Vec3::new(1.0 + side * x * x * a, side * x * y * a, -side * x)
 }
 
-/// The unit quaternion, of either sign, of a rotation given by its columns. Its largest component is at least ½
-/// and is computed without cancellation.
+/// The unit quaternion of a rotation whose matrix has these columns; its sign is arbitrary. The quaternion's largest
+/// component is at least ½ and is computed without cancellation.
 fn quaternion(x: [f32; 3], y: [f32; 3], z: [f32; 3]) -> [f32; 4] {
     let squares = [
         1.0 + x[0] - y[1] - z[2],
@@ -88,7 +88,7 @@ fn quaternion(x: [f32; 3], y: [f32; 3], z: [f32; 3]) -> [f32; 4] {
     q.map(|component| component * inverse)
 }
 
-/// Half of the product of a vector and a quaternion.
+/// Half of the quaternion product of a vector (with real part 0) and `q`.
 fn half_product([x, y, z]: [f32; 3], q: [f32; 4]) -> [f32; 4] {
     [
         0.5 * (x * q[3] + y * q[2] - z * q[1]),

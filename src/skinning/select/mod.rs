@@ -1,11 +1,11 @@
-//! Selection of the clusters to skin in a frame, among visible instances at their level of detail: clusters with an
-//! updated bone, clusters of instances whose influences changed, and clusters that morph targets move if the instance's
-//! weights changed.
+//! Selection of the clusters to skin in a frame. Only visible instances at their level of detail count. A cluster is
+//! selected if one of its bones was updated, if its instance's influences changed, or if morph targets move it and
+//! their weights changed.
 //!
-//! A skipped bone thus saves its vertices, and invisible instances cost nothing. The order of the list may differ
-//! between runs; its set does not. An invisible instance keeps its vertices. Once it is visible again, all of it is
-//! skinned, whatever moved. Clusters beyond its level keep their vertices likewise, and are skinned when the level
-//! becomes finer.
+//! Bones that are not updated thus save the skinning of their vertices, and invisible instances cost nothing. The order
+//! of the list may differ between runs; the set of clusters does not. Vertices of an invisible instance keep their
+//! values. Once the instance is visible again, all of it is skinned. The same holds for clusters beyond its level of
+//! detail: they are skinned when the level becomes finer.
 
 #[cfg(feature = "gpu")]
 mod pass;

@@ -6,32 +6,34 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::skinning::select::{self, SelectParams};
 use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, SkinnedCrowd};
 
-/// The inputs of a selection, and the state that it keeps between frames.
+/// The inputs of a cluster selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
 pub struct ClusterSelectBuffers {
-    /// The bones of each instance that were updated since the last selection, in [`MeshBuffers::mask_words`] words per
-    /// instance: one bit per slot of the skeleton's order.
+    /// The set of bones of each instance that were updated since the last selection. A set takes
+    /// [`MeshBuffers::mask_words`] words: one bit per bone, in the skeleton's order.
     ///
     /// Under a gate, [`SkinFrame`](crate::skinning::frame::SkinFrame) uses
-    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here. Every bone below an updated one
-    /// must be set too.
+    /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here. If a bone is set, all bones
+    /// below it must be set too.
     pub updated_bones: Buffer<u32>,
-    /// The state of each instance in the frame before, in 4 + [`MeshBuffers::targets`] words: fade (as bits), largest
-    /// number of influences and level of its LOD; visibility; and the weights of its targets, as bits.
+    /// The state of each instance in the previous frame, in 4 + [`MeshBuffers::targets`] words. The words are:
+    /// influence fade (as bits), largest number of influences, level of detail, visibility, and the weights of the
+    /// morph targets (as bits).
     ///
-    /// The visibility word is 0 for an invisible instance, 1 for one that just became visible, and 2 for one that was
-    /// visible in the frame before too. All words are 0 at first, so that the first frame skins everything visible.
+    /// The visibility word is 0 for an invisible instance, 1 for an instance that has just become visible, and 2 for
+    /// one that was visible in the previous frame too. All words are 0 at first, so the first frame skins everything
+    /// visible.
     pub skinned: Buffer<u32>,
 }
 
-/// Words per instance in [`ClusterSelectBuffers::skinned`], before its weights.
+/// Words per instance in [`ClusterSelectBuffers::skinned`], not counting its morph weights.
 pub const SKINNED_WORDS: usize = select::SKINNED_WORDS as usize;
 
 impl ClusterSelectBuffers {
-    /// Allocates the buffers for a crowd, with no updated bone.
+    /// Allocates the buffers for a crowd. No bone is marked as updated.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] if a buffer cannot be allocated.
     pub fn new(gpu: &Gpu, mesh: &MeshBuffers, crowd: &SkinnedCrowd) -> Result<Self, GpuError> {
         Ok(Self {
             updated_bones: Buffer::new(gpu, "updated bones", crowd.instances * mesh.mask_words)?,
@@ -40,7 +42,7 @@ impl ClusterSelectBuffers {
     }
 }
 
-/// Selects the clusters to skin.
+/// GPU pass that selects the clusters to skin.
 #[derive(Debug, Clone)]
 pub struct ClusterSelectPass {
     select: Kernel,
@@ -49,10 +51,10 @@ pub struct ClusterSelectPass {
 }
 
 impl ClusterSelectPass {
-    /// Compiles the pipelines.
+    /// Compiles the kernels.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`GpuError`] if the driver cannot compile a kernel.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel =
             |finish, clear| bindings::kernel(gpu, &bindings::Constants { finish, clear, keep: false });
@@ -63,10 +65,10 @@ impl ClusterSelectPass {
         })
     }
 
-    /// Prepares two selections of clusters: the first job keeps the updated bones, the second clears them.
+    /// Prepares two jobs that select clusters: the first keeps the record of updated bones, the second clears it.
     ///
     /// # Errors
-    /// [`crate::InputError`] for buffers of another crowd; [`GpuError`].
+    /// [`crate::InputError`] if the buffers belong to another crowd; [`GpuError`] from the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -97,14 +99,14 @@ impl ClusterSelectPass {
             masks: mesh.masks.slice(),
             updated_bones: buffers.updated_bones.slice(),
             instance_lods: crowd.instance_lods.slice(),
-            // Compared as bits.
+            // The kernel compares weights as bits, so it reads them as integers.
             weights: crowd.weights.slice().cast(),
             offsets: mesh.delta_offsets.slice(),
             skinned: buffers.skinned.slice(),
             pairs: active.pairs.slice(),
             dispatched: active.dispatched.slice().cast(),
         };
-        // Another kernel selects if last positions are kept.
+        // Selection uses another variant of the kernel if positions of the previous frame are kept.
         let select = match active.keeps_last {
             true => &bindings::kernel(gpu, &bindings::Constants { keep: true, ..Default::default() })?,
             false => &self.select,

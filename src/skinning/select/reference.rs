@@ -1,48 +1,49 @@
-//! Selection of the clusters that are skinned: the CPU reference of `kernels/skinning/select.wgsl`.
+//! Selection of the clusters to skin: the CPU reference of `kernels/skinning/select.wgsl`.
 
 use crate::skinning::clusters::Clusters;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::select::ClusterState;
 
-/// The inputs of a frame's selection.
+/// The inputs of a cluster selection: the state of all instances in the current frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Now<'a> {
-    /// The updated bones of each instance, in [`Clusters::mask_words`] words per instance.
+    /// The set of updated bones of each instance, as bits in [`Clusters::mask_words`] words.
     pub updated_bones: &'a [u32],
     /// Level of detail of each instance.
     pub instance_lods: &'a [InstanceLod],
-    /// Weights of morph targets, instance by instance.
+    /// Weights of the morph targets, all weights of instance 0 first.
     pub weights: &'a [f32],
 }
 
-/// The state of an instance in the frame before.
+/// The state of an instance in the previous frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skinned {
-    /// Its LOD in that frame.
+    /// The instance's level of detail in the previous frame.
     pub instance_lod: InstanceLod,
-    /// Visibility: the number of frames for which it has been visible, at most 2; see
+    /// Visibility: 0 if invisible, 1 if newly visible, and 2 if visible in the frame before too; see
     /// [`ClusterSelectBuffers::skinned`](crate::skinning::select::ClusterSelectBuffers::skinned).
     pub seen: u32,
-    /// Its weights in that frame.
+    /// The instance's morph weights in the previous frame.
     pub weights: Vec<f32>,
 }
 
 impl Skinned {
-    /// The state before the first frame.
+    /// The state before the first frame: invisible, with all weights 0.
     pub fn nothing(targets: usize) -> Self {
         Self { instance_lod: InstanceLod::UNSEEN, seen: 0, weights: vec![0.0; targets] }
     }
 }
 
-/// The bits that determine the influences.
+/// The parts of a level of detail that determine a vertex's influences, as bits.
 fn bits(instance_lod: &InstanceLod) -> [u32; 2] {
     [instance_lod.influence_fade.to_bits(), instance_lod.max_influences]
 }
 
-/// The pairs `cluster · instances + instance` to skin, ascending, of visible instances at their level of detail:
+/// The clusters to skin, as ascending numbers `cluster · instances + instance`. Visible instances at their level of
+/// detail contribute:
 /// - clusters with an updated bone;
-/// - clusters that morph targets move, if a weight has changed since the frame before;
-/// - clusters beyond the level of the frame before;
+/// - clusters that morph targets move, if a weight has changed since the previous frame;
+/// - clusters that the level of detail of the previous frame did not include;
 /// - all clusters of instances whose influences changed.
 ///
 /// # Panics
@@ -68,11 +69,12 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
     (0..(clusters.len() * last.len()) as u32).filter(is_selected).collect()
 }
 
-/// As [`select`], with last positions kept. In: the last selection's state of each pair, in `states`. Out: this
-/// selection's. A pair that moved in the last frame is selected once more.
+/// As [`select`], but also tracks the positions of the previous frame. `states` has one state per cluster and instance:
+/// from the last selection on input, from this selection on output. A cluster that moved in the last frame is selected
+/// once more.
 ///
 /// # Panics
-/// As [`select`], and with fewer states than pairs.
+/// In the cases of [`select`], and if there are fewer states than pairs of a cluster and an instance.
 pub fn select_keeping(
     clusters: &Clusters,
     now: &Now<'_>,
@@ -103,7 +105,7 @@ pub fn select_keeping(
     selected
 }
 
-/// Stores the state of a frame; call it after [`select`].
+/// Stores the state of the current frame in `last`, for the next selection. Call it after [`select`].
 pub fn remember(now: &Now<'_>, last: &mut [Skinned]) {
     for (instance, last) in last.iter_mut().enumerate() {
         last.instance_lod = now.instance_lods[instance];

@@ -1,15 +1,15 @@
-//! States of clusters whose last positions are kept.
+//! States of clusters, used if vertex positions of the previous frame are kept.
 
 use crate::shared::skinning::cluster::{CLUSTER_FRESH, CLUSTER_MOVED, CLUSTER_STILL};
 
-/// The effect of a selection on an instance's cluster, if last positions are kept.
+/// The effect of a selection on one cluster of an instance, used if vertex positions of the previous frame are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum ClusterState {
-    /// Not skinned: last positions equal the current ones.
+    /// Not skinned: the previous positions equal the current positions.
     Still = CLUSTER_STILL,
-    /// Skinned: last positions are those of the last frame.
+    /// Skinned: the previous positions are the positions before this skinning.
     Moved = CLUSTER_MOVED,
-    /// Skinned for the first time, or again after it was invisible: last positions equal the current ones.
+    /// Skinned for the first time or after an invisible frame: the previous positions are set to the current positions.
     Fresh = CLUSTER_FRESH,
 }

@@ -1,9 +1,9 @@
 //! Skinning: transforms every vertex by its bones (A section 8.4).
 //!
-//! *Linear* blending transforms by the weighted mean of the bones' matrices. Normals use the cofactors of this mean
-//! times the sign of its determinant, which is right under uneven and mirrored scale. Tangents use the matrix itself; a
-//! mirrored frame changes their handedness. *Dual-quaternion* blending uses the mean of the bones' rigid motions
-//! instead, so that twisted limbs keep their volume; see [`super::palette`].
+//! *Linear* blending transforms a vertex by the weighted mean of its bones' matrices. Normals use the cofactors of the
+//! mean times the sign of its determinant, which is correct under non-uniform and mirrored scale. Tangents use the
+//! matrix itself; a mirroring matrix flips their handedness. *Dual-quaternion* blending uses the mean of the bones'
+//! rigid motions instead, so that twisted limbs keep their volume; see [`super::palette`].
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -12,13 +12,13 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::SkinPass;
 
-/// Parity bound for a component of a position on any device: 5e-6, relative to L · (1 + |x| + |y| + |z|) of the vertex,
-/// where L is the palette's largest component (at least 1).
+/// Bound on the difference between CPU and GPU for one component of a skinned position, on any device. It is 5e-6,
+/// relative to L · (1 + |x| + |y| + |z|) of the vertex, where L is the palette's largest component (at least 1).
 ///
-/// For normals the bound is 4·SKIN_BOUND·2 of L² divided by their length before normalization, for tangents
-/// 2·SKIN_BOUND·L. `docs/rounding-bounds.md` has the derivation.
+/// For normals, the bound is 4·SKIN_BOUND·2 of L² divided by the normal's length before normalization. For tangents, it
+/// is 2·SKIN_BOUND·L. `docs/rounding-bounds.md` has the derivation.
 pub const SKIN_BOUND: f32 = 5e-6;
 
-/// Factor of [`SKIN_BOUND`] for truncated influences. The sum of the removed weights carries 16ε. The division by the
-/// remaining weight, at least 1/8, turns it into 128ε of each weight, twice.
+/// Factor of [`SKIN_BOUND`] for truncated influences. The sum of the removed weights has an error of 16ε. The division
+/// by the remaining weight, at least 1/8, turns it into 128ε of each weight, twice.
 pub const TRUNCATED: f32 = 5.0;

@@ -8,32 +8,32 @@ use crate::skinning::pages::PageBuffers;
 use crate::skinning::vertex::{Blend, Vertex};
 use crate::{Error, InputError};
 
-/// Skins vertices.
+/// GPU pass that skins vertices.
 #[derive(Debug, Clone)]
 pub struct SkinPass {
-    /// Kernels for the mesh's vertices, and for morphed ones.
+    /// Two kernels for vertices without pages: the first reads the mesh's vertices, the second morphed vertices.
     kernels: [Kernel; 2],
-    /// Kernels for paged vertices, in the same order.
+    /// The same two kernels for vertices in pages.
     paged: [Kernel; 2],
     blend: Blend,
 }
 
-/// The destination of skinned vertices.
+/// The buffers that the kernel writes skinned vertices to, and their page table.
 struct Output<'a> {
     skinned: &'a Buffer<Vertex>,
-    /// Vertices before skinning, for meshes with morph targets.
+    /// Vertices after morphing and before skinning; used for meshes with morph targets.
     morphed: &'a Buffer<Vertex>,
-    /// The page table; any buffer if vertices are not paged.
+    /// The page table. Any buffer serves if vertices are not in pages.
     table: &'a Buffer<u32>,
-    /// Index of the first last position in pairs of floats; 0 if none are kept.
+    /// Offset of the positions of the previous frame in `skinned`, in units of two floats; 0 if they are not kept.
     last: u32,
 }
 
 impl SkinPass {
-    /// Compiles the pipelines of a kind of blending.
+    /// Compiles the kernels for one kind of blending.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// [`GpuError`] if the driver cannot compile a kernel.
     pub fn new(gpu: &Gpu, blend: Blend) -> Result<Self, GpuError> {
         let dual = blend == Blend::DualQuaternion;
         let kernel = |paged, morphed| {
@@ -43,12 +43,12 @@ impl SkinPass {
         Ok(Self { kernels, paged: [kernel(true, false)?, kernel(true, true)?], blend })
     }
 
-    /// Prepares the active clusters of visible instances, within their level of detail. They are written to `skinned`,
-    /// instance by instance, in the order of the mesh's clusters. All other vertices stay unchanged.
+    /// Prepares the skinning of the active clusters of visible instances, within their level of detail. The result goes
+    /// to `skinned`, instance by instance, in the order of the mesh's clusters. All other vertices stay unchanged.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another mesh or kind of blending, and for an output that is too small;
-    /// [`GpuError`].
+    /// [`InputError`] if the crowd has another mesh or kind of blending, or if `skinned` is too small; [`GpuError`]
+    /// from the device.
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -64,12 +64,13 @@ impl SkinPass {
         self.job(gpu, &self.kernels[usize::from(mesh.targets > 0)], (mesh, crowd), active, output)
     }
 
-    /// As [`SkinPass::prepare_active`], into pages assigned by [`PagesPass`](crate::skinning::pages::PagesPass).
-    /// Clusters without a page are skipped. If the pages have room for last positions ([`PageBuffers::keeping`]), each
-    /// vertex's position before or after the change is kept, depending on the active cluster's state.
+    /// As [`SkinPass::prepare_active`], but writes to pages that [`PagesPass`](crate::skinning::pages::PagesPass) has
+    /// assigned. Clusters without a page are skipped. If the pages keep previous positions ([`PageBuffers::keeping`]),
+    /// each vertex's position before or after the change is stored there, depending on the cluster's state.
     ///
     /// # Errors
-    /// As [`SkinPass::prepare_active`]; [`InputError`] also if only one of pages and clusters keeps last positions.
+    /// The same errors as [`SkinPass::prepare_active`]. Also [`InputError`] if only one of `pages` and `active` keeps
+    /// previous positions.
     pub fn prepare_paged(
         &self,
         gpu: &Gpu,

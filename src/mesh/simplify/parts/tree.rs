@@ -2,22 +2,22 @@
 
 use glam::DVec3;
 
-/// A leaf with one part, or an inner node with two children.
+/// A node of the tree: a leaf with one part, or an inner node with two children.
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Number of remaining parts below.
+    /// Number of parts in this subtree that have not been removed.
     there: u32,
     parent: u32,
-    /// Index of the first of two consecutive children; for a leaf, the part.
+    /// For an inner node, the index of the first of two consecutive children; for a leaf, the part.
     first: u32,
     is_leaf: bool,
 }
 
-/// Boxes of parts, recursively halved along the axis on which their centres lie furthest apart.
+/// A binary tree of bounding boxes. A node's parts are divided along the axis on which their centers are farthest apart.
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// Leaf of each part.
+    /// For each part, the index of its leaf.
     leaves: Vec<u32>,
 }
 
@@ -50,7 +50,7 @@ impl Tree {
         tree
     }
 
-    /// Removes a part.
+    /// Removes a part from the tree.
     pub(super) fn remove(&mut self, part: u32) {
         let mut at = self.leaves[part as usize];
         loop {
@@ -63,13 +63,13 @@ impl Tree {
         }
     }
 
-    /// Starts a search: pushes the boxes to visit, the nearest last.
+    /// Starts a search from the position `from`: pushes the boxes to visit onto `open`, the nearest last.
     pub(super) fn start(&self, from: DVec3, open: &mut Vec<(f64, u32)>) {
         open.clear();
         self.open(0, from, open);
     }
 
-    /// Next part whose box is nearer than the squared distance `best`.
+    /// Continues a search: the next part whose box is nearer than the squared distance `best`.
     pub(super) fn next(&self, from: DVec3, best: f64, open: &mut Vec<(f64, u32)>) -> Option<u32> {
         while let Some((squared, at)) = open.pop() {
             let node = &self.nodes[at as usize];
@@ -82,7 +82,7 @@ impl Tree {
             let start = open.len();
             self.open(node.first, from, open);
             self.open(node.first + 1, from, open);
-            // Visit the nearer child first.
+            // The nearer child is visited first, so it must be last on the stack.
             if open.len() == start + 2 && open[start].0 < open[start + 1].0 {
                 open.swap(start, start + 1);
             }
@@ -98,7 +98,7 @@ impl Tree {
     }
 }
 
-/// A node around parts, still without children.
+/// A node around the given parts, without children.
 fn node(boxes: &[[DVec3; 2]], parts: &[u32], parent: u32) -> Node {
     let of = |part: &u32| boxes[*part as usize];
     let low = parts.iter().map(|part| of(part)[0]).fold(DVec3::INFINITY, DVec3::min);
@@ -110,7 +110,7 @@ fn node(boxes: &[[DVec3; 2]], parts: &[u32], parent: u32) -> Node {
 mod tests {
     use super::*;
 
-    /// The search finds the same part as a linear search, while parts are removed one after the other.
+    /// The tree finds the same part as a linear search, while parts are removed one after the other.
     #[test]
     fn the_nearest_box_is_found() {
         let number = |at: u32| f64::from((at.wrapping_mul(0x9e37_79b9) >> 8) % 1000) / 100.0;

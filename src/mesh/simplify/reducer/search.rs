@@ -1,4 +1,4 @@
-//! Search for the next collapse: the cheapest of each point, and whether it is legal.
+//! Search for the next collapse: the cheapest collapse of each point, and whether it is legal.
 
 use super::super::bridged::bridged;
 use super::super::melax;
@@ -8,30 +8,31 @@ use super::super::topology::Kind;
 use super::super::turned::deviation;
 use super::{Cost, Reducer, Stopped};
 
-/// Weight of the squared distance between the point after the collapse and the planes of its triangles. It complements the mean
-/// of squares, which hides a single spot among many triangles. Found by trial on twelve meshes, eight of them third-party: with
-/// half of it, the largest errors grow on models of many hard-edged parts.
+/// Weight of the squared distance between a point and the planes of its triangles after a collapse. This maximum
+/// complements the mean of squares, which hides a single spot among many triangles. Found by trial on twelve meshes,
+/// eight of them third-party. With half the weight, the largest errors grow on models of many hard-edged parts.
 const DEVIATION: f64 = 1.0 / 8.0;
 
-/// As [`DEVIATION`], but for use with attributes, and added to their cost. Attribute costs are mostly larger, so that a maximum
-/// would miss a spot that is off. Found by trial: a larger weight degrades normals.
+/// Weight like [`DEVIATION`], but used with attributes and added to their cost. Attribute costs are mostly larger, so
+/// that taking the maximum would miss a spot that is off. Found by trial: a larger weight degrades normals.
 const BESIDE_ATTRIBUTES: f64 = 0.4;
 
-/// As [`BESIDE_ATTRIBUTES`], for the squared distance between the middle of a new edge and the triangles before. Found by trial
-/// on the same meshes: with half of it, the largest errors grow on some of them. Without attributes it gains nothing.
+/// Weight like [`BESIDE_ATTRIBUTES`], but for the squared distance between the middle of a new edge and the previous
+/// triangles. Found by trial on the same meshes: with half the weight, the largest errors grow on some of them. Without
+/// attributes, it gains nothing.
 const BRIDGED: f64 = 1.6;
 
-/// Number of a point's collapses, the cheapest first, that are tested against limited distances. If these are refused, others
-/// hardly ever pass; a pole has hundreds of collapses.
+/// Number of a point's collapses, cheapest first, that are tested against limited distances. If these are refused,
+/// others hardly ever pass. A pole has hundreds of collapses.
 const TESTED: usize = 12;
 
-/// A collapse that is not the cheapest.
+/// A candidate collapse that is not the point's cheapest.
 fn second(cost: f32, neighbor: u32) -> Best {
     Best { neighbor, cost, base: cost, is_second: true, is_measured: false }
 }
 
 impl Reducer<'_> {
-    /// Cheapest collapse of a point, legal or not; among equal ones, the one into the lower neighbour.
+    /// Cheapest collapse of a point, legal or not. Among equal costs, the collapse into the lower neighbour.
     pub(super) fn find(&mut self, point: u32) -> Option<Best> {
         if self.topology.kind(point) == Kind::Locked {
             return None;
@@ -39,7 +40,7 @@ impl Reducer<'_> {
         self.find_plain(point).or_else(|| self.find_any(point))
     }
 
-    /// As [`Self::find`], for points with only plain collapses.
+    /// As [`Self::find`], but fast. `None` for a point on a border, and for a point or neighbour with several vertices.
     fn find_plain(&self, point: u32) -> Option<Best> {
         let quadrics = self.quadrics.as_ref().filter(|_| self.topology.kind(point) == Kind::Interior)?;
         let vertex = self.points.only_wedge(point)?;
@@ -47,7 +48,7 @@ impl Reducer<'_> {
         Some(Best { neighbor, cost, base: cost, is_second: false, is_measured: false })
     }
 
-    /// Collects the neighbours of a point, and prepares the costs of collapses into them.
+    /// Collects the neighbours of a point, and prepares the costs of collapsing into them.
     fn look(&mut self, point: u32) {
         self.neighbors.look(&self.topology, &self.points, point, &mut self.marks);
         if let Some(quadrics) = &mut self.quadrics {
@@ -68,7 +69,7 @@ impl Reducer<'_> {
         best.map(|(cost, neighbor)| Best { neighbor, cost, base: cost, is_second: false, is_measured: false })
     }
 
-    /// Lists the costs of a point's collapses.
+    /// Lists the costs of all collapses of a point in `costs`, in ascending order.
     fn list(&mut self, point: u32) {
         if self.listed == Some(point) {
             return;
@@ -83,7 +84,7 @@ impl Reducer<'_> {
         (self.costs, self.listed) = (costs, Some(point));
     }
 
-    /// Most frequent reason why remaining points cannot collapse; [`Stopped::Topology`] if no points remain.
+    /// Most frequent reason why the remaining points cannot collapse; [`Stopped::Topology`] if no points remain.
     pub(super) fn hindrance(&mut self) -> Stopped {
         const REASONS: [Stopped; 5] =
             [Stopped::Topology, Stopped::Seams, Stopped::Borders, Stopped::Flips, Stopped::Distance];
@@ -94,7 +95,7 @@ impl Reducer<'_> {
                 counts[self.hindrance_of(point) as usize] += 1;
             }
         }
-        // Among equally frequent reasons, the first wins.
+        // Among equally frequent reasons, the first in `REASONS` is taken.
         let mut most = Stopped::Topology;
         for reason in REASONS {
             if counts[reason as usize] > counts[most as usize] {
@@ -122,8 +123,8 @@ impl Reducer<'_> {
         }
     }
 
-    /// Cheapest collapse of a point that is legal now. Where distances are limited, testing a collapse takes longer than
-    /// computing its cost. Costs are therefore listed once, and tested from the cheapest on.
+    /// Cheapest collapse of a point that is currently legal. If distances are limited, testing a collapse takes longer
+    /// than computing its cost. Costs are therefore listed once, and tested from the cheapest on.
     pub(super) fn find_legal(&mut self, point: u32) -> Option<Best> {
         if self.tracked_samples.is_none() {
             return self.find_turning_none(point);
@@ -146,16 +147,16 @@ impl Reducer<'_> {
         best
     }
 
-    /// As [`Self::find_legal`], where distances are not limited. Computing the cost of a collapse then takes longer than
-    /// testing it, so costs are computed only for collapses that pass.
+    /// As [`Self::find_legal`], for unlimited distances. Here, computing the cost of a collapse takes longer than
+    /// testing it. Costs are therefore computed only for collapses that pass the tests.
     fn find_turning_none(&mut self, point: u32) -> Option<Best> {
         self.look(point);
         let neighbors = std::mem::take(&mut self.neighbors);
         let (mut best, mut first): (Option<Best>, usize) = (None, 0);
         for neighbor in neighbors.all() {
             let both = [point, neighbor.point];
-            // Refresh every neighbour, whether or not it passes the next test. The time of a refresh affects the order of a
-            // point's triangles, and thereby the order of equal costs.
+            // Every neighbour is refreshed, even if it fails the next test. The time of a refresh affects the order of
+            // a point's triangles, and thereby the order of equal costs.
             self.topology.refresh(neighbor.point);
             let Some(deviation) = deviation(&self.topology, &self.points, both, &mut first) else { continue };
             if !self.is_allowed(point, neighbor.point) {
@@ -173,13 +174,13 @@ impl Reducer<'_> {
         best
     }
 
-    /// Cost of a collapse into one of the last collected neighbours. If the cost exceeds `most`, any part of it that does may
-    /// be returned.
+    /// Cost of a collapse into one of the neighbours collected last. If the cost exceeds `most`, a partial cost above
+    /// `most` may be returned.
     fn cost(&self, point: u32, neighbor: &Neighbor, most: f32) -> f32 {
         self.cost_of(&self.neighbors, point, neighbor, most)
     }
 
-    /// As [`Self::cost`], for given neighbours.
+    /// As [`Self::cost`], but for the given neighbours.
     fn cost_of(&self, neighbors: &Neighbors, point: u32, neighbor: &Neighbor, most: f32) -> f32 {
         let both = [point, neighbor.point];
         let cost = match &self.quadrics {
@@ -194,13 +195,13 @@ impl Reducer<'_> {
         cost as f32
     }
 
-    /// The collapse with its whole cost, if it is legal.
+    /// The collapse with its complete cost; `None` if it is illegal.
     pub(super) fn check(&mut self, point: u32, best: Best) -> Option<Best> {
         if self.is_allowed(point, best.neighbor) { self.measure(point, best) } else { None }
     }
 
-    /// Whether a collapse keeps the topology and, if they are limited, the distances of samples. For the cost of Melax with
-    /// normals, also whether normals stay alike.
+    /// Whether a collapse keeps the topology and the limited distances of samples. For [`Cost::Melax`] with
+    /// `check_normals`, the normals must also be similar.
     pub(super) fn is_allowed(&mut self, point: u32, neighbor: u32) -> bool {
         self.topology.refresh(neighbor);
         let differ = match self.cost {
@@ -216,15 +217,15 @@ impl Reducer<'_> {
             })
     }
 
-    /// The collapse with its whole cost. It counts the point's distance from the planes of its triangles and, with attributes,
-    /// the distance of new edges from the triangles before. `None` if the collapse turns a triangle.
+    /// The collapse with its complete cost: including the point's distance from the planes of its triangles and, with
+    /// attributes, the distance of new edges from the previous triangles. `None` if the collapse turns a triangle.
     pub(super) fn measure(&self, point: u32, best: Best) -> Option<Best> {
         deviation(&self.topology, &self.points, [point, best.neighbor], &mut 0)
             .map(|deviation| self.with_deviation(point, best, deviation, f32::INFINITY))
     }
 
-    /// The collapse with its whole cost, given the squared distance of the point from the planes of its triangles. If the cost
-    /// exceeds `most`, any part of it that does may be returned.
+    /// The collapse with its complete cost. `deviation` is the squared distance of the point from the planes of its
+    /// triangles. If the cost exceeds `most`, a partial cost above `most` may be returned.
     fn with_deviation(&self, point: u32, best: Best, deviation: f64, most: f32) -> Best {
         let cost = |more: f64| best.base + more as f32;
         let cost = match &self.quadrics {

@@ -1,8 +1,8 @@
-//! The order of collapses.
+//! Tests of the order of collapses.
 
 use super::*;
 
-/// A cylinder with a seam and with bumps of the given height, in two poses: straight and bent.
+/// A cylinder with a seam, and with bumps of the given height, in two poses: straight and bent.
 fn pipe(bumps: f32, seed: usize) -> ([Vec<[f32; 3]>; 2], Vec<f32>, Vec<u32>) {
     let (sides, rings) = (9, 8);
     let (mut positions, mut uv, mut indices) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
@@ -27,7 +27,7 @@ fn pipe(bumps: f32, seed: usize) -> ([Vec<[f32; 3]>; 2], Vec<f32>, Vec<u32>) {
     (positions, uv, indices)
 }
 
-/// Cost of a point's collapse if it were its turn now.
+/// Cost of a point's collapse if the point were next.
 fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
     reducer.topology.refresh(point);
     let found = reducer.find(point)?;
@@ -35,8 +35,9 @@ fn now(reducer: &mut Reducer<'_>, point: u32) -> Option<f32> {
     checked.map(|best| best.cost)
 }
 
-/// Simplifies until nothing is legal, and compares each collapse with those of all other points. Returns three counts: the
-/// steps, the collapses more than a tenth above the cheapest, and the collapses that were not the cheapest of their point.
+/// Simplifies until no collapse is legal, and compares each collapse with the collapses of all other points. Returns
+/// three counts: the steps; the collapses that cost over a tenth more than the cheapest; and the collapses that were
+/// not the cheapest of their point.
 fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
     let mut reducer = Reducer::new(
         surface,
@@ -68,8 +69,8 @@ fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
     [steps, dearer, seconds]
 }
 
-/// Collapses come in the order of their costs, up to the width of a bucket and to costs that fell since they were queued. No
-/// legal collapse is left.
+/// Collapses are ordered by cost, except for differences within a bucket and for costs that fell after they were
+/// queued. At the end, no collapse is legal.
 #[test]
 fn a_cheapest_legal_collapse_is_nearly_always_next() {
     for (cost, distance) in [

@@ -1,9 +1,9 @@
-//! Changes of the connectivity: collapses, and refreshes of triangle lists.
+//! Changes of the connectivity: collapses, and updates of triangle lists.
 
 use super::{Change, Corner, Kind, Span, Topology};
 
 impl Topology {
-    /// Updates the triangles of a point. They are valid until the next collapse.
+    /// Updates a point's list of triangles. The list is valid until the next collapse.
     #[inline]
     pub(crate) fn refresh(&mut self, point: u32) {
         if !std::mem::take(&mut self.touched[point as usize]) {
@@ -14,7 +14,7 @@ impl Topology {
         let span = &mut self.spans[point as usize];
         let ring = &mut self.rings[span.range()];
         let remap = &self.remap;
-        // Most points have collapsed at most once, so one unconditional step avoids a branch.
+        // Most points have collapsed at most once, so one unconditional step saves a branch.
         let latest = |at: u32| {
             let mut at = remap[at as usize];
             while remap[at as usize] != at {
@@ -41,8 +41,8 @@ impl Topology {
         span.len = len as u32;
     }
 
-    /// Merges a point into its neighbour; `moved` has the replacement of each of its vertices. Both must be up to date. The
-    /// neighbour is up to date afterwards.
+    /// Merges a point into its neighbour. `moved` has the replacement of each of the point's vertices. Both lists of
+    /// triangles must be up to date. The neighbour's list is up to date afterwards.
     pub(crate) fn collapse(&mut self, point: u32, neighbor: u32, moved: &[[u32; 2]]) {
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.clear();
@@ -68,7 +68,8 @@ impl Topology {
         self.scratch = scratch;
     }
 
-    /// Merges all points of a part into the first of them. None has triangles afterwards. All must be up to date.
+    /// Merges all points of a part into its first point, and removes their triangles. All lists of triangles must be up
+    /// to date.
     pub(crate) fn vanish(&mut self, part: &[u32]) {
         let Some(first) = part.first() else { return };
         let mut corners = 0;
@@ -80,7 +81,7 @@ impl Topology {
         self.triangles -= corners / 3;
     }
 
-    /// Removes the triangles of a point that contain another point.
+    /// Removes those triangles from a point's list that contain the point `other`.
     fn remove(&mut self, point: u32, other: u32) {
         let span = &mut self.spans[point as usize];
         let mut at = span.start;
@@ -107,7 +108,7 @@ impl Topology {
         }
     }
 
-    /// Adds triangles to a point, and relocates its list if there is no room.
+    /// Adds triangles to a point's list. If its capacity is too small, the list is relocated.
     fn append(&mut self, point: u32, more: &[([u32; 2], u32)]) {
         let is_numbered = !self.numbers.is_empty();
         let span = &mut self.spans[point as usize];

@@ -3,8 +3,8 @@
 use super::{Kind, Topology};
 
 impl Topology {
-    /// Whether a collapse keeps the topology (the link condition). Every common neighbour of the two points must lie across a
-    /// triangle that both share, and no two of these common neighbours may share a triangle with each of the two points.
+    /// Whether a collapse keeps the topology (the link condition). Every common neighbour of the two points must lie on
+    /// a triangle that both points share. No two common neighbours may share a triangle with each of the two points.
     pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32) -> bool {
         let (ring, far) = (self.ring(point), self.ring(neighbor));
         if [point, neighbor].iter().all(|point| self.kind(*point) == Kind::Interior) {
@@ -37,13 +37,13 @@ impl Topology {
                 && !is_across(other)
                 && far.iter().any(|[next, last]| *next == other || !far_is_inside && *last == other)
         };
-        // Around an interior point, each neighbour is next exactly once.
+        // Around an interior point, each neighbour is `next` exactly once.
         !ring.iter().any(|[next, last]| is_common(*next) || !is_inside && is_common(*last))
     }
 }
 
-/// As [`Topology::keeps_topology`], for two interior points, around which each neighbour is next exactly once. The points must
-/// have two common neighbours, and must not form a tetrahedron with them.
+/// As [`Topology::keeps_topology`], but for two interior points, around which each neighbour is `next` exactly once.
+/// The points must have exactly two common neighbours, and must not form a tetrahedron with them.
 fn is_link_of_edge(ring: &[[u32; 2]], far: &[[u32; 2]]) -> bool {
     let mut common = 0;
     for [next, _] in ring {

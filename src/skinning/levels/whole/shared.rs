@@ -1,4 +1,4 @@
-//! Coincident vertices of different meshes: places where the border of a mesh meets another mesh.
+//! Vertices of different meshes that coincide, where the border of one mesh meets another mesh.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,20 +9,21 @@ use crate::asset::Model;
 use crate::mesh::simplify::weld;
 use crate::skinning::pose::{Moment, Pose};
 
-/// Tolerance of coincident positions, as a fraction of the pose's largest coordinate: about eight roundings of an f32.
-/// Meshes with different skins or nodes compute a common position in different ways.
+/// Tolerance for coincident positions, as a fraction of the pose's largest coordinate: about eight roundings of an f32.
+/// Meshes with different skins or nodes compute the same position in different ways.
 const TOLERANCE: f32 = 5e-7;
 
-/// The largest number of places compared with one. A mesh that is a point in the first pose has many places there.
+/// The largest number of positions compared with one position. A mesh that is a point in the first pose has many
+/// positions there.
 const MAX_COMPARED: usize = 64;
 
-/// For each shared vertex (mesh, vertex), the coincident vertex of an earlier mesh.
+/// For each shared vertex (mesh, vertex), the coincident vertex (mesh, vertex) of an earlier mesh.
 pub(crate) type Shared = HashMap<(usize, u32), (usize, u32)>;
 
-/// The vertices that meshes share in all of these poses, and the groups of meshes that share any.
+/// Finds the vertices that meshes share in all of the given poses, and the groups of meshes that share any vertex.
 ///
-/// Groups are ascending, and ordered by their first mesh; a mesh that shares nothing is a group of its own. Vertices
-/// inside of two meshes are not shared: a copy of a surface is another surface.
+/// Groups are ascending, and ordered by their first mesh. A mesh that shares nothing forms its own group. Vertices that
+/// are not at a border of either mesh are not shared: a copy of a surface is another surface.
 pub(crate) fn shared(model: &Model, moments: &[Moment]) -> (Shared, Vec<Vec<usize>>) {
     if model.meshes.len() < 2 {
         return (Shared::new(), (0..model.meshes.len()).map(|mesh| vec![mesh]).collect());
@@ -60,14 +61,14 @@ pub(crate) fn shared(model: &Model, moments: &[Moment]) -> (Shared, Vec<Vec<usiz
     (found, groups(&group))
 }
 
-/// The distinct vertex positions (places) of a mesh.
+/// The distinct vertex positions of a mesh, called places.
 struct Places {
     poses: Vec<Vec<[f32; 3]>>,
-    /// For each vertex, the first vertex at its place.
+    /// For each vertex, the first vertex at the same position.
     point: Vec<u32>,
-    /// The places that triangles use, as their first vertices, ascending.
+    /// The positions that triangles use. Each is given by its first vertex; ascending.
     used: Vec<u32>,
-    /// The used places at a border.
+    /// The used positions that lie at a border of the mesh.
     border: HashSet<u32>,
 }
 
@@ -107,7 +108,7 @@ impl Places {
     }
 }
 
-/// The places at the ends of edges with a triangle on only one side.
+/// The positions at a border: the ends of edges that have a triangle on only one side.
 fn border(indices: &[u32], point: &[u32]) -> HashSet<u32> {
     let triangles =
         indices.as_chunks::<3>().0.iter().map(|corners| corners.map(|vertex| point[vertex as usize]));
@@ -118,14 +119,14 @@ fn border(indices: &[u32], point: &[u32]) -> HashSet<u32> {
     open.flatten().copied().collect()
 }
 
-/// A place already found.
+/// A position that the search has already stored.
 struct Known {
     mesh: usize,
     vertex: u32,
     is_border: bool,
 }
 
-/// Lookup of places in a grid over the first pose.
+/// Finds positions by a grid over the first pose.
 struct Search<'a> {
     tolerances: &'a [f32],
     known: Vec<Known>,
@@ -142,7 +143,7 @@ impl Search<'_> {
         [at(0), at(1), at(2)]
     }
 
-    /// The known place of another mesh at which a vertex lies, if either of them is at a border.
+    /// The stored position of another mesh that coincides with a vertex. At least one of the two must be at a border.
     fn find(&self, places: &[Places], mesh: usize, vertex: u32) -> Option<usize> {
         let own = &places[mesh];
         let position = own.poses[0][vertex as usize];
@@ -174,7 +175,7 @@ impl Search<'_> {
     }
 }
 
-/// Merges the groups of two meshes.
+/// Merges the groups of the meshes `a` and `b`.
 fn join(group: &mut [usize], a: usize, b: usize) {
     let (a, b) = (group[a], group[b]);
     group.iter_mut().filter(|own| **own == a.max(b)).for_each(|own| *own = a.min(b));

@@ -13,11 +13,12 @@ use crate::skinning::palette::{DualBone, Palette};
 use crate::skinning::skin::reference::weights::reduced;
 use crate::skinning::vertex::Vertex;
 
-/// Transforms vertices by a palette. `vertices` are those of a mesh, morphed or not; `influences` are the mesh's own.
+/// Transforms vertices by a palette. `vertices` are the mesh's vertices, morphed or not. `influences` are the mesh's
+/// influences.
 ///
 /// # Panics
-/// With fewer influences than vertices, with an InstanceLod of 0 influences, and with a palette of fewer bones than the
-/// influences name.
+/// In three cases: there are fewer influences than vertices; `instance_lod` allows 0 influences; an influence names a
+/// bone that the palette does not have.
 pub fn skin(
     vertices: &[Vertex],
     influences: &Influences,
@@ -28,22 +29,22 @@ pub fn skin(
     vertices.iter().enumerate().map(|(at, vertex)| transformed(vertex, &matrix(at))).collect()
 }
 
-/// A mesh to skin, for [`skin_seen`].
+/// A mesh to skin, as input of [`skin_seen`].
 #[derive(Debug, Clone, Copy)]
 pub struct SkinnedMesh<'a> {
-    /// Its vertices, morphed or not.
+    /// The mesh's vertices, morphed or not.
     pub vertices: &'a [Vertex],
-    /// Influences of each vertex.
+    /// The influences of each vertex.
     pub influences: &'a Influences,
-    /// The arrangement of its vertices.
+    /// The order of the mesh's vertices in clusters.
     pub clusters: &'a Clusters,
 }
 
-/// As [`skin`], for one instance of a crowd. `skinned` has one vertex per vertex of the mesh. The vertices of an invisible
-/// instance stay unchanged, as do those in clusters beyond its level of detail.
+/// As [`skin`], for one instance of a crowd, with the result in `skinned` (one entry per vertex of the mesh). If the
+/// instance is invisible, its vertices stay unchanged. So do vertices in clusters beyond its level of detail.
 ///
 /// # Panics
-/// As [`skin`].
+/// In the cases of [`skin`].
 pub fn skin_seen(
     skinned: &mut [Vertex],
     mesh: SkinnedMesh<'_>,
@@ -60,7 +61,7 @@ pub fn skin_seen(
     }
 }
 
-/// The blended matrix of a vertex; `left` are its reduced influences.
+/// The blended matrix of a vertex. `left` are the influences that remain after [`reduced`], the strongest first.
 pub fn blended(palette: &Palette, left: &[Influence]) -> Affine {
     match palette {
         Palette::Linear(bones) => mean(bones, left),
@@ -68,7 +69,7 @@ pub fn blended(palette: &Palette, left: &[Influence]) -> Affine {
     }
 }
 
-/// The weaker influences first, because the kernel computes the strongest weight last.
+/// The influences with the strongest last, because the kernel computes the strongest weight last.
 fn weaker_first(left: &[Influence]) -> impl Iterator<Item = &Influence> {
     left[1..].iter().chain(&left[..1])
 }
@@ -90,7 +91,8 @@ fn dual_mean(bones: &[DualBone], left: &[Influence]) -> Affine {
     let mut sum = DualBone { real: zero, dual: zero, diagonal: zero, above: zero };
     for influence in weaker_first(left) {
         let bone = &bones[influence.bone as usize];
-        // Of q and −q, takes the one in the hemisphere of the strongest bone's quaternion.
+        // The quaternions q and −q give the same rotation. Uses the sign in the hemisphere of the strongest bone's
+        // quaternion.
         let side = if dot4(bone.real, strongest.real) < 0.0 { -influence.weight } else { influence.weight };
         sum.real = added(sum.real, side, bone.real);
         sum.dual = added(sum.dual, side, bone.dual);
@@ -104,12 +106,13 @@ fn dot4(a: [f32; 4], b: [f32; 4]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// The matrix of a sum. Its rotation is not 0: the strongest weight is at least 1/8, and no other bone opposes it.
+/// The matrix of a weighted sum of bones. The sum's rotation is not 0: the strongest weight is at least 1/8, and no
+/// other bone opposes it.
 fn matrix_of(sum: &DualBone) -> Affine {
     let inverse = 1.0 / dot4(sum.real, sum.real);
     let [x, y, z, w] = sum.real;
     let [dx, dy, dz, dw] = sum.dual;
-    // A factor of 2 over the squared length replaces normalization.
+    // The factor of 2 divided by the squared length replaces normalization.
     let twice = 2.0 * inverse;
     let rotation = [
         [1.0 - twice * (y * y + z * z), twice * (x * y - w * z), twice * (x * z + w * y)],
@@ -128,7 +131,7 @@ fn matrix_of(sum: &DualBone) -> Affine {
     })
 }
 
-/// A vertex transformed by a matrix.
+/// A vertex transformed by a matrix: position, unit normal and unit tangent.
 pub fn transformed(vertex: &Vertex, [x, y, z]: &Affine) -> Vertex {
     let linear = |row: &[f32; 4], v: [f32; 3]| row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
     let position = [x, y, z].map(|row| linear(row, vertex.position) + row[3]);

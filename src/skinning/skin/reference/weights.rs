@@ -1,14 +1,14 @@
-//! The reduction of influences: the part of the skinning kernel that truncates and fades weights.
+//! The reduction of influences: the part of the skinning kernel that removes weak influences and fades their weights.
 
 use crate::asset::influences::Influence;
 use crate::skinning::instance_lod::InstanceLod;
 
-/// The remaining influences, the strongest first; their weights sum to 1. `influences` comes from
-/// [`Influences::of`](crate::asset::Influences::of). The strongest influence's weight is not read: it is 1 minus the
+/// The influences that remain at a level of detail, the strongest first; their weights sum to 1. `influences` comes
+/// from [`Influences::of`](crate::asset::Influences::of). The strongest weight is not read but computed as 1 minus the
 /// others.
 ///
 /// # Panics
-/// For an InstanceLod of 0 influences, which belongs to an instance without vertices.
+/// If `instance_lod` allows 0 influences, which marks an invisible instance.
 pub fn reduced(influences: &[Influence], instance_lod: InstanceLod) -> Vec<Influence> {
     assert!(instance_lod.max_influences > 0, "not seen");
     let most = influences.len().min(instance_lod.max_influences as usize);
@@ -40,7 +40,7 @@ mod tests {
         Influences::new("w", 8, [given]).expect("valid").of(0).to_vec()
     }
 
-    /// Vertices with uneven weights, equal ones, a single one, and ones close to 0.
+    /// Test vertices: with uneven weights, equal weights, a single weight, and a weight close to 0.
     fn vertices() -> Vec<Vec<Influence>> {
         let mut all = vec![vertex(&[1.0]), vertex(&[0.5, 0.5]), vertex(&[0.125; 8]), vertex(&[1.0, 1e-30])];
         for seed in 0..200_u32 {
@@ -61,7 +61,7 @@ mod tests {
             let mut before = vertex.len();
             for step in 0..=64 {
                 let left = reduced(&vertex, InstanceLod::fade(step as f32 / 64.0).expect("in range"));
-                // A sum of eight terms rounds seven times, by at most half an ulp of 1.
+                // A sum of eight terms is rounded seven times, each time by at most half an ulp of 1.
                 assert!((sum(&left) - 1.0).abs() <= 7.0 * f64::from(f32::EPSILON) / 2.0, "{left:?}");
                 assert!(left.iter().all(|influence| influence.weight > 0.0), "{left:?}");
                 assert!(left.is_sorted_by(|a, b| a.weight >= b.weight) && left.len() <= before);
