@@ -103,9 +103,12 @@ impl Crowd {
     /// Allocates a crowd with layers above the base. `base` and the layers play clips of the set.
     ///
     /// # Errors
-    /// [`InputError`] if `base` is empty, if an instance's clip is not in the set, if there are more than [`MAX_LAYERS`] layers
-    /// including the base, and if a layer does not match the crowd ([`AnimationLayer::validate`]); [`GpuError`] for errors of the
-    /// device.
+    /// [`InputError`] in these cases; [`GpuError`] for errors of the device:
+    ///
+    /// - `base` is empty;
+    /// - an instance's clip is not in the set;
+    /// - there are more than [`MAX_LAYERS`] layers, including the base;
+    /// - a layer does not match the crowd ([`AnimationLayer::validate`]).
     pub fn layered(
         gpu: &Gpu,
         set: &ClipSet,
@@ -159,8 +162,8 @@ impl Crowd {
     /// base.
     ///
     /// # Errors
-    /// [`InputError`] if `layer` is 0 (the base) or does not exist, if the number of weights is not the number of instances, and
-    /// for weights outside 0..=1; [`GpuError`] for errors of the device.
+    /// [`InputError`] if `layer` is 0 (the base) or does not exist, if there is not one weight per instance, and for weights
+    /// outside 0..=1; [`GpuError`] for errors of the device.
     pub fn set_weights(&self, gpu: &Gpu, layer: usize, weights: &[f32]) -> Result<(), Error> {
         if !(1..self.layers).contains(&layer) {
             let bound = format!("must be in 1..{}, a layer above the base", self.layers);

@@ -2,7 +2,7 @@
 //!
 //! Layer 0 is the base: a clip that each instance plays on all its bones. Each layer above the base plays a clip with its own
 //! start, rate and wrap. A layer has a *weight* per instance and a *mask* value per bone. Blending goes from the base upwards.
-//! Each layer changes the translation, rotation and scale of a bone to
+//! Let `below` be a bone's translation, rotation or scale after blending all lower layers. The next layer changes it to
 //!
 //! `below + (layer − below) · weight · mask`
 //!
@@ -69,8 +69,12 @@ impl AnimationLayer {
     /// of field names in errors.
     ///
     /// # Errors
-    /// [`InputError`] if there is not one playback and one weight per instance, if the mask does not have one value per bone, for
-    /// weights and mask values outside 0..=1, and if a clip does not exist.
+    /// [`InputError`] in these cases:
+    ///
+    /// - there is not one playback and one weight per instance;
+    /// - the mask does not have one value per bone;
+    /// - a weight or mask value is outside 0..=1;
+    /// - an instance plays a clip that does not exist.
     pub fn validate(&self, path: &str, count: usize, clips: usize, bones: usize) -> Result<(), InputError> {
         let each = |field: &str, len: usize, wanted: usize, item: &str| {
             InputError::check_len(&format!("{path}.{field}"), len, wanted, item)

@@ -1,6 +1,6 @@
-//! Bounds on the motion of each bone along a clip. They bound the error of a pose that is not updated. Motion is the path length
-//! of the bone's local transform along the clip's common timeline, times the distance over which the bone moves points of the
-//! model.
+//! Bounds on the motion of each bone along a clip. They bound the error of a pose that is not updated. Motion is a path length:
+//! the length of the path of a bone's local transform along the clip's common timeline. It is weighted by how far the bone moves
+//! points of the model.
 //!
 //! The path length of a translation, rotation or scale is the sum of its changes from key to key. It is never shorter than the
 //! direct change between two times. `docs/pixel-bounds.md` derives the bound on a point's error and the path lengths of each

@@ -8,7 +8,7 @@ use crate::shared::animation::order::{self as packed, CONTINUES, NO_PARENT};
 /// Position in an [`Order`], with the bone at this position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
-    /// Index of the bone.
+    /// Index of the bone in the skeleton.
     pub bone: u32,
     /// Where to find the bone's parent.
     pub parent: SlotParent,

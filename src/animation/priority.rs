@@ -5,11 +5,11 @@
 //!
 //! | term | value | divided by |
 //! |---|---|---|
-//! | translation | distance from this key to the next, times the largest scales above it at rest | the clip's largest |
+//! | translation | distance from this key to the next, times the largest scale of each ancestor at rest | the clip's largest |
 //! | rotation | angle from this key to the next, in radians | the clip's largest |
-//! | scale | length of the difference of both scales, divided by the bone's largest at rest | the clip's largest |
+//! | scale | change of scale from this key to the next, divided by the bone's largest scale at rest | the clip's largest |
 //! | children | number of descendants | the skeleton's largest |
-//! | depth | D − d + 1 for a bone d steps from the root, where D is the depth of the deepest | D + 1 |
+//! | depth | D − d + 1 for a bone d steps from the root, where D is the depth of the deepest bone | D + 1 |
 //! | user | given for each bone; ½ by default | 1 |
 //!
 //! A key's priority is the weighted mean of its six terms.
@@ -80,7 +80,7 @@ impl Weights {
 /// The priority of one key of one bone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeyPriority {
-    /// Index of the bone.
+    /// Index of the bone in the skeleton.
     pub bone: u32,
     /// Index of the key within the bone's keys.
     pub key: u32,
@@ -106,7 +106,7 @@ impl Priorities {
     ///
     /// # Errors
     /// [`InputError`] for invalid weights ([`Weights::validate`]), for a clip of another skeleton, if `user` does not have one
-    /// value per bone, and for user values outside 0..=1.
+    /// value per bone, and for values in `user` outside 0..=1.
     pub fn new(
         skeleton: &Skeleton,
         clip: &Clip,

@@ -167,7 +167,7 @@ pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
 /// Decodes an image from bytes. The size is checked first: no edge may be longer than [`MAP_EDGE`].
 ///
 /// # Errors
-/// Decoding errors of the crate `image`.
+/// Errors of the crate `image`: invalid data, or an edge that is too long.
 pub fn decode(
     bytes: impl std::io::BufRead + std::io::Seek,
 ) -> Result<image::DynamicImage, image::ImageError> {

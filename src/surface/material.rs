@@ -66,7 +66,7 @@ impl ReliefMaterial {
     /// Checks that all values are within their bounds and that `light` is a unit vector.
     ///
     /// # Errors
-    /// [`InputError`].
+    /// [`InputError`] that names the first invalid field.
     pub fn validate(&self) -> Result<(), InputError> {
         InputError::check_within("scale", self.scale, 0.0..=MAX_SCALE)?;
         InputError::check_within("plane", self.plane, 0.0..=1.0)?;

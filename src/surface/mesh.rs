@@ -7,9 +7,9 @@ use crate::InputError;
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct SurfaceVertex {
-    /// Position in world units.
+    /// Position of the vertex in world units.
     pub position: [f32; 3],
-    /// Unit normal.
+    /// Unit normal of the surface at the vertex.
     pub normal: [f32; 3],
     /// Unit tangent along u in x, y and z, and a sign ±1 in w. The bitangent points along v and is w · cross(normal, tangent). In
     /// glTF, the bitangent points opposite to v, up the image, so glTF's w has the opposite sign.
@@ -44,7 +44,7 @@ impl SurfaceMesh {
     /// Checks that all indices refer to existing vertices and that their number is a multiple of 3.
     ///
     /// # Errors
-    /// [`InputError`].
+    /// [`InputError`] that names the first invalid field or index.
     pub fn validate(&self) -> Result<(), InputError> {
         crate::asset::indices::check_triangles("indices", &self.indices, self.vertices.len())
     }

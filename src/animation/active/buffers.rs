@@ -14,7 +14,7 @@ pub struct ActivePairs {
     /// Pair index `instance · bones + bone` of each listed pair. The flag [`PAIR_AHEAD`](crate::animation::active::PAIR_AHEAD) is
     /// set if the bone is sampled ahead of the frame's time. Pairs that are not listed are skipped.
     pub pairs: Buffer<u32>,
-    /// Indirect dispatch arguments (workgroups of 64 along x, y and z), followed by the number of pairs.
+    /// Indirect dispatch arguments: workgroups of 64 threads along x, y and z, then the number of listed pairs.
     pub dispatched: Buffer<u32>,
     consumer: ExclusiveConsumer,
 }
@@ -47,7 +47,8 @@ impl ActivePairs {
     }
 }
 
-/// Work lists of one frame for a crowd. The caller may read and bind all buffers.
+/// Work lists of one frame of a crowd: active bones, active instances and indirect dispatch arguments. The caller may read and
+/// bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Active {
     /// Three bit masks, one after another. Each has one bit per slot (position of a bone in the [`Order`]), in [`Order::words`]
@@ -63,7 +64,7 @@ pub struct Active {
     pub pairs: ActivePairs,
     /// Indices of the instances with at least one active bone.
     pub instances: Buffer<u32>,
-    /// Arguments of indirect dispatches, in three groups:
+    /// Arguments of indirect dispatches for active instances, in three groups:
     ///
     /// - workgroups of 64 threads along x, y and z, for one thread per listed instance; then the number of these instances;
     /// - for each level of bone chains, workgroups for one thread per chain of each instance; then the number of chains;

@@ -17,7 +17,7 @@ pub struct BoundsPass {
 }
 
 impl BoundsPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.
@@ -29,8 +29,8 @@ impl BoundsPass {
     /// bone, in metres.
     ///
     /// # Errors
-    /// [`InputError`] for invalid radii or a wrong number of them, for 2²⁶ instances or more, and if `bounds` is too small for
-    /// one box per instance; [`GpuError`] for errors of the device.
+    /// [`InputError`] for invalid radii, for a number of radii other than the number of bones, for 2²⁶ instances or more, and if
+    /// `bounds` is too small for one box per instance; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -15,7 +15,7 @@ pub struct ClipClockPass {
 }
 
 impl ClipClockPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

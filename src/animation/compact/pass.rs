@@ -34,7 +34,7 @@ impl CompactJob {
 }
 
 impl CompactPass {
-    /// Compiles the pipelines.
+    /// Compiles the compute pipelines of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

@@ -17,7 +17,7 @@ pub struct Work {
     pub instances: Vec<u32>,
 }
 
-/// Combines the updated bones of this frame with those of earlier frames that some reader has not processed yet.
+/// Combines the updated bones of this frame with the bits of earlier frames that some reader has not processed yet.
 pub fn accumulated(before: &[u32], updated_bones: &[u32]) -> Vec<u32> {
     before.iter().zip(updated_bones).map(|(before, now)| before | now).collect()
 }

@@ -16,7 +16,7 @@ pub struct DrivePass {
 }
 
 impl DrivePass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

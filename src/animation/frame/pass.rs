@@ -39,9 +39,11 @@ impl GatedFrame {
     /// Compiles and prepares all passes of a frame. Rotations use the crowd's rotation path between keys.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) if the crowd's skeleton, `clips` or the gate's bones, clips or rotation path
-    /// ([`Crowd::path`]) do not match, and for [`Gate::Bounded`] if the model matrices were prepared for dual quaternion
-    /// blending; [`GpuError`](crate::gpu::GpuError) for errors of the device.
+    /// [`InputError`](crate::InputError) in these cases; [`GpuError`](crate::gpu::GpuError) for errors of the device:
+    ///
+    /// - the crowd is of another skeleton, or `clips` is another set than the crowd's;
+    /// - the gate's bones, clips or rotation path ([`Crowd::path`]) differ from the crowd's;
+    /// - the gate is [`Gate::Bounded`], and the model matrices were prepared for dual quaternion blending.
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,

@@ -34,14 +34,14 @@ pub enum Gate {
     /// period begins. This choice needs no memory per bone when priority and Ω change. A hash of the instance's index offsets the
     /// instance's clock by 0 to 65,535 ticks, so that instances do not skip in step.
     SkipPeriod {
-        /// Priorities of each clip's bones.
+        /// Priority of each bone at each key time of each clip.
         table: PriorityTable,
         /// Period in ticks for priority 1 at Ω = 1; thesis A uses one second.
         period: u32,
     },
     /// Samples all bones of an instance together, in a fraction Ω of the frames. Engines call this update-rate optimization.
     Uniform(AnimatedBones),
-    /// Samples a random fraction Ω of all bones, chosen by a hash of frame and bone. The average number of samples equals that of
+    /// Samples a random fraction Ω of all bones, chosen by a hash of frame and bone. On average, it samples as many bones as
     /// [`Gate::Uniform`].
     Random(AnimatedBones),
     /// Samples bones that may have moved further than the instance's error budget allows. Parents are decided before their
@@ -78,7 +78,7 @@ impl Gate {
         }
     }
 
-    /// The bones that each clip moves.
+    /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         match self {
             Self::Off(bones) | Self::Uniform(bones) | Self::Random(bones) => bones,
@@ -110,7 +110,7 @@ pub struct Frame {
     pub ticks: u32,
     /// Ticks since the previous frame.
     pub frame_ticks: u32,
-    /// Number of frames so far.
+    /// Number of frames since the start.
     pub frame: u32,
     /// How far ahead of the frame's time [`Gate::Bounded`] may sample a bone, in seconds; 0 disables sampling ahead. A bone whose
     /// error is split evenly before and after the sampled time stays valid twice as long. Use about the length of a frame.

@@ -58,9 +58,11 @@ impl GatePass {
     /// Prepares a job that chooses the bones of a crowd to sample. The crowd's clip clocks are its input.
     ///
     /// # Errors
-    /// [`InputError`] if the crowd's bones, clips or rotation path differ from the gate's table, if `active` belongs to another
-    /// crowd, and for [`Gate::Bounded`] if the model matrices were prepared for dual quaternion blending; [`GpuError`] for errors
-    /// of the device.
+    /// [`InputError`] in these cases; [`GpuError`] for errors of the device:
+    ///
+    /// - the crowd's bones, clips or rotation path differ from the gate's table;
+    /// - `active` belongs to another crowd;
+    /// - the gate is [`Gate::Bounded`], and the model matrices were prepared for dual quaternion blending.
     pub fn prepare(
         &self,
         gpu: &Gpu,

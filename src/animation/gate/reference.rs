@@ -11,7 +11,8 @@ use crate::shared::animation::gate::{SCRAMBLE_FIRST, SCRAMBLE_SECOND};
 /// Bones that a gate chose to sample.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ChosenBones {
-    /// One bit per slot of each instance, in [`AnimatedBones::words`] words per instance.
+    /// One bit per slot of each instance, in [`AnimatedBones::words`] words per instance. A bit is set if the slot's bone is
+    /// sampled.
     pub bits: Vec<u32>,
     /// Subset of `bits` that is sampled ahead of the frame's time, in the same layout.
     pub ahead: Vec<u32>,
@@ -121,7 +122,7 @@ fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled:
     chosen
 }
 
-/// Hashes a word with Wellons' "lowbias32".
+/// Hashes a 32-bit word with the function "lowbias32" (Wellons 2018).
 pub fn scramble(word: u32) -> u32 {
     let mixed = (word ^ (word >> 16)).wrapping_mul(SCRAMBLE_FIRST);
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(SCRAMBLE_SECOND);

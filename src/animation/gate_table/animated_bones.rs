@@ -47,7 +47,7 @@ impl AnimatedBones {
         self.words
     }
 
-    /// Number of clips of the set.
+    /// Number of clips in the clip set.
     pub fn clips(&self) -> usize {
         self.records.len() / (self.words + 1)
     }
@@ -55,7 +55,7 @@ impl AnimatedBones {
     /// Bit mask of a clip, with one bit per slot. A bit is set if the clip moves the slot's bone.
     ///
     /// # Panics
-    /// If the set has no such clip.
+    /// If the clip set has no clip with this index.
     pub fn of(&self, clip: u32) -> &[u32] {
         &self.record(clip)[1..]
     }
@@ -63,18 +63,18 @@ impl AnimatedBones {
     /// Number of bones that a clip moves.
     ///
     /// # Panics
-    /// If the set has no such clip.
+    /// If the clip set has no clip with this index.
     pub fn count(&self, clip: u32) -> usize {
         self.of(clip).iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// The slots whose bones a clip moves.
+    /// Iterates over the slots whose bones a clip moves, in ascending order.
     pub(crate) fn slots(&self, clip: u32) -> impl Iterator<Item = usize> {
         let bits = self.of(clip).iter().enumerate();
         bits.flat_map(|(word, bits)| bits_of(*bits).map(move |bit| 32 * word + bit))
     }
 
-    /// Whether a clip moves the bone of a slot.
+    /// Returns whether a clip moves the bone of a slot.
     pub(crate) fn contains(&self, clip: u32, slot: usize) -> bool {
         self.of(clip)[slot / 32] >> (slot % 32) & 1 != 0
     }

@@ -41,8 +41,11 @@ impl BoundTable {
     /// path are refused, because nlerp turns faster than slerp in the middle between two keys.
     ///
     /// # Errors
-    /// [`InputError`] for the errors of [`AnimatedBones::new`], if the number of radii is not the number of bones, for radii that
-    /// are negative or not finite, and for a table of more than 2²⁷ entries.
+    /// [`InputError`] in these cases:
+    ///
+    /// - [`AnimatedBones::new`] refuses the skeleton, set or clips;
+    /// - there is not one radius per bone, or a radius is negative or not finite;
+    /// - the table would have more than 2²⁷ entries.
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -97,7 +100,7 @@ impl BoundTable {
         }
     }
 
-    /// The bones that each clip moves.
+    /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.motion.animated_bones
     }

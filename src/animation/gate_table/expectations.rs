@@ -35,7 +35,7 @@ impl ExpectationTable {
         Ok(Self(table))
     }
 
-    /// The bones that each clip moves.
+    /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.0.animated_bones
     }

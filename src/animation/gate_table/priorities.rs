@@ -45,7 +45,7 @@ impl PriorityTable {
         Ok(Self { animated_bones, stride, rows })
     }
 
-    /// The bones that each clip moves.
+    /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.animated_bones
     }

@@ -5,8 +5,8 @@ pub fn scale_by_fraction(value: u32, fraction: u32) -> u32 {
     ((u64::from(value) * u64::from(fraction)) >> 16) as u32
 }
 
-/// Accumulated motion at a time between two rows, from the sum at the first row, its rise to the next row, and the progress
-/// between them in 1/65536.
+/// Accumulated motion at a time between two rows. `start` is the sum at the first row, and `rise` its increase until the next
+/// row. `fraction` is the progress between the rows in 1/65536.
 pub fn motion_at([start, rise]: [u32; 2], fraction: u32) -> u32 {
     start.wrapping_add(scale_by_fraction(rise, fraction))
 }

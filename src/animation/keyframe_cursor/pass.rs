@@ -17,7 +17,7 @@ pub struct KeyframeCursorPass {
 }
 
 impl KeyframeCursorPass {
-    /// Compiles the pipelines.
+    /// Compiles the compute pipelines of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

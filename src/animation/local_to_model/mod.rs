@@ -20,5 +20,5 @@ pub use pass::LocalToModelPass;
 /// bones of the longest chain times the largest component (at least 1).
 ///
 /// A local matrix has an error of 10ε of its scale (ε = 2⁻²⁴, 2ε per operation). A row of the product has an error of 8ε of the
-/// sum of its terms, which is at most √3 times the largest component. Together this is 32ε per bone, rounded up.
+/// sum of its terms. This sum is at most √3 times the largest component. Together this is 32ε per bone, rounded up.
 pub const LOCAL_TO_MODEL_BOUND: f32 = 2e-6;

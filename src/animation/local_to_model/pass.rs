@@ -18,7 +18,7 @@ pub struct LocalToModelPass {
 }
 
 impl LocalToModelPass {
-    /// Compiles the pipelines.
+    /// Compiles the compute pipelines of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

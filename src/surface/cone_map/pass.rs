@@ -29,7 +29,7 @@ pub struct ConeMapPass {
 }
 
 impl ConeMapPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

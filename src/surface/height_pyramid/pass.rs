@@ -53,7 +53,7 @@ pub struct HeightPyramidPass {
 }
 
 impl HeightPyramidPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

@@ -39,12 +39,12 @@ pub const MAX_SCALE: f32 = 1.0;
 pub enum ReliefMethod {
     /// No relief: the polygon's own texture coordinates.
     Plain = trace::SURFACE_PLAIN,
-    /// Parallax mapping: one height sample and one shift (Kaneko 2001).
+    /// Parallax mapping: shifts the texture coordinates once, by one height sample (Kaneko 2001).
     ///
     /// **Decided**: the bias is −`plane` · `scale`. Thesis B takes +½ · `scale` (3.1.1), but wants heights remapped around 0,
     /// which needs the minus sign.
     Parallax = trace::SURFACE_PARALLAX,
-    /// Parallax mapping with Welsh's offset limiting.
+    /// Parallax mapping with Welsh's offset limiting, which shifts less at flat angles.
     ParallaxLimited = trace::SURFACE_PARALLAX_LIMITED,
     /// Linear search, then binary search (Policarpo 2005; thesis B, table 4.4).
     Relief = trace::SURFACE_RELIEF,
@@ -146,7 +146,7 @@ impl March {
     /// Checks that all numbers of steps are within their bounds.
     ///
     /// # Errors
-    /// [`InputError`].
+    /// [`InputError`] that names the first invalid field.
     pub fn validate(&self) -> Result<(), InputError> {
         let [low, high] = self.steps;
         InputError::check_within("steps[0]", low, 1..=MAX_STEPS)?;

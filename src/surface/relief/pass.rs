@@ -23,7 +23,7 @@ pub struct ReliefPass {
 }
 
 impl ReliefPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

@@ -37,7 +37,7 @@ impl SurfaceTextures {
         Ok(Self { heights, acceleration, method, address })
     }
 
-    /// Views of the heights and of the acceleration map, to bind.
+    /// Default texture views of the heights and of the acceleration map, to bind.
     pub fn views(&self) -> [wgpu::TextureView; 2] {
         [&self.heights, &self.acceleration]
             .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()))

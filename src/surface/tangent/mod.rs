@@ -13,8 +13,9 @@
 //!
 //! Vertices without a defined tangent get a frame too, never NaN:
 //!
-//! - A triangle contributes nothing if f32 cannot resolve its tangent. This is so if its extent in u, v or space is below 2⁻¹⁰⁰,
-//!   or if its area, tangent or uv area is below the fraction [`DEGENERATE`] of the largest value that its extents allow.
+//! - A triangle contributes nothing if f32 cannot resolve its tangent. This is the case if its extent in u, v or space is below
+//!   2⁻¹⁰⁰. It is also the case if its area, tangent or uv area is below the fraction [`DEGENERATE`] of the largest value that
+//!   its extents allow.
 //! - The tangent is the first vector of the basis that Duff et al. (2017) construct from the normal alone, and `w` is 1, in three
 //!   cases: if no triangle contributes, if the sum cancels out ([`VANISHING`]), and if the sum lies along the normal.
 //! - A normal that is zero or not finite (largest component outside 2⁻¹⁰⁰ to 2¹⁰⁰) counts as +Z. The tangent is then (1, 0, 0),

@@ -47,7 +47,7 @@ pub struct TangentPass {
 }
 
 impl TangentPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
     /// [`GpuError`] for shader compilation errors of the driver.

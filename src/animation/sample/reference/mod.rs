@@ -129,7 +129,7 @@ fn slerp_weight(t: f32, less_one: f32) -> f32 {
 /// Local transform of every bone of every instance, at the instances' cursors. The result follows the computation of the kernel.
 ///
 /// # Panics
-/// If there are fewer cursors than the set needs.
+/// If there are fewer than [`ClipSet::timelines_a_clip`] cursors per instance.
 pub fn sample_set(
     set: &ClipSet,
     instances: &[Instance],
