@@ -73,7 +73,7 @@ impl ModelMatrices {
     }
 }
 
-/// A use of model matrices that excludes the other use listed here.
+/// Uses of model matrices that exclude each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Consumer {
     /// A gate that bounds the error of linearly blended vertices: `Gate::Bounded`.
@@ -103,8 +103,8 @@ impl ExclusiveConsumer {
         self.0.get().map_or(Ok(()), |first| refuse_other(*first, consumer))
     }
 
-    /// Returns an error if a list of active bones belongs to another crowd. That crowd's record would not know of the gate's
-    /// bound.
+    /// Returns an error if a list of active bones belongs to another crowd. Otherwise the gate's error bound would not be
+    /// recorded for this crowd.
     ///
     /// # Errors
     /// [`InputError`] if the two records are not shared.

@@ -53,7 +53,7 @@ impl Readers {
         self.behind.clone_from(&self.all);
     }
 
-    /// Marks a reader as recorded. Returns true if no reader is behind any more.
+    /// Marks a reader as recorded. Returns true if all readers have now been recorded since the last update.
     fn read(&mut self, number: u64) -> bool {
         self.behind.remove(&number);
         self.behind.is_empty()
@@ -85,7 +85,7 @@ impl UpdatedBones {
         &self.bits
     }
 
-    /// Notifies readers that work recorded now sets bits. All readers count as behind from then on.
+    /// Notifies readers that the work recorded now sets bits. All readers must then read the bits again.
     pub fn update(&self) {
         self.lock().update();
     }
@@ -111,8 +111,8 @@ impl UpdatedBones {
 }
 
 impl UpdatedBonesReader {
-    /// Reports that the work recorded now reads the bits. Returns true if this work must clear the bits afterwards, because no
-    /// reader is behind any more.
+    /// Reports that the work recorded now reads the bits. Returns true if this work must clear the bits afterwards, because all
+    /// readers have now read them.
     #[must_use = "the last reader clears the bits"]
     pub fn read(&self) -> bool {
         self.updated.lock().read(self.number)
@@ -138,7 +138,7 @@ mod tests {
         assert!(readers.read(a));
         readers.update();
         assert!(!readers.read(a));
-        // Reader a has read only the bits before this update, so it is behind again.
+        // Reader a has read the bits only before this update, so it must read them again.
         readers.update();
         assert!(!readers.read(b) && !readers.read(b) && readers.read(a));
         // Readers that take turns never clear the bits.
@@ -146,7 +146,7 @@ mod tests {
             readers.update();
             assert!(!readers.read(if turn % 2 == 0 { a } else { b }));
         }
-        // A new reader is behind. A dropped reader blocks no other reader.
+        // A new reader must still read the bits. A dropped reader blocks no other reader.
         let c = readers.add();
         readers.update();
         assert!(!readers.read(a) && !readers.read(c));

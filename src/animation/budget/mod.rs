@@ -1,8 +1,8 @@
 //! Selects the bones to sample when the number of bones per frame is limited. In a frame, this operation takes the place of
 //! `gate`.
 //!
-//! Selects the bones whose stale transforms are expected to be most visible. Visibility is the motion of points since the bone
-//! was last sampled ([`ExpectationTable`]), times a weight for the instance's size on screen
+//! The operation selects the bones whose stale transforms are expected to be most visible. Visibility is the motion of points
+//! since the bone was last sampled ([`ExpectationTable`]), times a weight for the instance's size on screen
 //! ([`Lod::weight`](super::lod::Lod::weight)).
 //!
 //! A bone's rank is the logarithm of this product, in sixteenths of an octave. The bones of each rank are counted. All bones

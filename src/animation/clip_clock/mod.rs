@@ -6,7 +6,7 @@
 //! - in their first frame, and after they were hidden;
 //! - when their clip changes;
 //! - when the host asks for it ([`BoneSampling::Forced`](super::lod::BoneSampling::Forced));
-//! - when layers above their base clip gain weight, lose all weight, or change their clips.
+//! - when a layer above their base clip gains its first weight, loses all weight, or changes its clip.
 //!
 //! While layers above the base have weight, accumulated motion cannot be used, because it describes a single clip.
 

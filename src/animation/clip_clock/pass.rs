@@ -74,7 +74,8 @@ impl ClipClockJob {
         self.set_through(&mut &*gpu, elapsed, ahead)
     }
 
-    /// Does the same as [`ClipClockJob::set`], but writes through `upload`.
+    /// Does the same as [`ClipClockJob::set`], but writes through `upload`. With [`Staged`](crate::gpu::Staged) writes, one
+    /// submission may contain several frames.
     ///
     /// # Errors
     /// Same as [`ClipClockJob::set`].

@@ -118,21 +118,20 @@ impl GatedFrame {
         self.dispatch_local_to_model(pass);
     }
 
-    /// Records the first third of the frame: the choice of active bones. It also notifies the readers of
-    /// [`Active::updated_bones`].
+    /// Records part 1 of 3 of the frame: the choice of active bones. It also notifies the readers of [`Active::updated_bones`].
     pub fn dispatch_gate(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.clip_clock.dispatch(pass);
         self.gate.dispatch(pass);
         self.lists.dispatch(pass);
     }
 
-    /// Records the second third of the frame: keyframe cursors and samples of the active bones.
+    /// Records part 2 of 3 of the frame: keyframe cursors and samples of the active bones.
     pub fn dispatch_sample(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.cursor.dispatch(pass);
         self.sample.dispatch(pass);
     }
 
-    /// Records the last third of the frame: model matrices of the active bones and all their descendants.
+    /// Records part 3 of 3 of the frame: model matrices of the active bones and all their descendants.
     pub fn dispatch_local_to_model(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.local_to_model.dispatch(pass);
     }

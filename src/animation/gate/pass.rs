@@ -136,7 +136,8 @@ impl GateJob {
         self.set_through(&mut &*gpu, frame)
     }
 
-    /// Does the same as [`GateJob::set`], but writes through `upload`.
+    /// Does the same as [`GateJob::set`], but writes through `upload`. With [`Staged`](crate::gpu::Staged) writes, one submission
+    /// may contain several frames.
     ///
     /// # Errors
     /// Same as [`GateJob::set`].

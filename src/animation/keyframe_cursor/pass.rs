@@ -121,7 +121,8 @@ impl KeyframeCursorJob {
         self.set_through(&mut &*gpu, elapsed)
     }
 
-    /// Does the same as [`KeyframeCursorJob::set`], but writes through `upload`.
+    /// Does the same as [`KeyframeCursorJob::set`], but writes through `upload`. With [`Staged`](crate::gpu::Staged) writes, one
+    /// submission may contain several frames.
     ///
     /// # Errors
     /// Same as [`KeyframeCursorJob::set`].

@@ -66,7 +66,7 @@ impl LocalToModelPass {
             instances: &active.instances,
             dispatches: &active.dispatches,
         };
-        // Entry 0 of `dispatches` has one thread per updated instance. The levels of chains begin at entry 1.
+        // Entry 0 of `dispatches` is for a dispatch with one thread per updated instance. The levels of chains begin at entry 1.
         let step = |(dispatch, level): (u64, &[u32])| {
             let group = binder.bind(gpu, &self.compacted, level, &lists)?;
             Ok(Step::indirect(&self.compacted, group, active.dispatches.raw(), 16 * dispatch))

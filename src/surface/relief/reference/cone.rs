@@ -6,7 +6,7 @@ use crate::surface::map::HeightMap;
 use crate::surface::relief::{March, Outcome, ReliefHit, ReliefRay};
 
 /// Traces a ray by stepping over the map's cones. For each cell, row by row, `cones` has the height of the highest corner and the
-/// cone radius. They must have been computed for the address mode of `march`.
+/// cone radius. The cones must have been computed for the address mode of `march`.
 pub(crate) fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &ReliefRay, march: &March) -> ReliefHit {
     let grid = Grid::new(map, ray, march.address);
     let distance = (grid.travel[0] * grid.travel[0] + grid.travel[1] * grid.travel[1]).sqrt();
